@@ -1,0 +1,52 @@
+# tactus_module(NAME [HEADERS_ONLY] [SOURCES file...] [LINK target...] [LINK_PRIVATE target...])
+#
+# Declares the library target tactus::NAME from the current folder. Headers sit beside their sources and are included
+# as <tactus/NAME/thing.hpp>.
+
+find_program(TACTUS_CCACHE ccache)
+if(TACTUS_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${TACTUS_CCACHE})
+endif()
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+
+# What every target of this project is compiled with, and no user of the library inherits.
+# -ffp-contract=off keeps results equal bit for bit between builds with and without fused multiply-add.
+add_library(tactus_options INTERFACE)
+target_compile_options(tactus_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wnon-virtual-dtor -Wold-style-cast
+  -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wformat=2 -Wimplicit-fallthrough
+  -ffp-contract=off
+  $<$<CONFIG:Release>:-O3>
+  $<$<BOOL:${TACTUS_WARNINGS_AS_ERRORS}>:-Werror>)
+if(TACTUS_SANITIZE)
+  target_compile_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE} -fno-sanitize-recover=all
+                                                  -fno-omit-frame-pointer)
+  target_link_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE})
+endif()
+
+set_property(GLOBAL PROPERTY TACTUS_MODULES "")
+
+function(tactus_module name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "HEADERS_ONLY" "" "SOURCES;LINK;LINK_PRIVATE")
+  set(target tactus_${name})
+  set(kind PUBLIC)
+  if(arg_HEADERS_ONLY)
+    set(kind INTERFACE)
+    add_library(${target} INTERFACE)
+  else()
+    add_library(${target} STATIC ${arg_SOURCES})
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tactus_options> ${arg_LINK_PRIVATE})
+  endif()
+  add_library(tactus::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(${target} ${kind} cxx_std_20)
+  target_include_directories(${target} ${kind} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+                                               $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} ${kind} ${arg_LINK})
+  set_property(GLOBAL APPEND PROPERTY TACTUS_MODULES ${name})
+endfunction()

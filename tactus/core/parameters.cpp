@@ -1,0 +1,40 @@
+#include <tactus/core/parameters.hpp>
+
+#include <charconv>
+
+namespace tactus {
+
+std::string format_number(double value) {
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  return std::string(buffer, end);
+}
+
+namespace {
+std::string with_unit(double value, const Unit& unit) {
+  std::string text = format_number(value);
+  if (unit.symbol[0] != '\0') text += std::string(" ") + unit.symbol;
+  return text;
+}
+}  // namespace
+
+std::string describe_bounds(const Bounds& bounds, const Unit& unit) {
+  const bool below = std::isfinite(bounds.lower);
+  const bool above = std::isfinite(bounds.upper);
+  const std::string lower = bounds.lower_open ? "greater than " : "at least ";
+  if (below && above) {
+    return "must be " + lower + with_unit(bounds.lower, unit) + " and at most " + with_unit(bounds.upper, unit);
+  }
+  if (below) return "must be finite and " + lower + with_unit(bounds.lower, unit);
+  if (above) return "must be finite and at most " + with_unit(bounds.upper, unit);
+  return "must be finite";
+}
+
+Error out_of_bounds(std::string_view parameter, double value, const Bounds& bounds, const Unit& unit) {
+  return {.code = ErrorCode::out_of_bounds,
+          .parameter = std::string(parameter),
+          .message = with_unit(value, unit) + " is out of bounds: it " + describe_bounds(bounds, unit),
+          .place = {}};
+}
+
+}  // namespace tactus

@@ -1,0 +1,22 @@
+#include <tactus/core/result.hpp>
+
+namespace tactus {
+
+std::string describe(const Error& error) {
+  std::string text;
+  for (const std::string* part : {&error.place, &error.parameter}) {
+    if (!part->empty()) text += *part + ": ";
+  }
+  return text + error.message;
+}
+
+Error under(std::string_view prefix, Error error) {
+  error.parameter = error.parameter.empty() ? std::string(prefix) : std::string(prefix) + "." + error.parameter;
+  return error;
+}
+
+int exit_status(const Error& error) {
+  return error.code == ErrorCode::failed || error.code == ErrorCode::unwritable ? 1 : 2;
+}
+
+}  // namespace tactus
