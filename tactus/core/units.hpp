@@ -29,6 +29,7 @@ inline constexpr Unit newton_second_per_metre{"N s/m", "_N_s_per_m"};
 inline constexpr Unit second_per_metre{"s/m", "_s_per_m"};
 inline constexpr Unit kilogram{"kg", "_kg"};
 inline constexpr Unit per_second{"1/s", "_per_s"};
+inline constexpr Unit cycles{"cycles", "_cycles"};
 }  // namespace units
 
 }  // namespace tactus

@@ -1,0 +1,140 @@
+#pragma once
+
+#include <tactus/core/element.hpp>
+#include <tactus/core/parameters.hpp>
+#include <tactus/mechanics/bodies.hpp>
+#include <tactus/mechanics/springs.hpp>
+
+#include <array>
+#include <cstddef>
+
+namespace tactus::control {
+
+/// How the model is advanced from one servo tick to the next.
+enum class CancellationStep {
+  euler,  ///< forward Euler in substeps of at most 40 µs, as in paper A, Sec. VIII-B
+  exact,  ///< the linear part by its matrix exponential, the nonlinear forces held over the tick
+};
+constexpr auto enumerators(CancellationStep) {
+  return std::array{Enumerator{CancellationStep::euler, "euler"}, Enumerator{CancellationStep::exact, "exact"}};
+}
+
+/// On which velocity the model's Coulomb friction acts.
+enum class ModelFriction {
+  at_rest,         ///< on the induced velocity alone, as if the hand rested: paper A's superposition
+  total_velocity,  ///< on intended plus induced velocity, less the friction that the intended motion meets anyway
+};
+constexpr auto enumerators(ModelFriction) {
+  return std::array{Enumerator{ModelFriction::at_rest, "at-rest"},
+                    Enumerator{ModelFriction::total_velocity, "total-velocity"}};
+}
+
+/// The controller's parameters of master and hand, translated to the hand. The defaults are paper A's Table I.
+struct MasterModel {
+  mechanics::RubbingMass motor{.mass_kg = 0.0075, .friction_N = 0.01};
+  mechanics::LinearSpring::Params cable{.stiffness_N_per_m = 39500.0, .damping_N_s_per_m = 3.6};
+  mechanics::RubbingMass drum{.mass_kg = 0.01075, .friction_N = 0.0144};
+  mechanics::LinearSpring::Params linkage{.stiffness_N_per_m = 3950.0, .damping_N_s_per_m = 0.02};
+  mechanics::FreeMass handle{.mass_kg = 0.014};
+  mechanics::QuinticSpring::Params hand;
+  static constexpr auto fields() {
+    return std::tuple{field("motor", &MasterModel::motor, "Motor rotor."),
+                      field("cable", &MasterModel::cable, "Cable between motor and drum."),
+                      field("drum", &MasterModel::drum, "Drum."),
+                      field("linkage", &MasterModel::linkage, "Linkage between drum and handle, linear here."),
+                      field("handle", &MasterModel::handle, "Handle."),
+                      field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections.")};
+  }
+};
+
+/// How far a displayed force moves the motor (paper A, eq. 2 and Fig. 10): six states, run by the controller.
+///
+/// Three masses on a line with the deflections from where they would be without the force,
+///
+///     m_m ẍ_m = F − k_c (x_m − x_d) − b_c (ẋ_m − ẋ_d) − friction f_m
+///     m_d ẍ_d = k_c (x_m − x_d) + b_c (ẋ_m − ẋ_d) − k_l (x_d − x_h) − b_l (ẋ_d − ẋ_h) − friction f_d
+///     m_h ẍ_h = k_l (x_d − x_h) + b_l (ẋ_d − ẋ_h) − k_o x_h − k_5 x_h⁵ − b_o ẋ_h
+///
+/// The quintic spring belongs to the controller, not to the hand: it holds the slow deflection to about 2 mm at full
+/// force, a tenth of the real one, because the person takes out slow deflections without help and an overestimate
+/// would be positive feedback (Sec. VI and VIII-A).
+///
+/// Friction on total velocity: friction that the moving hand already saturates hardly changes with the force. With the
+/// share s = clamp(w/w₀, ±1) of friction that the intended velocity w uses up, what the force can still change lies in
+/// [−f (1 − s), f (1 + s)], and it acts to stop the total velocity. Below the band w₀ the intended velocity is noise,
+/// and friction sticks exactly as at rest; with w = 0 the two kinds are the same.
+///
+/// The exact step: x⁺ = Φ x + Γ u with Φ = exp(A·dt), Γ its integral, and u the motor force, the frictions and the
+/// quintic force, held over the tick. Frictions are found at the end velocity by two fixed sweeps over the two rubbing
+/// masses; nothing iterates to a tolerance.
+///
+/// Forces and motion are positive toward the environment, so a displayed force F_f enters as −F_f.
+class InducedMotionModel {
+ public:
+  struct Params {
+    MasterModel master;
+    CancellationStep step = CancellationStep::exact;
+    ModelFriction friction = ModelFriction::total_velocity;
+    double friction_band_m_per_s = 0.005;
+    static constexpr auto fields() {
+      return std::tuple{field("master", &Params::master, "Master and hand."),
+                        field("step", &Params::step, "How the model is advanced."),
+                        field("friction", &Params::friction, "On which velocity Coulomb friction acts."),
+                        field("friction_band_m_per_s", &Params::friction_band_m_per_s, units::metre_per_second,
+                              positive, "Intended velocity above which friction counts as saturated by it.")};
+    }
+  };
+
+  struct Input {
+    double motor_force_N = 0.0;              ///< applied until the next tick, positive toward the environment
+    double intended_velocity_m_per_s = 0.0;  ///< of the master without the force; used by `total_velocity` alone
+  };
+  /// Position of the motor in m at the end of the tick, less where it would be without the force.
+  using Output = double;
+
+  /// Positions of motor, drum and handle in m, then their velocities in m/s.
+  using State = std::array<double, 6>;
+
+  /// Longest substep of the Euler step (paper A, Sec. VIII-B).
+  static constexpr double euler_substep_s = 40e-6;
+
+  /// Fails where a value is out of bounds or where the Euler step would be unstable.
+  static Result<InducedMotionModel> make(const Params& params, Seconds dt);
+
+  /// Advances by one tick. Real-time safe.
+  Output step(const Input& input) noexcept;
+  /// At rest, undeflected.
+  void reset() noexcept { state_ = {}; }
+
+  /// Where the force so far has moved the motor, in m: belongs to the sample taken at this very instant, before the
+  /// next force acts.
+  [[nodiscard]] double motor_position_m() const noexcept { return state_[0]; }
+  [[nodiscard]] const State& state() const noexcept { return state_; }
+  void set_state(const State& state) noexcept { state_ = state; }
+
+ private:
+  /// Eight instead of six, so that a column is one or two whole vector registers.
+  struct alignas(64) Column : std::array<double, 8> {};
+
+  /// What friction can still change, as bounds on its force, and the velocity offset that it acts against.
+  struct FrictionRange {
+    double least_share, most_share;
+    double offset_m_per_s;
+  };
+
+  InducedMotionModel(const Params& params, const mechanics::QuinticSpring& quintic, Seconds dt);
+
+  [[nodiscard]] FrictionRange friction_range(double intended_velocity_m_per_s) const noexcept;
+  void step_euler(double motor_force_N, const FrictionRange& range) noexcept;
+  void step_exact(double motor_force_N, const FrictionRange& range) noexcept;
+
+  Params params_;
+  mechanics::QuinticSpring quintic_;  ///< the hand's quintic part alone
+  double dt_s_;
+  std::size_t euler_substeps_;
+  std::array<Column, 6> transition_{};  ///< columns of Φ
+  std::array<Column, 3> response_{};    ///< columns of Γ: unit force on motor, drum, handle held over a tick
+  State state_{};
+};
+
+}  // namespace tactus::control

@@ -1,0 +1,21 @@
+#include <tactus/mechanics/cable_driven_master.hpp>
+
+namespace tactus::mechanics {
+
+Result<CableDrivenMaster> CableDrivenMaster::make(const Params& params, const LinearSpring::Params& grip, Seconds dt) {
+  const auto mechanism = CableChain::make(params.mechanism, grip, dt);
+  if (!mechanism) return under("mechanism", mechanism.error());
+  const auto amplifier = CurrentAmplifier::make(params.amplifier, dt);
+  if (!amplifier) return under("amplifier", amplifier.error());
+  const auto encoder = Encoder::make(params.encoder, dt);
+  if (!encoder) return under("encoder", encoder.error());
+  return CableDrivenMaster(*mechanism, *amplifier, *encoder);
+}
+
+void CableDrivenMaster::reset(double position_m) noexcept {
+  mechanism_.reset(position_m);
+  amplifier_.reset();
+  encoder_.reset();
+}
+
+}  // namespace tactus::mechanics

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <tactus/core/element.hpp>
+#include <tactus/core/parameters.hpp>
+#include <tactus/mechanics/amplifier.hpp>
+#include <tactus/mechanics/cable_chain.hpp>
+#include <tactus/mechanics/encoder.hpp>
+#include <tactus/mechanics/environment.hpp>
+#include <tactus/mechanics/force_sensor.hpp>
+
+#include <cstdint>
+
+namespace tactus::mechanics {
+
+/// The slave as a plant: a device like the master, its tip facing a wall, with an encoder on the motor and a force
+/// sensor behind the tip (paper A, Fig. 9: two equal joysticks).
+///
+/// It runs on the plant's substeps. A substep in which the tip meets or leaves the wall's surface is cut there: the
+/// instant is found by false position on copies of the mechanism, and the two parts are stepped one after the other,
+/// so the contact time is known far below the substep and the impact does not depend on where the grid fell.
+class ElectricSlave {
+ public:
+  struct Params {
+    CableChain::Params mechanism;
+    CurrentAmplifier::Params amplifier;
+    Encoder::Params encoder{.resolution_m = 1e-5};
+    ForceSensor::Params force_sensor;
+    static constexpr auto fields() {
+      return std::tuple{field("mechanism", &Params::mechanism, "Motor, cable, drum, linkage and tip."),
+                        field("amplifier", &Params::amplifier, "Current amplifier of the motor."),
+                        field("encoder", &Params::encoder, "Position encoder on the motor."),
+                        field("force_sensor", &Params::force_sensor, "Force sensor behind the tip.")};
+    }
+  };
+
+  using Input = double;
+  /// What happened in one substep.
+  struct Output {
+    double contact_force_N = 0.0;  ///< mean over the substep, positive when the wall pushes the tip back
+    bool touched = false;          ///< the tip went from a gap into the wall
+    double touched_after_s = 0.0;  ///< when, from the start of the substep
+  };
+  /// What the slave's sensors read.
+  struct Reading {
+    double motor_position_m = 0.0;
+    double tip_force_N = 0.0;
+  };
+
+  /// A slave before a wall.
+  static Result<ElectricSlave> make(const Params& params, const Environment::Params& environment, Seconds dt);
+  /// A slave before the default wall.
+  static Result<ElectricSlave> make(const Params& params, Seconds dt) { return make(params, {}, dt); }
+
+  /// Advances by one substep under `commanded_force_N`, positive toward the environment. Real-time safe.
+  Output step(double commanded_force_N) noexcept;
+
+  /// What the sensors read now: draws one sample of noise.
+  Reading measure() noexcept {
+    return {.motor_position_m = encoder_.step(mechanism_.motor_position_m()), .tip_force_N = force_sensor_.sample()};
+  }
+
+  void reset() noexcept { reset(0.0); }
+  /// At rest with every mass at `position_m`.
+  void reset(double position_m) noexcept;
+
+  [[nodiscard]] const CableChain& mechanism() const noexcept { return mechanism_; }
+
+ private:
+  ElectricSlave(const CableChain& mechanism, const CurrentAmplifier& amplifier, const Encoder& encoder,
+                const ForceSensor& force_sensor, const Environment& environment, Seconds dt)
+      : mechanism_(mechanism),
+        amplifier_(amplifier),
+        encoder_(encoder),
+        force_sensor_(force_sensor),
+        environment_(environment),
+        dt_s_(dt.value) {}
+
+  /// The wall's force on `mechanism` at the middle of the next `duration_s`.
+  double contact_force(const CableChain& mechanism, double duration_s) noexcept;
+  /// Time from now at which the tip crosses the surface, known to do so within a whole substep.
+  double crossing_time(double motor_force_N, double gap_now_m, double gap_after_m) noexcept;
+
+  CableChain mechanism_;
+  CurrentAmplifier amplifier_;
+  Encoder encoder_;
+  ForceSensor force_sensor_;
+  Environment environment_;
+  double dt_s_;
+};
+
+}  // namespace tactus::mechanics

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <tactus/core/element.hpp>
+#include <tactus/core/parameters.hpp>
+#include <tactus/mechanics/cable_chain.hpp>
+#include <tactus/signal/delay_line.hpp>
+#include <tactus/signal/low_pass.hpp>
+
+namespace tactus::mechanics {
+
+/// The person at the master, as a plant. Three things at once:
+///
+/// - a passive impedance, the grip: a linear spring and damper from the handle to where the hand wants to be
+///   (paper A, Table I). The chain of the master carries it; here it is only a parameter.
+/// - the intended path with physiological tremor on it (8 to 12 Hz; Elble and Koller, *Tremor*, 1990).
+/// - slow correction: the person sees or feels the handle off the path and shifts the aim, as an integrator on the
+///   error, low-passed near 5 Hz and a reaction time late (paper A, Sec. VI: active compensation up to about 5 Hz,
+///   reaction about 100 ms).
+///
+/// Steps once per servo tick. Between ticks the aim moves at constant velocity: the velocity steps that this makes
+/// move the handle by less than 1 nm, because the grip smooths them over about 1 ms.
+class Operator {
+ public:
+  struct Correction {
+    double gain_per_s = 4.0;
+    double bandwidth_Hz = 5.0;
+    double reaction_time_s = 0.1;
+    static constexpr auto fields() {
+      return std::tuple{
+          field("gain_per_s", &Correction::gain_per_s, units::per_second, between(0.0, 8.0),
+                "Speed of the correction per metre of error; 0 switches it off, above 8 a person would oscillate."),
+          field("bandwidth_Hz", &Correction::bandwidth_Hz, units::hertz, between(0.1, 20.0),
+                "Corner of the first-order low-pass on the error that is corrected."),
+          field("reaction_time_s", &Correction::reaction_time_s, units::second, between(0.0, 0.4),
+                "Time from an error to the start of its correction.")};
+    }
+  };
+
+  struct Params {
+    LinearSpring::Params grip{.stiffness_N_per_m = 40.0, .damping_N_s_per_m = 23.0};
+    Correction correction;
+    double tremor_amplitude_m = 5e-5;
+    double tremor_frequency_Hz = 10.0;
+    double tremor_phase_cycles = 0.0;
+    static constexpr auto fields() {
+      return std::tuple{
+          field("grip", &Params::grip, "Passive impedance of hand and arm at the handle (paper A, Table I)."),
+          field("correction", &Params::correction, "Slow correction of the handle's position."),
+          field("tremor_amplitude_m", &Params::tremor_amplitude_m, units::metre, between(0.0, 0.005),
+                "Amplitude of physiological tremor on the intended path."),
+          field("tremor_frequency_Hz", &Params::tremor_frequency_Hz, units::hertz, between(1.0, 30.0),
+                "Frequency of the tremor."),
+          field("tremor_phase_cycles", &Params::tremor_phase_cycles, units::cycles, between(0.0, 1.0),
+                "Phase of the tremor at the start.")};
+    }
+  };
+
+  struct Input {
+    double path_m = 0.0;             ///< the intended path at this tick
+    double path_at_next_tick_m = 0.0;///< and at the next
+    double handle_position_m = 0.0;  ///< where the handle is at this tick
+  };
+
+  /// Where the hand wants the handle during this tick: `position_m` at its start, moving at `velocity_m_per_s`.
+  struct Output {
+    double position_m = 0.0;
+    double velocity_m_per_s = 0.0;
+  };
+
+  static Result<Operator> make(const Params& params, Seconds dt);
+  Output step(const Input& input) noexcept;
+  void reset() noexcept;
+
+  /// Longest reaction time in ticks: 0.4 s at 20 kHz.
+  static constexpr std::size_t longest_reaction_ticks = 8000;
+
+ private:
+  using Reaction = signal::DelayLine<double, longest_reaction_ticks>;
+
+  /// A point on the unit circle; the tremor turns it by a fixed angle a tick, which needs no sine in the loop.
+  struct Phase {
+    double cosine = 1.0;
+    double sine = 0.0;
+  };
+
+  Operator(const Params& params, Seconds dt, const signal::LowPass& low_pass, const Reaction& reaction);
+
+  double dt_s_;
+  double correction_gain_per_s_;
+  Phase tremor_start_;
+  Phase tremor_turn_;
+  double tremor_amplitude_m_;
+  Phase tremor_;
+  double correction_m_ = 0.0;
+  signal::LowPass low_pass_;
+  Reaction reaction_;
+};
+
+}  // namespace tactus::mechanics
