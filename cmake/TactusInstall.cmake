@@ -1,4 +1,5 @@
-# What `cmake --install` leaves behind: a package that find_package(tactus) finds, the `tactus` command, the experiments.
+# What `cmake --install` leaves behind: a package that find_package(tactus) finds, the `tactus` command and the
+# experiments.
 
 include(CMakePackageConfigHelpers)
 set(TACTUS_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/tactus)
