@@ -24,8 +24,10 @@ target_compile_options(tactus_options INTERFACE
   $<$<CONFIG:Release>:-O3>
   $<$<BOOL:${TACTUS_WARNINGS_AS_ERRORS}>:-Werror>)
 if(TACTUS_SANITIZE)
+  # The code that a sanitizer adds sets off warnings about the flow of values that are not true of the source.
   target_compile_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE} -fno-sanitize-recover=all
-                                                  -fno-omit-frame-pointer)
+                                                  -fno-omit-frame-pointer -Wno-maybe-uninitialized
+                                                  -Wno-null-dereference)
   target_link_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE})
 endif()
 

@@ -1,12 +1,15 @@
 #pragma once
 
-#include <concepts>
-#include <type_traits>
-
 #include <tactus/core/result.hpp>
 #include <tactus/core/units.hpp>
 
+#include <concepts>
+#include <type_traits>
+
 namespace tactus {
+
+// Version 14 of the formatter tears a `noexcept` requirement apart.
+// clang-format off
 
 /// A small value type with parameters, state and one hot call: the stuff that sites and plants are made of.
 ///
@@ -25,5 +28,6 @@ concept Element = std::is_trivially_copyable_v<E> &&
                     { element.step(input) } noexcept -> std::same_as<typename E::Output>;
                     { element.reset() } noexcept;
                   };
+// clang-format on
 
 }  // namespace tactus

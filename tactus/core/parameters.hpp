@@ -1,5 +1,8 @@
 #pragma once
 
+#include <tactus/core/result.hpp>
+#include <tactus/core/units.hpp>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -9,9 +12,6 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
-
-#include <tactus/core/result.hpp>
-#include <tactus/core/units.hpp>
 
 /// One description of every parameter.
 ///
@@ -60,7 +60,9 @@ struct Field {
 
 /// A parameter struct: default-constructible, with a list of its fields.
 template <class T>
-concept Described = std::is_default_constructible_v<T> && requires { T::fields(); };
+concept Described = std::is_default_constructible_v<T> && requires {
+  T::fields();
+};
 
 /// A number with a unit and bounds.
 template <class Struct>
@@ -88,7 +90,9 @@ struct Enumerator {
 
 /// An enum that a file can name: a function `enumerators(Enum)` beside it lists its words.
 template <class E>
-concept NamedEnum = std::is_enum_v<E> && requires(E e) { enumerators(e); };
+concept NamedEnum = std::is_enum_v<E> && requires(E e) {
+  enumerators(e);
+};
 
 /// The word that stands for `value`.
 template <NamedEnum E>

@@ -30,8 +30,7 @@ TEST(Parameters, AnErrorNamesThePathTheValueTheBoundsAndTheUnit) {
   outer.motor.mass_kg = -0.5;
   const Check error = validate(outer);
   ASSERT_TRUE(error.has_value());
-  EXPECT_EQ(describe(*error),
-            "motor.mass_kg: -0.5 kg is out of bounds: it must be finite and greater than 0 kg");
+  EXPECT_EQ(describe(*error), "motor.mass_kg: -0.5 kg is out of bounds: it must be finite and greater than 0 kg");
   EXPECT_EQ(exit_status(*error), 2);
 }
 

@@ -1,0 +1,41 @@
+# `make run` and `make test` work on a fresh Debian 12 machine. `make help` lists everything.
+
+# More flags for the configuration step, for instance CMAKE_FLAGS=-DTACTUS_WARNINGS_AS_ERRORS=ON
+CMAKE_FLAGS ?=
+JOBS ?= $(shell nproc)
+BUILD := build/release
+
+.DEFAULT_GOAL := help
+.PHONY: help run test bench format check clean deps configure
+
+help: ## List these commands
+	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
+
+run: configure ## Build tactus and run the main experiment into out/tapping
+	cmake --build --preset release --parallel $(JOBS) --target tactus
+	$(BUILD)/bin/tactus run experiments/tapping.toml \
+	  --vary control.force_gain=1,3,5,7,10,15 --vary control.cancellation=off,on --out out/tapping
+
+test: configure ## Build everything and run the test suite
+	cmake --build --preset release --parallel $(JOBS)
+	ctest --preset release --parallel $(JOBS)
+
+bench: configure ## Build everything and run the benchmarks
+	cmake --build --preset release --parallel $(JOBS)
+	@set -e; for program in $(BUILD)/bin/bench_*; do echo "== $$program"; "$$program"; done
+
+format: ## Format every source file in place
+	@scripts/install-deps --checks
+	git ls-files -z '*.hpp' '*.cpp' | xargs -0 clang-format -i
+
+check: ## Run everything that must hold before a change is taken (.ci/run)
+	bash .ci/run
+
+clean: ## Remove what was built; results in out/ stay
+	rm -rf build
+
+deps:
+	@scripts/install-deps
+
+configure: deps
+	cmake --preset release $(CMAKE_FLAGS)

@@ -1,0 +1,3 @@
+#include <tactus/core/upward.hpp>
+
+#include <chrono>

@@ -1,0 +1,5 @@
+#include <tactus/signal/sound.hpp>
+
+#include <chrono>
+
+#include <matio.h>

@@ -1,0 +1,69 @@
+# cmake -D ROOT=<folder that holds tactus/> -D "LAYERS=core;signal;..." -P check.cmake
+#
+# Reads every #include of the library and fails when one breaks a rule of the layers:
+#   - a module includes itself and modules that stand before it in LAYERS, always as <tactus/module/thing.hpp>;
+#   - the kernel includes the standard library, Eigen and itself, and nothing that needs an operating system;
+#   - no header that is installed includes a library of others, Eigen excepted.
+cmake_minimum_required(VERSION 3.25)
+
+set(kernel core signal mechanics control)
+set(needs_a_system barrier chrono condition_variable filesystem fstream future iostream latch mutex semaphore
+                   shared_mutex stop_token thread)
+
+set(violations "")
+function(violation file message)
+  list(APPEND violations "${file}: ${message}")
+  set(violations "${violations}" PARENT_SCOPE)
+endfunction()
+
+file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/tactus/*.hpp ${ROOT}/tactus/*.cpp)
+if(NOT files)
+  message(FATAL_ERROR "no source files found under ${ROOT}/tactus")
+endif()
+
+foreach(file IN LISTS files)
+  string(REGEX REPLACE "^tactus/([^/]+)/.*" "\\1" module ${file})
+  list(FIND LAYERS ${module} layer)
+  if(layer EQUAL -1)
+    violation(${file} "its folder is not in TACTUS_LAYERS of the root CMakeLists.txt")
+    continue()
+  endif()
+
+  file(STRINGS ${ROOT}/${file} includes REGEX "^[ \t]*#[ \t]*include")
+  foreach(include IN LISTS includes)
+    if(NOT include MATCHES "<(.+)>")
+      violation(${file} "write ${include} as <tactus/module/thing.hpp>")
+      continue()
+    endif()
+    set(header ${CMAKE_MATCH_1})
+
+    if(header MATCHES "^tactus/([^/]+)/")
+      set(included ${CMAKE_MATCH_1})
+      list(FIND LAYERS ${included} included_layer)
+      if(included_layer EQUAL -1 OR included_layer GREATER layer)
+        violation(${file}
+                  "${module} may not include <${header}>: ${included} does not stand before it in TACTUS_LAYERS")
+      endif()
+    elseif(header MATCHES "^[a-z_0-9]+$")
+      if(module IN_LIST kernel AND header IN_LIST needs_a_system)
+        violation(${file} "the kernel needs no operating system, so it may not include <${header}>")
+      endif()
+    elseif(NOT header MATCHES "^(unsupported/)?Eigen/")
+      if(module IN_LIST kernel)
+        violation(${file} "the kernel needs the standard library and Eigen only, so it may not include <${header}>")
+      elseif(file MATCHES "\\.hpp$" AND NOT module STREQUAL "cli")
+        violation(${file} "it is installed, so it may not include <${header}>: include that in a source file")
+      endif()
+    endif()
+  endforeach()
+endforeach()
+
+list(LENGTH files checked)
+list(LENGTH violations found)
+foreach(text IN LISTS violations)
+  message("${text}")
+endforeach()
+if(found GREATER 0)
+  message(FATAL_ERROR "${found} of the includes in ${checked} files break the layers")
+endif()
+message("the includes of ${checked} files keep the layers")
