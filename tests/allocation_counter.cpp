@@ -1,0 +1,70 @@
+#include "tests/allocation_counter.hpp"
+
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+
+// A sanitizer owns the heap of its program and offers a hook; elsewhere glibc's own entry points are put in front.
+#if defined(__has_feature)
+#define TACTUS_HAS_FEATURE(name) __has_feature(name)
+#else
+#define TACTUS_HAS_FEATURE(name) 0
+#endif
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || TACTUS_HAS_FEATURE(address_sanitizer) || \
+    TACTUS_HAS_FEATURE(thread_sanitizer)
+#define TACTUS_SANITIZED_HEAP 1
+#else
+#define TACTUS_SANITIZED_HEAP 0
+#endif
+
+namespace {
+std::atomic<std::uint64_t> count{0};
+void note() noexcept { count.fetch_add(1, std::memory_order_relaxed); }
+}  // namespace
+
+namespace tactus::laws {
+std::uint64_t allocation_count() noexcept { return count.load(std::memory_order_relaxed); }
+}  // namespace tactus::laws
+
+#if TACTUS_SANITIZED_HEAP
+
+#include <sanitizer/allocator_interface.h>
+
+namespace {
+[[maybe_unused]] const int installed = __sanitizer_install_malloc_and_free_hooks(
+    [](const volatile void*, std::size_t) { note(); }, [](const volatile void*) {});
+}  // namespace
+
+#else
+
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+// operator new of libstdc++ ends here too.
+void* malloc(std::size_t size) {
+  note();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  note();
+  return __libc_calloc(number, size);
+}
+void* realloc(void* memory, std::size_t size) {
+  note();
+  return __libc_realloc(memory, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  note();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
+  note();
+  *memory = __libc_memalign(alignment, size);
+  return *memory == nullptr ? ENOMEM : 0;
+}
+}
+
+#endif

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstdint>
+
+namespace tactus::laws {
+
+/// How often this program has asked the heap for memory so far, by `new`, `malloc` or a relative.
+///
+/// Counts only in a program that has `tests/allocation_counter.cpp` among its sources.
+std::uint64_t allocation_count() noexcept;
+
+}  // namespace tactus::laws
