@@ -1,0 +1,238 @@
+#include <tactus/recording/csv_file.hpp>
+#include <tactus/recording/file_bytes.hpp>
+#include <tactus/recording/names.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+namespace tactus::recording {
+namespace {
+
+/// One field of a line, without blanks and quotes around it, and the character of the line (from 1) where it begins.
+struct CsvField {
+  std::string_view text;
+  std::size_t character;
+};
+
+/// The next line of `text` from `offset`, which moves behind it.
+std::string_view next_line(std::string_view text, std::size_t& offset) {
+  const std::size_t end = std::min(text.find('\n', offset), text.size());
+  const std::string_view line = text.substr(offset, end - offset);
+  offset = std::min(end + 1, text.size());
+  return line;
+}
+
+/// Splits a line into fields. False if a quote stays open.
+bool split(std::string_view line, char separator, std::vector<CsvField>& fields) {
+  fields.clear();
+  std::size_t start = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line[i] == '"') quoted = !quoted;
+    if (i < line.size() && (quoted || line[i] != separator)) continue;
+    std::string_view field = trim(line.substr(start, i - start));
+    if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
+    fields.push_back({field, field.empty() ? start + 1 : static_cast<std::size_t>(field.data() - line.data()) + 1});
+    start = i + 1;
+  }
+  return !quoted;
+}
+
+/// The separator that stands most often outside quotes.
+char separator_of(std::string_view header) {
+  char best = ',';
+  std::ptrdiff_t most = 0;
+  for (const char candidate : {'\t', ';', ','}) {
+    bool quoted = false;
+    const auto count = std::count_if(header.begin(), header.end(), [&](char c) {
+      if (c == '"') quoted = !quoted;
+      return !quoted && c == candidate;
+    });
+    if (count > most) {
+      best = candidate;
+      most = count;
+    }
+  }
+  return best;
+}
+
+std::string without_doubled_quotes(std::string_view field) {
+  std::string text;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    text += field[i];
+    if (field.substr(i, 2) == "\"\"") ++i;
+  }
+  return text;
+}
+
+/// What `text` says as a number, or the reason why it says none.
+struct Number {
+  double value = 0.0;
+  const char* fault = nullptr;
+};
+Number parse_number(std::string_view text) {
+  if (text.empty()) return {.fault = "is empty; fill in the lost sample or remove the line"};
+  const std::string_view digits = text.front() == '+' ? text.substr(1) : text;
+  Number number;
+  const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), number.value);
+  if (failure == std::errc::result_out_of_range)
+    return {.fault = "is beyond the range of a double; rescale the column"};
+  if (failure != std::errc{} || end != digits.data() + digits.size() || digits.front() == '+') {
+    return {.fault = text.find(',') == std::string_view::npos ? "is not a number; correct it or remove the line"
+                                                              : "is not a number; write a decimal point, not a comma"};
+  }
+  if (!std::isfinite(number.value)) return {.fault = "is not finite; fill in the lost sample or remove the line"};
+  return number;
+}
+
+Error broken(ErrorCode code, std::string message, std::string place) {
+  return {.code = code, .parameter = {}, .message = std::move(message), .place = std::move(place)};
+}
+
+}  // namespace
+
+std::string CsvFile::place_of(std::size_t row) const { return file_.string() + ":" + std::to_string(data_line_ + row); }
+
+std::string CsvFile::place_of(std::size_t line, std::size_t character) const {
+  return file_.string() + ":" + std::to_string(line) + ":" + std::to_string(character);
+}
+
+Result<CsvFile> CsvFile::open(const std::filesystem::path& file) {
+  CsvFile table;
+  table.file_ = file;
+  Result<std::string> bytes = file_bytes(file);
+  if (!bytes) return bytes.error();
+  table.text_ = *std::move(bytes);
+  if (table.text_.starts_with("\xEF\xBB\xBF")) table.text_.erase(0, 3);
+  if (table.text_.starts_with("\xFF\xFE") || table.text_.starts_with("\xFE\xFF")) {
+    return broken(ErrorCode::syntax, "is UTF-16 text; save it as UTF-8", file.string());
+  }
+  if (table.text_.find('\0') != std::string::npos) {
+    return broken(ErrorCode::syntax, "holds a zero byte, so it is no text; name a table or a .mat file", file.string());
+  }
+  if (Check wrong = table.parse_header()) return *std::move(wrong);
+  if (Check wrong = table.count_rows()) return *std::move(wrong);
+  return table;
+}
+
+Check CsvFile::parse_header() {
+  std::size_t offset = 0;
+  std::size_t line_number = 0;
+  std::string_view header;
+  while (trim(header).empty() && offset < text_.size()) {
+    header = next_line(text_, offset);
+    if (trim(header).starts_with('#')) header = {};
+    ++line_number;
+  }
+  if (trim(header).empty()) {
+    return broken(ErrorCode::missing, "is empty; write a header with names and units, then a line for each sample",
+                  file_.string());
+  }
+  separator_ = separator_of(header);
+  std::vector<CsvField> fields;
+  if (!split(header, separator_, fields)) {
+    return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line",
+                  file_.string() + ":" + std::to_string(line_number));
+  }
+  const bool only_numbers = std::all_of(
+      fields.begin(), fields.end(), [](const CsvField& field) { return parse_number(field.text).fault == nullptr; });
+  if (only_numbers) {
+    return broken(ErrorCode::syntax,
+                  "a header is needed before the numbers '" + std::string(trim(header).substr(0, 40)) +
+                      "'; put a line such as 'time [s],force [N]' there, without a # before it",
+                  file_.string() + ":" + std::to_string(line_number));
+  }
+  for (const CsvField& field : fields) {
+    heads_.push_back(without_doubled_quotes(field.text));
+    NameAndUnit head = split_unit(heads_.back());
+    entries_.push_back(
+        {.name = std::move(head.name), .unit = std::move(head.unit), .kind = "column", .columns = 1, .readable = true});
+  }
+  data_start_ = offset;
+  data_line_ = line_number + 1;
+  return {};
+}
+
+Check CsvFile::count_rows() {
+  std::vector<CsvField> fields;
+  // Empty lines at the end are no samples. A tab there may be a separator.
+  text_.resize(std::max(text_.find_last_not_of(" \r\n") + 1, data_start_));
+  for (std::size_t offset = data_start_; offset < text_.size(); ++rows_) {
+    const std::string_view line = next_line(text_, offset);
+    const std::string place = place_of(rows_);
+    if (!split(line, separator_, fields)) {
+      return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line", place);
+    }
+    if (fields.size() == heads_.size()) continue;
+    return broken(ErrorCode::syntax,
+                  in_quotes(trim(line).substr(0, 40)) + " has " + std::to_string(fields.size()) +
+                      " fields where the header has " + std::to_string(heads_.size()) +
+                      "; complete or remove the line, and write numbers with a decimal point",
+                  place);
+  }
+  if (rows_ < 2) {
+    return broken(ErrorCode::missing, "holds " + std::to_string(rows_) + " samples; a signal needs two or more",
+                  file_.string());
+  }
+  for (Entry& entry : entries_) entry.rows = static_cast<std::int64_t>(rows_);
+  return {};
+}
+
+Result<Column> CsvFile::read(std::string_view variable, std::int64_t column) const {
+  if (column != 1) {
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = "column",
+                 .message = std::to_string(column) + " chooses among the columns of a MATLAB variable; a column of '" +
+                            file_.string() + "' is chosen by its name alone, so leave it out or write 1",
+                 .place = {}};
+  }
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < heads_.size(); ++i) {
+    if (heads_[i] == variable) found.push_back(i);
+  }
+  const bool named_in_full = !found.empty();
+  for (std::size_t i = 0; !named_in_full && i < entries_.size(); ++i) {
+    if (entries_[i].name == variable) found.push_back(i);
+  }
+  if (found.empty() || variable.empty()) return no_such_variable(variable, file_, entries_);
+  if (found.size() > 1) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = in_quotes(variable) + " stands for the columns '" + heads_[found[0]] + "' and '" +
+                            heads_[found[1]] + "' of '" + file_.string() +
+                            "'; give them different names or write one "
+                            "with its unit",
+                 .place = {}};
+  }
+  const std::size_t index = found.front();
+  Column result{.values = {}, .name = entries_[index].name, .unit = entries_[index].unit};
+  result.values.reserve(rows_);
+  std::vector<CsvField> fields;
+  std::size_t offset = data_start_;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    split(next_line(text_, offset), separator_, fields);
+    const CsvField& field = fields[index];
+    const Number number = parse_number(trim(field.text));
+    if (number.fault != nullptr) {
+      return broken(ErrorCode::syntax,
+                    in_quotes(field.text.substr(0, 40)) + " in column '" + heads_[index] + "' " + number.fault,
+                    place_of(data_line_ + row, field.character));
+    }
+    result.values.push_back(number.value);
+  }
+  return result;
+}
+
+std::optional<std::string> CsvFile::time_beside(std::string_view, std::size_t) const {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    std::string name = entries_[i].name;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (name == "time" || entries_[i].name == "t") return heads_[i];
+  }
+  return std::nullopt;
+}
+
+}  // namespace tactus::recording

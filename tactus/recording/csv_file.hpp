@@ -1,0 +1,50 @@
+#pragma once
+
+#include <tactus/recording/recording.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::recording {
+
+/// The samples of one column with what the file says about them.
+struct Column {
+  std::vector<double> values;
+  std::string name;
+  std::string unit;
+};
+
+/// A table of comma, semicolon or tab separated text, held in memory. `read` documents the format and the errors.
+class CsvFile {
+ public:
+  static Result<CsvFile> open(const std::filesystem::path& file);
+
+  [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
+  /// The samples of a column; `column` must be 1.
+  [[nodiscard]] Result<Column> read(std::string_view variable, std::int64_t column) const;
+  /// The column that holds times if nobody names one.
+  [[nodiscard]] std::optional<std::string> time_beside(std::string_view variable, std::size_t samples) const;
+  /// `file:line` of a sample.
+  [[nodiscard]] std::string place_of(std::size_t row) const;
+
+ private:
+  CsvFile() = default;
+  [[nodiscard]] std::string place_of(std::size_t line, std::size_t character) const;
+  Check parse_header();
+  Check count_rows();
+
+  std::filesystem::path file_;
+  std::string text_;
+  std::vector<std::string> heads_;  ///< as written
+  std::vector<Entry> entries_;
+  std::size_t data_start_ = 0;  ///< offset of the first sample in the text
+  std::size_t data_line_ = 0;   ///< its line, from 1
+  std::size_t rows_ = 0;
+  char separator_ = ',';
+};
+
+}  // namespace tactus::recording

@@ -1,0 +1,254 @@
+#include <tactus/recording/file_bytes.hpp>
+#include <tactus/recording/mat_guard.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <zlib.h>
+
+namespace tactus::recording {
+namespace {
+
+using Bytes = std::span<const unsigned char>;
+
+constexpr std::size_t header_size = 128;
+constexpr std::size_t tag_size = 8;
+
+/// Types of a data element, by their number in the file.
+enum Type : std::uint32_t { int8 = 1, int32 = 5, uint32 = 6, matrix = 14, compressed = 15 };
+
+/// Classes of a matrix, by their number in the file.
+enum Class : std::uint32_t {
+  cell = 1,
+  structure = 2,
+  object = 3,
+  text = 4,
+  sparse = 5,
+  first_number = 6,
+  last_number = 15,
+  function = 16,
+  opaque = 17
+};
+
+std::size_t padded(std::size_t size) { return (size + 7) / 8 * 8; }
+
+/// Bytes of one number of an element type; 0 for a type that holds no numbers.
+std::size_t size_of_number(std::uint32_t type) {
+  constexpr std::array<std::size_t, 14> sizes{0, 1, 1, 2, 2, 4, 4, 4, 0, 8, 0, 0, 8, 8};
+  return type < sizes.size() ? sizes[type] : 0;
+}
+
+struct DataElement {
+  std::uint32_t type = 0;
+  Bytes content;
+  bool packed = false;  ///< content of up to four bytes inside the tag
+};
+
+/// Reads elements one after the other out of a run of bytes, never beyond its end. Each read fails as an empty
+/// optional.
+class Cursor {
+ public:
+  Cursor(Bytes bytes, bool swapped) : rest_(bytes), swapped_(swapped) {}
+
+  [[nodiscard]] bool at_end() const { return rest_.empty(); }
+
+  std::optional<DataElement> next() {
+    if (rest_.size() < tag_size) return std::nullopt;
+    const std::uint32_t first = word(rest_, 0);
+    if ((first >> 16U) != 0) {
+      const std::size_t size = first >> 16U;
+      if (size > 4) return std::nullopt;
+      const DataElement element{first & 0xffffU, rest_.subspan(4, size), true};
+      rest_ = rest_.subspan(tag_size);
+      return element;
+    }
+    const std::size_t size = word(rest_, 1);
+    if (size > rest_.size() - tag_size) return std::nullopt;
+    const DataElement element{first, rest_.subspan(tag_size, size), false};
+    // Compressed elements are not padded.
+    const std::size_t step = first == compressed ? size : padded(size);
+    rest_ = rest_.subspan(std::min(tag_size + step, rest_.size()));
+    return element;
+  }
+
+  [[nodiscard]] std::uint32_t word(Bytes bytes, std::size_t index) const {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + 4 * index, sizeof value);
+    return swapped_ ? __builtin_bswap32(value) : value;
+  }
+
+ private:
+  Bytes rest_;
+  bool swapped_;
+};
+
+/// What is wrong with a file; empty if nothing is.
+using Fault = std::string;
+
+Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level);
+
+Fault check_children(Cursor& cursor, std::size_t count, bool swapped, int depth) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto child = cursor.next();
+    if (!child || child->type != matrix || child->packed) return "a member of a struct or cell array is missing";
+    if (Fault fault = check_matrix(child->content, swapped, depth + 1, false); !fault.empty()) return fault;
+  }
+  return {};
+}
+
+/// Checks the names of the fields and returns how many there are.
+std::optional<std::size_t> count_fields(Cursor& cursor) {
+  const auto length = cursor.next();
+  const auto names = cursor.next();
+  if (!length || !length->packed || length->type != int32 || length->content.size() != 4) return std::nullopt;
+  if (!names || names->type != int8) return std::nullopt;
+  const std::size_t size = cursor.word(length->content, 0);
+  if (size == 0 || names->content.size() % size != 0) return std::nullopt;
+  for (std::size_t start = 0; start < names->content.size(); start += size) {
+    const Bytes name = names->content.subspan(start, size);
+    if (std::find(name.begin(), name.end(), 0) == name.end()) return std::nullopt;
+  }
+  return names->content.size() / size;
+}
+
+Fault check_numbers(Cursor& cursor, std::size_t count) {
+  const auto numbers = cursor.next();
+  const std::size_t size = numbers ? size_of_number(numbers->type) : 0;
+  if (size == 0) return "numbers are missing";
+  return numbers->content.size() == count * size ? Fault{} : "numbers do not fill their array";
+}
+
+/// Number of members of an array, none if it is not one that `limit` bytes can describe.
+std::optional<std::size_t> count_members(const Cursor& cursor, const DataElement& dimensions, std::size_t limit) {
+  const std::size_t rank = dimensions.content.size() / 4;
+  if (dimensions.type != int32 || dimensions.packed || dimensions.content.size() % 4 != 0 || rank < 2 || rank > 8) {
+    return std::nullopt;
+  }
+  std::size_t count = 1;
+  bool none = false;
+  for (std::size_t i = 0; i < rank; ++i) {
+    const std::size_t extent = cursor.word(dimensions.content, i);
+    if (extent > std::numeric_limits<std::int32_t>::max()) return std::nullopt;
+    none = none || extent == 0;
+    count = none ? 0 : count * extent;
+    if (count > limit) return std::nullopt;
+  }
+  return count;
+}
+
+Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level) {
+  constexpr int deepest = 16;
+  constexpr std::uint32_t complex_flag = 0x0800;
+  if (content.empty() && !top_level) return {};
+  if (depth > deepest) return "structs are nested too deep";
+  Cursor cursor(content, swapped);
+  const auto flags = cursor.next();
+  if (!flags || flags->type != uint32 || flags->packed || flags->content.size() != 8) return "array flags are missing";
+  const std::uint32_t bits = cursor.word(flags->content, 0);
+  const std::uint32_t kind = bits & 0xffU;
+  // matio and this project read nothing of an object of a class but its flags.
+  if (kind == opaque) return {};
+
+  const auto dimensions = cursor.next();
+  const auto name = cursor.next();
+  if (!dimensions || !name) return "dimensions or name are missing";
+  if (name->type != int8) return "a name is no text";
+  // A sparse array may have more members than bytes, but it is never read.
+  const std::size_t limit = kind == sparse ? std::numeric_limits<std::uint32_t>::max() : content.size();
+  const auto count = count_members(cursor, *dimensions, limit);
+  if (!count) return "dimensions are impossible";
+
+  if (kind >= first_number && kind <= last_number) {
+    Fault fault = check_numbers(cursor, *count);
+    return fault.empty() && (bits & complex_flag) != 0 ? check_numbers(cursor, *count) : fault;
+  }
+  if (kind == cell || kind == function) return check_children(cursor, *count, swapped, depth);
+  if (kind == structure || kind == object) {
+    if (kind == object) {
+      const auto class_name = cursor.next();
+      if (!class_name || class_name->type != int8) return "the class of an object is missing";
+    }
+    const auto fields = count_fields(cursor);
+    if (!fields) return "names of fields are damaged";
+    return check_children(cursor, *fields * *count, swapped, depth);
+  }
+  return kind == text || kind == sparse ? Fault{} : Fault{"a class is unknown"};
+}
+
+/// The whole content of a zlib stream, nothing if it is damaged or is not one whole stream.
+std::optional<std::vector<unsigned char>> inflate_whole(Bytes packed) {
+  std::vector<unsigned char> content;
+  std::vector<unsigned char> chunk(std::size_t{1} << 16U);
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) return std::nullopt;
+  // zlib takes a pointer to mutable input, which it does not change.
+  stream.next_in = const_cast<unsigned char*>(packed.data());
+  stream.avail_in = static_cast<uInt>(packed.size());
+  int state = Z_OK;
+  while (state == Z_OK) {
+    stream.next_out = chunk.data();
+    stream.avail_out = static_cast<uInt>(chunk.size());
+    state = inflate(&stream, Z_NO_FLUSH);
+    content.insert(content.end(), chunk.data(), stream.next_out);
+  }
+  inflateEnd(&stream);
+  if (state != Z_STREAM_END || stream.avail_in != 0) return std::nullopt;
+  return content;
+}
+
+Fault check_variable(const DataElement& element, bool swapped) {
+  if (element.packed) return "it begins with a damaged tag";
+  if (element.type == matrix) {
+    return check_matrix(element.content, swapped, 0, true);
+  }
+  if (element.type != compressed) return "it is of an unknown type";
+  const auto content = inflate_whole(element.content);
+  if (!content) return "its compressed data are damaged";
+  Cursor cursor(*content, swapped);
+  const auto inner = cursor.next();
+  if (!inner || inner->packed || inner->type != matrix || !cursor.at_end()) return "its compressed data are incomplete";
+  return check_matrix(inner->content, swapped, 0, true);
+}
+
+Error refused(const std::filesystem::path& file, std::string message) {
+  return {.code = ErrorCode::syntax, .parameter = {}, .message = std::move(message), .place = file.string()};
+}
+
+}  // namespace
+
+Result<std::size_t> check_mat_file(const std::filesystem::path& file) {
+  const Result<std::string> raw = file_bytes(file);
+  if (!raw) return raw.error();
+  const Bytes bytes(reinterpret_cast<const unsigned char*>(raw->data()), raw->size());
+  const std::string_view head = std::string_view(*raw).substr(0, header_size);
+  if (head.starts_with("MATLAB 7.3") || head.starts_with("\x89HDF")) {
+    return refused(file, "is a MATLAB 7.3 (HDF5) file, which is not read; save it with '-v7'");
+  }
+  const std::string_view mark = head.size() == header_size ? head.substr(header_size - 4) : std::string_view{};
+  const bool little = mark == std::string_view("\x00\x01IM", 4);
+  if (!little && mark != std::string_view("\x01\x00MI", 4)) {
+    return refused(file, "is not a MATLAB file of version 5; save it from MATLAB, Octave or SciPy with '-v7'");
+  }
+  const bool swapped = !little;  // the kernel of this project runs on little-endian machines
+  Cursor cursor(bytes.subspan(header_size), swapped);
+  std::size_t variables = 0;
+  while (!cursor.at_end()) {
+    const auto element = cursor.next();
+    ++variables;
+    const Fault fault = element ? check_variable(*element, swapped) : "the file ends within it";
+    if (fault.empty()) continue;
+    return refused(
+        file, "is damaged in variable " + std::to_string(variables) + ": " + fault + "; copy or save the file again");
+  }
+  return variables;
+}
+
+}  // namespace tactus::recording

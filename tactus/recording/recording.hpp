@@ -1,0 +1,81 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// Measured signals from files, for playing them to a simulated hand and for identification.
+namespace tactus::recording {
+
+/// Where a signal stands in a file.
+///
+/// The ending of the file's name tells the format: `.csv`, `.tsv` or `.txt` for a table, `.mat` for a MATLAB file.
+///
+/// A table is UTF-8 text, its fields separated by commas, semicolons or tabs (found from the header) and quoted where
+/// needed; numbers have a decimal point in any locale. The first line that is neither empty nor begins with `#` is the
+/// header: a name and a unit for each column, as `force [N]`, `force (N)` or `force_N`. Every line after it is a
+/// sample.
+///
+/// A MATLAB file is of version 5 (what `save` writes with `-v7` or `-v6`), compressed or not. The signal is a real,
+/// full vector or matrix of numbers of any class.
+struct Source {
+  std::filesystem::path file;
+
+  /// Table: the column as its header names it, with or without the unit (`force`, `force_N`, `force [N]`). MATLAB file:
+  /// a dotted path with 1-based indices of struct arrays (`scope.signals(2).values`); a 1 x 1 struct needs no index.
+  std::string variable;
+
+  /// MATLAB file: 1-based column of the variable. A row vector counts as one column. Table: 1, for the name is enough.
+  std::int64_t column = 1;
+
+  /// The time of each sample, named like `variable` (its first column). In a table in the unit of its header (s, ms, us
+  /// or ns; s if none), in a MATLAB file in seconds. Empty: the column `time` or `t`, or the variable `time` that
+  /// stands nearest (for `scope.signals(2).values`: `scope.signals(2).time`, `scope.time`, `time`) and has as many
+  /// samples; no time if there is none.
+  std::string time;
+
+  /// What the sample time is known to be, in seconds, greater than 0. Where the file has times too, they must agree
+  /// with it within one part in a thousand.
+  std::optional<double> sample_time_s;
+};
+
+/// A uniformly sampled signal of at least two finite samples.
+struct Signal {
+  std::vector<double> values;
+  /// As in the file, without unit; for a matrix of a MATLAB file with the column (`scope.signals(2).values(:,2)`).
+  std::string name;
+  /// As in the header (`N`, `N/m`); empty where the file states none, as in every MATLAB file.
+  std::string unit;
+  /// Time between samples in seconds; none where neither the source nor the file states it.
+  std::optional<double> sample_time_s;
+};
+
+/// Reads one signal.
+///
+/// Errors: the file is missing, of unknown format, damaged or empty; there is no such variable (the message lists what
+/// there is and the nearest name); the variable is not a vector or matrix of real numbers; the column is out of range;
+/// a value is not a finite number; there are fewer than two samples; the times are not strictly increasing, leave a
+/// uniform grid by more than a tenth of a sample, or contradict the stated sample time. Parameters in errors are the
+/// members of `Source`; a place in a table is `file:line:column`.
+///
+/// Not real-time safe. Independent calls may run in several threads.
+Result<Signal> read(const Source& source);
+
+/// One variable or column of a file.
+struct Entry {
+  std::string name;  ///< what `Source::variable` has to say
+  std::string unit;  ///< as in the header, or empty
+  std::string kind;  ///< `column` in a table; in a MATLAB file the class, as `double`, `complex single`, `char`, `cell`
+  std::int64_t rows = 0;
+  std::int64_t columns = 0;
+  bool readable = false;  ///< a full matrix of real numbers with two samples or more, which `read` takes
+};
+
+/// What a file contains, structs unfolded, in the order of the file. Errors as for `read`. Not real-time safe.
+Result<std::vector<Entry>> contents(const std::filesystem::path& file);
+
+}  // namespace tactus::recording

@@ -1,0 +1,79 @@
+#include <tactus/core/parameters.hpp>
+#include <tactus/recording/names.hpp>
+#include <tactus/recording/resample.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::recording {
+namespace {
+
+/// Slope of the curve at sample `i`, per sample.
+double slope(const std::vector<double>& y, std::size_t i) {
+  const std::size_t last = y.size() - 1;
+  if (last == 1) return y[1] - y[0];
+  if (i == 0) return -1.5 * y[0] + 2.0 * y[1] - 0.5 * y[2];
+  if (i == last) return 1.5 * y[last] - 2.0 * y[last - 1] + 0.5 * y[last - 2];
+  return 0.5 * (y[i + 1] - y[i - 1]);
+}
+
+/// The cubic Hermite curve, `fraction` (0 to 1) of the way from sample `i` to the next.
+double between_samples(const std::vector<double>& y, std::size_t i, double fraction) {
+  if (fraction == 0.0) return y[i];
+  const double rise = y[i + 1] - y[i];
+  const double excess_before = slope(y, i) - rise;
+  const double excess_after = rise - slope(y, i + 1);
+  const double rest = 1.0 - fraction;
+  return y[i] + fraction * (rise + rest * (excess_before * rest + excess_after * fraction));
+}
+
+Error cannot(ErrorCode code, std::string message) {
+  return {.code = code, .parameter = "sample_time_s", .message = std::move(message), .place = {}};
+}
+
+}  // namespace
+
+Result<Signal> resample(const Signal& signal, Seconds sample_time) {
+  constexpr double equal_share = 1e-6;
+  constexpr double most_samples = 1e9;
+  if (!signal.sample_time_s) {
+    return cannot(ErrorCode::missing, "the sample time of '" + signal.name +
+                                          "' is unknown; state sample_time_s or name the time column with `time`");
+  }
+  for (const double value : {*signal.sample_time_s, sample_time.value}) {
+    if (!positive.contain(value)) return out_of_bounds("sample_time_s", value, positive, units::second);
+  }
+  if (signal.values.size() < 2) {
+    return cannot(ErrorCode::missing, in_quotes(signal.name) + " has fewer than two samples");
+  }
+  const double step = sample_time.value / *signal.sample_time_s;
+  if (step > 1.0 + equal_share) {
+    return cannot(ErrorCode::inconsistent,
+                  in_quotes(signal.name) + " is sampled every " + format_number(*signal.sample_time_s) +
+                      " s, and taking it only every " + format_number(sample_time.value) +
+                      " s would fold fast content into slow; low-pass filter and decimate the recording first, or step "
+                      "at its rate or faster");
+  }
+  Signal result = signal;
+  result.sample_time_s = sample_time.value;
+  if (step >= 1.0 - equal_share) return result;
+
+  const auto last = static_cast<double>(signal.values.size() - 1);
+  const double steps = std::floor(last / step * (1.0 + 1e-12));
+  if (steps >= most_samples) {
+    return cannot(ErrorCode::out_of_bounds, format_number(sample_time.value) +
+                                                " s would make more than 1e9 samples of '" + signal.name +
+                                                "'; choose a longer sample time");
+  }
+  result.values.resize(static_cast<std::size_t>(steps) + 1);
+  for (std::size_t k = 0; k < result.values.size(); ++k) {
+    double position = std::min(static_cast<double>(k) * step, last);
+    // A product such as 5 * 0.4 may miss the original sample it means by a rounding error.
+    if (std::abs(position - std::round(position)) < 1e-9) position = std::round(position);
+    const double whole = std::floor(position);
+    result.values[k] = between_samples(signal.values, static_cast<std::size_t>(whole), position - whole);
+  }
+  return result;
+}
+
+}  // namespace tactus::recording
