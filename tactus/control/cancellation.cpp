@@ -1,0 +1,13 @@
+#include <tactus/control/cancellation.hpp>
+
+namespace tactus::control {
+
+Result<Cancellation> Cancellation::make(const Params& params, Seconds dt) {
+  const auto model = InducedMotionModel::make(params.model, dt);
+  if (!model) return under("model", model.error());
+  const auto intended_velocity = signal::FilteredDerivative::make(params.intended_velocity, dt);
+  if (!intended_velocity) return under("intended_velocity", intended_velocity.error());
+  return Cancellation(*model, *intended_velocity);
+}
+
+}  // namespace tactus::control
