@@ -1,0 +1,94 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::report {
+
+/// One axis of a panel. The limits come from the data (and the rules) unless they are set.
+struct Axis {
+  enum class Scale { linear, logarithmic };
+  std::string label;
+  std::string unit = {};
+  std::optional<double> lower = {};  ///< in `unit`
+  std::optional<double> upper = {};  ///< in `unit`
+  Scale scale = Scale::linear;
+};
+
+enum class Dash { solid, dashed, dotted, dash_dotted };
+
+/// A line through points. A point that is not finite (or not positive on a logarithmic axis) breaks it.
+struct Line {
+  std::string name;       ///< entry of the legend; a line without a name has none
+  std::vector<double> x;  ///< in the unit of the panel's x axis; what exceeds the length of `y` is not drawn
+  std::vector<double> y;  ///< in the unit of the panel's y axis; what exceeds the length of `x` is not drawn
+  int colour = 0;         ///< slot 0 to 7 of the palette, taken modulo 8
+  Dash dash = Dash::solid;
+  double width_px = 1.2;
+};
+
+/// A straight reference across a panel: a limit, an event.
+struct Rule {
+  enum class Direction { horizontal, vertical };
+  Direction direction = Direction::horizontal;
+  double at = 0.0;         ///< in the unit of the axis that it crosses
+  std::string label = {};  ///< entry of the legend, where equal labels share one
+};
+
+/// One pair of axes with what is drawn on them. A panel without anything to draw says `no data`.
+struct Panel {
+  std::string title;
+  Axis x;
+  Axis y;
+  std::vector<Line> lines;
+  std::vector<Rule> rules;
+};
+
+/// Which panels have equal limits. Neighbours with equal limits are labelled only at the outer edge.
+enum class Sharing {
+  none,
+  in_line,      ///< x: the panels of one column; y: the panels of one row
+  by_quantity,  ///< all panels whose axes have the same label, unit and scale
+};
+
+/// A band of adjacent rows under one name, written at its left.
+struct RowGroup {
+  std::string label;
+  int rows = 1;
+};
+
+/// Small multiples: panels in a grid, filled row by row, with one legend.
+struct Figure {
+  enum class Legend { above, below };
+  std::string title;    ///< the accessible name; a page shows it in front of the caption
+  std::string caption;  ///< the accessible description; a page shows it below the picture
+  int columns = 1;      ///< at least 1; less is taken as 1
+  std::vector<Panel> panels;
+  std::vector<std::string> column_titles = {};
+  std::vector<RowGroup> row_groups = {};  ///< from the top
+  Sharing share_x = Sharing::none;
+  Sharing share_y = Sharing::none;
+  Legend legend = Legend::above;
+};
+
+/// A picture and its natural size. `svg` is one `<svg>` element that scales through its viewBox.
+struct Drawing {
+  std::string svg;
+  double width_px;
+  double height_px;
+};
+
+/// The picture without styles, for a document that holds `figure_style()` once. Never fails: whatever the figure lacks
+/// is left out. Lines with more points than pixels are thinned so that extremes survive. Equal figures give equal
+/// bytes.
+Drawing draw(const Figure& figure);
+
+/// The styles of figures: CSS custom properties `--tactus-…` for a light and a dark scheme (a printer gets the light
+/// one), and the classes that use them.
+std::string figure_style();
+
+/// The picture as a file of its own: as `draw`, with its styles, the size and the XML namespace.
+std::string to_svg(const Figure& figure);
+
+}  // namespace tactus::report

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+
+#include <filesystem>
+#include <string_view>
+
+namespace tactus::report {
+
+/// Writes `content` to the file `path`, all or nothing: into a temporary file in the same folder, which then takes the
+/// name. A reader sees the old file or the new one, and on failure the old file is untouched and no temporary file is
+/// left. Refuses to replace anything that is not a regular file (a folder, a device such as /dev/null).
+/// Blocks on the disk: never on the servo path.
+/// Errors: `unwritable`, with path, reason and remedy in the message.
+Check write_file(const std::filesystem::path& path, std::string_view content);
+
+/// Makes the folder `path` and its parents where they are missing, and proves by a probe file, removed again, that
+/// files can be written there. Called before long work, so that a wrong place is known at the start and not at the end.
+/// Errors: `unwritable`, with path, reason and remedy in the message.
+Check prepare_directory(const std::filesystem::path& path);
+
+}  // namespace tactus::report
