@@ -37,8 +37,8 @@ class Cancellation {
   /// Real-time safe.
   Output step(const Input& input) noexcept {
     const double intended_m = input.measured_position_m - model_.motor_position_m();
-    model_.step({.motor_force_N = input.motor_force_N,
-                 .intended_velocity_m_per_s = intended_velocity_.step(intended_m)});
+    model_.step(
+        {.motor_force_N = input.motor_force_N, .intended_velocity_m_per_s = intended_velocity_.step(intended_m)});
     return intended_m;
   }
 

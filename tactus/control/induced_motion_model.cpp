@@ -28,10 +28,10 @@ LinearPart linear_part(const MasterModel& master) {
     matrix << cable, -cable, 0.0, -cable, cable + linkage, -linkage, 0.0, -linkage, linkage + hand;
     return matrix;
   };
-  const Eigen::Matrix3d stiffness = coupling(master.cable.stiffness_N_per_m, master.linkage.stiffness_N_per_m,
-                                             master.hand.stiffness_N_per_m);
-  const Eigen::Matrix3d damping = coupling(master.cable.damping_N_s_per_m, master.linkage.damping_N_s_per_m,
-                                           master.hand.damping_N_s_per_m);
+  const Eigen::Matrix3d stiffness =
+      coupling(master.cable.stiffness_N_per_m, master.linkage.stiffness_N_per_m, master.hand.stiffness_N_per_m);
+  const Eigen::Matrix3d damping =
+      coupling(master.cable.damping_N_s_per_m, master.linkage.damping_N_s_per_m, master.hand.damping_N_s_per_m);
   const Eigen::Matrix3d inverse_mass = mass.cwiseInverse().asDiagonal();
   LinearPart part;
   part.a.topRightCorner<3, 3>().setIdentity();
@@ -43,8 +43,7 @@ LinearPart linear_part(const MasterModel& master) {
 
 std::size_t euler_substeps(Seconds dt) {
   constexpr double round_off = 1e-9;
-  return static_cast<std::size_t>(
-      std::max(1.0, std::ceil(dt.value / InducedMotionModel::euler_substep_s - round_off)));
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(dt.value / InducedMotionModel::euler_substep_s - round_off)));
 }
 
 }  // namespace

@@ -38,12 +38,13 @@ struct MasterModel {
   mechanics::FreeMass handle{.mass_kg = 0.014};
   mechanics::QuinticSpring::Params hand;
   static constexpr auto fields() {
-    return std::tuple{field("motor", &MasterModel::motor, "Motor rotor."),
-                      field("cable", &MasterModel::cable, "Cable between motor and drum."),
-                      field("drum", &MasterModel::drum, "Drum."),
-                      field("linkage", &MasterModel::linkage, "Linkage between drum and handle, linear here."),
-                      field("handle", &MasterModel::handle, "Handle."),
-                      field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections.")};
+    return std::tuple{
+        field("motor", &MasterModel::motor, "Motor rotor."),
+        field("cable", &MasterModel::cable, "Cable between motor and drum."),
+        field("drum", &MasterModel::drum, "Drum."),
+        field("linkage", &MasterModel::linkage, "Linkage between drum and handle, linear here."),
+        field("handle", &MasterModel::handle, "Handle."),
+        field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections.")};
   }
 };
 

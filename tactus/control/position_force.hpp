@@ -58,9 +58,9 @@ class PositionForceMaster {
   struct Output {
     double motor_force_N = 0.0;  ///< command to the amplifier, positive toward the environment
     MasterMessage message;
-    double displayed_force_N = 0.0;  ///< what the person is to feel, positive when it pushes the hand back
-    double induced_position_m = 0.0;  ///< the model's estimate at this instant
-    double intended_position_m = 0.0; ///< measured less induced
+    double displayed_force_N = 0.0;    ///< what the person is to feel, positive when it pushes the hand back
+    double induced_position_m = 0.0;   ///< the model's estimate at this instant
+    double intended_position_m = 0.0;  ///< measured less induced
   };
 
   static Result<PositionForceMaster> make(const Params& params, Seconds dt);
@@ -96,13 +96,12 @@ class PositionForceSlave {
     signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
     SafetyGate::Params gate;
     static constexpr auto fields() {
-      return std::tuple{
-          field("proportional_N_per_m", &Params::proportional_N_per_m, units::newton_per_metre, between(0.0, 1e5),
-                "Force per position error."),
-          field("derivative_N_s_per_m", &Params::derivative_N_s_per_m, units::newton_second_per_metre,
-                between(0.0, 1e3), "Force per rate of the position error."),
-          field("velocity", &Params::velocity, "Filter of the rate of the position error."),
-          field("gate", &Params::gate, "Last limits before the slave's motor.")};
+      return std::tuple{field("proportional_N_per_m", &Params::proportional_N_per_m, units::newton_per_metre,
+                              between(0.0, 1e5), "Force per position error."),
+                        field("derivative_N_s_per_m", &Params::derivative_N_s_per_m, units::newton_second_per_metre,
+                              between(0.0, 1e3), "Force per rate of the position error."),
+                        field("velocity", &Params::velocity, "Filter of the rate of the position error."),
+                        field("gate", &Params::gate, "Last limits before the slave's motor.")};
     }
   };
   struct Input {

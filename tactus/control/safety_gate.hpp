@@ -44,8 +44,7 @@ class SafetyGate {
   double step(double command_N) noexcept {
     const bool finite = command_N - command_N == 0.0;
     if (!finite) fault_ = GateFault::not_finite;
-    const double wanted =
-        fault_ == GateFault::none ? std::clamp(command_N, -force_limit_N_, force_limit_N_) : 0.0;
+    const double wanted = fault_ == GateFault::none ? std::clamp(command_N, -force_limit_N_, force_limit_N_) : 0.0;
     passed_N_ = std::clamp(wanted, passed_N_ - largest_step_N_, passed_N_ + largest_step_N_);
     return passed_N_;
   }

@@ -4,9 +4,7 @@
 
 namespace tactus::mechanics {
 
-Result<CableChain> CableChain::make(const Params& params, Seconds dt) {
-  return make(params, nobody_holds, dt);
-}
+Result<CableChain> CableChain::make(const Params& params, Seconds dt) { return make(params, nobody_holds, dt); }
 
 Result<CableChain> CableChain::make(const Params& params, const LinearSpring::Params& grip, Seconds dt) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
@@ -16,7 +14,8 @@ Result<CableChain> CableChain::make(const Params& params, const LinearSpring::Pa
   return CableChain(params, grip, dt, *linkage);
 }
 
-CableChain::CableChain(const Params& params, const LinearSpring::Params& grip, Seconds dt, const ElastoSlipSpring& linkage)
+CableChain::CableChain(const Params& params, const LinearSpring::Params& grip, Seconds dt,
+                       const ElastoSlipSpring& linkage)
     : mass_kg_{params.motor.mass_kg, params.drum.mass_kg, params.tip.mass_kg},
       friction_N_{params.motor.friction_N, params.drum.friction_N},
       cable_(params.cable),
@@ -57,14 +56,14 @@ void CableChain::advance(const Input& input, double h, const Inverse& inverse) n
 
   const double cable_force = cable_.stiffness_N_per_m * (x[0] - x[1]);
   const double linkage_force = state_.linkage.step({.deflection_m = x[1] - x[2], .rate_m_per_s = v[1] - v[2]});
-  const double grip_force = grip_.stiffness_N_per_m * (input.grip_position_m - x[2]) +
-                            grip_.damping_N_s_per_m * input.grip_velocity_m_per_s;
+  const double grip_force =
+      grip_.stiffness_N_per_m * (input.grip_position_m - x[2]) + grip_.damping_N_s_per_m * input.grip_velocity_m_per_s;
 
   const double cable_damping = half * cable_.damping_N_s_per_m * (v[0] - v[1]);
   const double p0 = mass_kg_[0] * v[0] - cable_damping + h * (input.motor_force_N - cable_force);
   const double p1 = mass_kg_[1] * v[1] + cable_damping + h * (cable_force - linkage_force);
-  const double p2 = (mass_kg_[2] - half * grip_.damping_N_s_per_m) * v[2] +
-                    h * (linkage_force + grip_force + input.tip_force_N);
+  const double p2 =
+      (mass_kg_[2] - half * grip_.damping_N_s_per_m) * v[2] + h * (linkage_force + grip_force + input.tip_force_N);
 
   const double v0_free = inverse.i00 * p0 + inverse.i01 * p1;
   const double v1_free = inverse.i01 * p0 + inverse.i11 * p1;

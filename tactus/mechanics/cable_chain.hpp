@@ -48,10 +48,10 @@ class CableChain {
   };
 
   struct Input {
-    double motor_force_N = 0.0;           ///< on the motor, positive toward the environment
-    double tip_force_N = 0.0;             ///< on the tip from outside, positive toward the environment
-    double grip_position_m = 0.0;         ///< where the grip pulls the tip to, at the middle of the step
-    double grip_velocity_m_per_s = 0.0;   ///< its velocity, at the middle of the step
+    double motor_force_N = 0.0;          ///< on the motor, positive toward the environment
+    double tip_force_N = 0.0;            ///< on the tip from outside, positive toward the environment
+    double grip_position_m = 0.0;        ///< where the grip pulls the tip to, at the middle of the step
+    double grip_velocity_m_per_s = 0.0;  ///< its velocity, at the middle of the step
   };
 
   struct Output {

@@ -58,10 +58,7 @@ class Environment {
 
  private:
   Environment(const Params& params, const KelvinVoigtContact& kelvin_voigt, const HuntCrossleyContact& hunt_crossley)
-      : law_(params.law),
-        position_m_(params.position_m),
-        kelvin_voigt_(kelvin_voigt),
-        hunt_crossley_(hunt_crossley) {}
+      : law_(params.law), position_m_(params.position_m), kelvin_voigt_(kelvin_voigt), hunt_crossley_(hunt_crossley) {}
 
   ContactLaw law_;
   double position_m_;

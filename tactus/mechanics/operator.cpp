@@ -42,10 +42,10 @@ Operator::Output Operator::step(const Input& input) noexcept {
              .sine = tremor_.sine * tremor_turn_.cosine + tremor_.cosine * tremor_turn_.sine};
   const double tremor_next_m = tremor_amplitude_m_ * tremor_.sine;
 
-  const Output aim{.position_m = input.path_m + tremor_now_m + correction_m_,
-                   .velocity_m_per_s =
-                       (input.path_at_next_tick_m - input.path_m + tremor_next_m - tremor_now_m) / dt_s_ +
-                       correction_velocity};
+  const Output aim{
+      .position_m = input.path_m + tremor_now_m + correction_m_,
+      .velocity_m_per_s =
+          (input.path_at_next_tick_m - input.path_m + tremor_next_m - tremor_now_m) / dt_s_ + correction_velocity};
   correction_m_ += correction_velocity * dt_s_;
   return aim;
 }

@@ -56,9 +56,9 @@ class Operator {
   };
 
   struct Input {
-    double path_m = 0.0;             ///< the intended path at this tick
-    double path_at_next_tick_m = 0.0;///< and at the next
-    double handle_position_m = 0.0;  ///< where the handle is at this tick
+    double path_m = 0.0;               ///< the intended path at this tick
+    double path_at_next_tick_m = 0.0;  ///< and at the next
+    double handle_position_m = 0.0;    ///< where the handle is at this tick
   };
 
   /// Where the hand wants the handle during this tick: `position_m` at its start, moving at `velocity_m_per_s`.

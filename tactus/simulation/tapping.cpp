@@ -1,0 +1,150 @@
+#include <tactus/signal/random.hpp>
+#include <tactus/simulation/quantile.hpp>
+#include <tactus/simulation/tapping.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus::simulation {
+
+namespace {
+
+/// The person rests this long before the reach, so that every filter is at rest too.
+constexpr double rest_s = 0.05;
+/// A slave that has not met the wall this long after the reach has ended never will.
+constexpr double patience_s = 0.2;
+constexpr double workspace_m = 1.0;
+
+std::size_t ticks_in(double duration_s, double tick_s) {
+  return static_cast<std::size_t>(std::lround(duration_s / tick_s));
+}
+
+Check check_range(double lower, double upper, const char* lower_name, const char* upper_name) {
+  if (lower <= upper) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = std::string("task.") + upper_name,
+               .message = format_number(upper) + " is less than " + lower_name + ", " + format_number(lower) +
+                          ": raise one or lower the other",
+               .place = {}};
+}
+
+}  // namespace
+
+Result<TappingEnsemble> TappingEnsemble::make(const TappingParams& params) {
+  if (auto error = validate(params)) return *std::move(error);
+  const TappingTask& task = params.task;
+  if (auto error = check_range(task.slowest_m_per_s, task.fastest_m_per_s, "slowest_m_per_s", "fastest_m_per_s")) {
+    return *std::move(error);
+  }
+  if (auto error = check_range(task.shallowest_m, task.deepest_m, "shallowest_m", "deepest_m")) {
+    return *std::move(error);
+  }
+
+  std::vector<Tap> taps;
+  const signal::Random ensemble(static_cast<std::uint64_t>(task.seed));
+  for (std::int64_t i = 0; i < task.taps; ++i) {
+    signal::Random draw = ensemble.fork(static_cast<std::uint64_t>(i));
+    const auto between = [&draw](double lower, double upper) { return lower + (upper - lower) * draw.uniform(); };
+    const double speed = between(task.slowest_m_per_s, task.fastest_m_per_s);
+    const double depth = between(task.shallowest_m, task.deepest_m);
+    Tap tap{.params = params, .path = {}};
+    tap.params.person.tremor_amplitude_m *= between(0.5, 1.5);
+    tap.params.person.tremor_frequency_Hz *= between(0.8, 1.2);
+    tap.params.person.tremor_phase_cycles = draw.uniform();
+    tap.params.slave.force_sensor.seed = static_cast<std::int64_t>(draw.bits() >> 1);
+    ModelMismatch mismatch = task.mismatch;
+    mismatch.mass *= between(1.0 - task.model_error, 1.0 + task.model_error);
+    mismatch.linkage_stiffness *= between(1.0 - task.model_error, 1.0 + task.model_error);
+    mismatch.operator_damping *= between(1.0 - task.model_error, 1.0 + task.model_error);
+    tap.params.control.model = mismatched(params.control.model, mismatch);
+
+    // The wall stands half-way, where a minimum-jerk reach is fastest.
+    const double wall = params.environment.position_m / params.control.position_scale;
+    tap.path = {.start_m = wall - depth,
+                .end_m = wall + depth,
+                .start_time_s = rest_s,
+                .duration_s = mechanics::MinimumJerk::duration_for(2.0 * depth, speed)};
+    if (auto teleoperator = Teleoperator::make(tap.params, tap.path.start_m); !teleoperator) {
+      return teleoperator.error();
+    }
+    taps.push_back(tap);
+  }
+  return TappingEnsemble(std::move(taps), task.observation_s);
+}
+
+TapResult TappingEnsemble::run(std::size_t tap, std::vector<Teleoperator::Record>* trace) const {
+  const auto& [params, path] = taps_[tap];
+  Result<Teleoperator> teleoperator = Teleoperator::make(params, path.start_m);
+  const double tick_s = teleoperator->tick_s();
+
+  TapResult result;
+  int contacts = 0;
+  double peak_force_N = 0.0;
+  std::vector<double> contact_force_N;
+  std::size_t first_touch = 0;
+  std::size_t ticks = ticks_in(path.start_time_s + path.duration_s + patience_s, tick_s);
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    const double time_s = static_cast<double>(tick) * tick_s;
+    const auto record = teleoperator->step(path.position_m(time_s), path.position_m(time_s + tick_s));
+    contact_force_N.push_back(record.contact_force_N);
+    peak_force_N = std::max(peak_force_N, record.peak_contact_force_N);
+    if (trace != nullptr) trace->push_back(record);
+    if (record.touched) {
+      ++contacts;
+      if (!result.touched) {
+        result.touched = true;
+        result.first_touch_s = record.touched_at_s;
+        first_touch = tick;
+        ticks = tick + ticks_in(observation_s_, tick_s);
+      }
+    }
+    // Written so that a NaN counts as outside.
+    const bool inside = std::fabs(record.master_position_m) < workspace_m &&
+                        std::fabs(record.tip_position_m) < workspace_m * params.control.position_scale;
+    if (!inside || !teleoperator->healthy()) {
+      result.diverged = true;
+      break;
+    }
+  }
+  if (result.touched) result.metrics = judge_contact(contact_force_N, first_touch, tick_s);
+  result.metrics.settled = result.metrics.settled && result.touched && !result.diverged;
+  if (!result.metrics.settled) result.metrics.settling_time_s = observation_s_;
+  result.metrics.contacts = contacts;
+  result.metrics.peak_force_N = peak_force_N;
+  return result;
+}
+
+TappingMetrics summarise(const std::vector<TapResult>& taps) {
+  const auto collect = [&taps](auto&& value) {
+    std::vector<double> values;
+    values.reserve(taps.size());
+    for (const TapResult& tap : taps) values.push_back(static_cast<double>(value(tap)));
+    return values;
+  };
+  const auto settling = collect([](const TapResult& tap) { return tap.metrics.settling_time_s; });
+  const auto settled =
+      std::count_if(taps.begin(), taps.end(), [](const TapResult& tap) { return tap.metrics.settled; });
+  const bool diverged = std::any_of(taps.begin(), taps.end(), [](const TapResult& tap) { return tap.diverged; });
+
+  TappingMetrics metrics;
+  metrics.taps = taps.size();
+  metrics.settled_fraction = static_cast<double>(settled) / static_cast<double>(taps.size());
+  metrics.settling_time_median_s = quantile(settling, 0.5);
+  metrics.settling_time_p90_s = quantile(settling, 0.9);
+  metrics.contacts_median = quantile(collect([](const TapResult& tap) { return tap.metrics.contacts; }), 0.5);
+  metrics.peak_force_N = quantile(collect([](const TapResult& tap) { return tap.metrics.peak_force_N; }), 0.5);
+  metrics.residual_rms_N = quantile(collect([](const TapResult& tap) { return tap.metrics.residual_rms_N; }), 0.5);
+  if (diverged) {
+    metrics.verdict = Verdict::diverged;
+  } else if (metrics.settled_fraction < 0.5) {
+    metrics.verdict = Verdict::limit_cycle;
+  } else if (metrics.settled_fraction >= 0.95 && metrics.settling_time_median_s <= 0.1) {
+    metrics.verdict = Verdict::settled;
+  } else {
+    metrics.verdict = Verdict::ringing;
+  }
+  return metrics;
+}
+
+}  // namespace tactus::simulation

@@ -1,0 +1,97 @@
+#include <tactus/simulation/teleoperator.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::simulation {
+
+Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
+  if (auto error = validate(params)) return *std::move(error);
+  const Seconds tick{1.0 / params.servo.rate_Hz};
+  constexpr double round_off = 1e-9;
+  const double substeps = std::ceil(tick.value / params.plant.longest_step_s - round_off);
+  const Seconds substep{tick.value / substeps};
+  const double late_substeps = std::round(params.servo.computation_delay_s / substep.value);
+  if (late_substeps >= substeps) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "servo.computation_delay_s",
+                 .message = format_number(params.servo.computation_delay_s) + " s must be less than a tick, " +
+                            format_number(tick.value) + " s: shorten the delay or lower the rate",
+                 .place = {}};
+  }
+
+  auto master = mechanics::CableDrivenMaster::make(params.master, params.person.grip, substep);
+  if (!master) return under("master", master.error());
+  auto slave = mechanics::ElectricSlave::make(params.slave, params.environment, substep);
+  if (!slave) return under("slave", slave.error());
+  auto person = mechanics::Operator::make(params.person, tick);
+  if (!person) return under("operator", person.error());
+  const auto master_site = control::PositionForceMaster::make(params.control, tick);
+  if (!master_site) return under("control", master_site.error());
+  const auto slave_site = control::PositionForceSlave::make(params.control.slave, tick);
+  if (!slave_site) return under("control.slave", slave_site.error());
+
+  const double slave_start_m = params.control.position_scale * start_m;
+  master->reset(start_m);
+  slave->reset(slave_start_m);
+  const auto to_slave = Delay<control::MasterMessage>::make({.delay_s = params.channel.to_slave_delay_s}, tick,
+                                                            {.position_command_m = slave_start_m});
+  if (!to_slave) return under("channel.to_slave_delay_s", to_slave.error());
+  const auto to_master = Delay<control::SlaveMessage>::make({.delay_s = params.channel.to_master_delay_s}, tick);
+  if (!to_master) return under("channel.to_master_delay_s", to_master.error());
+
+  return Teleoperator(Parts{*master, *slave, *person, *master_site, *slave_site, *to_slave, *to_master}, tick.value,
+                      static_cast<int>(substeps), static_cast<int>(late_substeps));
+}
+
+Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {
+  const double time_s = static_cast<double>(ticks_) * tick_s_;
+  const double master_position_m = parts_.master.measure();
+  const mechanics::ElectricSlave::Reading slave_reading = parts_.slave.measure();
+
+  const auto master =
+      parts_.master_site.step({.measurement = {.motor_position_m = master_position_m}, .message = arrived_});
+  const auto slave = parts_.slave_site.step(
+      {.measurement = {.motor_position_m = slave_reading.motor_position_m, .tip_force_N = slave_reading.tip_force_N},
+       .message = parts_.to_slave.step(master.message)});
+  arrived_ = parts_.to_master.step(slave.message);
+
+  Record record{.time_s = time_s,
+                .master_position_m = master_position_m,
+                .induced_position_m = master.induced_position_m,
+                .command_m = master.message.position_command_m,
+                .slave_position_m = slave_reading.motor_position_m,
+                .tip_position_m = parts_.slave.mechanism().tip_position_m(),
+                .displayed_force_N = master.displayed_force_N};
+
+  const auto aim = parts_.person.step({.path_m = path_m,
+                                       .path_at_next_tick_m = path_at_next_tick_m,
+                                       .handle_position_m = parts_.master.mechanism().tip_position_m()});
+  const double substep_s = tick_s_ / substeps_;
+  for (int i = 0; i < substeps_; ++i) {
+    if (i == late_substeps_) {
+      master_command_N_ = master.motor_force_N;
+      slave_command_N_ = slave.motor_force_N;
+    }
+    const double middle_s = (i + 0.5) * substep_s;
+    parts_.master.step({.commanded_force_N = master_command_N_,
+                        .grip_position_m = aim.position_m + middle_s * aim.velocity_m_per_s,
+                        .grip_velocity_m_per_s = aim.velocity_m_per_s});
+    const auto contact = parts_.slave.step(slave_command_N_);
+    record.contact_force_N += contact.contact_force_N / substeps_;
+    record.peak_contact_force_N = std::max(record.peak_contact_force_N, contact.contact_force_N);
+    if (contact.touched && !record.touched) {
+      record.touched = true;
+      record.touched_at_s = time_s + i * substep_s + contact.touched_after_s;
+    }
+  }
+  ++ticks_;
+  return record;
+}
+
+bool Teleoperator::healthy() const noexcept {
+  return parts_.master_site.fault() == control::GateFault::none &&
+         parts_.slave_site.fault() == control::GateFault::none;
+}
+
+}  // namespace tactus::simulation
