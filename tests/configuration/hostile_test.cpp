@@ -10,6 +10,7 @@
 namespace tactus::configuration {
 namespace {
 
+using std::string_view_literals::operator""sv;
 using testing::Experiment;
 
 constexpr std::string_view sound = R"(# an experiment
@@ -60,7 +61,7 @@ TEST(HostileText, EveryTruncationIsReadOrRefused) {
 
 TEST(HostileText, MutationsAreReadOrRefused) {
   constexpr int count = 2000;
-  constexpr std::string_view likely = "[]{}=.\"'#\n\r\t,-+_e0x\\\x00\x7f\xff\xc3";
+  constexpr std::string_view likely = "[]{}=.\"'#\n\r\t,-+_e0x\\\x00\x7f\xff\xc3"sv;  // with its NUL
   std::mt19937 random(20240607);
   const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
   int refused = 0;
@@ -126,11 +127,11 @@ TEST(HostileText, HugeTextIsRefusedOrReadWithoutHugeWork) {
   EXPECT_FALSE(holds(std::string((1U << 20U) + 1, ' ')));
   EXPECT_TRUE(holds(std::string(1U << 20U, ' ')));
   EXPECT_FALSE(holds(repeat("k", 1000000) + " = 1"));
-  EXPECT_FALSE(holds("\"" + repeat("\\n", 400000) + "\" = 1"));
+  EXPECT_FALSE(holds('"' + repeat("\\n", 400000) + "\" = 1"));
   EXPECT_FALSE(holds("[control]\ncancellation = \"" + repeat("x", 1000000) + "\""));
   EXPECT_FALSE(holds("duration_s = " + repeat("9", 1000000)));
   std::string many;
-  for (int i = 0; i < 5000; ++i) many += "[k" + std::to_string(i) + repeat(".a", 80) + "]\n";
+  for (int i = 0; i < 5000; ++i) many.append("[k").append(std::to_string(i)).append(repeat(".a", 80)).append("]\n");
   EXPECT_FALSE(holds(many));
 }
 

@@ -123,6 +123,22 @@ TEST(RoundTrip, TheEdgesOfTheNumbersSurvive) {
   }
 }
 
+TEST(RoundTrip, StructsThatShareASectionAreWrittenUnderOneHeading) {
+  testing::Filter filter{.cutoff_Hz = 33.0, .enabled = false};
+  testing::Task task{.kind = "hold", .recording = ""};
+  std::vector<Binding> bindings = bind(filter, "site");
+  for (const Binding& binding : bind(task, "site")) bindings.push_back(binding);
+  const std::string text = to_toml(bindings);
+  EXPECT_EQ(text, "[site]\ncutoff_Hz = 33.0\nenabled = false\nkind = \"hold\"\nrecording = \"\"\n");
+
+  const auto document = Document::parse(text, "written.toml");
+  filter = {};
+  task = {};
+  ASSERT_FALSE(document->read(bindings));
+  EXPECT_EQ(filter, (testing::Filter{.cutoff_Hz = 33.0, .enabled = false}));
+  EXPECT_EQ(task, (testing::Task{.kind = "hold", .recording = ""}));
+}
+
 TEST(RoundTrip, TheTextIsPlainToml) {
   EXPECT_EQ(to_toml(Experiment{}), R"(duration_s = 2.0
 
