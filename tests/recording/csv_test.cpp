@@ -1,5 +1,5 @@
-#include <clocale>
 #include <cmath>
+#include <locale>
 #include <string>
 
 #include "tests/recording/files.hpp"
@@ -49,12 +49,16 @@ TEST_F(Csv, CommasSemicolonsAndTabsSeparateAndBlanksQuotesBomAndCarriageReturnsD
   }
 }
 
+struct DecimalComma : std::numpunct<char> {
+  [[nodiscard]] char do_decimal_point() const override { return ','; }
+};
+
 TEST_F(Csv, NumbersReadAlikeUnderALocaleWithDecimalCommas) {
-  const char* set = std::setlocale(LC_ALL, "de_DE.UTF-8");
+  const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
   const auto signal = read({.file = write("a.csv", "f\n0.1\n2.5e-3\n"), .variable = "f"});
-  std::setlocale(LC_ALL, "C");
-  ASSERT_TRUE(signal);
-  EXPECT_EQ(signal->values, (Values{0.1, 0.0025})) << (set != nullptr ? set : "no German locale here");
+  std::locale::global(before);
+  ASSERT_TRUE(signal) << describe(signal.error());
+  EXPECT_EQ(signal->values, (Values{0.1, 0.0025}));
 }
 
 TEST_F(Csv, EveryValueReadsBackAsTheNumberThatWasWritten) {
