@@ -4,6 +4,7 @@
 #include <tactus/configuration/toml_writer.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 
@@ -44,15 +45,11 @@ std::string list_of(std::span<const std::string_view> words) {
 
 std::string describe_wanted(const Binding& binding) {
   const std::string_view symbol = binding.unit.symbol;
-  const std::string_view in = symbol.empty() ? "" : " in ";
-  const std::string bounds = describe_bounds(binding.bounds, binding.unit);
   return std::visit(Overloaded{[](Section) -> std::string { return "a section"; },
                                [&](const double*) {
-                                 return concat({"a number", in, symbol, ", which ", bounds});
+                                 return concat({"a number", symbol.empty() ? "" : " in ", symbol});
                                },
-                               [&](const std::int64_t*) {
-                                 return concat({"a whole number, which ", bounds});
-                               },
+                               [](const std::int64_t*) -> std::string { return "a whole number"; },
                                [](const bool*) -> std::string { return "true or false"; },
                                [](const std::string*) -> std::string { return "a text in quotes"; },
                                [](const Choice& choice) { return list_of(choice.words); }},
@@ -60,14 +57,16 @@ std::string describe_wanted(const Binding& binding) {
 }
 
 Error wrong_type(const Entry& entry, const Binding& binding) {
+  const bool bounded = std::isfinite(binding.bounds.lower) || std::isfinite(binding.bounds.upper);
   const std::string remedy = binding.is_section()
                                  ? concat({"write [", binding.path, "] with its keys below it"})
                                  : concat({"write for instance ", key_of(binding.path), " = ", toml_value(binding)});
-  return {
-      .code = ErrorCode::wrong_type,
-      .parameter = binding.path,
-      .message = concat({describe_value(entry.value), ", but ", describe_wanted(binding), " is asked for: ", remedy}),
-      .place = {}};
+  return {.code = ErrorCode::wrong_type,
+          .parameter = binding.path,
+          .message = concat({describe_value(entry.value), ", but ", describe_wanted(binding), " is asked for",
+                             bounded ? ", and it " : "",
+                             bounded ? describe_bounds(binding.bounds, binding.unit) : std::string(), ": ", remedy}),
+          .place = {}};
 }
 
 /// What a text parameter gets: the text, or whatever was typed in an override, where quotes are the shell's.

@@ -57,8 +57,11 @@ Result<Value> value_from(std::string_view typed) {
   return text->front().value;
 }
 
+/// True for bare keys with dots between them. The limit keeps absurd input from making as many sections as it has dots.
 bool is_path(std::string_view path) {
+  constexpr std::size_t longest = 200;
   const std::size_t dot = path.find('.');
+  if (path.size() > longest) return false;
   if (dot == std::string_view::npos) return is_bare_key(path);
   return is_bare_key(path.substr(0, dot)) && is_path(path.substr(dot + 1));
 }

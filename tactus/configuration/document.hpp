@@ -51,8 +51,8 @@ class Document {
     return params;
   }
 
-  /// The same for bindings of one or more structs, which together describe the whole document. After an error some of
-  /// the values are assigned and some are not.
+  /// The same for bindings of one or more structs, which together describe the whole document. They may share sections
+  /// but no key. After an error some of the values are assigned and some are not.
   Check read(std::span<const Binding> bindings) const;
 
   /// One text, before it is known what the rest of the document describes: `text_at("task.kind")`.

@@ -79,7 +79,8 @@ Number parse_number(std::string_view text) {
   const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), number.value);
   if (failure == std::errc::result_out_of_range)
     return {.fault = "is beyond the range of a double; rescale the column"};
-  if (failure != std::errc{} || end != digits.data() + digits.size() || digits.front() == '+') {
+  const bool two_signs = digits.data() != text.data() && digits.starts_with('-');
+  if (failure != std::errc{} || end != digits.data() + digits.size() || two_signs) {
     return {.fault = text.find(',') == std::string_view::npos ? "is not a number; correct it or remove the line"
                                                               : "is not a number; write a decimal point, not a comma"};
   }

@@ -85,9 +85,8 @@ std::string without_needless_index(std::string_view path, const std::vector<Leaf
     std::string candidate = shortened;
     candidate.erase(start, 3);
     const std::string stem = candidate.substr(0, start);
-    const bool single = std::any_of(leaves.begin(), leaves.end(), [&](const Leaf& leaf) {
-      return leaf.entry.name == stem || leaf.entry.name.starts_with(stem + ".");
-    });
+    const bool single = std::any_of(leaves.begin(), leaves.end(),
+                                    [&](const Leaf& leaf) { return leaf.entry.name.starts_with(stem + "."); });
     if (single) shortened = std::move(candidate);
   }
   return shortened;

@@ -23,7 +23,18 @@ constexpr std::size_t header_size = 128;
 constexpr std::size_t tag_size = 8;
 
 /// Types of a data element, by their number in the file.
-enum Type : std::uint32_t { int8 = 1, int32 = 5, uint32 = 6, matrix = 14, compressed = 15 };
+enum Type : std::uint32_t {
+  int8 = 1,
+  uint8 = 2,
+  uint16 = 4,
+  int32 = 5,
+  uint32 = 6,
+  matrix = 14,
+  compressed = 15,
+  utf8 = 16,
+  utf16 = 17,
+  utf32 = 18
+};
 
 /// Classes of a matrix, by their number in the file.
 enum Class : std::uint32_t {
@@ -126,6 +137,28 @@ Fault check_numbers(Cursor& cursor, std::size_t count) {
   return numbers->content.size() == count * size ? Fault{} : "numbers do not fill their array";
 }
 
+Fault check_text(Cursor& cursor) {
+  constexpr std::array<std::uint32_t, 6> types_of_text{int8, uint8, uint16, utf8, utf16, utf32};
+  const auto characters = cursor.next();
+  const bool found =
+      characters && std::find(types_of_text.begin(), types_of_text.end(), characters->type) != types_of_text.end();
+  return found ? Fault{} : "characters are missing";
+}
+
+Fault check_sparse(Cursor& cursor, bool is_complex) {
+  const auto rows = cursor.next();
+  const auto columns = cursor.next();
+  const auto real = cursor.next();
+  const auto imaginary = is_complex ? cursor.next() : real;
+  const auto is_index = [](const auto& element) {
+    return element && (element->type == int32 || element->type == uint32);
+  };
+  if (!is_index(rows) || !is_index(columns) || !real || !imaginary)
+    return "indices or numbers of a sparse array are missing";
+  const bool alike = real->type == imaginary->type && real->content.size() == imaginary->content.size();
+  return alike && size_of_number(real->type) != 0 ? Fault{} : "numbers of a sparse array are damaged";
+}
+
 /// Number of members of an array, none if it is not one that `limit` bytes can describe.
 std::optional<std::size_t> count_members(const Cursor& cursor, const DataElement& dimensions, std::size_t limit) {
   const std::size_t rank = dimensions.content.size() / 4;
@@ -161,7 +194,9 @@ Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level) {
   const auto name = cursor.next();
   if (!dimensions || !name) return "dimensions or name are missing";
   if (name->type != int8) return "a name is no text";
-  // A sparse array may have more members than bytes, but it is never read.
+  // Members are named by their struct; matio takes it for granted that they have no name of their own.
+  if (!top_level && !name->content.empty()) return "a member has a name of its own";
+  // A sparse array may have more members than bytes.
   const std::size_t limit = kind == sparse ? std::numeric_limits<std::uint32_t>::max() : content.size();
   const auto count = count_members(cursor, *dimensions, limit);
   if (!count) return "dimensions are impossible";
@@ -180,7 +215,9 @@ Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level) {
     if (!fields) return "names of fields are damaged";
     return check_children(cursor, *fields * *count, swapped, depth);
   }
-  return kind == text || kind == sparse ? Fault{} : Fault{"a class is unknown"};
+  if (kind == text) return check_text(cursor);
+  if (kind == sparse) return check_sparse(cursor, (bits & complex_flag) != 0);
+  return "a class is unknown";
 }
 
 /// The whole content of a zlib stream, nothing if it is damaged or is not one whole stream.

@@ -23,11 +23,11 @@ namespace tactus::recording {
 /// A MATLAB file is of version 5 (what `save` writes with `-v7` or `-v6`), compressed or not. The signal is a real,
 /// full vector or matrix of numbers of any class.
 struct Source {
-  std::filesystem::path file;
+  std::filesystem::path file = {};
 
   /// Table: the column as its header names it, with or without the unit (`force`, `force_N`, `force [N]`). MATLAB file:
   /// a dotted path with 1-based indices of struct arrays (`scope.signals(2).values`); a 1 x 1 struct needs no index.
-  std::string variable;
+  std::string variable = {};
 
   /// MATLAB file: 1-based column of the variable. A row vector counts as one column. Table: 1, for the name is enough.
   std::int64_t column = 1;
@@ -36,22 +36,22 @@ struct Source {
   /// or ns; s if none), in a MATLAB file in seconds. Empty: the column `time` or `t`, or the variable `time` that
   /// stands nearest (for `scope.signals(2).values`: `scope.signals(2).time`, `scope.time`, `time`) and has as many
   /// samples; no time if there is none.
-  std::string time;
+  std::string time = {};
 
   /// What the sample time is known to be, in seconds, greater than 0. Where the file has times too, they must agree
   /// with it within one part in a thousand.
-  std::optional<double> sample_time_s;
+  std::optional<double> sample_time_s = {};
 };
 
 /// A uniformly sampled signal of at least two finite samples.
 struct Signal {
-  std::vector<double> values;
+  std::vector<double> values = {};
   /// As in the file, without unit; for a matrix of a MATLAB file with the column (`scope.signals(2).values(:,2)`).
-  std::string name;
+  std::string name = {};
   /// As in the header (`N`, `N/m`); empty where the file states none, as in every MATLAB file.
-  std::string unit;
+  std::string unit = {};
   /// Time between samples in seconds; none where neither the source nor the file states it.
-  std::optional<double> sample_time_s;
+  std::optional<double> sample_time_s = {};
 };
 
 /// Reads one signal.
@@ -67,9 +67,10 @@ Result<Signal> read(const Source& source);
 
 /// One variable or column of a file.
 struct Entry {
-  std::string name;  ///< what `Source::variable` has to say
-  std::string unit;  ///< as in the header, or empty
-  std::string kind;  ///< `column` in a table; in a MATLAB file the class, as `double`, `complex single`, `char`, `cell`
+  std::string name = {};  ///< what `Source::variable` has to say
+  std::string unit = {};  ///< as in the header, or empty
+  std::string kind =
+      {};  ///< `column` in a table; in a MATLAB file the class, as `double`, `complex single`, `char`, `cell`
   std::int64_t rows = 0;
   std::int64_t columns = 0;
   bool readable = false;  ///< a full matrix of real numbers with two samples or more, which `read` takes

@@ -32,7 +32,7 @@ inline constexpr Palette dark_palette{
     "#a5adb6",
     "#6b737c",
     "#2b3036",
-    "#a8cfff",
-    {"#2771fb", "#d66604", "#21f094", "#ac5daf", "#fed346", "#a8cfff", "#6d6d6d", "#f5f6f7"}};
+    "#add2ff",
+    {"#3d78fd", "#dc7327", "#1ee799", "#b663b5", "#ecd428", "#add2ff", "#858585", "#f5f6f7"}};
 
 }  // namespace tactus::report

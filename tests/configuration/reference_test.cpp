@@ -1,0 +1,58 @@
+#include <tactus/configuration/reference.hpp>
+
+#include <gtest/gtest.h>
+#include <tests/configuration/experiment.hpp>
+
+namespace tactus::configuration {
+namespace {
+
+TEST(Reference, ThePageHasATablePerSection) {
+  EXPECT_EQ(reference_markdown<testing::Experiment>("Experiment"), R"(# Experiment
+
+| Key | Unit | Bounds | Default | Meaning |
+|---|---|---|---|---|
+| `duration_s` | s | > 0, ≤ 3600 | `2.0` | How long it runs. |
+
+## `[slave]`
+
+The slave.
+
+| Key | Unit | Bounds | Default | Meaning |
+|---|---|---|---|---|
+| `mass_kg` | kg | > 0 | `0.5` | Moving mass. |
+| `offset_m` | m | any | `0.0` | Where it rests \| at the start. |
+| `stiffness_N_per_m` | N/m | ≥ 0 | `3950.0` | Stiffness. |
+
+## `[slave.velocity_filter]`
+
+Filters the measured velocity.
+
+| Key | Unit | Bounds | Default | Meaning |
+|---|---|---|---|---|
+| `cutoff_Hz` | Hz | > 0, ≤ 20000 | `80.0` | The -3 dB point. |
+| `enabled` |  | `true`, `false` | `true` | Whether it filters at all. |
+
+## `[control]`
+
+The controller.
+
+| Key | Unit | Bounds | Default | Meaning |
+|---|---|---|---|---|
+| `force_gain` |  | ≥ 0, ≤ 10 | `1.0` | Force scale. |
+| `cancellation` |  | `off`, `model`, `adaptive` | `"model"` | How the induced motion is cancelled. |
+| `taps` |  | whole, ≥ 1, ≤ 4096 | `32` | Number of taps. |
+| `seed` |  | whole | `1` | Seed of the noise. |
+
+## `[task]`
+
+The task.
+
+| Key | Unit | Bounds | Default | Meaning |
+|---|---|---|---|---|
+| `kind` |  | text | `"tapping"` | What is done. |
+| `recording` |  | text | `""` | File of a recording. |
+)");
+}
+
+}  // namespace
+}  // namespace tactus::configuration
