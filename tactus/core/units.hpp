@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 namespace tactus {
 
 /// A duration in seconds. The one strong unit type that crosses the border into the loop: a sample time cannot be
@@ -30,6 +32,9 @@ inline constexpr Unit second_per_metre{"s/m", "_s_per_m"};
 inline constexpr Unit kilogram{"kg", "_kg"};
 inline constexpr Unit per_second{"1/s", "_per_s"};
 inline constexpr Unit cycles{"cycles", "_cycles"};
+
+/// Every unit there is, for reading a unit off the end of a name.
+inline constexpr std::array all{none, second, hertz, metre, metre_per_second, newton, newton_per_second, newton_per_metre, newton_per_metre5, newton_second_per_metre, second_per_metre, kilogram, per_second, cycles};
 }  // namespace units
 
 }  // namespace tactus

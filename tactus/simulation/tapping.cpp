@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace tactus::simulation {
@@ -145,6 +146,15 @@ TappingMetrics summarise(const std::vector<TapResult>& taps) {
     metrics.verdict = Verdict::ringing;
   }
   return metrics;
+}
+
+std::size_t median_tap(const std::vector<TapResult>& taps) {
+  std::vector<std::size_t> order(taps.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&taps](std::size_t a, std::size_t b) {
+    return taps[a].metrics.settling_time_s < taps[b].metrics.settling_time_s;
+  });
+  return order[(order.size() - 1) / 2];
 }
 
 }  // namespace tactus::simulation

@@ -111,4 +111,7 @@ class TappingEnsemble {
 
 TappingMetrics summarise(const std::vector<TapResult>& taps);
 
+/// The tap whose settling time is the median, the lower of two: the one to show.
+std::size_t median_tap(const std::vector<TapResult>& taps);
+
 }  // namespace tactus::simulation

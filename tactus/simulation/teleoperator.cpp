@@ -1,24 +1,15 @@
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace tactus::simulation {
 
 Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   if (auto error = validate(params)) return *std::move(error);
-  const Seconds tick{1.0 / params.servo.rate_Hz};
-  constexpr double round_off = 1e-9;
-  const double substeps = std::ceil(tick.value / params.plant.longest_step_s - round_off);
-  const Seconds substep{tick.value / substeps};
-  const double late_substeps = std::round(params.servo.computation_delay_s / substep.value);
-  if (late_substeps >= substeps) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = "servo.computation_delay_s",
-                 .message = format_number(params.servo.computation_delay_s) + " s must be less than a tick, " +
-                            format_number(tick.value) + " s: shorten the delay or lower the rate",
-                 .place = {}};
-  }
+  const auto clock = Clock::make(params.servo, params.plant);
+  if (!clock) return clock.error();
+  const Seconds tick{clock->tick_s};
+  const Seconds substep{clock->substep_s};
 
   auto master = mechanics::CableDrivenMaster::make(params.master, params.person.grip, substep);
   if (!master) return under("master", master.error());
@@ -40,12 +31,11 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   const auto to_master = Delay<control::SlaveMessage>::make({.delay_s = params.channel.to_master_delay_s}, tick);
   if (!to_master) return under("channel.to_master_delay_s", to_master.error());
 
-  return Teleoperator(Parts{*master, *slave, *person, *master_site, *slave_site, *to_slave, *to_master}, tick.value,
-                      static_cast<int>(substeps), static_cast<int>(late_substeps));
+  return Teleoperator(Parts{*master, *slave, *person, *master_site, *slave_site, *to_slave, *to_master}, *clock);
 }
 
 Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {
-  const double time_s = static_cast<double>(ticks_) * tick_s_;
+  const double time_s = static_cast<double>(ticks_) * clock_.tick_s;
   const double master_position_m = parts_.master.measure();
   const mechanics::ElectricSlave::Reading slave_reading = parts_.slave.measure();
 
@@ -67,22 +57,21 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
   const auto aim = parts_.person.step({.path_m = path_m,
                                        .path_at_next_tick_m = path_at_next_tick_m,
                                        .handle_position_m = parts_.master.mechanism().tip_position_m()});
-  const double substep_s = tick_s_ / substeps_;
-  for (int i = 0; i < substeps_; ++i) {
-    if (i == late_substeps_) {
+  for (int i = 0; i < clock_.substeps; ++i) {
+    if (i == clock_.late_substeps) {
       master_command_N_ = master.motor_force_N;
       slave_command_N_ = slave.motor_force_N;
     }
-    const double middle_s = (i + 0.5) * substep_s;
+    const double middle_s = (i + 0.5) * clock_.substep_s;
     parts_.master.step({.commanded_force_N = master_command_N_,
                         .grip_position_m = aim.position_m + middle_s * aim.velocity_m_per_s,
                         .grip_velocity_m_per_s = aim.velocity_m_per_s});
     const auto contact = parts_.slave.step(slave_command_N_);
-    record.contact_force_N += contact.contact_force_N / substeps_;
+    record.contact_force_N += contact.contact_force_N / clock_.substeps;
     record.peak_contact_force_N = std::max(record.peak_contact_force_N, contact.contact_force_N);
     if (contact.touched && !record.touched) {
       record.touched = true;
-      record.touched_at_s = time_s + i * substep_s + contact.touched_after_s;
+      record.touched_at_s = time_s + i * clock_.substep_s + contact.touched_after_s;
     }
   }
   ++ticks_;

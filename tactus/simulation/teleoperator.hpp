@@ -6,6 +6,7 @@
 #include <tactus/mechanics/electric_slave.hpp>
 #include <tactus/mechanics/operator.hpp>
 #include <tactus/signal/delay_line.hpp>
+#include <tactus/simulation/clock.hpp>
 
 #include <cstdint>
 
@@ -21,29 +22,6 @@ struct ChannelParams {
                       field("to_master_delay_s", &ChannelParams::to_master_delay_s, units::second, between(0.0, 1.0),
                             "Delay of the tip force, rounded to whole ticks; a message arrives at the next tick "
                             "at the earliest.")};
-  }
-};
-
-/// The servo clock of both sites.
-struct ServoParams {
-  double rate_Hz = 5000.0;
-  double computation_delay_s = 20e-6;
-  static constexpr auto fields() {
-    return std::tuple{
-        field("rate_Hz", &ServoParams::rate_Hz, units::hertz, between(500.0, 20000.0),
-              "Ticks per second (paper A: 5000)."),
-        field("computation_delay_s", &ServoParams::computation_delay_s, units::second, between(0.0, 0.002),
-              "From a sample to the change of the command that follows from it, rounded to whole plant "
-              "steps, less than a tick.")};
-  }
-};
-
-/// How finely the plants are stepped.
-struct PlantClockParams {
-  double longest_step_s = 10e-6;
-  static constexpr auto fields() {
-    return std::tuple{field("longest_step_s", &PlantClockParams::longest_step_s, units::second, between(1e-7, 1e-4),
-                            "Longest step of the plants; a tick is cut into equal steps no longer than this.")};
   }
 };
 
@@ -98,7 +76,7 @@ class Teleoperator {
   /// Advances by one tick while the person intends to be at `path_m` now and at `path_at_next_tick_m` then.
   Record step(double path_m, double path_at_next_tick_m) noexcept;
 
-  [[nodiscard]] double tick_s() const noexcept { return tick_s_; }
+  [[nodiscard]] double tick_s() const noexcept { return clock_.tick_s; }
   /// False once a safety gate has latched a fault.
   [[nodiscard]] bool healthy() const noexcept;
 
@@ -119,13 +97,10 @@ class Teleoperator {
     Delay<control::SlaveMessage> to_master;
   };
 
-  Teleoperator(const Parts& parts, double tick_s, int substeps, int late_substeps)
-      : parts_(parts), tick_s_(tick_s), substeps_(substeps), late_substeps_(late_substeps) {}
+  Teleoperator(const Parts& parts, const Clock& clock) : parts_(parts), clock_(clock) {}
 
   Parts parts_;
-  double tick_s_;
-  int substeps_;
-  int late_substeps_;  ///< substeps that still run on the previous command: the computation delay
+  Clock clock_;
   std::int64_t ticks_ = 0;
   double master_command_N_ = 0.0;
   double slave_command_N_ = 0.0;
