@@ -118,7 +118,7 @@ TEST_F(DamagedMat, NoFlippedBitAndNoForgedSizeCrashes) {
                                   0xffffffffU, 0xfffffff8U, 0x00010005U, 14U,         15U};
   const int rounds = [] {
     const char* n = std::getenv("TACTUS_FUZZ_ROUNDS");
-    return n != nullptr ? std::atoi(n) : 1500;
+    return n != nullptr ? std::atoi(n) : 600;
   }();
   for (int round = 0; round < rounds; ++round) {
     std::string damaged = whole;
