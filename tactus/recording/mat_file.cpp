@@ -2,7 +2,7 @@
 #include <tactus/recording/mat_guard.hpp>
 #include <tactus/recording/names.hpp>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -274,7 +275,7 @@ Result<std::size_t> check_mat_file(const std::filesystem::path& file) {
   if (!little && mark != std::string_view("\x01\x00MI", 4)) {
     return refused(file, "is not a MATLAB file of version 5; save it from MATLAB, Octave or SciPy with '-v7'");
   }
-  const bool swapped = !little;  // the kernel of this project runs on little-endian machines
+  const bool swapped = little != (std::endian::native == std::endian::little);
   Cursor cursor(bytes.subspan(header_size), swapped);
   std::size_t variables = 0;
   while (!cursor.at_end()) {
