@@ -9,7 +9,7 @@
 
 /// Files that are cut or changed. TACTUS_FUZZ_ROUNDS in the environment asks for more of them.
 ///
-///  A changed file may still be a sound file with other numbers in it; what may not
+/// A changed file may still be a sound file with other numbers in it; what may not
 /// happen is a crash, a value that is not finite or a word on standard error. Run under sanitizers, these tests say
 /// more.
 namespace tactus::recording {
