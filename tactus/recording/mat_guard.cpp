@@ -188,8 +188,11 @@ Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level) {
   if (!flags || flags->type != uint32 || flags->packed || flags->content.size() != 8) return "array flags are missing";
   const std::uint32_t bits = cursor.word(flags->content, 0);
   const std::uint32_t kind = bits & 0xffU;
-  // matio and this project read nothing of an object of a class but its flags.
-  if (kind == opaque) return {};
+  // Of an object of a class nothing is read, but where dimensions would stand matio must not find any.
+  if (kind == opaque) {
+    const auto name = cursor.next();
+    return name && name->type == int8 ? Fault{} : "an object has no name";
+  }
 
   const auto dimensions = cursor.next();
   const auto name = cursor.next();
