@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/recording/column.hpp>
 #include <tactus/recording/recording.hpp>
 
 #include <cstdint>
@@ -10,13 +11,6 @@
 #include <vector>
 
 namespace tactus::recording {
-
-/// The samples of one column with what the file says about them.
-struct Column {
-  std::vector<double> values;
-  std::string name;
-  std::string unit;
-};
 
 /// A table of comma, semicolon or tab separated text, held in memory. `read` documents the format and the errors.
 class CsvFile {

@@ -2,7 +2,7 @@
 #include <tactus/recording/mat_guard.hpp>
 #include <tactus/recording/names.hpp>
 
-#include <charconv>
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -147,7 +147,7 @@ Result<MatFile> MatFile::open(const std::filesystem::path& file) {
   if (!variables) return variables.error();
   auto content = std::make_unique<Content>();
   content->file.reset(Mat_Open(file.c_str(), MAT_ACC_RDONLY));
-  while (content->file != nullptr) {
+  while (content->file != nullptr && content->variables.size() < *variables) {
     matvar_t* variable = Mat_VarReadNextInfo(content->file.get());
     if (variable == nullptr) break;
     content->variables.emplace_back(variable);

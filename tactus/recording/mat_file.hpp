@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/recording/csv_file.hpp>
+#include <tactus/recording/column.hpp>
 #include <tactus/recording/recording.hpp>
 
 #include <cstdint>

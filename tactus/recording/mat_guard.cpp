@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -187,8 +188,11 @@ Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level) {
   if (!flags || flags->type != uint32 || flags->packed || flags->content.size() != 8) return "array flags are missing";
   const std::uint32_t bits = cursor.word(flags->content, 0);
   const std::uint32_t kind = bits & 0xffU;
-  // matio and this project read nothing of an object of a class but its flags.
-  if (kind == opaque) return {};
+  // Of an object of a class nothing is read, but where dimensions would stand matio must not find any.
+  if (kind == opaque) {
+    const auto name = cursor.next();
+    return name && name->type == int8 ? Fault{} : "an object has no name";
+  }
 
   const auto dimensions = cursor.next();
   const auto name = cursor.next();
@@ -274,7 +278,7 @@ Result<std::size_t> check_mat_file(const std::filesystem::path& file) {
   if (!little && mark != std::string_view("\x01\x00MI", 4)) {
     return refused(file, "is not a MATLAB file of version 5; save it from MATLAB, Octave or SciPy with '-v7'");
   }
-  const bool swapped = !little;  // the kernel of this project runs on little-endian machines
+  const bool swapped = little != (std::endian::native == std::endian::little);
   Cursor cursor(bytes.subspan(header_size), swapped);
   std::size_t variables = 0;
   while (!cursor.at_end()) {

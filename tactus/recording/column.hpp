@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tactus::recording {
+
+/// The samples of one column with what the file says about them.
+struct Column {
+  std::vector<double> values;
+  std::string name;
+  std::string unit;
+};
+
+}  // namespace tactus::recording
