@@ -70,7 +70,7 @@ TEST(HostileText, MutationsAreReadOrRefused) {
     for (std::size_t change = 1 + below(6); change > 0; --change) {
       const std::size_t at = below(text.size());
       const char letter = below(2) == 0 ? static_cast<char>(below(256)) : likely[below(likely.size())];
-      switch (below(4)) {
+      switch (below(5)) {
         case 0:
           text[at] = letter;
           break;
@@ -79,6 +79,9 @@ TEST(HostileText, MutationsAreReadOrRefused) {
           break;
         case 2:
           text.erase(at, 1 + below(8));
+          break;
+        case 3:
+          text.insert(at, "\xc2\xa7");
           break;
         default:
           text.insert(at, text.substr(below(text.size()), below(30)));
@@ -90,6 +93,22 @@ TEST(HostileText, MutationsAreReadOrRefused) {
   }
   EXPECT_GT(refused, count / 2);
   EXPECT_LT(refused, count);
+}
+
+TEST(HostileText, ALetterBeyondAsciiIsFineInTextsAndCommentsAndRefusedElsewhere) {
+  for (const char* letter : {"\xc2\xa7", "\xcc\xaa", "\xe2\xbf\xbf", "\xef\xb7\xbf", "\xf0\x9f\x98\x80"}) {
+    const std::string text(letter);
+    EXPECT_FALSE(holds(text));
+    EXPECT_FALSE(holds(text + " = 1"));
+    EXPECT_FALSE(holds("[" + text + "]"));
+    EXPECT_FALSE(holds("duration_s = 1 " + text));
+    EXPECT_FALSE(holds("duration_s = " + text));
+    EXPECT_TRUE(holds("duration_s = 1 #" + text));
+    // A backslash at the end of a line skips the white space up to the letter.
+    const auto document = Document::parse("task.kind = \"\"\"\\\n  " + text + "\"\"\"", "t.toml");
+    ASSERT_TRUE(document) << describe(document.error());
+    EXPECT_EQ(document->read<Experiment>()->task.kind, text);
+  }
 }
 
 TEST(HostileText, NoiseIsRefused) {
