@@ -87,6 +87,9 @@ struct Enumerator {
   Enum value;
   const char* name;
 };
+// Clang deduces the arguments of an aggregate from version 17 on only.
+template <class Enum>
+Enumerator(Enum, const char*) -> Enumerator<Enum>;
 
 /// An enum that a file can name: a function `enumerators(Enum)` beside it lists its words.
 template <class E>
