@@ -3,6 +3,7 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/report/figure.hpp>
 
 #include <functional>
 #include <span>
@@ -37,11 +38,12 @@ struct Request {
   std::string command;  ///< that repeats the run, for the report
 };
 
-/// What came out, for three readers.
+/// What came out, for every reader.
 struct Outcome {
   std::string text;  ///< tables for a terminal
   std::string json;  ///< one document
   std::string html;  ///< a self-contained report
+  std::vector<report::Figure> figures;  ///< those of the report
 };
 
 /// Called now and then with the share of the work that is done, from 0 to 1.

@@ -107,7 +107,7 @@ report::Figure figure_of(const DisplayRun& run) {
 }
 
 std::string page_of(const Request& request, const std::vector<DisplayRun>& runs, const report::Table& table,
-                    std::string_view configuration) {
+                    const std::vector<report::Figure>& figures, std::string_view configuration) {
   report::Page page(request.name + ": " + std::string(title));
   page.paragraph(
       "While a person moves the handle at constant speed, a force is played that knows nothing of the motion. The motion "
@@ -122,9 +122,9 @@ std::string page_of(const Request& request, const std::vector<DisplayRun>& runs,
        {"model friction", "at-rest: as in the paper, on the induced velocity alone. total-velocity: on intended plus "
                           "induced velocity, less the friction that the intended motion meets anyway."},
        {"model", "nominal, or with the errors of task.mismatch."}});
-  for (const DisplayRun& run : runs) {
-    if (!run.settings.empty()) page.heading(settings_caption(run.settings));
-    page.figure(figure_of(run));
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!runs[i].settings.empty()) page.heading(settings_caption(runs[i].settings));
+    page.figure(figures[i]);
   }
   add_provenance(page, request, configuration);
   return page.to_html();
@@ -151,8 +151,12 @@ Result<Outcome> ForceDisplayExperiment::run(const Request& request, const Progre
     progress(static_cast<double>(runs.size()) / static_cast<double>(cases->all.size()));
   }
   const report::Table table = table_of(runs);
-  return Outcome{.text = table.to_text(), .json = json_of(request, runs),
-                 .html = page_of(request, runs, table, cases->first_configuration)};
+  std::vector<report::Figure> figures;
+  for (const DisplayRun& run : runs) figures.push_back(figure_of(run));
+  return Outcome{.text = table.to_text(),
+                 .json = json_of(request, runs),
+                 .html = page_of(request, runs, table, figures, cases->first_configuration),
+                 .figures = std::move(figures)};
 }
 
 }  // namespace tactus::simulation

@@ -58,8 +58,8 @@ std::string json_of(const Request& request, const std::vector<TappingRun>& runs)
   return document.dump(2) + "\n";
 }
 
-std::string page_of(const Request& request, const std::vector<TappingRun>& runs, const report::Table& table,
-                    std::string_view configuration) {
+std::string page_of(const Request& request, const report::Table& table,
+                    const std::vector<report::Figure>& figures, std::string_view configuration) {
   report::Page page(request.name + ": " + std::string(title));
   page.paragraph(
       "A person reaches through the teleoperator onto a wall and presses. The force measured at the slave's tip, times "
@@ -74,7 +74,7 @@ std::string page_of(const Request& request, const std::vector<TappingRun>& runs,
        {"residual", "RMS of the contact force above 15 Hz over the last 100 ms, median."},
        {"verdict", "settled: at least 95 % of the taps settled, the median within 100 ms. limit-cycle: fewer than half "
                    "settled. diverged: a safety gate latched or a device left its workspace. ringing: all else."}});
-  for (const report::Figure& figure : tapping_figures(runs)) page.figure(figure);
+  for (const report::Figure& figure : figures) page.figure(figure);
   add_provenance(page, request, configuration);
   return page.to_html();
 }
@@ -122,7 +122,11 @@ Result<Outcome> TappingExperiment::run(const Request& request, const Progress& p
   }
 
   const report::Table table = table_of(runs);
-  return Outcome{.text = table.to_text(), .json = json_of(request, runs), .html = page_of(request, runs, table, cases->first_configuration)};
+  std::vector<report::Figure> figures = tapping_figures(runs);
+  return Outcome{.text = table.to_text(),
+                 .json = json_of(request, runs),
+                 .html = page_of(request, table, figures, cases->first_configuration),
+                 .figures = std::move(figures)};
 }
 
 }  // namespace tactus::simulation

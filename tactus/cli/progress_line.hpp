@@ -1,0 +1,29 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace tactus::cli {
+
+/// One line on standard error that says how far a long job is and how long it will still take. Shows nothing where
+/// standard error is not a terminal, and removes itself when it goes.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::string title);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// `done` is the share of the work, from 0 to 1. Cheap to call often: the line changes five times a second at most.
+  void update(double done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string title_;
+  bool shown_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point next_ = start_;
+};
+
+}  // namespace tactus::cli

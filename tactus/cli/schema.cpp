@@ -1,0 +1,39 @@
+#include <tactus/cli/verbs.hpp>
+#include <tactus/simulation/experiment.hpp>
+
+#include <iostream>
+#include <memory>
+#include <string>
+
+namespace tactus::cli {
+
+namespace {
+
+struct SchemaOptions {
+  std::string kind = "tapping";
+  bool reference = false;
+};
+
+}  // namespace
+
+void add_schema(CLI::App& app, int& status) {
+  auto options = std::make_shared<SchemaOptions>();
+  CLI::App* verb = app.add_subcommand("schema", "Print what an experiment file may say, as JSON Schema");
+  std::string kinds;
+  for (const auto* experiment : simulation::experiments()) {
+    kinds += (kinds.empty() ? "" : ", ") + std::string(experiment->kind());
+  }
+  verb->add_option("KIND", options->kind, "Kind of experiment: " + kinds)->capture_default_str();
+  verb->add_flag("--reference", options->reference, "Print the reference page in Markdown instead");
+  verb->callback([options, kinds, &status] {
+    for (const auto* experiment : simulation::experiments()) {
+      if (experiment->kind() != options->kind) continue;
+      std::cout << (options->reference ? experiment->reference() : experiment->schema());
+      return;
+    }
+    std::cerr << "tactus: schema: '" << options->kind << "' is no kind of experiment: write one of " << kinds << "\n";
+    status = 2;
+  });
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+/// The verbs of the `tactus` command. Each adds its subcommand to `app`; when chosen, it does its work and leaves its
+/// exit status (0 done, 1 the job failed, 2 the request was wrong) in `status`.
+namespace tactus::cli {
+
+/// `command` is the whole command line as a person would type it again, for the report.
+void add_run(CLI::App& app, const std::string& command, int& status);
+void add_schema(CLI::App& app, int& status);
+
+}  // namespace tactus::cli
