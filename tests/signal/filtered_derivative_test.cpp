@@ -1,0 +1,70 @@
+#include <tactus/signal/filtered_derivative.hpp>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/signal/frequency_response.hpp"
+#include <gtest/gtest.h>
+
+namespace tactus::signal {
+namespace {
+
+static_assert(Element<FilteredDerivative>);
+
+constexpr double dt_s = 200e-6;
+
+FilteredDerivative derivative(double cutoff_Hz) {
+  return FilteredDerivative::make({.cutoff_Hz = cutoff_Hz}, Seconds{dt_s}).value();
+}
+
+/// The first sample only initialises, so the impulse must not be the first sample.
+struct Started {
+  explicit Started(double cutoff_Hz) : element(derivative(cutoff_Hz)) {}
+  void reset() {
+    element.reset();
+    element.step(0.0);
+  }
+  double step(double position) { return element.step(position); }
+  FilteredDerivative element;
+};
+
+TEST(FilteredDerivative, IsThreeDecibelsBelowTheIdealDifferentiatorExactlyAtItsCutoff) {
+  for (const double cutoff_Hz : {5.0, 30.0, 300.0, 1000.0, 2000.0, 2190.0}) {
+    const double ideal_per_s = 2.0 * std::numbers::pi * cutoff_Hz;
+    EXPECT_NEAR(std::abs(measured_response(Started(cutoff_Hz), cutoff_Hz, dt_s)) / ideal_per_s,
+                std::numbers::sqrt2 / 2.0, 1e-9)
+        << cutoff_Hz;
+  }
+}
+
+TEST(FilteredDerivative, DifferentiatesSlowMotionLikeTheIdeal) {
+  const auto response = measured_response(Started(300.0), 1.0, dt_s);
+  EXPECT_NEAR(std::abs(response) / (2.0 * std::numbers::pi), 1.0, 1e-4);
+  EXPECT_NEAR(std::arg(response), std::numbers::pi / 2.0, 0.01);
+}
+
+TEST(FilteredDerivative, GivesTheExactSlopeOfARamp) {
+  auto element = derivative(300.0);
+  double velocity = 0.0;
+  for (int n = 0; n < 500; ++n) velocity = element.step(3.0 + 0.15 * dt_s * n);
+  EXPECT_NEAR(velocity, 0.15, 1e-10);
+}
+
+TEST(FilteredDerivative, StartsWithoutAKickFarFromZeroAndAgainAfterAReset) {
+  auto element = derivative(300.0);
+  EXPECT_EQ(element.step(12.5), 0.0);
+  EXPECT_EQ(element.step(12.5), 0.0);
+  EXPECT_GT(element.step(12.6), 0.0);
+  element.reset();
+  EXPECT_EQ(element.step(-4.0), 0.0);
+}
+
+TEST(FilteredDerivative, ACutoffThatABackwardDifferenceCannotReachIsRefused) {
+  const auto refused = FilteredDerivative::make({.cutoff_Hz = 2200.0}, Seconds{dt_s});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(describe(refused.error()),
+            "cutoff_Hz: 2200 Hz must lie below 2200 Hz, 0.44 of the sample rate: lower the cutoff or sample faster");
+}
+
+}  // namespace
+}  // namespace tactus::signal
