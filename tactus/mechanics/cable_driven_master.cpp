@@ -3,6 +3,7 @@
 namespace tactus::mechanics {
 
 Result<CableDrivenMaster> CableDrivenMaster::make(const Params& params, const LinearSpring::Params& grip, Seconds dt) {
+  if (auto error = signal::check(params, dt)) return *std::move(error);
   const auto mechanism = CableChain::make(params.mechanism, grip, dt);
   if (!mechanism) return under("mechanism", mechanism.error());
   const auto amplifier = CurrentAmplifier::make(params.amplifier, dt);

@@ -5,6 +5,7 @@
 namespace tactus::mechanics {
 
 Result<ElectricSlave> ElectricSlave::make(const Params& params, const Environment::Params& environment, Seconds dt) {
+  if (auto error = signal::check(params, dt)) return *std::move(error);
   const auto mechanism = CableChain::make(params.mechanism, dt);
   if (!mechanism) return under("mechanism", mechanism.error());
   const auto amplifier = CurrentAmplifier::make(params.amplifier, dt);
