@@ -1,6 +1,9 @@
 #include <tactus/mechanics/cable_chain.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
 
 namespace tactus::mechanics {
 
@@ -11,7 +14,45 @@ Result<CableChain> CableChain::make(const Params& params, const LinearSpring::Pa
   if (auto error = validate(grip)) return under("grip", *std::move(error));
   const auto linkage = ElastoSlipSpring::make(params.linkage, dt);
   if (!linkage) return under("linkage", linkage.error());
+  if (auto error = check_step(params, grip.stiffness_N_per_m, "grip.stiffness_N_per_m", dt)) return *std::move(error);
   return CableChain(params, grip, dt, *linkage);
+}
+
+Check CableChain::check_step(const Params& params, double tip_stiffness_N_per_m, std::string_view tip_parameter,
+                             Seconds dt) {
+  const auto spring = ElastoSlipSpring::make(params.linkage, dt);
+  if (!spring) return under("linkage", spring.error());
+  const double cable = params.cable.stiffness_N_per_m;
+  const double linkage = spring->initial_stiffness_N_per_m();
+  const double motor_kg = params.motor.mass_kg;
+  const double drum_kg = params.drum.mass_kg;
+  const double tip_kg = params.tip.mass_kg;
+
+  // The pivots of 4/h² M − K, tridiagonal, are all positive exactly when it is positive definite.
+  const double inertia = 4.0 / (dt.value * dt.value);
+  const double motor = inertia * motor_kg - cable;
+  const double drum = inertia * drum_kg - cable - linkage - cable * cable / motor;
+  const double tip = inertia * tip_kg - linkage - tip_stiffness_N_per_m - linkage * linkage / drum;
+  if (motor > 0.0 && drum > 0.0 && tip > 0.0) return {};
+
+  struct Connector {
+    double stiffness_N_per_m, squared_frequency;
+    std::string_view parameter;
+  };
+  const Connector connectors[] = {
+      {cable, cable / motor_kg + cable / drum_kg, "cable.stiffness_N_per_m"},
+      {linkage, linkage / drum_kg + linkage / tip_kg, "linkage.stiffness_N_per_m"},
+      {tip_stiffness_N_per_m, tip_stiffness_N_per_m / tip_kg, tip_parameter},
+  };
+  const Connector& stiffest = *std::max_element(
+      std::begin(connectors), std::end(connectors),
+      [](const Connector& a, const Connector& b) { return a.squared_frequency < b.squared_frequency; });
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = std::string(stiffest.parameter),
+               .message = "makes the mechanism as stiff as " + format_number(std::round(stiffest.stiffness_N_per_m)) +
+                          " N/m here, which steps of " + format_number(dt.value * 1e6) +
+                          " us cannot follow: step finer, or less stiffness or damping, or more mass",
+               .place = {}};
 }
 
 CableChain::CableChain(const Params& params, const LinearSpring::Params& grip, Seconds dt,

@@ -6,6 +6,7 @@
 #include <tactus/mechanics/springs.hpp>
 
 #include <array>
+#include <string_view>
 
 namespace tactus::mechanics {
 
@@ -72,6 +73,11 @@ class CableChain {
   static Result<CableChain> make(const Params& params, Seconds dt);
   /// The same, held at the tip through `grip`.
   static Result<CableChain> make(const Params& params, const LinearSpring::Params& grip, Seconds dt);
+
+  /// An error unless steps of `dt` are stable with the tip held by `tip_stiffness_N_per_m`. It names the stiffest
+  /// connector, `tip_parameter` where that is the tip's. For `params` and `dt` within their bounds.
+  static Check check_step(const Params& params, double tip_stiffness_N_per_m, std::string_view tip_parameter,
+                          Seconds dt);
 
   /// Advances by the step that `make` was given. Real-time safe.
   Output step(const Input& input) noexcept;
