@@ -1,6 +1,9 @@
 #include <tactus/mechanics/cable_chain.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
 
 namespace tactus::mechanics {
 
@@ -11,7 +14,45 @@ Result<CableChain> CableChain::make(const Params& params, const LinearSpring::Pa
   if (auto error = validate(grip)) return under("grip", *std::move(error));
   const auto linkage = ElastoSlipSpring::make(params.linkage, dt);
   if (!linkage) return under("linkage", linkage.error());
+  if (auto error = check_step(params, grip.stiffness_N_per_m, "grip.stiffness_N_per_m", dt)) return *std::move(error);
   return CableChain(params, grip, dt, *linkage);
+}
+
+Check CableChain::check_step(const Params& params, double tip_stiffness_N_per_m, std::string_view tip_parameter,
+                             Seconds dt) {
+  const auto spring = ElastoSlipSpring::make(params.linkage, dt);
+  if (!spring) return under("linkage", spring.error());
+  const double cable = params.cable.stiffness_N_per_m;
+  const double linkage = spring->initial_stiffness_N_per_m();
+  const double motor_kg = params.motor.mass_kg;
+  const double drum_kg = params.drum.mass_kg;
+  const double tip_kg = params.tip.mass_kg;
+
+  // The pivots of 4/h² M − K, tridiagonal, are all positive exactly when it is positive definite.
+  const double inertia = 4.0 / (dt.value * dt.value);
+  const double motor = inertia * motor_kg - cable;
+  const double drum = inertia * drum_kg - cable - linkage - cable * cable / motor;
+  const double tip = inertia * tip_kg - linkage - tip_stiffness_N_per_m - linkage * linkage / drum;
+  if (motor > 0.0 && drum > 0.0 && tip > 0.0) return {};
+
+  struct Connector {
+    double stiffness_N_per_m, squared_frequency;
+    std::string_view parameter;
+  };
+  const Connector connectors[] = {
+      {cable, cable / motor_kg + cable / drum_kg, "cable.stiffness_N_per_m"},
+      {linkage, linkage / drum_kg + linkage / tip_kg, "linkage.stiffness_N_per_m"},
+      {tip_stiffness_N_per_m, tip_stiffness_N_per_m / tip_kg, tip_parameter},
+  };
+  const Connector& stiffest = *std::max_element(
+      std::begin(connectors), std::end(connectors),
+      [](const Connector& a, const Connector& b) { return a.squared_frequency < b.squared_frequency; });
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = std::string(stiffest.parameter),
+               .message = "makes the mechanism as stiff as " + format_number(std::round(stiffest.stiffness_N_per_m)) +
+                          " N/m here, which steps of " + format_number(dt.value * 1e6) +
+                          " us cannot follow: step finer, or less stiffness or damping, or more mass",
+               .place = {}};
 }
 
 CableChain::CableChain(const Params& params, const LinearSpring::Params& grip, Seconds dt,
@@ -19,6 +60,7 @@ CableChain::CableChain(const Params& params, const LinearSpring::Params& grip, S
     : mass_kg_{params.motor.mass_kg, params.drum.mass_kg, params.tip.mass_kg},
       friction_N_{params.motor.friction_N, params.drum.friction_N},
       cable_(params.cable),
+      linkage_damping_N_s_per_m_(params.linkage.damping_N_s_per_m),
       grip_(grip),
       dt_s_(dt.value),
       step_inverse_(invert(dt.value)),
@@ -26,17 +68,27 @@ CableChain::CableChain(const Params& params, const LinearSpring::Params& grip, S
 
 CableChain::Inverse CableChain::invert(double duration_s) const noexcept {
   const double half = 0.5 * duration_s;
-  // M + h/2 B: the cable couples motor and drum; the tip stands alone because the linkage's damping is explicit.
-  const double a = mass_kg_[0] + half * cable_.damping_N_s_per_m;
-  const double b = -half * cable_.damping_N_s_per_m;
-  const double c = mass_kg_[1] + half * cable_.damping_N_s_per_m;
-  const double determinant = a * c - b * b;
-  return {.i00 = c / determinant,
-          .i01 = -b / determinant,
-          .i11 = a / determinant,
-          .i22 = 1.0 / (mass_kg_[2] + half * grip_.damping_N_s_per_m),
-          .effective_mass0 = determinant / c,
-          .effective_mass1 = determinant / a};
+  const double cable = half * cable_.damping_N_s_per_m;
+  const double linkage = half * linkage_damping_N_s_per_m_;
+  const double motor = mass_kg_[0] + cable;
+  const double drum = mass_kg_[1] + cable + linkage;
+  const double tip = mass_kg_[2] + linkage + half * grip_.damping_N_s_per_m;
+  const double determinant = motor * (drum * tip - linkage * linkage) - cable * cable * tip;
+  const double i00 = (drum * tip - linkage * linkage) / determinant;
+  const double i01 = cable * tip / determinant;
+  const double i02 = cable * linkage / determinant;
+  const double i11 = motor * tip / determinant;
+  const double i12 = motor * linkage / determinant;
+  return {.i00 = i00,
+          .i01 = i01,
+          .i02 = i02,
+          .i11 = i11,
+          .i12 = i12,
+          .i22 = (motor * drum - cable * cable) / determinant,
+          .motor_from_drum = i01 / i00,
+          .motor_from_tip = i02 / i00,
+          .drum_from_motor = i01 / i11,
+          .drum_from_tip = i12 / i11};
 }
 
 CableChain::Output CableChain::step(const Input& input) noexcept {
@@ -55,28 +107,32 @@ void CableChain::advance(const Input& input, double h, const Inverse& inverse) n
   for (std::size_t i = 0; i < 3; ++i) x[i] += half * v[i];
 
   const double cable_force = cable_.stiffness_N_per_m * (x[0] - x[1]);
-  const double linkage_force = state_.linkage.step({.deflection_m = x[1] - x[2], .rate_m_per_s = v[1] - v[2]});
+  const double linkage_force = state_.linkage.step({.deflection_m = x[1] - x[2]});
   const double grip_force =
       grip_.stiffness_N_per_m * (input.grip_position_m - x[2]) + grip_.damping_N_s_per_m * input.grip_velocity_m_per_s;
 
   const double cable_damping = half * cable_.damping_N_s_per_m * (v[0] - v[1]);
+  const double linkage_damping = half * linkage_damping_N_s_per_m_ * (v[1] - v[2]);
+  const double grip_damping = half * grip_.damping_N_s_per_m * v[2];
   const double p0 = mass_kg_[0] * v[0] - cable_damping + h * (input.motor_force_N - cable_force);
-  const double p1 = mass_kg_[1] * v[1] + cable_damping + h * (cable_force - linkage_force);
+  const double p1 = mass_kg_[1] * v[1] + cable_damping - linkage_damping + h * (cable_force - linkage_force);
   const double p2 =
-      (mass_kg_[2] - half * grip_.damping_N_s_per_m) * v[2] + h * (linkage_force + grip_force + input.tip_force_N);
+      mass_kg_[2] * v[2] + linkage_damping - grip_damping + h * (linkage_force + grip_force + input.tip_force_N);
 
-  const double v0_free = inverse.i00 * p0 + inverse.i01 * p1;
-  const double v1_free = inverse.i01 * p0 + inverse.i11 * p1;
+  // What is left of p once friction has done what it can. Written in momenta and not in velocities, because a resting
+  // mass then keeps exactly none.
   const double limit0 = h * friction_N_[0];
   const double limit1 = h * friction_N_[1];
-  double impulse0 = std::clamp(-inverse.effective_mass0 * v0_free, -limit0, limit0);
-  double impulse1 = std::clamp(-inverse.effective_mass1 * (v1_free + inverse.i01 * impulse0), -limit1, limit1);
-  impulse0 = std::clamp(-inverse.effective_mass0 * (v0_free + inverse.i01 * impulse1), -limit0, limit0);
-  impulse1 = std::clamp(-inverse.effective_mass1 * (v1_free + inverse.i01 * impulse0), -limit1, limit1);
+  const double on_motor = p0 + inverse.motor_from_tip * p2;
+  const double on_drum = p1 + inverse.drum_from_tip * p2;
+  double q0 = p0 - std::clamp(on_motor + inverse.motor_from_drum * p1, -limit0, limit0);
+  double q1 = p1 - std::clamp(on_drum + inverse.drum_from_motor * q0, -limit1, limit1);
+  q0 = p0 - std::clamp(on_motor + inverse.motor_from_drum * q1, -limit0, limit0);
+  q1 = p1 - std::clamp(on_drum + inverse.drum_from_motor * q0, -limit1, limit1);
 
-  v[0] = v0_free + inverse.i00 * impulse0 + inverse.i01 * impulse1;
-  v[1] = v1_free + inverse.i01 * impulse0 + inverse.i11 * impulse1;
-  v[2] = inverse.i22 * p2;
+  v[0] = inverse.i00 * q0 + inverse.i01 * q1 + inverse.i02 * p2;
+  v[1] = inverse.i01 * q0 + inverse.i11 * q1 + inverse.i12 * p2;
+  v[2] = inverse.i02 * q0 + inverse.i12 * q1 + inverse.i22 * p2;
   for (std::size_t i = 0; i < 3; ++i) x[i] += half * v[i];
 }
 

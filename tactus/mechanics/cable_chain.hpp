@@ -6,6 +6,7 @@
 #include <tactus/mechanics/springs.hpp>
 
 #include <array>
+#include <string_view>
 
 namespace tactus::mechanics {
 
@@ -27,8 +28,9 @@ inline constexpr LinearSpring::Params nobody_holds{.stiffness_N_per_m = 0.0, .da
 /// the worst case costs what the usual case costs. The two impulses are coupled only through the damping matrix
 /// (by about h b / 2m, below 1 % here), so two sweeps leave an error below 1e-9 of the impulse.
 ///
-/// Stable for h well below 2/ω of the stiffest mode (the cable: 480 Hz, h < 0.6 ms); accurate to 0.1 % in frequency
-/// for h ≤ 50 µs. Sources: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, I.1 (Verlet); Moreau 1988
+/// Stable as long as 4/h² M − K is positive definite, that is h < 2/ω of the stiffest mode (the cable: 480 Hz,
+/// h < 0.6 ms), whatever the damping; `make` refuses a longer step. Accurate to 0.1 % in frequency for h ≤ 50 µs.
+/// Sources: Hairer, Lubich, Wanner, *Geometric Numerical Integration*, I.1 (Verlet); Moreau 1988
 /// (unilateral contact and dry friction in finite freedom dynamics).
 class CableChain {
  public:
@@ -66,10 +68,16 @@ class CableChain {
     ElastoSlipSpring linkage;
   };
 
-  /// A chain at rest at the origin that nobody holds.
+  /// A chain at rest at the origin that nobody holds. Fails where a value is out of bounds or where the step is too
+  /// long for the stiffness.
   static Result<CableChain> make(const Params& params, Seconds dt);
   /// The same, held at the tip through `grip`.
   static Result<CableChain> make(const Params& params, const LinearSpring::Params& grip, Seconds dt);
+
+  /// An error unless steps of `dt` are stable with the tip held by `tip_stiffness_N_per_m`. It names the stiffest
+  /// connector, `tip_parameter` where that is the tip's. For `params` and `dt` within their bounds.
+  static Check check_step(const Params& params, double tip_stiffness_N_per_m, std::string_view tip_parameter,
+                          Seconds dt);
 
   /// Advances by the step that `make` was given. Real-time safe.
   Output step(const Input& input) noexcept;
@@ -87,11 +95,11 @@ class CableChain {
   [[nodiscard]] double tip_velocity_m_per_s() const noexcept { return state_.velocity_m_per_s[2]; }
 
  private:
-  /// The inverse of M + h/2 B for one step length (the cable couples motor and drum, the tip stands alone), and the
-  /// masses that friction has to stop, 1/i00 and 1/i11.
+  /// The inverse of M + h/2 B for one step length, and how much of the others' momentum friction has to stop with that
+  /// of a rubbing mass to hold it: rows divided by their diagonal.
   struct Inverse {
-    double i00, i01, i11, i22;
-    double effective_mass0, effective_mass1;
+    double i00, i01, i02, i11, i12, i22;
+    double motor_from_drum, motor_from_tip, drum_from_motor, drum_from_tip;
   };
 
   [[nodiscard]] Inverse invert(double duration_s) const noexcept;
@@ -102,6 +110,7 @@ class CableChain {
   std::array<double, 3> mass_kg_;
   std::array<double, 2> friction_N_;
   LinearSpring::Params cable_;
+  double linkage_damping_N_s_per_m_;
   LinearSpring::Params grip_;
   double dt_s_;
   Inverse step_inverse_;

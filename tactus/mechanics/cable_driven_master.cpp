@@ -3,8 +3,14 @@
 namespace tactus::mechanics {
 
 Result<CableDrivenMaster> CableDrivenMaster::make(const Params& params, const LinearSpring::Params& grip, Seconds dt) {
+  if (auto error = signal::check(params, dt)) return *std::move(error);
+  if (auto error = validate(grip)) return under("grip", *std::move(error));
   const auto mechanism = CableChain::make(params.mechanism, grip, dt);
-  if (!mechanism) return under("mechanism", mechanism.error());
+  if (!mechanism) {
+    // The hand is no part of the mechanism.
+    if (mechanism.error().parameter.starts_with("grip.")) return mechanism.error();
+    return under("mechanism", mechanism.error());
+  }
   const auto amplifier = CurrentAmplifier::make(params.amplifier, dt);
   if (!amplifier) return under("amplifier", amplifier.error());
   const auto encoder = Encoder::make(params.encoder, dt);

@@ -46,7 +46,8 @@ class ElectricSlave {
     double tip_force_N = 0.0;
   };
 
-  /// A slave before a wall.
+  /// A slave before a wall. Fails where a value is out of bounds, and where the wall or the mechanism is too stiff, or
+  /// the wall too viscous, for the step.
   static Result<ElectricSlave> make(const Params& params, const Environment::Params& environment, Seconds dt);
   /// A slave before the default wall.
   static Result<ElectricSlave> make(const Params& params, Seconds dt) { return make(params, {}, dt); }
