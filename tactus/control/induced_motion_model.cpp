@@ -41,9 +41,9 @@ LinearPart linear_part(const MasterModel& master) {
   return part;
 }
 
-std::size_t euler_substeps(Seconds dt) {
+int euler_substeps(Seconds dt) {
   constexpr double round_off = 1e-9;
-  return static_cast<std::size_t>(std::max(1.0, std::ceil(dt.value / InducedMotionModel::euler_substep_s - round_off)));
+  return static_cast<int>(std::max(1.0, std::ceil(dt.value / InducedMotionModel::euler_substep_s - round_off)));
 }
 
 }  // namespace
@@ -52,7 +52,7 @@ Result<InducedMotionModel> InducedMotionModel::make(const Params& params, Second
   if (auto error = signal::check(params, dt)) return *std::move(error);
   if (dt.value > 0.01) return out_of_bounds("dt", dt.value, positive_up_to(0.01), units::second);
   if (params.step == CancellationStep::euler) {
-    const double substep = dt.value / static_cast<double>(euler_substeps(dt));
+    const double substep = dt.value / euler_substeps(dt);
     const Matrix6 growth = Matrix6::Identity() + substep * linear_part(params.master).a;
     const double radius = growth.eigenvalues().cwiseAbs().maxCoeff();
     constexpr double round_off = 1e-9;
@@ -65,21 +65,25 @@ Result<InducedMotionModel> InducedMotionModel::make(const Params& params, Second
                    .place = {}};
     }
   }
-  mechanics::QuinticSpring::Params quintic_alone = params.master.hand;
-  quintic_alone.stiffness_N_per_m = 0.0;
-  quintic_alone.damping_N_s_per_m = 0.0;
-  const auto quintic = mechanics::QuinticSpring::make(quintic_alone, dt);
-  if (!quintic) return under("master.hand", quintic.error());
-  return InducedMotionModel(params, *quintic, dt);
+  return InducedMotionModel(params, dt);
 }
 
-InducedMotionModel::InducedMotionModel(const Params& params, const mechanics::QuinticSpring& quintic, Seconds dt)
-    : params_(params), quintic_(quintic), dt_s_(dt.value), euler_substeps_(euler_substeps(dt)) {
+InducedMotionModel::InducedMotionModel(const Params& params, Seconds dt)
+    : params_(params),
+      dt_s_(dt.value),
+      euler_substeps_(euler_substeps(dt)),
+      euler_substep_s_(dt.value / euler_substeps_),
+      euler_response_{euler_substep_s_ / params.master.motor.mass_kg, euler_substep_s_ / params.master.drum.mass_kg,
+                      euler_substep_s_ / params.master.handle.mass_kg} {
+  precompute_exact_step();
+}
+
+void InducedMotionModel::precompute_exact_step() {
   // exp of the augmented matrix [A B; 0 0]·dt holds Φ and Γ side by side (Van Loan 1978).
-  const LinearPart part = linear_part(params.master);
+  const LinearPart part = linear_part(params_.master);
   Eigen::Matrix<double, 9, 9> augmented = Eigen::Matrix<double, 9, 9>::Zero();
-  augmented.topLeftCorner<6, 6>() = part.a * dt.value;
-  augmented.topRightCorner<6, 3>() = part.b * dt.value;
+  augmented.topLeftCorner<6, 6>() = part.a * dt_s_;
+  augmented.topRightCorner<6, 3>() = part.b * dt_s_;
   const Eigen::Matrix<double, 9, 9> exponential = augmented.exp();
   for (std::size_t row = 0; row < 6; ++row) {
     const auto r = static_cast<Eigen::Index>(row);
@@ -90,6 +94,20 @@ InducedMotionModel::InducedMotionModel(const Params& params, const mechanics::Qu
       response_[column][row] = exponential(r, static_cast<Eigen::Index>(column + 6));
     }
   }
+
+  constexpr std::size_t motor_velocity = 3, drum_velocity = 4, stops_motor = 6, stops_drum = 7;
+  const double on_motor = response_[0][motor_velocity], on_drum = response_[1][drum_velocity];
+  const auto add_stopping_forces = [&](Column& column) {
+    column[stops_motor] = -column[motor_velocity] / on_motor;
+    column[stops_drum] = -column[drum_velocity] / on_drum;
+  };
+  for (Column& column : transition_) add_stopping_forces(column);
+  for (Column& column : response_) add_stopping_forces(column);
+  offset_response_[stops_motor] = -1.0 / on_motor;
+  offset_response_[stops_drum] = -1.0 / on_drum;
+  motor_per_drum_ = response_[1][motor_velocity] / on_motor;
+  drum_per_motor_ = response_[0][drum_velocity] / on_drum;
+  both_stopped_ = 1.0 / (1.0 - motor_per_drum_ * drum_per_motor_);
 }
 
 InducedMotionModel::FrictionRange InducedMotionModel::friction_range(double intended_velocity) const noexcept {
@@ -109,61 +127,80 @@ InducedMotionModel::Output InducedMotionModel::step(const Input& input) noexcept
   return state_[0];
 }
 
+double InducedMotionModel::quintic_force_N(double handle_position_m) const noexcept {
+  const mechanics::QuinticSpring::Params& hand = params_.master.hand;
+  const double guarded_m = std::clamp(handle_position_m, -hand.guard_m, hand.guard_m);
+  const double squared = guarded_m * guarded_m;
+  return (squared * squared) * (hand.quintic_stiffness_N_per_m5 * guarded_m);
+}
+
 void InducedMotionModel::step_euler(double motor_force_N, const FrictionRange& range) noexcept {
   const MasterModel& m = params_.master;
-  const double h = dt_s_ / static_cast<double>(euler_substeps_);
-  const auto rub = [&](double free_velocity, const mechanics::RubbingMass& body) {
-    const double most = h * body.friction_N / body.mass_kg;
+  const double h = euler_substep_s_;
+  const auto rub = [&range](double free_velocity, double most) {
     return free_velocity +
            std::clamp(-(free_velocity + range.offset_m_per_s), most * range.least_share, most * range.most_share);
   };
-  auto& [x_motor, x_drum, x_handle, v_motor, v_drum, v_handle] = state_;
-  for (std::size_t i = 0; i < euler_substeps_; ++i) {
+  auto [x_motor, x_drum, x_handle, v_motor, v_drum, v_handle] = state_;
+  for (int i = 0; i < euler_substeps_; ++i) {
     const double cable =
         m.cable.stiffness_N_per_m * (x_motor - x_drum) + m.cable.damping_N_s_per_m * (v_motor - v_drum);
     const double linkage =
         m.linkage.stiffness_N_per_m * (x_drum - x_handle) + m.linkage.damping_N_s_per_m * (v_drum - v_handle);
-    const double hand = quintic_.step({.deflection_m = x_handle}) + m.hand.stiffness_N_per_m * x_handle +
-                        m.hand.damping_N_s_per_m * v_handle;
+    const double hand =
+        quintic_force_N(x_handle) + m.hand.stiffness_N_per_m * x_handle + m.hand.damping_N_s_per_m * v_handle;
     x_motor += h * v_motor;
     x_drum += h * v_drum;
     x_handle += h * v_handle;
-    v_motor = rub(v_motor + h / m.motor.mass_kg * (motor_force_N - cable), m.motor);
-    v_drum = rub(v_drum + h / m.drum.mass_kg * (cable - linkage), m.drum);
-    v_handle += h / m.handle.mass_kg * (linkage - hand);
+    v_motor = rub(v_motor + euler_response_[0] * (motor_force_N - cable), euler_response_[0] * m.motor.friction_N);
+    v_drum = rub(v_drum + euler_response_[1] * (cable - linkage), euler_response_[1] * m.drum.friction_N);
+    v_handle += euler_response_[2] * (linkage - hand);
   }
+  state_ = {x_motor, x_drum, x_handle, v_motor, v_drum, v_handle};
+}
+
+// Each force f is the clamp, to what friction can give, of what stops its mass while the other force acts. Put one into
+// the other: what stops the motor is a line in the motor's own force, of a slope below one, clamped because the drum's
+// force is. The fixed point of a clamped line is the fixed point of the line, which stops both masses, clamped alike.
+InducedMotionModel::FrictionForces InducedMotionModel::friction_forces(double stops_motor_N, double stops_drum_N,
+                                                                       const FrictionRange& range) const noexcept {
+  struct Bounds {
+    double least_N, most_N;
+  };
+  const auto friction_bounds = [&range](const mechanics::RubbingMass& body) {
+    return Bounds{body.friction_N * range.least_share, body.friction_N * range.most_share};
+  };
+  const auto force = [](double stops_both_N, double stops_alone_N, double per_other, const Bounds& own,
+                        const Bounds& other) {
+    const double a = per_other * other.least_N, b = per_other * other.most_N;
+    const double coupled = std::clamp(stops_both_N, stops_alone_N - std::max(a, b), stops_alone_N - std::min(a, b));
+    return std::clamp(coupled, own.least_N, own.most_N);
+  };
+  const Bounds motor = friction_bounds(params_.master.motor), drum = friction_bounds(params_.master.drum);
+  const double motor_of_both_N = both_stopped_ * stops_motor_N - (both_stopped_ * motor_per_drum_) * stops_drum_N;
+  const double drum_of_both_N = both_stopped_ * stops_drum_N - (both_stopped_ * drum_per_motor_) * stops_motor_N;
+  return {.motor_N = force(motor_of_both_N, stops_motor_N, motor_per_drum_, motor, drum),
+          .drum_N = force(drum_of_both_N, stops_drum_N, drum_per_motor_, drum, motor)};
 }
 
 void InducedMotionModel::step_exact(double motor_force_N, const FrictionRange& range) noexcept {
-  constexpr std::size_t motor_velocity = 3, drum_velocity = 4, lanes = 8;
   // The quintic force where the handle will be in the middle of the tick: half a tick of lag would cost an order.
-  const double quintic = quintic_.step({.deflection_m = state_[2] + 0.5 * dt_s_ * state_[5]});
+  const double quintic_N = quintic_force_N(state_[2] + 0.5 * dt_s_ * state_[5]);
 
-  Column next{};
-  for (std::size_t column = 0; column < 6; ++column) {
-    for (std::size_t row = 0; row < lanes; ++row) next[row] += transition_[column][row] * state_[column];
+  // The sum stands in the order in which its terms become known, so that few of them are waited for.
+  Column next;
+  for (std::size_t row = 0; row < next.size(); ++row) {
+    const double driven = response_[0][row] * motor_force_N + offset_response_[row] * range.offset_m_per_s;
+    const double positions =
+        transition_[0][row] * state_[0] + transition_[1][row] * state_[1] + transition_[2][row] * state_[2];
+    const double velocities =
+        transition_[3][row] * state_[3] + transition_[4][row] * state_[4] + transition_[5][row] * state_[5];
+    next[row] = (driven + (positions + velocities)) - response_[2][row] * quintic_N;
   }
-  const auto add = [&next](const Column& response, double force) {
-    for (std::size_t row = 0; row < lanes; ++row) next[row] += response[row] * force;
-  };
-  add(response_[0], motor_force_N);
-  add(response_[2], -quintic);
-
-  const Column& on_motor = response_[0];
-  const Column& on_drum = response_[1];
-  const auto friction = [&](double end_velocity, double response, double most_N) {
-    return std::clamp(-(end_velocity + range.offset_m_per_s) / response, most_N * range.least_share,
-                      most_N * range.most_share);
-  };
-  const double motor_most = params_.master.motor.friction_N;
-  const double drum_most = params_.master.drum.friction_N;
-  double motor = friction(next[motor_velocity], on_motor[motor_velocity], motor_most);
-  double drum = friction(next[drum_velocity] + on_motor[drum_velocity] * motor, on_drum[drum_velocity], drum_most);
-  motor = friction(next[motor_velocity] + on_drum[motor_velocity] * drum, on_motor[motor_velocity], motor_most);
-  drum = friction(next[drum_velocity] + on_motor[drum_velocity] * motor, on_drum[drum_velocity], drum_most);
-  add(on_motor, motor);
-  add(on_drum, drum);
-  std::copy_n(next.begin(), state_.size(), state_.begin());
+  const FrictionForces friction = friction_forces(next[6], next[7], range);
+  for (std::size_t row = 0; row < state_.size(); ++row) {
+    state_[row] = next[row] + (response_[0][row] * friction.motor_N + response_[1][row] * friction.drum_N);
+  }
 }
 
 }  // namespace tactus::control

@@ -6,7 +6,6 @@
 #include <tactus/mechanics/springs.hpp>
 
 #include <array>
-#include <cstddef>
 
 namespace tactus::control {
 
@@ -66,8 +65,8 @@ struct MasterModel {
 /// and friction sticks exactly as at rest; with w = 0 the two kinds are the same.
 ///
 /// The exact step: x⁺ = Φ x + Γ u with Φ = exp(A·dt), Γ its integral, and u the motor force, the frictions and the
-/// quintic force, held over the tick. Frictions are found at the end velocity by two fixed sweeps over the two rubbing
-/// masses; nothing iterates to a tolerance.
+/// quintic force, held over the tick. Frictions are found at the end velocity, for both rubbing masses at once and
+/// exactly (`friction_forces`); nothing iterates.
 ///
 /// Forces and motion are positive toward the environment, so a displayed force F_f enters as −F_f.
 class InducedMotionModel {
@@ -114,27 +113,40 @@ class InducedMotionModel {
   void set_state(const State& state) noexcept { state_ = state; }
 
  private:
-  /// Eight instead of six, so that a column is one or two whole vector registers.
-  struct alignas(64) Column : std::array<double, 8> {};
+  /// The state, then the forces that would bring motor and drum to rest at the end of the tick, each on its own.
+  /// Eight make whole vector registers.
+  using Column = std::array<double, 8>;
 
   /// What friction can still change, as bounds on its force, and the velocity offset that it acts against.
   struct FrictionRange {
     double least_share, most_share;
     double offset_m_per_s;
   };
+  struct FrictionForces {
+    double motor_N, drum_N;
+  };
 
-  InducedMotionModel(const Params& params, const mechanics::QuinticSpring& quintic, Seconds dt);
+  InducedMotionModel(const Params& params, Seconds dt);
+  void precompute_exact_step();
 
   [[nodiscard]] FrictionRange friction_range(double intended_velocity_m_per_s) const noexcept;
+  [[nodiscard]] FrictionForces friction_forces(double stops_motor_N, double stops_drum_N,
+                                               const FrictionRange& range) const noexcept;
+  [[nodiscard]] double quintic_force_N(double handle_position_m) const noexcept;
   void step_euler(double motor_force_N, const FrictionRange& range) noexcept;
   void step_exact(double motor_force_N, const FrictionRange& range) noexcept;
 
   Params params_;
-  mechanics::QuinticSpring quintic_;  ///< the hand's quintic part alone
   double dt_s_;
-  std::size_t euler_substeps_;
-  std::array<Column, 6> transition_{};  ///< columns of Φ
-  std::array<Column, 3> response_{};    ///< columns of Γ: unit force on motor, drum, handle held over a tick
+  int euler_substeps_;
+  double euler_substep_s_;
+  std::array<double, 3> euler_response_{};          ///< substep over mass of motor, drum, handle
+  alignas(16) std::array<Column, 6> transition_{};  ///< columns of Φ
+  std::array<Column, 3> response_{};  ///< columns of Γ: unit force on motor, drum, handle held over a tick
+  Column offset_response_{};          ///< what a unit of the friction's velocity offset adds
+  double motor_per_drum_ = 0.0;       ///< by how much a unit of friction on the drum lessens what stops the motor
+  double drum_per_motor_ = 0.0;       ///< and the other way round
+  double both_stopped_ = 1.0;         ///< 1 / (1 − the product of the two)
   State state_{};
 };
 

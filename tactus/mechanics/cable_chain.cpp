@@ -62,78 +62,41 @@ CableChain::CableChain(const Params& params, const LinearSpring::Params& grip, S
       cable_(params.cable),
       linkage_damping_N_s_per_m_(params.linkage.damping_N_s_per_m),
       grip_(grip),
-      dt_s_(dt.value),
-      step_inverse_(invert(dt.value)),
+      step_(step_of(dt.value)),
       state_{.linkage = linkage} {}
 
-CableChain::Inverse CableChain::invert(double duration_s) const noexcept {
+CableChain::Step CableChain::step_of(double duration_s) const noexcept {
   const double half = 0.5 * duration_s;
   const double cable = half * cable_.damping_N_s_per_m;
   const double linkage = half * linkage_damping_N_s_per_m_;
+  const double grip = half * grip_.damping_N_s_per_m;
   const double motor = mass_kg_[0] + cable;
   const double drum = mass_kg_[1] + cable + linkage;
-  const double tip = mass_kg_[2] + linkage + half * grip_.damping_N_s_per_m;
+  const double tip = mass_kg_[2] + linkage + grip;
   const double determinant = motor * (drum * tip - linkage * linkage) - cable * cable * tip;
   const double i00 = (drum * tip - linkage * linkage) / determinant;
   const double i01 = cable * tip / determinant;
   const double i02 = cable * linkage / determinant;
   const double i11 = motor * tip / determinant;
   const double i12 = motor * linkage / determinant;
-  return {.i00 = i00,
+  return {.h_s = duration_s,
+          .half_s = half,
+          .cable_damping = cable,
+          .linkage_damping = linkage,
+          .grip_damping = grip,
+          .i00 = i00,
           .i01 = i01,
           .i02 = i02,
           .i11 = i11,
           .i12 = i12,
           .i22 = (motor * drum - cable * cable) / determinant,
-          .motor_from_drum = i01 / i00,
-          .motor_from_tip = i02 / i00,
-          .drum_from_motor = i01 / i11,
-          .drum_from_tip = i12 / i11};
-}
-
-CableChain::Output CableChain::step(const Input& input) noexcept {
-  advance(input, dt_s_, step_inverse_);
-  return {.motor_position_m = state_.position_m[0], .tip_position_m = state_.position_m[2]};
-}
-
-void CableChain::advance(const Input& input, double duration_s) noexcept {
-  advance(input, duration_s, invert(duration_s));
-}
-
-void CableChain::advance(const Input& input, double h, const Inverse& inverse) noexcept {
-  auto& x = state_.position_m;
-  auto& v = state_.velocity_m_per_s;
-  const double half = 0.5 * h;
-  for (std::size_t i = 0; i < 3; ++i) x[i] += half * v[i];
-
-  const double cable_force = cable_.stiffness_N_per_m * (x[0] - x[1]);
-  const double linkage_force = state_.linkage.step({.deflection_m = x[1] - x[2]});
-  const double grip_force =
-      grip_.stiffness_N_per_m * (input.grip_position_m - x[2]) + grip_.damping_N_s_per_m * input.grip_velocity_m_per_s;
-
-  const double cable_damping = half * cable_.damping_N_s_per_m * (v[0] - v[1]);
-  const double linkage_damping = half * linkage_damping_N_s_per_m_ * (v[1] - v[2]);
-  const double grip_damping = half * grip_.damping_N_s_per_m * v[2];
-  const double p0 = mass_kg_[0] * v[0] - cable_damping + h * (input.motor_force_N - cable_force);
-  const double p1 = mass_kg_[1] * v[1] + cable_damping - linkage_damping + h * (cable_force - linkage_force);
-  const double p2 =
-      mass_kg_[2] * v[2] + linkage_damping - grip_damping + h * (linkage_force + grip_force + input.tip_force_N);
-
-  // What is left of p once friction has done what it can. Written in momenta and not in velocities, because a resting
-  // mass then keeps exactly none.
-  const double limit0 = h * friction_N_[0];
-  const double limit1 = h * friction_N_[1];
-  const double on_motor = p0 + inverse.motor_from_tip * p2;
-  const double on_drum = p1 + inverse.drum_from_tip * p2;
-  double q0 = p0 - std::clamp(on_motor + inverse.motor_from_drum * p1, -limit0, limit0);
-  double q1 = p1 - std::clamp(on_drum + inverse.drum_from_motor * q0, -limit1, limit1);
-  q0 = p0 - std::clamp(on_motor + inverse.motor_from_drum * q1, -limit0, limit0);
-  q1 = p1 - std::clamp(on_drum + inverse.drum_from_motor * q0, -limit1, limit1);
-
-  v[0] = inverse.i00 * q0 + inverse.i01 * q1 + inverse.i02 * p2;
-  v[1] = inverse.i01 * q0 + inverse.i11 * q1 + inverse.i12 * p2;
-  v[2] = inverse.i02 * q0 + inverse.i12 * q1 + inverse.i22 * p2;
-  for (std::size_t i = 0; i < 3; ++i) x[i] += half * v[i];
+          .drum_on_motor = i01 / i00,
+          .tip_on_motor = i02 / i00,
+          .motor_on_drum = i01 / i11,
+          .tip_on_drum = i12 / i11,
+          .tip_to_hold_drum = -linkage / tip,
+          .motor_impulse = duration_s * friction_N_[0],
+          .drum_impulse = duration_s * friction_N_[1]};
 }
 
 void CableChain::reset(double position_m) noexcept {

@@ -35,23 +35,24 @@ Result<ElectricSlave> ElectricSlave::make(const Params& params, const Environmen
   return ElectricSlave(*mechanism, *amplifier, *encoder, *force_sensor, *wall, dt);
 }
 
-double ElectricSlave::contact_force(const CableChain& mechanism, double duration_s) noexcept {
-  const double velocity = mechanism.tip_velocity_m_per_s();
-  return environment_.step(
-      {.position_m = mechanism.tip_position_m() + 0.5 * duration_s * velocity, .velocity_m_per_s = velocity});
+double ElectricSlave::advance(double motor_force_N, double duration_s) noexcept {
+  const double force_N = contact_force(duration_s);
+  mechanism_.advance({.motor_force_N = motor_force_N, .tip_force_N = -force_N}, duration_s);
+  return force_N;
 }
 
-double ElectricSlave::crossing_time(double motor_force_N, double gap_now_m, double gap_after_m) noexcept {
+double ElectricSlave::crossing_time(const CableChain::State& before, double motor_force_N) noexcept {
   // Illinois variant of false position, a fixed number of rounds: the worst case is the usual case. The tip's path
   // within a substep is close to a straight line, so four rounds leave far less than a nanosecond.
   double early = 0.0, late = dt_s_;
-  double gap_early = gap_now_m, gap_late = gap_after_m;
+  double gap_early = environment_.position_m() - before.position_m[2];
+  double gap_late = environment_.position_m() - mechanism_.tip_position_m();
   double time = 0.0;
   for (int round = 0; round < 4; ++round) {
     time = std::clamp(late - gap_late * (late - early) / (gap_late - gap_early), 0.0, dt_s_);
-    CableChain trial = mechanism_;
-    trial.advance({.motor_force_N = motor_force_N, .tip_force_N = -contact_force(trial, time)}, time);
-    const double gap = environment_.position_m() - trial.tip_position_m();
+    mechanism_.set_state(before);
+    advance(motor_force_N, time);
+    const double gap = environment_.position_m() - mechanism_.tip_position_m();
     if ((gap > 0.0) == (gap_late > 0.0)) {
       late = time;
       gap_late = gap;
@@ -65,32 +66,16 @@ double ElectricSlave::crossing_time(double motor_force_N, double gap_now_m, doub
   return time;
 }
 
-ElectricSlave::Output ElectricSlave::step(double commanded_force_N) noexcept {
-  const double motor_force = amplifier_.step(commanded_force_N);
-  const double gap_now = environment_.position_m() - mechanism_.tip_position_m();
-  double force = contact_force(mechanism_, dt_s_);
-  CableChain after = mechanism_;
-  after.step({.motor_force_N = motor_force, .tip_force_N = -force});
-  const double gap_after = environment_.position_m() - after.tip_position_m();
-
-  Output output;
-  const bool crosses = (gap_now > 0.0) != (gap_after > 0.0);
-  if (crosses) {
-    const double until = crossing_time(motor_force, gap_now, gap_after);
-    const double before_force = contact_force(mechanism_, until);
-    mechanism_.advance({.motor_force_N = motor_force, .tip_force_N = -before_force}, until);
-    const double rest = dt_s_ - until;
-    const double after_force = contact_force(mechanism_, rest);
-    mechanism_.advance({.motor_force_N = motor_force, .tip_force_N = -after_force}, rest);
-    force = (before_force * until + after_force * rest) / dt_s_;
-    output.touched = gap_now > 0.0;
-    output.touched_after_s = until;
-  } else {
-    mechanism_ = after;
-  }
-  output.contact_force_N = force;
-  force_sensor_.step(force);
-  return output;
+ElectricSlave::Output ElectricSlave::step_across_surface(const CableChain::State& before,
+                                                         double motor_force_N) noexcept {
+  const double until = crossing_time(before, motor_force_N);
+  mechanism_.set_state(before);
+  const double before_force_N = advance(motor_force_N, until);
+  const double rest = dt_s_ - until;
+  const double after_force_N = advance(motor_force_N, rest);
+  return {.contact_force_N = (before_force_N * until + after_force_N * rest) / dt_s_,
+          .touched = is_outside(before.position_m[2]),
+          .touched_after_s = until};
 }
 
 void ElectricSlave::reset(double position_m) noexcept {

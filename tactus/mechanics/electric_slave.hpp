@@ -16,7 +16,7 @@ namespace tactus::mechanics {
 /// sensor behind the tip (paper A, Fig. 9: two equal joysticks).
 ///
 /// It runs on the plant's substeps. A substep in which the tip meets or leaves the wall's surface is cut there: the
-/// instant is found by false position on copies of the mechanism, and the two parts are stepped one after the other,
+/// instant is found by false position, trying parts of the substep, and the two parts are stepped one after the other,
 /// so the contact time is known far below the substep and the impact does not depend on where the grid fell.
 class ElectricSlave {
  public:
@@ -53,7 +53,16 @@ class ElectricSlave {
   static Result<ElectricSlave> make(const Params& params, Seconds dt) { return make(params, {}, dt); }
 
   /// Advances by one substep under `commanded_force_N`, positive toward the environment. Real-time safe.
-  Output step(double commanded_force_N) noexcept;
+  Output step(double commanded_force_N) noexcept {
+    const double motor_force_N = amplifier_.step(commanded_force_N);
+    const CableChain::State before = mechanism_.state();
+    const double force_N = contact_force(dt_s_);
+    mechanism_.step({.motor_force_N = motor_force_N, .tip_force_N = -force_N});
+    const bool crossed = is_outside(before.position_m[2]) != is_outside(mechanism_.tip_position_m());
+    const Output output = crossed ? step_across_surface(before, motor_force_N) : Output{.contact_force_N = force_N};
+    force_sensor_.step(output.contact_force_N);
+    return output;
+  }
 
   /// What the sensors read now: draws one sample of noise.
   Reading measure() noexcept {
@@ -76,10 +85,21 @@ class ElectricSlave {
         environment_(environment),
         dt_s_(dt.value) {}
 
-  /// The wall's force on `mechanism` at the middle of the next `duration_s`.
-  double contact_force(const CableChain& mechanism, double duration_s) noexcept;
-  /// Time from now at which the tip crosses the surface, known to do so within a whole substep.
-  double crossing_time(double motor_force_N, double gap_now_m, double gap_after_m) noexcept;
+  [[nodiscard]] bool is_outside(double tip_position_m) const noexcept {
+    return environment_.position_m() - tip_position_m > 0.0;
+  }
+  /// The wall's force at the middle of the next `duration_s`.
+  double contact_force(double duration_s) noexcept {
+    const double velocity = mechanism_.tip_velocity_m_per_s();
+    return environment_.step(
+        {.position_m = mechanism_.tip_position_m() + 0.5 * duration_s * velocity, .velocity_m_per_s = velocity});
+  }
+  /// Advances by part of a substep and returns the wall's force on the way.
+  double advance(double motor_force_N, double duration_s) noexcept;
+  /// Takes back a substep in which the tip crossed the surface and steps it in two parts, cut at the crossing.
+  Output step_across_surface(const CableChain::State& before, double motor_force_N) noexcept;
+  /// Time from `before` at which the tip crosses the surface.
+  double crossing_time(const CableChain::State& before, double motor_force_N) noexcept;
 
   CableChain mechanism_;
   CurrentAmplifier amplifier_;

@@ -57,6 +57,7 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
   const auto aim = parts_.person.step({.path_m = path_m,
                                        .path_at_next_tick_m = path_at_next_tick_m,
                                        .handle_position_m = parts_.master.mechanism().tip_position_m()});
+  double contact_sum_N = 0.0;
   for (int i = 0; i < clock_.substeps; ++i) {
     if (i == clock_.late_substeps) {
       master_command_N_ = master.motor_force_N;
@@ -67,13 +68,14 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
                         .grip_position_m = aim.position_m + middle_s * aim.velocity_m_per_s,
                         .grip_velocity_m_per_s = aim.velocity_m_per_s});
     const auto contact = parts_.slave.step(slave_command_N_);
-    record.contact_force_N += contact.contact_force_N / clock_.substeps;
+    contact_sum_N += contact.contact_force_N;
     record.peak_contact_force_N = std::max(record.peak_contact_force_N, contact.contact_force_N);
     if (contact.touched && !record.touched) {
       record.touched = true;
       record.touched_at_s = time_s + i * clock_.substep_s + contact.touched_after_s;
     }
   }
+  record.contact_force_N = contact_sum_N / clock_.substeps;
   ++ticks_;
   return record;
 }

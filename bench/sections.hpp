@@ -1,0 +1,20 @@
+#pragma once
+
+#include <bench/harness.hpp>
+
+/// What is measured, a section each: `add_...` registers the cases that Google Benchmark times, the other function
+/// turns their times into findings.
+namespace tactus::bench {
+
+/// One tick of the model of induced motion, beside Boost.odeint on the same model: speed and error.
+void add_model_tick();
+Findings model_tick(const Times& times);
+
+/// How much longer the slowest ticks of the model take than the usual ones.
+Findings tick_tail();
+
+/// The plants and the closed loop in virtual time.
+void add_virtual_time();
+Findings virtual_time(const Times& times);
+
+}  // namespace tactus::bench
