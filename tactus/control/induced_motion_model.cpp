@@ -21,7 +21,7 @@ struct LinearPart {
   Matrix6x3 b = Matrix6x3::Zero();
 };
 
-LinearPart linear_part(const MasterModel& master) {
+LinearPart linear_part(const MasterModel& master, double linkage_stiffness_N_per_m) {
   const Eigen::Vector3d mass{master.motor.mass_kg, master.drum.mass_kg, master.handle.mass_kg};
   const auto coupling = [](double cable, double linkage, double hand) {
     Eigen::Matrix3d matrix;
@@ -29,7 +29,7 @@ LinearPart linear_part(const MasterModel& master) {
     return matrix;
   };
   const Eigen::Matrix3d stiffness =
-      coupling(master.cable.stiffness_N_per_m, master.linkage.stiffness_N_per_m, master.hand.stiffness_N_per_m);
+      coupling(master.cable.stiffness_N_per_m, linkage_stiffness_N_per_m, master.hand.stiffness_N_per_m);
   const Eigen::Matrix3d damping =
       coupling(master.cable.damping_N_s_per_m, master.linkage.damping_N_s_per_m, master.hand.damping_N_s_per_m);
   const Eigen::Matrix3d inverse_mass = mass.cwiseInverse().asDiagonal();
@@ -51,9 +51,11 @@ int euler_substeps(Seconds dt) {
 Result<InducedMotionModel> InducedMotionModel::make(const Params& params, Seconds dt) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
   if (dt.value > 0.01) return out_of_bounds("dt", dt.value, positive_up_to(0.01), units::second);
+  const auto linkage = mechanics::BoucWenSpring::make(params.master.linkage, dt);
+  if (!linkage) return under("master.linkage", linkage.error());
   if (params.step == CancellationStep::euler) {
     const double substep = dt.value / euler_substeps(dt);
-    const Matrix6 growth = Matrix6::Identity() + substep * linear_part(params.master).a;
+    const Matrix6 growth = Matrix6::Identity() + substep * linear_part(params.master, linkage->initial_stiffness_N_per_m()).a;
     const double radius = growth.eigenvalues().cwiseAbs().maxCoeff();
     constexpr double round_off = 1e-9;
     if (radius > 1.0 + round_off) {
@@ -65,11 +67,14 @@ Result<InducedMotionModel> InducedMotionModel::make(const Params& params, Second
                    .place = {}};
     }
   }
-  return InducedMotionModel(params, dt);
+  return InducedMotionModel(params, *linkage, dt);
 }
 
-InducedMotionModel::InducedMotionModel(const Params& params, Seconds dt)
+InducedMotionModel::InducedMotionModel(const Params& params, const mechanics::BoucWenSpring& linkage, Seconds dt)
     : params_(params),
+      linkage_(linkage),
+      hysteretic_(params.master.linkage.hysteretic_fraction > 0.0),
+      linkage_stiffness_N_per_m_(linkage.initial_stiffness_N_per_m()),
       dt_s_(dt.value),
       euler_substeps_(euler_substeps(dt)),
       euler_substep_s_(dt.value / euler_substeps_),
@@ -80,7 +85,7 @@ InducedMotionModel::InducedMotionModel(const Params& params, Seconds dt)
 
 void InducedMotionModel::precompute_exact_step() {
   // exp of the augmented matrix [A B; 0 0]·dt holds Φ and Γ side by side (Van Loan 1978).
-  const LinearPart part = linear_part(params_.master);
+  const LinearPart part = linear_part(params_.master, linkage_stiffness_N_per_m_);
   Eigen::Matrix<double, 9, 9> augmented = Eigen::Matrix<double, 9, 9>::Zero();
   augmented.topLeftCorner<6, 6>() = part.a * dt_s_;
   augmented.topRightCorner<6, 3>() = part.b * dt_s_;
@@ -134,6 +139,11 @@ double InducedMotionModel::quintic_force_N(double handle_position_m) const noexc
   return (squared * squared) * (hand.quintic_stiffness_N_per_m5 * guarded_m);
 }
 
+double InducedMotionModel::slipped_force_N(double linkage_deflection_m) noexcept {
+  if (!hysteretic_) return 0.0;
+  return linkage_.step({.deflection_m = linkage_deflection_m}) - linkage_stiffness_N_per_m_ * linkage_deflection_m;
+}
+
 void InducedMotionModel::step_euler(double motor_force_N, const FrictionRange& range) noexcept {
   const MasterModel& m = params_.master;
   const double h = euler_substep_s_;
@@ -145,8 +155,8 @@ void InducedMotionModel::step_euler(double motor_force_N, const FrictionRange& r
   for (int i = 0; i < euler_substeps_; ++i) {
     const double cable =
         m.cable.stiffness_N_per_m * (x_motor - x_drum) + m.cable.damping_N_s_per_m * (v_motor - v_drum);
-    const double linkage =
-        m.linkage.stiffness_N_per_m * (x_drum - x_handle) + m.linkage.damping_N_s_per_m * (v_drum - v_handle);
+    const double linkage = linkage_stiffness_N_per_m_ * (x_drum - x_handle) + slipped_force_N(x_drum - x_handle) +
+                           m.linkage.damping_N_s_per_m * (v_drum - v_handle);
     const double hand =
         quintic_force_N(x_handle) + m.hand.stiffness_N_per_m * x_handle + m.hand.damping_N_s_per_m * v_handle;
     x_motor += h * v_motor;
@@ -184,8 +194,9 @@ InducedMotionModel::FrictionForces InducedMotionModel::friction_forces(double st
 }
 
 void InducedMotionModel::step_exact(double motor_force_N, const FrictionRange& range) noexcept {
-  // The quintic force where the handle will be in the middle of the tick: half a tick of lag would cost an order.
+  // The nonlinear forces where the masses will be in the middle of the tick: half a tick of lag would cost an order.
   const double quintic_N = quintic_force_N(state_[2] + 0.5 * dt_s_ * state_[5]);
+  const double slipped_N = slipped_force_N(state_[1] - state_[2] + 0.5 * dt_s_ * (state_[4] - state_[5]));
 
   // The sum stands in the order in which its terms become known, so that few of them are waited for.
   Column next;
@@ -195,7 +206,8 @@ void InducedMotionModel::step_exact(double motor_force_N, const FrictionRange& r
         transition_[0][row] * state_[0] + transition_[1][row] * state_[1] + transition_[2][row] * state_[2];
     const double velocities =
         transition_[3][row] * state_[3] + transition_[4][row] * state_[4] + transition_[5][row] * state_[5];
-    next[row] = (driven + (positions + velocities)) - response_[2][row] * quintic_N;
+    next[row] = (driven + (positions + velocities)) + response_[2][row] * (slipped_N - quintic_N) -
+                response_[1][row] * slipped_N;
   }
   const FrictionForces friction = friction_forces(next[6], next[7], range);
   for (std::size_t row = 0; row < state_.size(); ++row) {

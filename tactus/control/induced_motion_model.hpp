@@ -3,6 +3,7 @@
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/mechanics/bodies.hpp>
+#include <tactus/mechanics/bouc_wen.hpp>
 #include <tactus/mechanics/springs.hpp>
 
 #include <array>
@@ -33,7 +34,7 @@ struct MasterModel {
   mechanics::RubbingMass motor{.mass_kg = 0.0075, .friction_N = 0.01};
   mechanics::LinearSpring::Params cable{.stiffness_N_per_m = 39500.0, .damping_N_s_per_m = 3.6};
   mechanics::RubbingMass drum{.mass_kg = 0.01075, .friction_N = 0.0144};
-  mechanics::LinearSpring::Params linkage{.stiffness_N_per_m = 3950.0, .damping_N_s_per_m = 0.02};
+  mechanics::BoucWenSpring::Params linkage;
   mechanics::FreeMass handle{.mass_kg = 0.014};
   mechanics::QuinticSpring::Params hand;
   static constexpr auto fields() {
@@ -41,7 +42,7 @@ struct MasterModel {
         field("motor", &MasterModel::motor, "Motor rotor."),
         field("cable", &MasterModel::cable, "Cable between motor and drum."),
         field("drum", &MasterModel::drum, "Drum."),
-        field("linkage", &MasterModel::linkage, "Linkage between drum and handle, linear here."),
+        field("linkage", &MasterModel::linkage, "Linkage between drum and handle, with hysteresis."),
         field("handle", &MasterModel::handle, "Handle."),
         field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections.")};
   }
@@ -52,12 +53,16 @@ struct MasterModel {
 /// Three masses on a line with the deflections from where they would be without the force,
 ///
 ///     m_m ẍ_m = F − k_c (x_m − x_d) − b_c (ẋ_m − ẋ_d) − friction f_m
-///     m_d ẍ_d = k_c (x_m − x_d) + b_c (ẋ_m − ẋ_d) − k_l (x_d − x_h) − b_l (ẋ_d − ẋ_h) − friction f_d
-///     m_h ẍ_h = k_l (x_d − x_h) + b_l (ẋ_d − ẋ_h) − k_o x_h − k_5 x_h⁵ − b_o ẋ_h
+///     m_d ẍ_d = k_c (x_m − x_d) + b_c (ẋ_m − ẋ_d) − linkage(x_d − x_h) − b_l (ẋ_d − ẋ_h) − friction f_d
+///     m_h ẍ_h = linkage(x_d − x_h) + b_l (ẋ_d − ẋ_h) − k_o x_h − k_5 x_h⁵ − b_o ẋ_h
 ///
 /// The quintic spring belongs to the controller, not to the hand: it holds the slow deflection to about 2 mm at full
 /// force, a tenth of the real one, because the person takes out slow deflections without help and an overestimate
 /// would be positive feedback (Sec. VI and VIII-A).
+///
+/// The linkage is hysteretic, as the paper's model was. Its law is Bouc and Wen's, not the elasto-slip law of the
+/// simulated devices, so that no model is checked against itself. A `hysteretic_fraction` of 0 makes it linear, and the
+/// tick cheaper.
 ///
 /// Friction on total velocity: friction that the moving hand already saturates hardly changes with the force. With the
 /// share s = clamp(w/w₀, ±1) of friction that the intended velocity w uses up, what the force can still change lies in
@@ -65,7 +70,7 @@ struct MasterModel {
 /// and friction sticks exactly as at rest; with w = 0 the two kinds are the same.
 ///
 /// The exact step: x⁺ = Φ x + Γ u with Φ = exp(A·dt), Γ its integral, and u the motor force, the frictions and the
-/// quintic force, held over the tick. Frictions are found at the end velocity, for both rubbing masses at once and
+/// quintic force and what the linkage lacks to its initial stiffness, held over the tick. Frictions are found at the end velocity, for both rubbing masses at once and
 /// exactly (`friction_forces`); nothing iterates.
 ///
 /// Forces and motion are positive toward the environment, so a displayed force F_f enters as −F_f.
@@ -104,13 +109,15 @@ class InducedMotionModel {
   /// Advances by one tick. Real-time safe.
   Output step(const Input& input) noexcept;
   /// At rest, undeflected.
-  void reset() noexcept { state_ = {}; }
+  void reset() noexcept {
+    state_ = {};
+    linkage_.reset();
+  }
 
   /// Where the force so far has moved the motor, in m: belongs to the sample taken at this very instant, before the
   /// next force acts.
   [[nodiscard]] double motor_position_m() const noexcept { return state_[0]; }
   [[nodiscard]] const State& state() const noexcept { return state_; }
-  void set_state(const State& state) noexcept { state_ = state; }
 
  private:
   /// The state, then the forces that would bring motor and drum to rest at the end of the tick, each on its own.
@@ -126,17 +133,22 @@ class InducedMotionModel {
     double motor_N, drum_N;
   };
 
-  InducedMotionModel(const Params& params, Seconds dt);
+  InducedMotionModel(const Params& params, const mechanics::BoucWenSpring& linkage, Seconds dt);
   void precompute_exact_step();
 
   [[nodiscard]] FrictionRange friction_range(double intended_velocity_m_per_s) const noexcept;
   [[nodiscard]] FrictionForces friction_forces(double stops_motor_N, double stops_drum_N,
                                                const FrictionRange& range) const noexcept;
   [[nodiscard]] double quintic_force_N(double handle_position_m) const noexcept;
+  /// What the linkage pulls with beyond its initial stiffness, in N: nothing for a linear one, else of the other sign.
+  double slipped_force_N(double linkage_deflection_m) noexcept;
   void step_euler(double motor_force_N, const FrictionRange& range) noexcept;
   void step_exact(double motor_force_N, const FrictionRange& range) noexcept;
 
   Params params_;
+  mechanics::BoucWenSpring linkage_;
+  bool hysteretic_;
+  double linkage_stiffness_N_per_m_;  ///< initial
   double dt_s_;
   int euler_substeps_;
   double euler_substep_s_;

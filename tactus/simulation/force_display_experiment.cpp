@@ -54,7 +54,7 @@ std::string json_of(const Request& request, const std::vector<DisplayRun>& runs)
                        {"kept_fraction", one.kept_fraction},
                        {"encoder_fraction", one.encoder_fraction}});
     }
-    document["runs"].push_back({{"set", settings_json(run.settings)}, {"metrics", {{"cases", cases}}}});
+    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))}, {"metrics", {{"cases", cases}}}});
   }
   return document.dump(2) + "\n";
 }

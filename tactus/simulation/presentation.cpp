@@ -54,13 +54,13 @@ std::optional<double> as_number(std::string_view text) {
   return value;
 }
 
-nlohmann::ordered_json settings_json(const Settings& settings) {
+std::string settings_json(const Settings& settings) {
   auto object = nlohmann::ordered_json::object();
   for (const auto& [key, value] : settings) {
     const auto parsed = nlohmann::ordered_json::parse(value, nullptr, false);
     object[key] = parsed.is_number() || parsed.is_boolean() ? parsed : nlohmann::ordered_json(value);
   }
-  return object;
+  return object.dump();
 }
 
 std::string settings_caption(const Settings& settings) {

@@ -5,8 +5,6 @@
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/experiment.hpp>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,8 +18,8 @@ report::Axis axis_of(std::string_view key);
 /// A column for each varied key.
 std::vector<report::Column> settings_columns(const Settings& settings);
 std::vector<std::string> settings_cells(const Settings& settings);
-/// `{"control.force_gain": 1, "control.cancellation": "off"}`: numbers as numbers, words as words.
-nlohmann::ordered_json settings_json(const Settings& settings);
+/// `{"control.force_gain": 1, "control.cancellation": "off"}` as text: numbers as numbers, words as words.
+std::string settings_json(const Settings& settings);
 /// The settings in a few words for a picture: `force gain 3`.
 std::string settings_caption(const Settings& settings);
 /// The value of a setting if it is a finite number.

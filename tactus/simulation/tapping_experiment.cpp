@@ -44,7 +44,7 @@ std::string json_of(const Request& request, const std::vector<TappingRun>& runs)
   nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
   for (const TappingRun& run : runs) {
     const TappingMetrics& m = run.metrics;
-    document["runs"].push_back({{"set", settings_json(run.settings)},
+    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))},
                                 {"metrics",
                                  {{"taps", m.taps},
                                   {"settled_fraction", m.settled_fraction},

@@ -12,9 +12,15 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   const Seconds substep{clock->substep_s};
 
   auto master = mechanics::CableDrivenMaster::make(params.master, params.person.grip, substep);
-  if (!master) return under("master", master.error());
+  if (!master) {
+    const Error& error = master.error();
+    return under(error.parameter.starts_with("grip.") ? "operator" : "master", error);
+  }
   auto slave = mechanics::ElectricSlave::make(params.slave, params.environment, substep);
-  if (!slave) return under("slave", slave.error());
+  if (!slave) {
+    const Error& error = slave.error();
+    return error.parameter.starts_with("environment.") ? error : under("slave", error);
+  }
   auto person = mechanics::Operator::make(params.person, tick);
   if (!person) return under("operator", person.error());
   const auto master_site = control::PositionForceMaster::make(params.control, tick);
