@@ -1,5 +1,6 @@
 #include <tactus/signal/random.hpp>
 #include <tactus/signal/second_order_filter.hpp>
+#include <tactus/simulation/draws.hpp>
 #include <tactus/simulation/force_display.hpp>
 
 #include <algorithm>
@@ -87,6 +88,7 @@ ForceDisplay::Playing ForceDisplay::play(double scale, std::int64_t repeat) cons
       signal::Random(static_cast<std::uint64_t>(params_.task.seed)).fork(static_cast<std::uint64_t>(repeat));
   hand.tremor_frequency_Hz *= draw.uniform(0.8, 1.2);
   hand.tremor_phase_cycles = draw.uniform();
+  limit_to_bounds(hand);
   // Where the force starts falls anywhere between two counts of the encoder.
   const double start_m = -params_.task.speed_m_per_s * approach_s + params_.master.encoder.resolution_m * draw.uniform();
 
