@@ -1,6 +1,7 @@
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 
+#include <iostream>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,11 @@ std::string shell_word(std::string_view word) {
   return quoted + "'";
 }
 
+int refuse(std::string_view why) {
+  std::cerr << "tactus: " << why << ": `tactus --help` and `tactus COMMAND --help` list what there is\n";
+  return 2;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -31,14 +37,17 @@ int main(int argc, char** argv) {
   int status = 0;
   CLI::App app{"Crisp and stable force-reflecting teleoperation", "tactus"};
   app.set_version_flag("--version", "tactus " + std::string(tactus::version()));
-  app.require_subcommand(1);
+  // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
+  app.require_subcommand(0, 1);
   tactus::cli::add_run(app, command, status);
   tactus::cli::add_schema(app, status);
   try {
     app.parse(argc, argv);
+    if (app.get_subcommands().empty()) return refuse("A command is required");
   } catch (const CLI::ParseError& error) {
     // Help and version come this way too, with a code of 0.
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() != 0) return refuse(error.what());
+    app.exit(error);
   }
   return status;
 }
