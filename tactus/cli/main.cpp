@@ -1,6 +1,8 @@
+#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 
+#include <csignal>
 #include <iostream>
 #include <string>
 #include <string_view>
@@ -34,6 +36,8 @@ int main(int argc, char** argv) {
   std::string command = "tactus";
   for (int i = 1; i < argc; ++i) command += " " + shell_word(argv[i]);
 
+  // A reader of the results that went away is an error like a full disk and not the end.
+  std::signal(SIGPIPE, SIG_IGN);
   int status = 0;
   CLI::App app{"Crisp and stable force-reflecting teleoperation", "tactus"};
   app.set_version_flag("--version", "tactus " + std::string(tactus::version()));
@@ -49,5 +53,10 @@ int main(int argc, char** argv) {
     if (error.get_exit_code() != 0) return refuse(error.what());
     app.exit(error);
   }
-  return status;
+  if (status != 0) return status;
+  if (const auto error = tactus::cli::flush_standard_output()) {
+    std::cerr << "tactus: " << tactus::describe(*error) << "\n";
+    return tactus::exit_status(*error);
+  }
+  return 0;
 }

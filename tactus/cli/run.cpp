@@ -1,4 +1,5 @@
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/report/figure.hpp>
@@ -64,13 +65,8 @@ Check run(const RunOptions& options, const std::string& command) {
   }();
   if (!outcome) return outcome.error();
 
-  std::cout << (options.json ? outcome->json : outcome->text) << std::flush;
-  if (!std::cout) {
-    return Error{.code = ErrorCode::unwritable,
-                 .parameter = {},
-                 .message = "the results could not be written: give it a place with room",
-                 .place = "standard output"};
-  }
+  std::cout << (options.json ? outcome->json : outcome->text);
+  if (auto error = flush_standard_output()) return error;
   if (options.out.empty()) return std::nullopt;
   if (auto error = write_results(options.out, *outcome)) return error;
   (options.json ? std::cerr : std::cout) << "Report: " << (std::filesystem::path(options.out) / "report.html").string()
