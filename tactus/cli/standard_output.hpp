@@ -11,7 +11,7 @@ inline Check flush_standard_output() {
   if (std::cout.flush()) return std::nullopt;
   return Error{.code = ErrorCode::unwritable,
                .parameter = {},
-               .message = "the results could not be written: give it a place with room",
+               .message = "the output could not be written: give it a place with room",
                .place = "standard output"};
 }
 
