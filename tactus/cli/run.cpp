@@ -49,9 +49,7 @@ Check check_writable(const std::string& folder) {
   if (folder.empty()) {
     return Error{.code = ErrorCode::syntax,
                  .parameter = {},
-                 .message =
-                     "no folder is named: write one, for instance "
-                     "--out results",
+                 .message = "no folder is named: write one, as in --out results",
                  .place = "--out"};
   }
   std::filesystem::path there = folder;
