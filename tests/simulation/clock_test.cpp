@@ -6,7 +6,8 @@ namespace tactus::simulation {
 namespace {
 
 Clock made(double rate_Hz, double delay_s, double longest_step_s) {
-  const auto clock = Clock::make({.rate_Hz = rate_Hz, .computation_delay_s = delay_s}, {.longest_step_s = longest_step_s});
+  const auto clock =
+      Clock::make({.rate_Hz = rate_Hz, .computation_delay_s = delay_s}, {.longest_step_s = longest_step_s});
   EXPECT_TRUE(clock) << (clock ? "" : describe(clock.error()));
   return *clock;
 }

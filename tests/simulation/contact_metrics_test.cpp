@@ -33,8 +33,8 @@ TEST(ContactMetrics, AgreeWithSciPyOnTransientsThatSettleAndThatDoNot) {
   const auto settling_time_s = column("settling_time_s"), residual_rms_N = column("residual_rms_N");
   for (std::size_t i = 0; i < push_N.size(); ++i) {
     const auto force = contact([&](double t) {
-      return push_N[i] + amplitude_N[i] * std::exp(-t / decay_s[i]) *
-                             std::cos(2.0 * std::numbers::pi * frequency_Hz[i] * t);
+      return push_N[i] +
+             amplitude_N[i] * std::exp(-t / decay_s[i]) * std::cos(2.0 * std::numbers::pi * frequency_Hz[i] * t);
     });
     const ContactMetrics metrics = judge_contact(force, ticks_before, tick_s);
     EXPECT_EQ(metrics.settled, settled[i] == 1.0) << i;
@@ -47,7 +47,8 @@ TEST(ContactMetrics, AFastTransientSettlesWhenItsEnvelopeHasFallenToATenth) {
   // Far above 15 Hz the filter changes next to nothing, so the last peak above a tenth lies within half a period, here
   // 1 ms, before decay time × ln 10.
   for (const double decay_s : {0.01, 0.02, 0.05}) {
-    const auto force = contact([&](double t) { return std::exp(-t / decay_s) * std::cos(1000.0 * std::numbers::pi * t); });
+    const auto force =
+        contact([&](double t) { return std::exp(-t / decay_s) * std::cos(1000.0 * std::numbers::pi * t); });
     const ContactMetrics metrics = judge_contact(force, ticks_before, tick_s);
     EXPECT_TRUE(metrics.settled);
     EXPECT_LE(metrics.settling_time_s, decay_s * std::numbers::ln10 + tick_s);

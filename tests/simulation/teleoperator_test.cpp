@@ -197,14 +197,15 @@ TEST(Teleoperator, PressingStaticallyBalancesPositionControlWallAndHand) {
   const double pressed_m = 0.010;
   // Slow, so that nothing bounces, and then still for ten time constants of the hand, 23 N s/m over 40 N/m each.
   const mechanics::MinimumJerk press{.start_m = -0.002, .end_m = pressed_m, .start_time_s = 0.0, .duration_s = 0.4};
-  const Records records = run(params, [&](double t) { return press.position_m(t); }, 30000);
+  const Records records = run(
+      params, [&](double t) { return press.position_m(t); }, 30000);
   const Teleoperator::Record& end = records.back();
 
   // Springs in a row between the person's aim and the wall, seen by the force F at the tip. The hand and the master's
   // own elasticity carry half of F, because half of it is displayed.
-  const double slave = 1.0 / params.control.slave.proportional_N_per_m +
-                       1.0 / params.slave.mechanism.cable.stiffness_N_per_m +
-                       1.0 / params.slave.mechanism.linkage.stiffness_N_per_m + 1.0 / params.environment.stiffness_N_per_m;
+  const double slave =
+      1.0 / params.control.slave.proportional_N_per_m + 1.0 / params.slave.mechanism.cable.stiffness_N_per_m +
+      1.0 / params.slave.mechanism.linkage.stiffness_N_per_m + 1.0 / params.environment.stiffness_N_per_m;
   const double master = 1.0 / params.person.grip.stiffness_N_per_m +
                         1.0 / params.master.mechanism.linkage.stiffness_N_per_m +
                         1.0 / params.master.mechanism.cable.stiffness_N_per_m;
@@ -254,7 +255,8 @@ TEST(Teleoperator, ASlaveThatStartsAtRestGetsNoKick) {
   params.control.position_scale = 0.7;
   // Between two counts of the encoders.
   const double start_m = -0.0123456;
-  const Records records = run(params, [&](double) { return start_m; }, 1000);
+  const Records records = run(
+      params, [&](double) { return start_m; }, 1000);
   for (const auto& record : records) {
     ASSERT_NEAR(record.tip_position_m, 0.7 * start_m, 1e-12);
     ASSERT_EQ(record.displayed_force_N, 0.0);
