@@ -26,7 +26,7 @@ inline constexpr LinearSpring::Params nobody_holds{.stiffness_N_per_m = 0.0, .da
 /// with |p| ≤ h f on each rubbing mass, chosen so that a mass that can be held at v⁺ = 0 is held there exactly.
 /// Second order where the motion is smooth, without numerical damping, without a friction smoothing parameter, and
 /// the worst case costs what the usual case costs. The two impulses are coupled only through the damping matrix
-/// (by about h b / 2m, below 1 % here), so two sweeps leave an error below 1e-9 of the impulse.
+/// (by about h b / 2m, below 1 % here), so two sweeps leave an error below 1e-6 of the impulse.
 ///
 /// Stable as long as 4/h² M − K is positive definite, that is h < 2/ω of the stiffest mode (the cable: 480 Hz,
 /// h < 0.6 ms), whatever the damping; `make` refuses a longer step. Accurate to 0.1 % in frequency for h ≤ 50 µs.
