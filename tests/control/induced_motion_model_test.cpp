@@ -322,19 +322,5 @@ TEST(InducedMotionModel, AfterAnAbsurdForceItComesBackToRest) {
   }
 }
 
-TEST(InducedMotionModel, ARunThatIsSetToTheStateOfAnotherContinuesAsIt) {
-  for (const CancellationStep step : both_steps) {
-    InducedMotionModel one = make(params(step));
-    std::mt19937_64 engine(17);
-    for (int tick = 0; tick < 500; ++tick) one.step(arbitrary(engine, 0.0));
-    InducedMotionModel other = make(params(step));
-    other.set_state(one.state());
-    for (int tick = 0; tick < 500; ++tick) {
-      const auto input = arbitrary(engine, 0.0);
-      ASSERT_EQ(one.step(input), other.step(input));
-    }
-  }
-}
-
 }  // namespace
 }  // namespace tactus::control
