@@ -35,6 +35,7 @@ struct Plant {
 
 Cancellation::Params at_rest() {
   Cancellation::Params params;
+  params.model.master.linkage.hysteretic_fraction = 0.0;
   params.model.friction = ModelFriction::at_rest;
   return params;
 }
@@ -111,6 +112,7 @@ TEST(Cancellation, ItsResultDoesNotDependOnTheForceThatIsYetToAct) {
 double left_of_moving_hand_m(ModelFriction friction, const Plant& plant, double speed_m_per_s,
                              const std::vector<double>& induced_m) {
   Cancellation::Params params;
+  params.model.master.linkage.hysteretic_fraction = 0.0;
   params.model.friction = friction;
   Cancellation cancellation = Cancellation::make(params, Seconds{tick_s}).value();
   // The hand has been moving for a second when the forces begin.

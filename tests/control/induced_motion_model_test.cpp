@@ -26,6 +26,7 @@ constexpr ModelFriction both_frictions[] = {ModelFriction::at_rest, ModelFrictio
 
 InducedMotionModel::Params params(CancellationStep step, ModelFriction friction = ModelFriction::at_rest) {
   InducedMotionModel::Params made;
+  made.master.linkage.hysteretic_fraction = 0.0;
   made.step = step;
   made.friction = friction;
   return made;

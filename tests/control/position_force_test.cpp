@@ -23,6 +23,7 @@ PositionForceMaster master(const PositionForceMaster::Params& params) {
 
 PositionForceMaster::Params plain() {
   PositionForceMaster::Params params;
+  params.model.linkage.hysteretic_fraction = 0.0;
   params.cancellation = CancellationMode::off;
   return params;
 }
@@ -69,6 +70,7 @@ TEST(PositionForceMaster, WithCancellationTheCommandIsLambdaTimesWhatThePersonMe
   const Displaced plant;
   for (const CancellationMode mode : {CancellationMode::on, CancellationMode::off}) {
     PositionForceMaster::Params params;
+  params.model.linkage.hysteretic_fraction = 0.0;
     params.cancellation = mode;
     params.cancellation_friction = ModelFriction::at_rest;
     params.position_scale = 2.0;
@@ -92,6 +94,7 @@ TEST(PositionForceMaster, WithCancellationTheCommandIsLambdaTimesWhatThePersonMe
 
 TEST(PositionForceMaster, TheModelIsDrivenByTheForceThatTheGateLetThrough) {
   PositionForceMaster::Params params;
+  params.model.linkage.hysteretic_fraction = 0.0;
   params.gate = {.force_limit_N = 0.3, .rate_limit_N_per_s = 50.0};
   PositionForceMaster site = master(params);
   InducedMotionModel reference = InducedMotionModel::make({}, Seconds{tick_s}).value();
@@ -135,6 +138,7 @@ TEST(PositionForceMaster, AfterAFaultTheCancelledCommandStaysFiniteAndComesBackT
 
 TEST(PositionForceMaster, AnUnstableModelIsRefusedUnderTheNameOfItsStep) {
   PositionForceMaster::Params params;
+  params.model.linkage.hysteretic_fraction = 0.0;
   params.cancellation_step = CancellationStep::euler;
   params.model.cable.stiffness_N_per_m = 1e9;
   const auto refused = PositionForceMaster::make(params, Seconds{tick_s});
