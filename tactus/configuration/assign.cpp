@@ -2,6 +2,7 @@
 #include <tactus/configuration/nearest.hpp>
 #include <tactus/configuration/text.hpp>
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/core/spelling.hpp>
 
 #include <algorithm>
 #include <cmath>

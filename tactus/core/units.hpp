@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 namespace tactus {
 
@@ -21,20 +22,62 @@ namespace units {
 inline constexpr Unit none{"", ""};
 inline constexpr Unit second{"s", "_s"};
 inline constexpr Unit hertz{"Hz", "_Hz"};
+inline constexpr Unit cycles{"cycles", "_cycles"};
+inline constexpr Unit per_second{"1/s", "_per_s"};
+inline constexpr Unit kilogram{"kg", "_kg"};
 inline constexpr Unit metre{"m", "_m"};
 inline constexpr Unit metre_per_second{"m/s", "_m_per_s"};
+inline constexpr Unit second_per_metre{"s/m", "_s_per_m"};
 inline constexpr Unit newton{"N", "_N"};
 inline constexpr Unit newton_per_second{"N/s", "_N_per_s"};
 inline constexpr Unit newton_per_metre{"N/m", "_N_per_m"};
 inline constexpr Unit newton_per_metre5{"N/m^5", "_N_per_m5"};
 inline constexpr Unit newton_second_per_metre{"N s/m", "_N_s_per_m"};
-inline constexpr Unit second_per_metre{"s/m", "_s_per_m"};
-inline constexpr Unit kilogram{"kg", "_kg"};
-inline constexpr Unit per_second{"1/s", "_per_s"};
-inline constexpr Unit cycles{"cycles", "_cycles"};
 
-/// Every unit there is, for reading a unit off the end of a name.
-inline constexpr std::array all{none, second, hertz, metre, metre_per_second, newton, newton_per_second, newton_per_metre, newton_per_metre5, newton_second_per_metre, second_per_metre, kilogram, per_second, cycles};
+/// Every unit that the end of a name can tell, those of recordings among them.
+inline constexpr std::array known{second,
+                                  hertz,
+                                  cycles,
+                                  per_second,
+                                  kilogram,
+                                  metre,
+                                  metre_per_second,
+                                  second_per_metre,
+                                  newton,
+                                  newton_per_second,
+                                  newton_per_metre,
+                                  newton_per_metre5,
+                                  newton_second_per_metre,
+                                  Unit{"ms", "_ms"},
+                                  Unit{"us", "_us"},
+                                  Unit{"ns", "_ns"},
+                                  Unit{"mm", "_mm"},
+                                  Unit{"mm/s", "_mm_per_s"},
+                                  Unit{"m/s^2", "_m_per_s2"},
+                                  Unit{"rad", "_rad"},
+                                  Unit{"rad/s", "_rad_per_s"},
+                                  Unit{"rad/s^2", "_rad_per_s2"},
+                                  Unit{"deg", "_deg"},
+                                  Unit{"mN", "_mN"},
+                                  Unit{"kN", "_kN"},
+                                  Unit{"N m", "_N_m"},
+                                  Unit{"A", "_A"},
+                                  Unit{"mA", "_mA"},
+                                  Unit{"V", "_V"},
+                                  Unit{"Pa", "_Pa"},
+                                  Unit{"bar", "_bar"}};
 }  // namespace units
+
+/// The unit that the end of `name` tells, the longest of those that fit (`torque_N_m` is in N m, not in m); none where
+/// there is no such end or nothing before it.
+constexpr Unit unit_at_end_of(std::string_view name) {
+  Unit found = units::none;
+  for (const Unit& unit : units::known) {
+    const std::string_view suffix = unit.suffix;
+    const bool fits = name.size() > suffix.size() && name.ends_with(suffix);
+    if (fits && suffix.size() > std::string_view(found.suffix).size()) found = unit;
+  }
+  return found;
+}
 
 }  // namespace tactus

@@ -23,7 +23,7 @@ std::string in_quotes(std::string_view text);
 /// `text` without blanks at either end.
 std::string_view trim(std::string_view text);
 
-/// The candidate with the smallest edit distance to `name`, or empty when none is similar.
+/// The readable candidate that `name` was probably meant to be, or empty when none is near.
 std::string nearest(std::string_view name, std::span<const Entry> candidates);
 
 /// The error for a name that a file does not hold: the nearest name, and what the file has.

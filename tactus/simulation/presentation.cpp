@@ -9,24 +9,9 @@
 
 namespace tactus::simulation {
 
-namespace {
-
-/// The unit whose suffix `name` ends with, the longest of those that fit.
-Unit unit_of(std::string_view name) {
-  Unit found = units::none;
-  for (const Unit& unit : units::all) {
-    if (name.ends_with(unit.suffix) && std::string_view(unit.suffix).size() > std::string_view(found.suffix).size()) {
-      found = unit;
-    }
-  }
-  return found;
-}
-
-}  // namespace
-
 report::Axis axis_of(std::string_view key) {
   const std::string_view name = configuration::key_of(key);
-  const Unit unit = unit_of(name);
+  const Unit unit = unit_at_end_of(name);
   std::string words(name.substr(0, name.size() - std::string_view(unit.suffix).size()));
   std::replace(words.begin(), words.end(), '_', ' ');
   return {.label = words, .unit = unit.symbol};

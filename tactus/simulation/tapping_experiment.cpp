@@ -33,7 +33,7 @@ report::Table table_of(const std::vector<TappingRun>& runs) {
     std::vector<std::string> cells = settings_cells(run.settings);
     cells.insert(cells.end(), {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
                                settling(m.settling_time_median_s), settling(m.settling_time_p90_s),
-                               report::number(m.contacts_median, 3), report::number(m.peak_force_N, 3),
+                               format_number(m.contacts_median), report::number(m.peak_force_N, 3),
                                report::number(1e3 * m.residual_rms_N, 3), name_of(m.verdict)});
     table.add_row(cells);
   }

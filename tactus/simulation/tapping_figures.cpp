@@ -17,7 +17,8 @@ using report::Rule;
 
 constexpr std::string_view cancellation_key = "control.cancellation";
 constexpr std::size_t most_columns = 6;
-constexpr double before_touch_s = 0.02;
+constexpr double shown_before_touch_s = 0.01;
+constexpr double shown_after_touch_s = 0.15;
 
 /// Runs that share a value of cancellation, or all runs where it is not varied.
 struct Group {
@@ -60,7 +61,7 @@ Line trace_line(const TappingRun& run, std::string name, int colour, Value&& val
   Line line{.name = std::move(name), .x = {}, .y = {}, .colour = colour};
   for (const Teleoperator::Record& record : run.trace) {
     const double since_touch_s = record.time_s - run.first_touch_s;
-    if (since_touch_s < -before_touch_s) continue;
+    if (since_touch_s < -shown_before_touch_s || since_touch_s > shown_after_touch_s) continue;
     line.x.push_back(1e3 * since_touch_s);
     line.y.push_back(value(record));
   }
@@ -82,14 +83,17 @@ Panel position_panel(const TappingRun& run) {
   const auto millimetres = [](double Teleoperator::Record::*member) {
     return [member](const Teleoperator::Record& record) { return 1e3 * record.*member; };
   };
+  Line command = trace_line(run, "slave command", 1, millimetres(&Teleoperator::Record::command_m));
+  command.dash = report::Dash::dashed;
   return {.title = {},
           .x = time_axis(),
           .y = {.label = "position", .unit = "mm"},
-          .lines = {trace_line(run, "slave command", 1, millimetres(&Teleoperator::Record::command_m)),
-                    trace_line(run, "master, measured", 2, millimetres(&Teleoperator::Record::master_position_m)),
+          // The command last and dashed: without cancellation it lies on the measured position.
+          .lines = {trace_line(run, "master, measured", 2, millimetres(&Teleoperator::Record::master_position_m)),
                     trace_line(run, "induced motion, estimated", 3,
                                millimetres(&Teleoperator::Record::induced_position_m)),
-                    trace_line(run, "slave tip", 4, millimetres(&Teleoperator::Record::tip_position_m))},
+                    trace_line(run, "slave tip", 4, millimetres(&Teleoperator::Record::tip_position_m)),
+                    command},
           .rules = {}};
 }
 
