@@ -73,6 +73,10 @@ Halving halving(double force_gain, CancellationMode cancellation) {
 }
 
 TEST(DefaultTapping, HalvingThePlantsStepsChangesNoFigureOfASettlingConditionByMoreThanAPercent) {
+  // This holds for the experiment as it is. A settling time is the last crossing of a threshold, so it jumps by up to
+  // half a period of the ringing, some milliseconds, when a peak of one tap passes under the threshold; over other
+  // seeds and ensembles the median moved by up to 0.7 % and the 90th percentile by up to 2.4 %. Should this fail where
+  // the test of the trajectories holds, then such a jump has been met, and the step is not at fault.
   constexpr double percent = 0.01;
   for (const auto& [gain, mode] : {std::pair{1.0, CancellationMode::off}, std::pair{1.0, CancellationMode::on},
                                    std::pair{3.0, CancellationMode::on}, std::pair{15.0, CancellationMode::on}}) {

@@ -136,6 +136,65 @@ TEST(TappingEnsemble, EveryTapDrawsItsOwnErrorOfTheModel) {
   for (const Trace& trace : all) EXPECT_EQ(trace.back().master_position_m, all.front().back().master_position_m);
 }
 
+/// A model of which one element alone decides the estimate, the others being next to nothing or next to rigid.
+TappingParams params_with_simple_model() {
+  TappingParams params = params_with_equal_taps();
+  params.task.taps = 16;
+  params.task.model_error = 0.2;
+  control::MasterModel& model = params.control.model;
+  for (auto* mass : {&model.motor, &model.drum}) *mass = {.mass_kg = 1e-5, .friction_N = 0.0};
+  model.handle.mass_kg = 1e-5;
+  model.cable = {.stiffness_N_per_m = 1e7, .damping_N_s_per_m = 10.0};
+  model.linkage.stiffness_N_per_m = 1e7;
+  model.linkage.damping_N_s_per_m = 10.0;
+  model.linkage.hysteretic_fraction = 0.0;
+  model.hand.stiffness_N_per_m = 0.0;
+  model.hand.quintic_stiffness_N_per_m5 = 0.0;
+  model.hand.damping_N_s_per_m = 10.0;
+  return params;
+}
+
+/// The taps feel the same force, and the estimate is that force over the element: so the element's factor in each tap,
+/// from the estimates with and without an error.
+void expect_even_draws(TappingParams params) {
+  const auto largest = [&params] {
+    std::vector<double> all;
+    for (const Trace& trace : traces(params)) all.push_back(largest_estimate(trace));
+    return all;
+  };
+  const std::vector<double> with = largest();
+  params.task.model_error = 0.0;
+  params.task.taps = 1;
+  const double nominal = largest().front();
+  std::vector<double> factors;
+  for (const double estimate : with) factors.push_back(nominal / estimate);
+  ASSERT_EQ(factors.size(), 16U);
+  std::sort(factors.begin(), factors.end());
+  EXPECT_GT(factors.front(), 0.799);
+  EXPECT_LT(factors.front(), 0.9);
+  EXPECT_LT(factors.back(), 1.201);
+  EXPECT_GT(factors.back(), 1.1);
+  EXPECT_EQ(std::adjacent_find(factors.begin(), factors.end()), factors.end()) << "two taps drew the same";
+}
+
+TEST(TappingEnsemble, DrawsTheOperatorsDampingUpToTwentyPercentEachWay) {
+  expect_even_draws(params_with_simple_model());
+}
+
+TEST(TappingEnsemble, DrawsTheLinkagesStiffnessUpToTwentyPercentEachWay) {
+  TappingParams params = params_with_simple_model();
+  params.control.model.linkage.stiffness_N_per_m = 1000.0;
+  params.control.model.hand.stiffness_N_per_m = 1e7;
+  expect_even_draws(params);
+}
+
+TEST(TappingEnsemble, DrawsTheMassesUpToTwentyPercentEachWay) {
+  TappingParams params = params_with_simple_model();
+  params.control.model.motor.mass_kg = 0.5;
+  params.control.model.hand.damping_N_s_per_m = 0.0;
+  expect_even_draws(params);
+}
+
 TEST(TappingEnsemble, AFixedMismatchChangesTheEstimateWithoutAnyDraw) {
   TappingParams params = params_with_equal_taps();
   params.task.taps = 1;
