@@ -40,9 +40,9 @@ struct Request {
 
 /// What came out, for every reader.
 struct Outcome {
-  std::string text;  ///< tables for a terminal
-  std::string json;  ///< one document
-  std::string html;  ///< a self-contained report
+  std::string text;                     ///< tables for a terminal
+  std::string json;                     ///< one document
+  std::string html;                     ///< a self-contained report
   std::vector<report::Figure> figures;  ///< those of the report
 };
 

@@ -88,7 +88,8 @@ ForceDisplay::Playing ForceDisplay::play(double scale, std::int64_t repeat) cons
   hand.tremor_frequency_Hz *= draw.uniform(0.8, 1.2);
   hand.tremor_phase_cycles = draw.uniform();
   // Where the force starts falls anywhere between two counts of the encoder.
-  const double start_m = -params_.task.speed_m_per_s * approach_s + params_.master.encoder.resolution_m * draw.uniform();
+  const double start_m =
+      -params_.task.speed_m_per_s * approach_s + params_.master.encoder.resolution_m * draw.uniform();
 
   auto master = *mechanics::CableDrivenMaster::make(params_.master, hand.grip, Seconds{clock_.substep_s});
   auto person = *mechanics::Operator::make(hand, Seconds{clock_.tick_s});
@@ -109,8 +110,7 @@ ForceDisplay::Playing ForceDisplay::play(double scale, std::int64_t repeat) cons
     const double true_m = master.mechanism().motor_position_m();
     const double measured_m = master.measure();
     for (std::size_t i = 0; i < variants.size(); ++i) {
-      const double estimate_m =
-          cancellations[i].step({.measured_position_m = measured_m, .motor_force_N = -force_N});
+      const double estimate_m = cancellations[i].step({.measured_position_m = measured_m, .motor_force_N = -force_N});
       if (tick >= approach_ticks) playing.estimate_m[i].push_back(estimate_m);
     }
     if (tick >= approach_ticks) {
