@@ -20,9 +20,9 @@ test: configure ## Build everything and run the test suite
 	cmake --build --preset release --parallel $(JOBS)
 	ctest --preset release --parallel $(JOBS)
 
-bench: configure ## Build everything and run the benchmarks
-	cmake --build --preset release --parallel $(JOBS)
-	@set -e; for program in $(BUILD)/bin/bench_*; do echo "== $$program"; "$$program"; done
+bench: configure ## Build and run the benchmarks
+	cmake --build --preset release --parallel $(JOBS) --target bench_tactus
+	$(BUILD)/bin/bench_tactus
 
 format: ## Format every source file in place
 	@scripts/install-deps --checks

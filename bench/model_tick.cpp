@@ -20,8 +20,10 @@ using control::InducedMotionModel;
 constexpr int euler_substeps = 5;
 constexpr const char* section = "One tick (200 us) of the model of induced motion";
 
+/// Like the peer: with the paper's linear linkage, and friction on the induced velocity alone.
 InducedMotionModel make_model(CancellationStep step) {
   InducedMotionModel::Params params;
+  params.master.linkage.hysteretic_fraction = 0.0;
   params.step = step;
   params.friction = control::ModelFriction::at_rest;
   return *InducedMotionModel::make(params, Seconds{tick_s});
@@ -66,6 +68,7 @@ void add_model_tick() {
   add_ticks("odeint projected", make_peer(PeerModel::Friction::projected), tick_peer);
   add_ticks("odeint tanh", make_peer(PeerModel::Friction::hyperbolic), tick_peer);
 
+  add_ticks("hysteretic", *InducedMotionModel::make({}, Seconds{tick_s}), tick_model);
   const auto cancellation = *control::Cancellation::make({}, Seconds{tick_s});
   add_ticks("cancellation", cancellation, [](control::Cancellation& whole, double force_N) {
     const double measured_m = whole.model().motor_position_m();
@@ -100,7 +103,8 @@ Findings model_tick(const Times& times) {
   using enum Finding::Goal;
   return {{section, "exact step", tick_ns("exact"), "ns"},
           {section, "Euler, 5 substeps", tick_ns("euler"), "ns"},
-          {section, "cancellation around the exact step", tick_ns("cancellation"), "ns"},
+          {section, "exact step with a hysteretic linkage, the default", tick_ns("hysteretic"), "ns"},
+          {section, "cancellation around that", tick_ns("cancellation"), "ns"},
           {section, "odeint Euler, 5 substeps, projected friction", tick_ns("odeint projected"), "ns"},
           {section, "odeint Euler, 5 substeps, tanh friction", tick_ns("odeint tanh"), "ns"},
           {section, "exact / odeint with projected friction", tick_ns("exact") / tick_ns("odeint projected"), "",

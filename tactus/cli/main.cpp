@@ -1,6 +1,9 @@
+#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 
+#include <csignal>
+#include <iostream>
 #include <string>
 #include <string_view>
 
@@ -8,8 +11,7 @@ namespace {
 
 /// A word of a command line as a person would type it into a shell.
 std::string shell_word(std::string_view word) {
-  constexpr std::string_view plain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
   if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos) return std::string(word);
   std::string quoted = "'";
   for (const char c : word) {
@@ -22,23 +24,38 @@ std::string shell_word(std::string_view word) {
   return quoted + "'";
 }
 
+int refuse(std::string_view why) {
+  std::cerr << "tactus: " << why << ": `tactus --help` and `tactus COMMAND --help` list what there is\n";
+  return 2;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   std::string command = "tactus";
   for (int i = 1; i < argc; ++i) command += " " + shell_word(argv[i]);
 
+  // A reader of the results that went away is an error like a full disk and not the end.
+  std::signal(SIGPIPE, SIG_IGN);
   int status = 0;
   CLI::App app{"Crisp and stable force-reflecting teleoperation", "tactus"};
   app.set_version_flag("--version", "tactus " + std::string(tactus::version()));
-  app.require_subcommand(1);
+  // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
+  app.require_subcommand(0, 1);
   tactus::cli::add_run(app, command, status);
   tactus::cli::add_schema(app, status);
   try {
     app.parse(argc, argv);
+    if (app.get_subcommands().empty()) return refuse("A command is required");
   } catch (const CLI::ParseError& error) {
     // Help and version come this way too, with a code of 0.
-    return app.exit(error) == 0 ? 0 : 2;
+    if (error.get_exit_code() != 0) return refuse(error.what());
+    app.exit(error);
   }
-  return status;
+  if (status != 0) return status;
+  if (const auto error = tactus::cli::flush_standard_output()) {
+    std::cerr << "tactus: " << tactus::describe(*error) << "\n";
+    return tactus::exit_status(*error);
+  }
+  return 0;
 }

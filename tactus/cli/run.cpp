@@ -1,13 +1,16 @@
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
-#include <tactus/report/files.hpp>
 #include <tactus/report/figure.hpp>
+#include <tactus/report/files.hpp>
 #include <tactus/simulation/experiment.hpp>
 
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace tactus::cli {
@@ -18,7 +21,7 @@ struct RunOptions {
   std::string file;
   std::vector<std::string> set;
   std::vector<std::string> vary;
-  std::string out;
+  std::optional<std::string> out;
   bool json = false;
 };
 
@@ -40,7 +43,23 @@ Result<simulation::Request> make_request(const RunOptions& options, const std::s
                              .command = command};
 }
 
+/// Proves that results could be written to `folder`, before long work, without making it: a request that turns out to
+/// be wrong leaves nothing behind.
+Check check_writable(const std::string& folder) {
+  if (folder.empty()) {
+    return Error{.code = ErrorCode::syntax,
+                 .parameter = {},
+                 .message = "no folder is named: write one, as in --out results",
+                 .place = "--out"};
+  }
+  std::filesystem::path there = folder;
+  std::error_code ignored;
+  while (there.has_relative_path() && !std::filesystem::exists(there, ignored)) there = there.parent_path();
+  return report::prepare_directory(there.empty() ? "." : there);
+}
+
 Check write_results(const std::filesystem::path& folder, const simulation::Outcome& outcome) {
+  if (auto error = report::prepare_directory(folder)) return error;
   for (std::size_t i = 0; i < outcome.figures.size(); ++i) {
     const auto path = folder / ("figure-" + std::to_string(i + 1) + ".svg");
     if (auto error = report::write_file(path, report::to_svg(outcome.figures[i]))) return error;
@@ -54,8 +73,8 @@ Check run(const RunOptions& options, const std::string& command) {
   if (!request) return request.error();
   const auto experiment = simulation::choose_experiment(request->document);
   if (!experiment) return experiment.error();
-  if (!options.out.empty()) {
-    if (auto error = report::prepare_directory(options.out)) return error;
+  if (options.out) {
+    if (auto error = check_writable(*options.out)) return error;
   }
 
   Result<simulation::Outcome> outcome = [&] {
@@ -64,16 +83,11 @@ Check run(const RunOptions& options, const std::string& command) {
   }();
   if (!outcome) return outcome.error();
 
-  std::cout << (options.json ? outcome->json : outcome->text) << std::flush;
-  if (!std::cout) {
-    return Error{.code = ErrorCode::unwritable,
-                 .parameter = {},
-                 .message = "the results could not be written: give it a place with room",
-                 .place = "standard output"};
-  }
-  if (options.out.empty()) return std::nullopt;
-  if (auto error = write_results(options.out, *outcome)) return error;
-  (options.json ? std::cerr : std::cout) << "Report: " << (std::filesystem::path(options.out) / "report.html").string()
+  std::cout << (options.json ? outcome->json : outcome->text);
+  if (auto error = flush_standard_output()) return error;
+  if (!options.out) return std::nullopt;
+  if (auto error = write_results(*options.out, *outcome)) return error;
+  (options.json ? std::cerr : std::cout) << "Report: " << (std::filesystem::path(*options.out) / "report.html").string()
                                          << "\n";
   return std::nullopt;
 }
@@ -84,7 +98,9 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* verb = app.add_subcommand("run", "Run an experiment in virtual time");
   verb->add_option("EXPERIMENT", options->file, "Experiment file (TOML)")->required();
-  verb->add_option("--set", options->set, "Override one value: key=value")->type_name("KEY=VALUE")->allow_extra_args(false);
+  verb->add_option("--set", options->set, "Override one value: key=value")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
   verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations: key=a,b,c")
       ->type_name("KEY=A,B,C")
       ->allow_extra_args(false);

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
+
+#include <CLI/CLI.hpp>
 
 /// The verbs of the `tactus` command. Each adds its subcommand to `app`; when chosen, it does its work and leaves its
 /// exit status (0 done, 1 the job failed, 2 the request was wrong) in `status`.

@@ -118,7 +118,11 @@ void InducedMotionModel::precompute_exact_step() {
 
 InducedMotionModel::FrictionRange InducedMotionModel::friction_range(double intended_velocity) const noexcept {
   const double band = params_.friction_band_m_per_s;
-  const double w = params_.friction == ModelFriction::total_velocity ? intended_velocity : 0.0;
+  // Faster than any hand; keeps the products below finite whatever the velocity.
+  constexpr double fastest_m_per_s = 1e3;
+  const double w = params_.friction == ModelFriction::total_velocity
+                       ? std::clamp(intended_velocity, -fastest_m_per_s, fastest_m_per_s)
+                       : 0.0;
   const double used = std::clamp(w / band, -1.0, 1.0);
   return {.least_share = used - 1.0, .most_share = used + 1.0, .offset_m_per_s = mechanics::soft_threshold(w, band)};
 }

@@ -101,15 +101,15 @@ class CableChain {
   [[nodiscard]] double tip_velocity_m_per_s() const noexcept { return state_.velocity_m_per_s[2]; }
 
  private:
-  /// All that depends on the length of a step. The matrix is M + h/2 B, tridiagonal.
+  /// All that depends on the length of a step. The matrix M + h/2 B is tridiagonal; the tip is eliminated first, so
+  /// that what is left couples motor and drum alone.
   struct Step {
     double h_s, half_s;
     double cable_damping, linkage_damping, grip_damping;  ///< h/2 b of each
-    double i00, i01, i02, i11, i12, i22;                  ///< the inverse of the matrix
-    double drum_on_motor, tip_on_motor;                   ///< i01 and i02 over i00
-    double motor_on_drum, tip_on_drum;                    ///< i01 and i12 over i11
-    double tip_to_hold_drum;                              ///< momentum that holds the drum, per momentum of the tip
-    double motor_impulse, drum_impulse;                   ///< the most that friction can give
+    double tip_on_drum, inverse_tip;      ///< the tip's row: h/2 b of the linkage, and 1, over its diagonal
+    double i00, i01, i11;                 ///< the inverse of what is left
+    double drum_on_motor, motor_on_drum;  ///< i01/i00 and i01/i11
+    double motor_impulse, drum_impulse;   ///< the most that friction can give
   };
 
   [[nodiscard]] Step step_of(double duration_s) const noexcept;
@@ -147,21 +147,21 @@ inline void CableChain::advance(const Input& input, const Step& step) noexcept {
 
   // Each impulse is the clamp, to what friction can give, of what stops its mass while the other impulse acts. Put one
   // into the other: a line of slope below one through what stops both masses, clamped because the other impulse is. The
-  // fixed point of a clamped line is the fixed point of the line, clamped alike. With both at rest the motor has no
-  // momentum, the drum what the tip drags at it, so a chain at rest stays there exactly.
+  // fixed point of a clamped line is the fixed point of the line, clamped alike. What stops both masses takes all their
+  // momentum, so a mass at rest keeps exactly none.
   const auto impulse = [](double stops_both, double stops_alone, double reach_of_other, double most) {
     const double coupled = std::clamp(stops_both, stops_alone - reach_of_other, stops_alone + reach_of_other);
     return std::clamp(coupled, -most, most);
   };
-  const double held1 = step.tip_to_hold_drum * p2;
-  const double alone0 = -(p0 + step.drum_on_motor * p1 + step.tip_on_motor * p2);
-  const double alone1 = -(p1 + step.motor_on_drum * p0 + step.tip_on_drum * p2);
-  const double q0 = p0 + impulse(-p0, alone0, step.drum_on_motor * step.drum_impulse, step.motor_impulse);
-  const double q1 = p1 + impulse(held1 - p1, alone1, step.motor_on_drum * step.motor_impulse, step.drum_impulse);
+  const double p1_dragged = p1 + step.tip_on_drum * p2;
+  const double q0 = p0 + impulse(-p0, -(p0 + step.drum_on_motor * p1_dragged), step.drum_on_motor * step.drum_impulse,
+                                 step.motor_impulse);
+  const double q1 = p1_dragged + impulse(-p1_dragged, -(p1_dragged + step.motor_on_drum * p0),
+                                         step.motor_on_drum * step.motor_impulse, step.drum_impulse);
 
-  v[0] = step.i00 * q0 + step.i01 * q1 + step.i02 * p2;
-  v[1] = step.i01 * q0 + step.i11 * q1 + step.i12 * p2;
-  v[2] = step.i02 * q0 + step.i12 * q1 + step.i22 * p2;
+  v[0] = step.i00 * q0 + step.i01 * q1;
+  v[1] = step.i01 * q0 + step.i11 * q1;
+  v[2] = step.inverse_tip * p2 + step.tip_on_drum * v[1];
   for (std::size_t i = 0; i < 3; ++i) x[i] += step.half_s * v[i];
 }
 

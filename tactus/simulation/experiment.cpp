@@ -65,6 +65,17 @@ Result<std::vector<Settings>> combinations(const std::vector<Variation>& variati
   return all;
 }
 
+Error blame_variation(Error error, const Settings& settings) {
+  constexpr std::string_view set = "--set ";
+  for (const auto& setting : settings) {
+    if (error.place.starts_with(std::string(set) + setting.first + "=")) {
+      error.place.replace(0, set.size(), "--vary ");
+      break;
+    }
+  }
+  return error;
+}
+
 std::span<const Experiment* const> experiments() {
   static const TappingExperiment tapping;
   static const ForceDisplayExperiment force_display;

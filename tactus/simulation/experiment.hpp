@@ -82,6 +82,10 @@ struct Cases {
   std::string first_configuration;
 };
 
+/// The error with the option that a person wrote as its place: a varied value is tried as an override, and the document
+/// calls every override `--set`.
+Error blame_variation(Error error, const Settings& settings);
+
 /// Reads the parameters of each combination as `Params` and turns them into a `Prepared` with `prepare`, which returns
 /// a `Result`, before any combination is run.
 template <class Params, class Prepared, class Prepare>
@@ -92,12 +96,12 @@ Result<Cases<Prepared>> prepare_cases(const Request& request, Prepare&& prepare)
   for (const Settings& settings : *every) {
     configuration::Document document = request.document;
     for (const auto& [key, value] : settings) {
-      if (auto error = document.set(key + "=" + value)) return *std::move(error);
+      if (auto error = document.set(key + "=" + value)) return blame_variation(*std::move(error), settings);
     }
     const auto params = document.read<Params>();
-    if (!params) return params.error();
+    if (!params) return blame_variation(params.error(), settings);
     Result<Prepared> prepared = prepare(*params);
-    if (!prepared) return document.locate(prepared.error());
+    if (!prepared) return blame_variation(document.locate(prepared.error()), settings);
     if (cases.all.empty()) cases.first_configuration = configuration::to_toml(*params);
     cases.all.push_back({settings, *std::move(prepared)});
   }

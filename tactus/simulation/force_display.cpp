@@ -1,10 +1,12 @@
 #include <tactus/signal/random.hpp>
 #include <tactus/signal/second_order_filter.hpp>
+#include <tactus/simulation/draws.hpp>
 #include <tactus/simulation/force_display.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string_view>
 
 namespace tactus::simulation {
 
@@ -32,6 +34,17 @@ Result<control::Cancellation> make_variant(const ForceDisplayParams& params, con
                  .step = params.control.cancellation_step,
                  .friction = variant.friction}},
       Seconds{1.0 / params.servo.rate_Hz});
+}
+
+/// The error of a cancellation under the keys that this experiment has for its parameters.
+Error key_of_display(Error error) {
+  constexpr std::string_view master = "model.master.";
+  if (error.parameter == "model.step") {
+    error.parameter = "cancellation_step";
+  } else if (error.parameter.starts_with(master)) {
+    error.parameter = "model." + error.parameter.substr(master.size());
+  }
+  return error;
 }
 
 double square_sum(const std::vector<double>& values) {
@@ -69,12 +82,15 @@ Result<ForceDisplay> ForceDisplay::make(const ForceDisplayParams& params) {
   const auto clock = Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
   const auto master = mechanics::CableDrivenMaster::make(params.master, params.person.grip, Seconds{clock->substep_s});
-  if (!master) return under("master", master.error());
+  if (!master) {
+    const Error& error = master.error();
+    return under(error.parameter.starts_with("grip.") ? "operator" : "master", error);
+  }
   const auto person = mechanics::Operator::make(params.person, Seconds{clock->tick_s});
   if (!person) return under("operator", person.error());
   for (const Variant& variant : variants) {
     const auto cancellation = make_variant(params, variant);
-    if (!cancellation) return under("control", cancellation.error());
+    if (!cancellation) return under("control", key_of_display(cancellation.error()));
   }
   auto profile_N = load_profile(params);
   if (!profile_N) return profile_N.error();
@@ -87,6 +103,7 @@ ForceDisplay::Playing ForceDisplay::play(double scale, std::int64_t repeat) cons
       signal::Random(static_cast<std::uint64_t>(params_.task.seed)).fork(static_cast<std::uint64_t>(repeat));
   hand.tremor_frequency_Hz *= draw.uniform(0.8, 1.2);
   hand.tremor_phase_cycles = draw.uniform();
+  limit_to_bounds(hand);
   // Where the force starts falls anywhere between two counts of the encoder.
   const double start_m =
       -params_.task.speed_m_per_s * approach_s + params_.master.encoder.resolution_m * draw.uniform();

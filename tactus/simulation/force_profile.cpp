@@ -59,17 +59,14 @@ Result<std::vector<double>> load_profile(const ForceDisplayParams& params) {
   const auto begin = signal->values.begin() + static_cast<std::ptrdiff_t>(first);
   signal->values = std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count));
 
-  double scale_N = profile.scale_N;
-  if (scale_N == 0.0) {
-    const double largest = largest_magnitude(signal->values);
-    if (largest == 0.0) {
-      return Error{.code = ErrorCode::inconsistent,
-                   .parameter = "profile.start_s",
-                   .message = "the piece of the recording is zero throughout: choose one with a force in it",
-                   .place = {}};
-    }
-    scale_N = limit_N / largest;
+  const double largest = largest_magnitude(signal->values);
+  if (largest == 0.0) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "profile.start_s",
+                 .message = "the piece of the recording is zero throughout: choose one with a force in it",
+                 .place = {}};
   }
+  const double scale_N = profile.scale_N == 0.0 ? limit_N / largest : profile.scale_N;
   auto resampled = recording::resample(*signal, Seconds{tick_s});
   if (!resampled) return under("profile", resampled.error());
   for (double& value : resampled->values) value = std::clamp(scale_N * value, -limit_N, limit_N);

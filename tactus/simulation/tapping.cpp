@@ -1,4 +1,5 @@
 #include <tactus/signal/random.hpp>
+#include <tactus/simulation/draws.hpp>
 #include <tactus/simulation/quantile.hpp>
 #include <tactus/simulation/tapping.hpp>
 
@@ -53,6 +54,7 @@ Result<TappingEnsemble> TappingEnsemble::make(const TappingParams& params) {
     tap.params.person.tremor_amplitude_m *= between(0.5, 1.5);
     tap.params.person.tremor_frequency_Hz *= between(0.8, 1.2);
     tap.params.person.tremor_phase_cycles = draw.uniform();
+    limit_to_bounds(tap.params.person);
     tap.params.slave.force_sensor.seed = static_cast<std::int64_t>(draw.bits() >> 1);
     ModelMismatch mismatch = task.mismatch;
     mismatch.mass *= between(1.0 - task.model_error, 1.0 + task.model_error);
