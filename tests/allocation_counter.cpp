@@ -28,7 +28,9 @@ std::uint64_t allocation_count() noexcept { return count.load(std::memory_order_
 
 #if TACTUS_SANITIZED_HEAP
 
-#include <sanitizer/allocator_interface.h>
+// Declared here because GCC ships the function without its header.
+extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*on_malloc)(const volatile void*, std::size_t),
+                                                         void (*on_free)(const volatile void*));
 
 namespace {
 [[maybe_unused]] const int installed = __sanitizer_install_malloc_and_free_hooks(

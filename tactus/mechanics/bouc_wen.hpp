@@ -17,7 +17,9 @@ namespace tactus::mechanics {
 /// solution (first elastic down to z = 0, then exponential toward ±d), so the spring is exactly rate-independent and
 /// any step size is exact; β = γ also keeps it passive. The textbook's Euler step of ż is neither.
 ///
-/// The parameters mean the same as the elasto-slip spring's, so either can be put in the other's place.
+/// The parameters are those of the elasto-slip spring, so either can stand in the other's place; only the slip
+/// deflection differs in meaning, because an exponential has no last slip.
+///
 /// `stiffness_N_per_m` is the tip-to-tip slope K of a closed loop of amplitude A = `reference_deflection_m`, in which z
 /// swings between ±Z: K = K₀ (1 − h + h·Z/A), where Z = d·(1 − exp(−(2A − Z)/d)) is solved once in `make`. The loop's
 /// area is 2 h K₀ (2d (A − Z) − Z²/2). With d = 0.65 times the elasto-slip spring's slip deflection, as the defaults

@@ -52,7 +52,8 @@ struct ElastoSlipElements {
 ///
 /// Why not Bouc–Wen (`BoucWenSpring`, kept as the rival): elasto-slip closes its minor loops exactly (no creep under a
 /// small force ripple on a constant force), costs clamps and no exponential, and is exact for any step size.
-/// Sources: W. D. Iwan, A distributed-element model for hysteresis, J. Appl. Mech. 33, 1966; G. Masing, 1926.
+/// Sources: W. D. Iwan, A distributed-element model for hysteresis, J. Appl. Mech. 33, 1966; G. Masing, Eigenspannungen
+/// und Verfestigung beim Messing, Proc. 2nd Int. Congr. Appl. Mech., 1926.
 class ElastoSlipSpring {
  public:
   struct Params {

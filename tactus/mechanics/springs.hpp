@@ -55,9 +55,12 @@ class LinearSpring {
 /// Spring that stiffens with the fifth power: F = k δ + k₅ c⁵ + b δ̇, c = δ clamped to ±`guard_m`. No state.
 ///
 /// This is the operator in the controller's model (paper A, Table I): 3.125e13 N/m^5 · (2 mm)⁵ = 1 N holds the model's
-/// slow deflection within 2 mm at the largest displayed force. The guard is there because the force is held over a
-/// step: beyond it the tangent 5 k₅ δ⁴ would be stiffer than a step of 40 µs can follow, and one large excursion would
-/// blow up. Within the guard the force is exact, beyond it the quintic part stays at its value there.
+/// slow deflection within 2 mm at the largest displayed force.
+///
+/// The guard is there because the force is held over a step. Against the damper alone a held spring is stable while its
+/// tangent times dt/b stays below 2; the tangent is 5 k₅ δ⁴, and for 200 µs and 23 N s/m that ends near 6 mm: one
+/// larger excursion would blow up. Within the guard the force is exact, beyond it the quintic part stays at its value
+/// there.
 class QuinticSpring {
  public:
   struct Params {

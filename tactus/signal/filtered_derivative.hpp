@@ -12,12 +12,15 @@ namespace tactus::signal {
 /// Velocity (1/s times the unit of the input) from sampled positions, low-passed at `cutoff_Hz`.
 ///
 /// v += α·((x − x_before)/dt − v). The pole 1 − α is placed so that at the cutoff the gain is exactly 3 dB below that
-/// of the ideal differentiator, 2π·cutoff/√2. With x = π·cutoff·dt and m = 4x²·sin²x / (2 sin²x − x²) that asks for α²
-/// = m·(1 − α), and the root that lies between 0 and 1 is α = m / (√(m + m²/4) + m/2). The usual α = ω_c·dt / (1 +
-/// ω_c·dt) puts the −3 dB point 10 % low already at a fifteenth of the sample rate, and a bilinear differentiator rings
-/// at half the sample rate. The first sample after `make` or `reset` gives zero velocity: only a difference is evidence
-/// of motion, so a position that starts far from zero gives no kick. A ramp gives its exact slope once the transient is
-/// over. Range: 0 < cutoff < 0.44 of the sample rate; beyond, a backward difference alone has already lost 3 dB.
+/// of the ideal differentiator, 2π·cutoff/√2. With x = π·cutoff·dt and m = 4x²·sin²x / (2 sin²x − x²) that asks for
+/// α² = m·(1 − α), and the root that lies between 0 and 1 is α = m / (√(m + m²/4) + m/2).
+///
+/// The usual α = ω_c·dt / (1 + ω_c·dt) puts the −3 dB point 16 % too low at a fifteenth of the sample rate, and the
+/// pole exp(−ω_c·dt) 1 % too low at a fifth; a bilinear differentiator would ring at half the sample rate.
+///
+/// The first sample after `make` or `reset` gives zero velocity: only a difference is evidence of motion, so a position
+/// that starts far from zero gives no kick. A ramp gives its exact slope once the transient is over.
+/// Range: 0 < cutoff < 0.44 of the sample rate; beyond, a backward difference alone has already lost 3 dB.
 class FilteredDerivative {
  public:
   struct Params {

@@ -16,8 +16,9 @@ enum class FilterKind { low_pass, high_pass, notch };
 
 /// The words for a filter kind in a file.
 constexpr auto enumerators(FilterKind) {
-  return std::array{Enumerator{FilterKind::low_pass, "low_pass"}, Enumerator{FilterKind::high_pass, "high_pass"},
-                    Enumerator{FilterKind::notch, "notch"}};
+  return std::array{Enumerator<FilterKind>{FilterKind::low_pass, "low_pass"},
+                    Enumerator<FilterKind>{FilterKind::high_pass, "high_pass"},
+                    Enumerator<FilterKind>{FilterKind::notch, "notch"}};
 }
 
 /// Second-order low-pass, high-pass (both Butterworth) or notch.
