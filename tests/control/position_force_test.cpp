@@ -97,7 +97,9 @@ TEST(PositionForceMaster, TheModelIsDrivenByTheForceThatTheGateLetThrough) {
   params.model.linkage.hysteretic_fraction = 0.0;
   params.gate = {.force_limit_N = 0.3, .rate_limit_N_per_s = 50.0};
   PositionForceMaster site = master(params);
-  InducedMotionModel reference = InducedMotionModel::make({}, Seconds{tick_s}).value();
+  InducedMotionModel::Params same;
+  same.master = params.model;
+  InducedMotionModel reference = InducedMotionModel::make(same, Seconds{tick_s}).value();
   for (int tick = 0; tick < 500; ++tick) {
     // With the command held where the model says, the intended position stays at zero and so does its velocity.
     const auto out = site.step(input(reference.motor_position_m(), tick % 100 < 50 ? 2.0 : -1.0));
