@@ -123,9 +123,10 @@ Result<Outcome> TappingExperiment::run(const Request& request, const Progress& p
 
   const report::Table table = table_of(runs);
   std::vector<report::Figure> figures = tapping_figures(runs);
+  std::string html = page_of(request, table, figures, cases->first_configuration);
   return Outcome{.text = table.to_text(),
                  .json = json_of(request, runs),
-                 .html = page_of(request, table, figures, cases->first_configuration),
+                 .html = std::move(html),
                  .figures = std::move(figures)};
 }
 
