@@ -157,10 +157,9 @@ Result<Outcome> ForceDisplayExperiment::run(const Request& request, const Progre
   const report::Table table = table_of(runs);
   std::vector<report::Figure> figures;
   for (const DisplayRun& run : runs) figures.push_back(figure_of(run));
-  return Outcome{.text = table.to_text(),
-                 .json = json_of(request, runs),
-                 .html = page_of(request, runs, table, figures, cases->first_configuration),
-                 .figures = std::move(figures)};
+  std::string html = page_of(request, runs, table, figures, cases->first_configuration);
+  return Outcome{
+      .text = table.to_text(), .json = json_of(request, runs), .html = std::move(html), .figures = std::move(figures)};
 }
 
 }  // namespace tactus::simulation

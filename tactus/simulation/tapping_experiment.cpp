@@ -127,10 +127,9 @@ Result<Outcome> TappingExperiment::run(const Request& request, const Progress& p
 
   const report::Table table = table_of(runs);
   std::vector<report::Figure> figures = tapping_figures(runs);
-  return Outcome{.text = table.to_text(),
-                 .json = json_of(request, runs),
-                 .html = page_of(request, table, figures, cases->first_configuration),
-                 .figures = std::move(figures)};
+  std::string html = page_of(request, table, figures, cases->first_configuration);
+  return Outcome{
+      .text = table.to_text(), .json = json_of(request, runs), .html = std::move(html), .figures = std::move(figures)};
 }
 
 }  // namespace tactus::simulation

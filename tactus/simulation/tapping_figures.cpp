@@ -13,7 +13,6 @@ namespace {
 using report::Figure;
 using report::Line;
 using report::Panel;
-using report::Rule;
 
 constexpr std::string_view cancellation_key = "control.cancellation";
 constexpr std::size_t most_columns = 6;
