@@ -34,17 +34,27 @@ class Cancellation {
 
   static Result<Cancellation> make(const Params& params, Seconds dt);
 
-  /// Real-time safe.
+  /// The position in m that the person intended, from the one measured now. Once a tick. Real-time safe.
+  double intended(double measured_position_m) noexcept {
+    const double intended_m = measured_position_m - model_.motor_position_m();
+    intended_velocity_m_per_s_ = intended_velocity_.step(intended_m);
+    return intended_m;
+  }
+  /// Advances the model to the next tick, under the force that really acts until then. Real-time safe.
+  void advance(double motor_force_N) noexcept {
+    model_.step({.motor_force_N = motor_force_N, .intended_velocity_m_per_s = intended_velocity_m_per_s_});
+  }
+  /// Both at once.
   Output step(const Input& input) noexcept {
-    const double intended_m = input.measured_position_m - model_.motor_position_m();
-    model_.step(
-        {.motor_force_N = input.motor_force_N, .intended_velocity_m_per_s = intended_velocity_.step(intended_m)});
+    const double intended_m = intended(input.measured_position_m);
+    advance(input.motor_force_N);
     return intended_m;
   }
 
   void reset() noexcept {
     model_.reset();
     intended_velocity_.reset();
+    intended_velocity_m_per_s_ = 0.0;
   }
 
   [[nodiscard]] const InducedMotionModel& model() const noexcept { return model_; }
@@ -55,6 +65,7 @@ class Cancellation {
 
   InducedMotionModel model_;
   signal::FilteredDerivative intended_velocity_;
+  double intended_velocity_m_per_s_ = 0.0;
 };
 
 }  // namespace tactus::control

@@ -55,7 +55,8 @@ Result<InducedMotionModel> InducedMotionModel::make(const Params& params, Second
   if (!linkage) return under("master.linkage", linkage.error());
   if (params.step == CancellationStep::euler) {
     const double substep = dt.value / euler_substeps(dt);
-    const Matrix6 growth = Matrix6::Identity() + substep * linear_part(params.master, linkage->initial_stiffness_N_per_m()).a;
+    const Matrix6 growth =
+        Matrix6::Identity() + substep * linear_part(params.master, linkage->initial_stiffness_N_per_m()).a;
     const double radius = growth.eigenvalues().cwiseAbs().maxCoeff();
     constexpr double round_off = 1e-9;
     if (radius > 1.0 + round_off) {

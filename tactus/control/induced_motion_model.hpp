@@ -70,8 +70,8 @@ struct MasterModel {
 /// and friction sticks exactly as at rest; with w = 0 the two kinds are the same.
 ///
 /// The exact step: x⁺ = Φ x + Γ u with Φ = exp(A·dt), Γ its integral, and u the motor force, the frictions and the
-/// quintic force and what the linkage lacks to its initial stiffness, held over the tick. Frictions are found at the end velocity, for both rubbing masses at once and
-/// exactly (`friction_forces`); nothing iterates.
+/// quintic force and what the linkage lacks to its initial stiffness, held over the tick. Frictions are found at the
+/// end velocity, for both rubbing masses at once and exactly (`friction_forces`); nothing iterates.
 ///
 /// Forces and motion are positive toward the environment, so a displayed force F_f enters as −F_f.
 class InducedMotionModel {

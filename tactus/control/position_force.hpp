@@ -1,11 +1,10 @@
 #pragma once
 
 #include <tactus/control/cancellation.hpp>
-#include <tactus/control/safety_gate.hpp>
+#include <tactus/control/servo_pd.hpp>
 #include <tactus/control/site.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
-#include <tactus/signal/filtered_derivative.hpp>
 
 /// Position-force control (paper A, Fig. 3): the slave follows the master's position, the master displays the force
 /// measured at the slave's tip. One class for each site.
@@ -33,7 +32,6 @@ class PositionForceMaster {
     CancellationStep cancellation_step = CancellationStep::exact;
     ModelFriction cancellation_friction = ModelFriction::total_velocity;
     MasterModel model;
-    SafetyGate::Params gate;
     static constexpr auto fields() {
       return std::tuple{
           field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
@@ -46,99 +44,62 @@ class PositionForceMaster {
           field("cancellation_step", &Params::cancellation_step, "How the model of cancellation is advanced."),
           field("cancellation_friction", &Params::cancellation_friction,
                 "On which velocity the model's Coulomb friction acts."),
-          field("model", &Params::model, "The controller's model of master and hand."),
-          field("gate", &Params::gate, "Last limits before the master's motor.")};
+          field("model", &Params::model, "The controller's model of master and hand.")};
     }
   };
-  struct Input {
-    MasterMeasurement measurement;
-    SlaveMessage message;
-  };
-  /// Command and message, and what the stages in between made, for the log.
-  struct Output {
-    double motor_force_N = 0.0;  ///< command to the amplifier, positive toward the environment
-    MasterMessage message;
-    double displayed_force_N = 0.0;    ///< what the person is to feel, positive when it pushes the hand back
-    double induced_position_m = 0.0;   ///< the model's estimate at this instant
-    double intended_position_m = 0.0;  ///< measured less induced
-  };
+  using Input = MasterInput;
+  using Output = MasterOutput;
 
   static Result<PositionForceMaster> make(const Params& params, Seconds dt);
-  Output step(const Input& input) noexcept;
-  void reset() noexcept;
 
-  [[nodiscard]] GateFault fault() const noexcept { return gate_.fault(); }
+  /// Force and command for this tick. Real-time safe.
+  Output respond(const Input& input) noexcept;
+  /// Drives the model with the force that is really displayed until the next tick. Real-time safe.
+  void applied(double motor_force_N) noexcept { cancellation_.advance(motor_force_N); }
+  /// Both at once, for use without a gate.
+  Output step(const Input& input) noexcept {
+    const Output output = respond(input);
+    applied(output.motor_force_N);
+    return output;
+  }
+  void reset() noexcept { cancellation_.reset(); }
 
  private:
-  PositionForceMaster(const Params& params, const Cancellation& cancellation, const SafetyGate& gate)
+  PositionForceMaster(const Params& params, const Cancellation& cancellation)
       : position_scale_(params.position_scale),
         force_gain_(params.force_gain),
         force_limit_N_(params.force_limit_N),
         mode_(params.cancellation),
-        cancellation_(cancellation),
-        gate_(gate) {}
+        cancellation_(cancellation) {}
 
   double position_scale_;
   double force_gain_;
   double force_limit_N_;
   CancellationMode mode_;
   Cancellation cancellation_;
-  SafetyGate gate_;
 };
 
-/// The slave site: proportional and derivative feedback of the error on the motor, through the safety gate; the tip
-/// force goes back as it is measured.
+/// The slave site: proportional and derivative feedback of the error on the motor; the tip force goes back as it is
+/// measured.
 class PositionForceSlave {
  public:
-  struct Params {
-    double proportional_N_per_m = 100.0;
-    double derivative_N_s_per_m = 0.5;
-    signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
-    SafetyGate::Params gate;
-    static constexpr auto fields() {
-      return std::tuple{field("proportional_N_per_m", &Params::proportional_N_per_m, units::newton_per_metre,
-                              between(0.0, 1e5), "Force per position error."),
-                        field("derivative_N_s_per_m", &Params::derivative_N_s_per_m, units::newton_second_per_metre,
-                              between(0.0, 1e3), "Force per rate of the position error."),
-                        field("velocity", &Params::velocity, "Filter of the rate of the position error."),
-                        field("gate", &Params::gate, "Last limits before the slave's motor.")};
-    }
-  };
-  struct Input {
-    SlaveMeasurement measurement;
-    MasterMessage message;
-  };
-  struct Output {
-    double motor_force_N = 0.0;  ///< command to the amplifier, positive toward the environment
-    SlaveMessage message;
-  };
+  using Params = ServoPd::Params;
+  using Input = SlaveInput;
+  using Output = SlaveOutput;
 
   static Result<PositionForceSlave> make(const Params& params, Seconds dt);
-  Output step(const Input& input) noexcept;
-  void reset() noexcept;
 
-  [[nodiscard]] GateFault fault() const noexcept { return gate_.fault(); }
+  /// Real-time safe.
+  Output respond(const Input& input) noexcept {
+    return {.motor_force_N = servo_.step(input.arrival.message.position_m - input.motor_position_m),
+            .message = {.force_N = input.tip_force_N}};
+  }
+  Output step(const Input& input) noexcept { return respond(input); }
+  void reset() noexcept { servo_.reset(); }
 
  private:
-  PositionForceSlave(const Params& params, const signal::FilteredDerivative& error_rate, const SafetyGate& gate)
-      : proportional_N_per_m_(params.proportional_N_per_m),
-        derivative_N_s_per_m_(params.derivative_N_s_per_m),
-        error_rate_(error_rate),
-        gate_(gate) {}
-
-  double proportional_N_per_m_;
-  double derivative_N_s_per_m_;
-  signal::FilteredDerivative error_rate_;
-  SafetyGate gate_;
-};
-
-/// Both sites, as one section of a file describes them.
-struct PositionForce : PositionForceMaster::Params {
-  PositionForceSlave::Params slave;
-  static constexpr auto fields() {
-    return std::tuple_cat(PositionForceMaster::Params::fields(),
-                          std::tuple{field("slave", &PositionForce::slave, "The slave's position controller.")});
-  }
+  explicit PositionForceSlave(const ServoPd& servo) : servo_(servo) {}
+  ServoPd servo_;
 };
 
 }  // namespace tactus::control

@@ -35,9 +35,10 @@ struct ForceProfileParams {
   double decay_time_s = 0.012;
   static constexpr auto fields() {
     return std::tuple{
-        field("file", &ForceProfileParams::file,
-              "Recording to play: CSV with a header, or MATLAB v5. Empty: a synthetic transient. A relative path counts "
-              "from the current folder."),
+        field(
+            "file", &ForceProfileParams::file,
+            "Recording to play: CSV with a header, or MATLAB v5. Empty: a synthetic transient. A relative path counts "
+            "from the current folder."),
         field("variable", &ForceProfileParams::variable,
               "CSV: the column's name. MATLAB: the variable, such as scope.signals(2).values."),
         field("column", &ForceProfileParams::column, between(1, 1e6), "MATLAB: the column of the variable, from 1."),
@@ -84,9 +85,8 @@ struct ForceDisplayControl {
   control::CancellationStep cancellation_step = control::CancellationStep::exact;
   control::MasterModel model;
   static constexpr auto fields() {
-    return std::tuple{
-        field("cancellation_step", &ForceDisplayControl::cancellation_step, "How the model is advanced."),
-        field("model", &ForceDisplayControl::model, "The controller's model of master and hand.")};
+    return std::tuple{field("cancellation_step", &ForceDisplayControl::cancellation_step, "How the model is advanced."),
+                      field("model", &ForceDisplayControl::model, "The controller's model of master and hand.")};
   }
 };
 
@@ -114,8 +114,8 @@ struct ForceDisplayCase {
   double scale = 1.0;  ///< of the profile, full scale being the force limit
   control::ModelFriction friction = control::ModelFriction::total_velocity;
   bool mismatched = false;
-  double induced_rms_m = 0.0;  ///< true induced motion of the motor above 20 Hz
-  double kept_fraction = 0.0;  ///< what the estimate of the intended motion keeps of it, over the same
+  double induced_rms_m = 0.0;     ///< true induced motion of the motor above 20 Hz
+  double kept_fraction = 0.0;     ///< what the estimate of the intended motion keeps of it, over the same
   double encoder_fraction = 0.0;  ///< the encoder's own error above 20 Hz, over the same
 };
 

@@ -32,10 +32,10 @@ report::Table table_of(const std::vector<DisplayRun>& runs) {
   for (const DisplayRun& run : runs) {
     for (const ForceDisplayCase& one : run.cases) {
       std::vector<std::string> cells = settings_cells(run.settings);
-      cells.insert(cells.end(), {report::number(one.scale, 2), name_of(one.friction),
-                                 one.mismatched ? "mismatched" : "nominal", report::number(1e6 * one.induced_rms_m, 3),
-                                 report::number(100.0 * one.kept_fraction, 3),
-                                 report::number(100.0 * one.encoder_fraction, 3)});
+      cells.insert(cells.end(),
+                   {report::number(one.scale, 2), name_of(one.friction), one.mismatched ? "mismatched" : "nominal",
+                    report::number(1e6 * one.induced_rms_m, 3), report::number(100.0 * one.kept_fraction, 3),
+                    report::number(100.0 * one.encoder_fraction, 3)});
       table.add_row(cells);
     }
   }
@@ -54,7 +54,8 @@ std::string json_of(const Request& request, const std::vector<DisplayRun>& runs)
                        {"kept_fraction", one.kept_fraction},
                        {"encoder_fraction", one.encoder_fraction}});
     }
-    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))}, {"metrics", {{"cases", cases}}}});
+    document["runs"].push_back(
+        {{"set", nlohmann::ordered_json::parse(settings_json(run.settings))}, {"metrics", {{"cases", cases}}}});
   }
   return document.dump(2) + "\n";
 }
@@ -68,10 +69,11 @@ std::vector<double> times(double factor, const std::vector<double>& values) {
 
 report::Figure figure_of(const DisplayRun& run) {
   report::Figure figure{.title = "Open-loop display",
-                        .caption = "A force is played to a hand that moves at constant speed. Above: the force. Below: "
-                                   "the motor as measured, the estimate of the intended motion (nominal model, "
-                                   "friction on total velocity), and the same hand without the force. Compare Figs. 4 "
-                                   "and 12 of Kuchenbecker and Niemeyer.",
+                        .caption =
+                            "A force is played to a hand that moves at constant speed. Above: the force. Below: "
+                            "the motor as measured, the estimate of the intended motion (nominal model, "
+                            "friction on total velocity), and the same hand without the force. Compare Figs. 4 "
+                            "and 12 of Kuchenbecker and Niemeyer.",
                         .columns = static_cast<int>(run.traces.size()),
                         .panels = {},
                         .share_x = report::Sharing::by_quantity,
@@ -91,16 +93,14 @@ report::Figure figure_of(const DisplayRun& run) {
         {.title = {},
          .x = time,
          .y = {.label = "motor position", .unit = "mm"},
-         .lines = {{.name = "measured", .x = time_ms, .y = times(1e3, trace.measured_m), .colour = 2},
-                   {.name = "estimate of the intended motion",
-                    .x = time_ms,
-                    .y = times(1e3, trace.estimate_m),
-                    .colour = 1},
-                   {.name = "without the force",
-                    .x = time_ms,
-                    .y = times(1e3, trace.without_m),
-                    .colour = 7,
-                    .dash = report::Dash::dashed}},
+         .lines =
+             {{.name = "measured", .x = time_ms, .y = times(1e3, trace.measured_m), .colour = 2},
+              {.name = "estimate of the intended motion", .x = time_ms, .y = times(1e3, trace.estimate_m), .colour = 1},
+              {.name = "without the force",
+               .x = time_ms,
+               .y = times(1e3, trace.without_m),
+               .colour = 7,
+               .dash = report::Dash::dashed}},
          .rules = {}});
   }
   return figure;
@@ -110,17 +110,21 @@ std::string page_of(const Request& request, const std::vector<DisplayRun>& runs,
                     const std::vector<report::Figure>& figures, std::string_view configuration) {
   report::Page page(request.name + ": " + std::string(title));
   page.paragraph(
-      "While a person moves the handle at constant speed, a force is played that knows nothing of the motion. The motion "
-      "that it induces at the motor is known exactly here, from the same run without the force. The table says how much "
+      "While a person moves the handle at constant speed, a force is played that knows nothing of the motion. The "
+      "motion "
+      "that it induces at the motor is known exactly here, from the same run without the force. The table says how "
+      "much "
       "of it is left in the estimate of the intended motion, measured position less the model's, above 20 Hz.");
   page.table(table);
   page.definitions(
-      {{"induced motion", "RMS over the observation window of the motor's true motion less that without the force, "
-                          "behind a second-order Butterworth high-pass at 20 Hz."},
+      {{"induced motion",
+        "RMS over the observation window of the motor's true motion less that without the force, "
+        "behind a second-order Butterworth high-pass at 20 Hz."},
        {"kept by the estimate", "The same of the estimate less the motion without the force, over the induced motion."},
        {"encoder alone", "The same of the encoder's quantisation error: no estimate can keep less."},
-       {"model friction", "at-rest: as in the paper, on the induced velocity alone. total-velocity: on intended plus "
-                          "induced velocity, less the friction that the intended motion meets anyway."},
+       {"model friction",
+        "at-rest: as in the paper, on the induced velocity alone. total-velocity: on intended plus "
+        "induced velocity, less the friction that the intended motion meets anyway."},
        {"model", "nominal, or with the errors of task.mismatch."}});
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (!runs[i].settings.empty()) page.heading(settings_caption(runs[i].settings));
@@ -153,10 +157,9 @@ Result<Outcome> ForceDisplayExperiment::run(const Request& request, const Progre
   const report::Table table = table_of(runs);
   std::vector<report::Figure> figures;
   for (const DisplayRun& run : runs) figures.push_back(figure_of(run));
-  return Outcome{.text = table.to_text(),
-                 .json = json_of(request, runs),
-                 .html = page_of(request, runs, table, figures, cases->first_configuration),
-                 .figures = std::move(figures)};
+  std::string html = page_of(request, runs, table, figures, cases->first_configuration);
+  return Outcome{
+      .text = table.to_text(), .json = json_of(request, runs), .html = std::move(html), .figures = std::move(figures)};
 }
 
 }  // namespace tactus::simulation

@@ -61,6 +61,8 @@ Result<TappingEnsemble> TappingEnsemble::make(const TappingParams& params) {
     mismatch.linkage_stiffness *= between(1.0 - task.model_error, 1.0 + task.model_error);
     mismatch.operator_damping *= between(1.0 - task.model_error, 1.0 + task.model_error);
     tap.params.control.model = mismatched(params.control.model, mismatch);
+    tap.params.channel.to_slave.seed = static_cast<std::int64_t>(draw.bits() >> 1);
+    tap.params.channel.to_master.seed = static_cast<std::int64_t>(draw.bits() >> 1);
 
     // The wall stands half-way, where a minimum-jerk reach is fastest.
     const double wall = params.environment.position_m / params.control.position_scale;

@@ -31,10 +31,10 @@ report::Table table_of(const std::vector<TappingRun>& runs) {
       return (seconds >= run.observation_s ? "> " : "") + report::number(1e3 * seconds, 3);
     };
     std::vector<std::string> cells = settings_cells(run.settings);
-    cells.insert(cells.end(), {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
-                               settling(m.settling_time_median_s), settling(m.settling_time_p90_s),
-                               format_number(m.contacts_median), report::number(m.peak_force_N, 3),
-                               report::number(1e3 * m.residual_rms_N, 3), name_of(m.verdict)});
+    cells.insert(cells.end(),
+                 {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
+                  settling(m.settling_time_median_s), settling(m.settling_time_p90_s), format_number(m.contacts_median),
+                  report::number(m.peak_force_N, 3), report::number(1e3 * m.residual_rms_N, 3), name_of(m.verdict)});
     table.add_row(cells);
   }
   return table;
@@ -58,22 +58,25 @@ std::string json_of(const Request& request, const std::vector<TappingRun>& runs)
   return document.dump(2) + "\n";
 }
 
-std::string page_of(const Request& request, const report::Table& table,
-                    const std::vector<report::Figure>& figures, std::string_view configuration) {
+std::string page_of(const Request& request, const report::Table& table, const std::vector<report::Figure>& figures,
+                    std::string_view configuration) {
   report::Page page(request.name + ": " + std::string(title));
   page.paragraph(
       "A person reaches through the teleoperator onto a wall and presses. The force measured at the slave's tip, times "
       "the force gain, is displayed to the hand, saturated. Each row of the table is an ensemble of taps that differ "
-      "in speed, depth, tremor and model error; each picture shows one of them, the one with the median settling time.");
+      "in speed, depth, tremor and model error; each picture shows one of them, the one with the median settling "
+      "time.");
   page.table(table);
   page.definitions(
-      {{"settling", "From first touch until the contact force above 15 Hz stays below a tenth of its peak. A tap that "
-                    "does not get there enters the quantiles with the whole observation window, marked >."},
+      {{"settling",
+        "From first touch until the contact force above 15 Hz stays below a tenth of its peak. A tap that "
+        "does not get there enters the quantiles with the whole observation window, marked >."},
        {"contacts", "How often the tip met the wall within the observation window, median."},
        {"peak force", "Largest contact force of a tap, median."},
        {"residual", "RMS of the contact force above 15 Hz over the last 100 ms, median."},
-       {"verdict", "settled: at least 95 % of the taps settled, the median within 100 ms. limit-cycle: fewer than half "
-                   "settled. diverged: a safety gate latched or a device left its workspace. ringing: all else."}});
+       {"verdict",
+        "settled: at least 95 % of the taps settled, the median within 100 ms. limit-cycle: fewer than half "
+        "settled. diverged: a safety gate latched or a device left its workspace. ringing: all else."}});
   for (const report::Figure& figure : figures) page.figure(figure);
   add_provenance(page, request, configuration);
   return page.to_html();
@@ -94,11 +97,12 @@ Result<Outcome> TappingExperiment::run(const Request& request, const Progress& p
     TappingEnsemble ensemble;
     double observation_s;
   };
-  const auto cases = prepare_cases<TappingParams, Prepared>(request, [](const TappingParams& params) -> Result<Prepared> {
-    auto ensemble = TappingEnsemble::make(params);
-    if (!ensemble) return ensemble.error();
-    return Prepared{*std::move(ensemble), params.task.observation_s};
-  });
+  const auto cases =
+      prepare_cases<TappingParams, Prepared>(request, [](const TappingParams& params) -> Result<Prepared> {
+        auto ensemble = TappingEnsemble::make(params);
+        if (!ensemble) return ensemble.error();
+        return Prepared{*std::move(ensemble), params.task.observation_s};
+      });
   if (!cases) return cases.error();
 
   std::size_t total = 0, done = 0;
@@ -123,10 +127,9 @@ Result<Outcome> TappingExperiment::run(const Request& request, const Progress& p
 
   const report::Table table = table_of(runs);
   std::vector<report::Figure> figures = tapping_figures(runs);
-  return Outcome{.text = table.to_text(),
-                 .json = json_of(request, runs),
-                 .html = page_of(request, table, figures, cases->first_configuration),
-                 .figures = std::move(figures)};
+  std::string html = page_of(request, table, figures, cases->first_configuration);
+  return Outcome{
+      .text = table.to_text(), .json = json_of(request, runs), .html = std::move(html), .figures = std::move(figures)};
 }
 
 }  // namespace tactus::simulation

@@ -13,7 +13,6 @@ namespace {
 using report::Figure;
 using report::Line;
 using report::Panel;
-using report::Rule;
 
 constexpr std::string_view cancellation_key = "control.cancellation";
 constexpr std::size_t most_columns = 6;
@@ -85,24 +84,24 @@ Panel position_panel(const TappingRun& run) {
   };
   Line command = trace_line(run, "slave command", 1, millimetres(&Teleoperator::Record::command_m));
   command.dash = report::Dash::dashed;
-  return {.title = {},
-          .x = time_axis(),
-          .y = {.label = "position", .unit = "mm"},
-          // The command last and dashed: without cancellation it lies on the measured position.
-          .lines = {trace_line(run, "master, measured", 2, millimetres(&Teleoperator::Record::master_position_m)),
-                    trace_line(run, "induced motion, estimated", 3,
-                               millimetres(&Teleoperator::Record::induced_position_m)),
-                    trace_line(run, "slave tip", 4, millimetres(&Teleoperator::Record::tip_position_m)),
-                    command},
-          .rules = {}};
+  return {
+      .title = {},
+      .x = time_axis(),
+      .y = {.label = "position", .unit = "mm"},
+      // The command last and dashed: without cancellation it lies on the measured position.
+      .lines = {trace_line(run, "master, measured", 2, millimetres(&Teleoperator::Record::master_position_m)),
+                trace_line(run, "induced motion, estimated", 3, millimetres(&Teleoperator::Record::induced_position_m)),
+                trace_line(run, "slave tip", 4, millimetres(&Teleoperator::Record::tip_position_m)), command},
+      .rules = {}};
 }
 
 Figure transients(const std::vector<Group>& groups) {
   Figure figure{.title = "Displayed force and slave command",
-                .caption = "One tap for each condition, the one with the median settling time, aligned at its first "
-                           "touch. Above: the force displayed to the hand. Below: the slave's position command, with "
-                           "the measured master position and the model's estimate of the motion that the force "
-                           "induced. Compare Fig. 13 of Kuchenbecker and Niemeyer.",
+                .caption =
+                    "One tap for each condition, the one with the median settling time, aligned at its first "
+                    "touch. Above: the force displayed to the hand. Below: the slave's position command, with "
+                    "the measured master position and the model's estimate of the motion that the force "
+                    "induced. Compare Fig. 13 of Kuchenbecker and Niemeyer.",
                 .columns = 1,
                 .panels = {},
                 .share_x = report::Sharing::by_quantity,
@@ -128,10 +127,16 @@ std::optional<Figure> settling_over_parameter(const std::vector<Group>& groups) 
   if (settings.size() != 1 || groups.front().runs.size() < 2) return std::nullopt;
   const std::string& key = settings.front().first;
 
-  Panel settling{.title = {}, .x = axis_of(key), .y = {.label = "settling time", .unit = "ms", .lower = 0.0}, .lines = {},
+  Panel settling{.title = {},
+                 .x = axis_of(key),
+                 .y = {.label = "settling time", .unit = "ms", .lower = 0.0},
+                 .lines = {},
                  .rules = {}};
-  Panel share{.title = {}, .x = axis_of(key), .y = {.label = "taps that settle", .unit = "%", .lower = 0.0, .upper = 105.0},
-              .lines = {}, .rules = {}};
+  Panel share{.title = {},
+              .x = axis_of(key),
+              .y = {.label = "taps that settle", .unit = "%", .lower = 0.0, .upper = 105.0},
+              .lines = {},
+              .rules = {}};
   int colour = 0;
   for (const Group& group : groups) {
     const std::string name = group.label.empty() ? "median" : group.label;
@@ -153,8 +158,9 @@ std::optional<Figure> settling_over_parameter(const std::vector<Group>& groups) 
   }
   settling.rules.push_back({.at = 1e3 * groups.front().runs.front()->observation_s, .label = "observation window"});
   return Figure{.title = "How long a contact rings",
-                .caption = "Left: settling time over the ensemble of taps; a tap that does not settle counts with the "
-                           "whole observation window. Right: the share of taps that settle.",
+                .caption =
+                    "Left: settling time over the ensemble of taps; a tap that does not settle counts with the "
+                    "whole observation window. Right: the share of taps that settle.",
                 .columns = 2,
                 .panels = {settling, share}};
 }

@@ -13,7 +13,7 @@ struct TappingRun {
   Settings settings;
   TappingMetrics metrics;
   double observation_s = 0.0;
-  double first_touch_s = 0.0;                 ///< of the tap that is shown
+  double first_touch_s = 0.0;               ///< of the tap that is shown
   std::vector<Teleoperator::Record> trace;  ///< of the tap that is shown
 };
 

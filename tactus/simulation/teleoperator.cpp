@@ -23,21 +23,18 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   }
   auto person = mechanics::Operator::make(params.person, tick);
   if (!person) return under("operator", person.error());
-  const auto master_site = control::PositionForceMaster::make(params.control, tick);
-  if (!master_site) return under("control", master_site.error());
-  const auto slave_site = control::PositionForceSlave::make(params.control.slave, tick);
-  if (!slave_site) return under("control.slave", slave_site.error());
+  auto sites = control::make_sites(params.control, tick);
+  if (!sites) return under("control", sites.error());
 
   const double slave_start_m = params.control.position_scale * start_m;
   master->reset(start_m);
   slave->reset(slave_start_m);
-  const auto to_slave = Delay<control::MasterMessage>::make({.delay_s = params.channel.to_slave_delay_s}, tick,
-                                                            {.position_command_m = slave_start_m});
-  if (!to_slave) return under("channel.to_slave_delay_s", to_slave.error());
-  const auto to_master = Delay<control::SlaveMessage>::make({.delay_s = params.channel.to_master_delay_s}, tick);
-  if (!to_master) return under("channel.to_master_delay_s", to_master.error());
+  const auto to_slave = Channel::make(params.channel.to_slave, tick, {.position_m = slave_start_m});
+  if (!to_slave) return under("channel.to_slave", to_slave.error());
+  const auto to_master = Channel::make(params.channel.to_master, tick, {.position_m = slave_start_m});
+  if (!to_master) return under("channel.to_master", to_master.error());
 
-  return Teleoperator(Parts{*master, *slave, *person, *master_site, *slave_site, *to_slave, *to_master}, *clock);
+  return Teleoperator(Parts{*master, *slave, *person, *std::move(sites), *to_slave, *to_master}, *clock);
 }
 
 Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {
@@ -45,20 +42,19 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
   const double master_position_m = parts_.master.measure();
   const mechanics::ElectricSlave::Reading slave_reading = parts_.slave.measure();
 
-  const auto master =
-      parts_.master_site.step({.measurement = {.motor_position_m = master_position_m}, .message = arrived_});
-  const auto slave = parts_.slave_site.step(
-      {.measurement = {.motor_position_m = slave_reading.motor_position_m, .tip_force_N = slave_reading.tip_force_N},
-       .message = parts_.to_slave.step(master.message)});
+  const auto master = parts_.sites.master.step({.motor_position_m = master_position_m, .arrival = arrived_});
+  const auto slave = parts_.sites.slave.step({.motor_position_m = slave_reading.motor_position_m,
+                                              .tip_force_N = slave_reading.tip_force_N,
+                                              .arrival = parts_.to_slave.step(master.message)});
   arrived_ = parts_.to_master.step(slave.message);
 
   Record record{.time_s = time_s,
                 .master_position_m = master_position_m,
                 .induced_position_m = master.induced_position_m,
-                .command_m = master.message.position_command_m,
+                .command_m = master.message.position_m,
                 .slave_position_m = slave_reading.motor_position_m,
                 .tip_position_m = parts_.slave.mechanism().tip_position_m(),
-                .displayed_force_N = master.displayed_force_N};
+                .displayed_force_N = -master.motor_force_N};
 
   const auto aim = parts_.person.step({.path_m = path_m,
                                        .path_at_next_tick_m = path_at_next_tick_m,
@@ -87,8 +83,8 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
 }
 
 bool Teleoperator::healthy() const noexcept {
-  return parts_.master_site.fault() == control::GateFault::none &&
-         parts_.slave_site.fault() == control::GateFault::none;
+  return parts_.sites.master.fault() == control::GateFault::none &&
+         parts_.sites.slave.fault() == control::GateFault::none;
 }
 
 }  // namespace tactus::simulation

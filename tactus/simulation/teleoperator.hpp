@@ -1,27 +1,26 @@
 #pragma once
 
-#include <tactus/control/position_force.hpp>
+#include <tactus/control/architecture.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/mechanics/cable_driven_master.hpp>
 #include <tactus/mechanics/electric_slave.hpp>
 #include <tactus/mechanics/operator.hpp>
-#include <tactus/signal/delay_line.hpp>
+#include <tactus/simulation/channel.hpp>
 #include <tactus/simulation/clock.hpp>
 
 #include <cstdint>
+#include <utility>
 
 namespace tactus::simulation {
 
-/// The link between the sites: a constant delay each way, rounded to whole ticks.
-struct ChannelParams {
-  double to_slave_delay_s = 0.0;
-  double to_master_delay_s = 0.0;
+/// The link between the sites, one channel each way.
+struct LinkParams {
+  Channel::Params to_slave{.seed = 1};
+  Channel::Params to_master{.seed = 2};
   static constexpr auto fields() {
-    return std::tuple{field("to_slave_delay_s", &ChannelParams::to_slave_delay_s, units::second, between(0.0, 1.0),
-                            "Delay of the position command, rounded to whole ticks."),
-                      field("to_master_delay_s", &ChannelParams::to_master_delay_s, units::second, between(0.0, 1.0),
-                            "Delay of the tip force, rounded to whole ticks; a message arrives at the next tick "
-                            "at the earliest.")};
+    return std::tuple{field("to_slave", &LinkParams::to_slave, "The way from master to slave."),
+                      field("to_master", &LinkParams::to_master,
+                            "The way from slave to master; a message arrives at the next tick at the earliest.")};
   }
 };
 
@@ -39,10 +38,10 @@ class Teleoperator {
     mechanics::ElectricSlave::Params slave;
     mechanics::Environment::Params environment;
     mechanics::Operator::Params person;
-    ChannelParams channel;
+    LinkParams channel;
     ServoParams servo;
     PlantClockParams plant;
-    control::PositionForce control;
+    control::ControlParams control;
     static constexpr auto fields() {
       return std::tuple{field("master", &Params::master, "The master device."),
                         field("slave", &Params::slave, "The slave device."),
@@ -51,7 +50,7 @@ class Teleoperator {
                         field("channel", &Params::channel, "The link between the sites."),
                         field("servo", &Params::servo, "The servo clock."),
                         field("plant", &Params::plant, "The clock of the simulated plants."),
-                        field("control", &Params::control, "Both sites of position-force control.")};
+                        field("control", &Params::control, "The controllers of both sites.")};
     }
   };
 
@@ -81,30 +80,24 @@ class Teleoperator {
   [[nodiscard]] bool healthy() const noexcept;
 
  private:
-  /// A delay of one second at the fastest rate.
-  static constexpr std::size_t longest_delay_ticks = 20000;
-  template <class Message>
-  using Delay = signal::DelayLine<Message, longest_delay_ticks>;
-
   /// What a run is made of, each already valid.
   struct Parts {
     mechanics::CableDrivenMaster master;
     mechanics::ElectricSlave slave;
     mechanics::Operator person;
-    control::PositionForceMaster master_site;
-    control::PositionForceSlave slave_site;
-    Delay<control::MasterMessage> to_slave;
-    Delay<control::SlaveMessage> to_master;
+    control::Sites sites;
+    Channel to_slave;
+    Channel to_master;
   };
 
-  Teleoperator(const Parts& parts, const Clock& clock) : parts_(parts), clock_(clock) {}
+  Teleoperator(Parts parts, const Clock& clock) : parts_(std::move(parts)), clock_(clock) {}
 
   Parts parts_;
   Clock clock_;
   std::int64_t ticks_ = 0;
   double master_command_N_ = 0.0;
   double slave_command_N_ = 0.0;
-  control::SlaveMessage arrived_;  ///< at the master, for its next tick
+  control::Arrival arrived_;  ///< at the master, for its next tick
 };
 
 }  // namespace tactus::simulation

@@ -224,7 +224,7 @@ InducedMotionModel::Input arbitrary(std::mt19937_64& engine, double speed_m_per_
 }
 
 TEST(InducedMotionModel, NoForceGivesNoMotionWhateverTheHandDoes) {
-  constexpr double edges[] = {0.0, 1e9, -1e9, 0.005, -0.005, std::nextafter(0.005, 1.0), 5e-324, -5e-324, 1e308};
+  const double edges[] = {0.0, 1e9, -1e9, 0.005, -0.005, std::nextafter(0.005, 1.0), 5e-324, -5e-324, 1e308};
   for (const CancellationStep step : both_steps) {
     InducedMotionModel model = make(params(step, ModelFriction::total_velocity));
     std::mt19937_64 engine(5);

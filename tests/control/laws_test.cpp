@@ -4,6 +4,7 @@
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/safety_gate.hpp>
+#include <tactus/control/servo_pd.hpp>
 
 namespace tactus::laws {
 
@@ -41,6 +42,25 @@ struct Subject<control::Cancellation> {
   static void admit(control::Cancellation::Input&) {}
 };
 
+/// What arrives is doubles and one flag, and always fresh here.
+template <>
+struct Doubles<control::MasterInput> {
+  using Row = std::array<double, 6>;
+  static control::MasterInput from(const Row& row) {
+    return {.motor_position_m = row[0],
+            .arrival = {.message = {row[1], row[2], row[3], row[4], row[5]}, .fresh = true}};
+  }
+};
+template <>
+struct Doubles<control::SlaveInput> {
+  using Row = std::array<double, 7>;
+  static control::SlaveInput from(const Row& row) {
+    return {.motor_position_m = row[0],
+            .tip_force_N = row[1],
+            .arrival = {.message = {row[2], row[3], row[4], row[5], row[6]}, .fresh = true}};
+  }
+};
+
 template <>
 struct Subject<control::PositionForceMaster> {
   static constexpr double dt_s = 200e-6;
@@ -58,7 +78,7 @@ struct Subject<control::PositionForceMaster> {
 
 using ControlElements =
     ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
-                     control::PositionForceSlave, control::SafetyGate>;
+                     control::PositionForceSlave, control::SafetyGate, control::ServoPd>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws

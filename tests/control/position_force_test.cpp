@@ -21,6 +21,10 @@ PositionForceMaster master(const PositionForceMaster::Params& params) {
   return PositionForceMaster::make(params, Seconds{tick_s}).value();
 }
 
+MasterSite gated(const PositionForceMaster::Params& params, const SafetyGate::Params& gate) {
+  return {master_controller(master(params)), SafetyGate::make(gate, Seconds{tick_s}).value()};
+}
+
 PositionForceMaster::Params plain() {
   PositionForceMaster::Params params;
   params.model.linkage.hysteretic_fraction = 0.0;
@@ -29,7 +33,7 @@ PositionForceMaster::Params plain() {
 }
 
 PositionForceMaster::Input input(double position_m, double tip_force_N) {
-  return {.measurement = {.motor_position_m = position_m}, .message = {.tip_force_N = tip_force_N}};
+  return {.motor_position_m = position_m, .arrival = {.message = {.force_N = tip_force_N}, .fresh = true}};
 }
 
 TEST(PositionForceMaster, WithoutCancellationTheCommandIsLambdaTimesTheMeasuredPosition) {
@@ -39,7 +43,7 @@ TEST(PositionForceMaster, WithoutCancellationTheCommandIsLambdaTimesTheMeasuredP
   for (int tick = 0; tick < 1000; ++tick) {
     const double position_m = 0.03 * std::sin(0.01 * tick);
     const auto out = site.step(input(position_m, 0.4));
-    ASSERT_EQ(out.message.position_command_m, 0.25 * position_m);
+    ASSERT_EQ(out.message.position_m, 0.25 * position_m);
   }
 }
 
@@ -51,8 +55,7 @@ TEST(PositionForceMaster, DisplaysMuTimesTheTipForceAgainstTheHandUpToTheLimit) 
   for (const double tip_force_N : {0.0, 0.1, 0.49, 0.5, 0.51, 40.0, -0.2, -9.0, 1e300}) {
     const auto out = site.step(input(0.0, tip_force_N));
     const double expected_N = tip_force_N >= 0.5 ? 1.5 : tip_force_N <= -0.5 ? -1.5 : 3.0 * tip_force_N;
-    EXPECT_DOUBLE_EQ(out.displayed_force_N, expected_N);
-    EXPECT_EQ(out.motor_force_N, -out.displayed_force_N);
+    EXPECT_DOUBLE_EQ(out.motor_force_N, -expected_N);
   }
 }
 
@@ -70,7 +73,7 @@ TEST(PositionForceMaster, WithCancellationTheCommandIsLambdaTimesWhatThePersonMe
   const Displaced plant;
   for (const CancellationMode mode : {CancellationMode::on, CancellationMode::off}) {
     PositionForceMaster::Params params;
-  params.model.linkage.hysteretic_fraction = 0.0;
+    params.model.linkage.hysteretic_fraction = 0.0;
     params.cancellation = mode;
     params.cancellation_friction = ModelFriction::at_rest;
     params.position_scale = 2.0;
@@ -84,9 +87,9 @@ TEST(PositionForceMaster, WithCancellationTheCommandIsLambdaTimesWhatThePersonMe
       ASSERT_NEAR(out.induced_position_m, plant.induced_m[tick], 2e-6);
       ASSERT_NEAR(out.intended_position_m, meant_m, 2e-6);
       if (mode == CancellationMode::on) {
-        ASSERT_NEAR(out.message.position_command_m, 2.0 * meant_m, 4e-6);
+        ASSERT_NEAR(out.message.position_m, 2.0 * meant_m, 4e-6);
       } else {
-        ASSERT_EQ(out.message.position_command_m, 2.0 * measured_m);
+        ASSERT_EQ(out.message.position_m, 2.0 * measured_m);
       }
     }
   }
@@ -95,9 +98,8 @@ TEST(PositionForceMaster, WithCancellationTheCommandIsLambdaTimesWhatThePersonMe
 TEST(PositionForceMaster, TheModelIsDrivenByTheForceThatTheGateLetThrough) {
   PositionForceMaster::Params params;
   params.model.linkage.hysteretic_fraction = 0.0;
-  params.gate = {.force_limit_N = 0.3, .rate_limit_N_per_s = 50.0};
-  PositionForceMaster site = master(params);
-  InducedMotionModel reference = InducedMotionModel::make({}, Seconds{tick_s}).value();
+  MasterSite site = gated(params, {.force_limit_N = 0.3, .rate_limit_N_per_s = 50.0});
+  InducedMotionModel reference = InducedMotionModel::make({.master = params.model}, Seconds{tick_s}).value();
   for (int tick = 0; tick < 500; ++tick) {
     // With the command held where the model says, the intended position stays at zero and so does its velocity.
     const auto out = site.step(input(reference.motor_position_m(), tick % 100 < 50 ? 2.0 : -1.0));
@@ -108,32 +110,30 @@ TEST(PositionForceMaster, TheModelIsDrivenByTheForceThatTheGateLetThrough) {
 }
 
 TEST(PositionForceMaster, ATipForceThatIsNoNumberTakesTheForceToZeroAtTheRateLimitUntilReset) {
-  PositionForceMaster::Params params = plain();
-  params.gate.rate_limit_N_per_s = 500.0;
-  PositionForceMaster site = master(params);
+  MasterSite site = gated(plain(), {.rate_limit_N_per_s = 500.0});
   for (int tick = 0; tick < 20; ++tick) site.step(input(0.01, 0.8));
   EXPECT_EQ(site.fault(), GateFault::none);
   for (int tick = 1; tick <= 50; ++tick) {
     const double position_m = 0.01 + 1e-4 * tick;
     const auto out = site.step(input(position_m, tick == 1 ? not_a_number : 0.8));
-    EXPECT_NEAR(out.displayed_force_N, std::max(0.0, 0.8 - 0.1 * tick), 1e-12);
-    EXPECT_EQ(out.message.position_command_m, position_m);
+    EXPECT_NEAR(out.motor_force_N, -std::max(0.0, 0.8 - 0.1 * tick), 1e-12);
+    EXPECT_EQ(out.message.position_m, position_m);
     EXPECT_EQ(site.fault(), GateFault::not_finite);
   }
   site.reset();
   EXPECT_EQ(site.fault(), GateFault::none);
-  EXPECT_NEAR(site.step(input(0.01, 0.05)).displayed_force_N, 0.05, 1e-15);
+  EXPECT_NEAR(site.step(input(0.01, 0.05)).motor_force_N, -0.05, 1e-15);
 }
 
 TEST(PositionForceMaster, AfterAFaultTheCancelledCommandStaysFiniteAndComesBackToTheMeasuredPosition) {
-  PositionForceMaster site = master({});
+  MasterSite site = gated({}, {});
   for (int tick = 0; tick < 500; ++tick) site.step(input(0.01, 0.8));
   for (int tick = 0; tick < 25000; ++tick) {
     const auto out = site.step(input(0.01, not_a_number));
-    ASSERT_TRUE(std::isfinite(out.message.position_command_m));
+    ASSERT_TRUE(std::isfinite(out.message.position_m));
   }
   // What friction can hold: 0.0244 N on 40 N/m.
-  EXPECT_NEAR(site.step(input(0.01, 0.0)).message.position_command_m, 0.01, 0.0244 / 40.0);
+  EXPECT_NEAR(site.step(input(0.01, 0.0)).message.position_m, 0.01, 0.0244 / 40.0);
 }
 
 TEST(PositionForceMaster, AnUnstableModelIsRefusedUnderTheNameOfItsStep) {
@@ -150,9 +150,14 @@ PositionForceSlave slave(const PositionForceSlave::Params& params) {
   return PositionForceSlave::make(params, Seconds{tick_s}).value();
 }
 
+SlaveSite gated(const SafetyGate::Params& gate) {
+  return {slave_controller(slave({})), SafetyGate::make(gate, Seconds{tick_s}).value()};
+}
+
 PositionForceSlave::Input input(double command_m, double position_m, double tip_force_N) {
-  return {.measurement = {.motor_position_m = position_m, .tip_force_N = tip_force_N},
-          .message = {.position_command_m = command_m}};
+  return {.motor_position_m = position_m,
+          .tip_force_N = tip_force_N,
+          .arrival = {.message = {.position_m = command_m}, .fresh = true}};
 }
 
 TEST(PositionForceSlave, AConstantErrorIsAnsweredInProportionFromTheFirstSample) {
@@ -170,14 +175,12 @@ TEST(PositionForceSlave, AnErrorThatGrowsSteadilyAddsItsRateTimesTheDerivativeGa
     error_m = rate_m_per_s * tick_s * tick;
     force_N = site.step(input(2.0 * error_m, error_m, 0.0)).motor_force_N;
   }
-  EXPECT_NEAR(force_N, 100.0 * error_m + 0.5 * rate_m_per_s, 1e-9);
+  EXPECT_NEAR(force_N, 100.0 * error_m + 0.65 * rate_m_per_s, 1e-9);
 }
 
 TEST(PositionForceSlave, PullsTowardTheCommandFromEitherSideAndNoHarderThanItsGate) {
-  PositionForceSlave::Params params;
-  params.gate = {.force_limit_N = 3.0, .rate_limit_N_per_s = 1e6};
   for (const double way : {-1.0, 1.0}) {
-    PositionForceSlave site = slave(params);
+    SlaveSite site = gated({.force_limit_N = 3.0, .rate_limit_N_per_s = 1e6});
     EXPECT_EQ(site.step(input(way * 0.5, 0.0, 0.0)).motor_force_N, way * 3.0);
   }
 }
@@ -185,19 +188,17 @@ TEST(PositionForceSlave, PullsTowardTheCommandFromEitherSideAndNoHarderThanItsGa
 TEST(PositionForceSlave, SendsTheTipForceBackAsItWasMeasured) {
   PositionForceSlave site = slave({});
   for (const double tip_force_N : {0.0, -0.3, 12.5, 1e300}) {
-    EXPECT_EQ(site.step(input(0.0, 0.0, tip_force_N)).message.tip_force_N, tip_force_N);
+    EXPECT_EQ(site.step(input(0.0, 0.0, tip_force_N)).message.force_N, tip_force_N);
   }
 }
 
 TEST(PositionForceSlave, ACommandThatIsNoNumberReleasesTheMotorUntilReset) {
-  PositionForceSlave::Params params;
-  params.gate.rate_limit_N_per_s = 500.0;
-  PositionForceSlave site = slave(params);
+  SlaveSite site = gated({.rate_limit_N_per_s = 500.0});
   for (int tick = 0; tick < 20; ++tick) site.step(input(0.01, 0.0, 0.0));
   for (int tick = 1; tick <= 30; ++tick) {
     const auto out = site.step(input(tick == 1 ? not_a_number : 0.01, 0.0, 0.2));
     EXPECT_NEAR(out.motor_force_N, std::max(0.0, 1.0 - 0.1 * tick), 1e-12);
-    EXPECT_EQ(out.message.tip_force_N, 0.2);
+    EXPECT_EQ(out.message.force_N, 0.2);
     EXPECT_EQ(site.fault(), GateFault::not_finite);
   }
   site.reset();

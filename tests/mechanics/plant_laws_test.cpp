@@ -1,10 +1,10 @@
-#include "tests/laws.hpp"
-
 #include <tactus/mechanics/cable_chain.hpp>
 #include <tactus/mechanics/cable_driven_master.hpp>
 #include <tactus/mechanics/electric_slave.hpp>
 #include <tactus/mechanics/environment.hpp>
 #include <tactus/mechanics/operator.hpp>
+
+#include "tests/laws.hpp"
 
 namespace tactus::laws {
 

@@ -124,7 +124,7 @@ TEST(Teleoperator, ChannelDelayShiftsTheSlaveByExactlyThatManyTicks) {
   params.control.force_gain = 0.0;
   const Records prompt = run(params);
   for (const auto& [delay_s, ticks] : {std::pair{0.005, 25U}, std::pair{0.00055, 3U}, std::pair{0.00009, 0U}}) {
-    params.channel.to_slave_delay_s = delay_s;
+    params.channel.to_slave.delay_s = delay_s;
     const Records late = run(params);
     for (std::size_t i = 0; i + ticks < late.size(); ++i) {
       ASSERT_NEAR(late[i + ticks].tip_position_m, prompt[i].tip_position_m, 1e-12) << i << " " << delay_s;
@@ -144,7 +144,7 @@ TEST(Teleoperator, ChannelDelayOfTheForceLetsTheMasterFeelTheWallExactlyThatMany
   const std::size_t felt = first_displayed(prompt);
   // Touched between ticks i and i + 1, measured at i + 1, displayed at i + 2.
   EXPECT_EQ(felt, first_touch(prompt) + 2);
-  params.channel.to_master_delay_s = 0.004;
+  params.channel.to_master.delay_s = 0.004;
   const Records late = run(params);
   EXPECT_EQ(first_displayed(late), felt + 20);
   EXPECT_EQ(first_touch(late), first_touch(prompt));
@@ -300,7 +300,7 @@ TEST(Teleoperator, NamesTheKeyThatCannotBe) {
               p.control.model.cable.stiffness_N_per_m = 1e9;
             }),
             "control.cancellation_step");
-  EXPECT_EQ(refused_key([](auto& p) { p.channel.to_slave_delay_s = 2.0; }), "channel.to_slave_delay_s");
+  EXPECT_EQ(refused_key([](auto& p) { p.channel.to_slave.delay_s = 2.0; }), "channel.to_slave.delay_s");
 }
 
 }  // namespace

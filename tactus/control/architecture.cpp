@@ -1,0 +1,72 @@
+#include <tactus/control/architecture.hpp>
+#include <tactus/core/spelling.hpp>
+
+#include <algorithm>
+#include <vector>
+
+namespace tactus::control {
+
+namespace {
+
+Result<Controllers> make_position_force(const ControlParams& params, Seconds dt) {
+  const auto master = PositionForceMaster::make(params, dt);
+  if (!master) return master.error();
+  const auto slave = PositionForceSlave::make(params.slave, dt);
+  if (!slave) return under("slave", slave.error());
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+std::vector<Architecture>& registry() {
+  static std::vector<Architecture> all{
+      {"position-force", "the slave follows the master's position, the master displays the slave's tip force",
+       make_position_force},
+  };
+  return all;
+}
+
+Error unknown_architecture(const std::string& name) {
+  std::vector<std::string_view> names;
+  std::string list;
+  for (const Architecture& architecture : registry()) {
+    names.push_back(architecture.name);
+    list += (list.empty() ? "" : ", ") + std::string(architecture.name);
+  }
+  const std::string_view meant = nearest_word(name, names);
+  std::string message = "'";
+  message += name + "' is no architecture: write one of " + list;
+  if (!meant.empty()) message += "; did you mean '" + std::string(meant) + "'?";
+  return {.code = ErrorCode::out_of_bounds, .parameter = "architecture", .message = message, .place = {}};
+}
+
+}  // namespace
+
+std::span<const Architecture> architectures() { return registry(); }
+
+void register_architecture(const Architecture& architecture) {
+  auto& all = registry();
+  const auto same =
+      std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.name == architecture.name; });
+  if (same != all.end()) {
+    *same = architecture;
+  } else {
+    all.push_back(architecture);
+  }
+}
+
+Result<Sites> make_sites(const ControlParams& params, Seconds dt) {
+  if (auto error = validate(params)) return *std::move(error);
+  const auto& all = registry();
+  const auto chosen =
+      std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.name == params.architecture; });
+  if (chosen == all.end()) return unknown_architecture(params.architecture);
+  auto controllers = chosen->make(params, dt);
+  if (!controllers) return controllers.error();
+  const auto gate = SafetyGate::make(params.gate, dt);
+  if (!gate) return under("gate", gate.error());
+  const auto slave_gate = SafetyGate::make(params.slave_gate, dt);
+  if (!slave_gate) return under("slave_gate", slave_gate.error());
+  return Sites{MasterSite(std::move(controllers->master), *gate),
+               SlaveSite(std::move(controllers->slave), *slave_gate)};
+}
+
+}  // namespace tactus::control

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <tactus/control/position_force.hpp>
+#include <tactus/control/site.hpp>
+#include <tactus/core/parameters.hpp>
+
+#include <span>
+#include <string>
+#include <string_view>
+
+/// Architectures: how two sites share the work of making a person feel what the slave touches.
+namespace tactus::control {
+
+/// The section `[control]` of a file: which architecture, what all of them have in common, and a group for each part
+/// that needs more.
+struct ControlParams : PositionForceMaster::Params {
+  std::string architecture = "position-force";
+  ServoPd::Params slave;
+  SafetyGate::Params gate;
+  SafetyGate::Params slave_gate;
+  static constexpr auto fields() {
+    return std::tuple_cat(
+        std::tuple{
+            field("architecture", &ControlParams::architecture,
+                  "How the sites work together; the architecture's page tells which of the keys below it uses.")},
+        PositionForceMaster::Params::fields(),
+        std::tuple{field("slave", &ControlParams::slave, "The slave's position controller."),
+                   field("gate", &ControlParams::gate, "Last limits before the master's motor."),
+                   field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor.")});
+  }
+};
+
+/// The controllers of both sites, before their safety gates.
+struct Controllers {
+  std::unique_ptr<MasterController> master;
+  std::unique_ptr<SlaveController> slave;
+};
+
+/// An architecture by its name in a file. `make` fails where its parameters do not fit together; the parameters that
+/// its errors name are those of `ControlParams`.
+struct Architecture {
+  std::string_view name;
+  std::string_view summary;
+  Result<Controllers> (*make)(const ControlParams& params, Seconds dt);
+};
+
+/// Every architecture there is, those of this library first.
+std::span<const Architecture> architectures();
+
+/// Adds an architecture. Call it before experiments are read, from one thread; `name` and `summary` must outlive the
+/// program's use of it. A second one of the same name takes the place of the first.
+void register_architecture(const Architecture& architecture);
+
+/// Both sites, gates included.
+struct Sites {
+  MasterSite master;
+  SlaveSite slave;
+};
+
+/// Makes the sites that `params` describe. Errors: an unknown architecture, naming the nearest; what its `make`
+/// refuses; a gate's parameters.
+Result<Sites> make_sites(const ControlParams& params, Seconds dt);
+
+}  // namespace tactus::control
