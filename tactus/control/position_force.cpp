@@ -2,6 +2,7 @@
 #include <tactus/signal/checks.hpp>
 
 #include <algorithm>
+#include <string_view>
 
 namespace tactus::control {
 
@@ -12,7 +13,10 @@ Result<PositionForceMaster> PositionForceMaster::make(const Params& params, Seco
       dt);
   if (!cancellation) {
     Error error = cancellation.error();
+    // The keys here are flatter than the parameters of the cancellation.
+    constexpr std::string_view nested = "model.master.";
     if (error.parameter == "model.step") error.parameter = "cancellation_step";
+    if (error.parameter.starts_with(nested)) error.parameter.erase(0, nested.size()).insert(0, "model.");
     return error;
   }
   return PositionForceMaster(params, *cancellation);
