@@ -1,5 +1,6 @@
 #include <tactus/configuration/json_schema.hpp>
 #include <tactus/configuration/reference.hpp>
+#include <tactus/simulation/parallel.hpp>
 #include <tactus/simulation/presentation.hpp>
 #include <tactus/simulation/tapping.hpp>
 #include <tactus/simulation/tapping_experiment.hpp>
@@ -105,15 +106,28 @@ Result<Outcome> TappingExperiment::run(const Request& request, const Progress& p
       });
   if (!cases) return cases.error();
 
-  std::size_t total = 0, done = 0;
-  for (const auto& one : cases->all) total += one.prepared.ensemble.size();
+  // One list of all taps of all combinations, so that the last one keeps no core waiting.
+  struct Job {
+    std::size_t run, tap;
+  };
+  std::vector<Job> jobs;
+  std::vector<std::vector<TapResult>> results;
+  for (const auto& one : cases->all) {
+    for (std::size_t tap = 0; tap < one.prepared.ensemble.size(); ++tap) jobs.push_back({results.size(), tap});
+    results.emplace_back(one.prepared.ensemble.size());
+  }
+  for_each_in_parallel(
+      jobs.size(),
+      [&](std::size_t i) {
+        const auto [run, tap] = jobs[i];
+        results[run][tap] = cases->all[run].prepared.ensemble.run(tap);
+      },
+      progress);
+
   std::vector<TappingRun> runs;
-  for (const auto& [settings, prepared] : cases->all) {
-    std::vector<TapResult> taps;
-    for (std::size_t tap = 0; tap < prepared.ensemble.size(); ++tap) {
-      taps.push_back(prepared.ensemble.run(tap));
-      progress(static_cast<double>(++done) / static_cast<double>(total));
-    }
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto& [settings, prepared] = cases->all[i];
+    const std::vector<TapResult>& taps = results[i];
     TappingRun run{.settings = settings,
                    .metrics = summarise(taps),
                    .observation_s = prepared.observation_s,
