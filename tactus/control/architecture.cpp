@@ -63,9 +63,11 @@ Result<Sites> make_sites(const ControlParams& params, Seconds dt) {
   if (!controllers) return controllers.error();
   const auto gate = SafetyGate::make(params.gate, dt);
   if (!gate) return under("gate", gate.error());
+  const auto handle_gate = SafetyGate::make(params.handle_gate, dt);
+  if (!handle_gate) return under("handle_gate", handle_gate.error());
   const auto slave_gate = SafetyGate::make(params.slave_gate, dt);
   if (!slave_gate) return under("slave_gate", slave_gate.error());
-  return Sites{MasterSite(std::move(controllers->master), *gate),
+  return Sites{MasterSite(std::move(controllers->master), {*gate, *handle_gate}),
                SlaveSite(std::move(controllers->slave), *slave_gate)};
 }
 

@@ -17,6 +17,7 @@ struct ControlParams : PositionForceMaster::Params {
   std::string architecture = "position-force";
   ServoPd::Params slave;
   SafetyGate::Params gate;
+  SafetyGate::Params handle_gate;
   SafetyGate::Params slave_gate;
   static constexpr auto fields() {
     return std::tuple_cat(
@@ -26,6 +27,8 @@ struct ControlParams : PositionForceMaster::Params {
         PositionForceMaster::Params::fields(),
         std::tuple{field("slave", &ControlParams::slave, "The slave's position controller."),
                    field("gate", &ControlParams::gate, "Last limits before the master's motor."),
+                   field("handle_gate", &ControlParams::handle_gate,
+                         "Last limits before the actuator on the master's handle."),
                    field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor.")});
   }
 };

@@ -19,17 +19,35 @@ Result<PositionForceMaster> PositionForceMaster::make(const Params& params, Seco
     if (error.parameter.starts_with(nested)) error.parameter.erase(0, nested.size()).insert(0, "model.");
     return error;
   }
-  return PositionForceMaster(params, *cancellation);
+  const auto damping = LocalDamping::make(params.damping, dt);
+  if (!damping) return under("damping", damping.error());
+  const auto command_filter = ShapingFilter::make(params.command_filter, dt);
+  if (!command_filter) return under("command_filter", command_filter.error());
+  const auto force_filter = ShapingFilter::make(params.force_filter, dt);
+  if (!force_filter) return under("force_filter", force_filter.error());
+  const auto crossover = Crossover::make(params.crossover, dt);
+  if (!crossover) return under("crossover", crossover.error());
+  return PositionForceMaster(params, {.cancellation = *cancellation,
+                                      .damping = *damping,
+                                      .command_filter = *command_filter,
+                                      .force_filter = *force_filter,
+                                      .crossover = *crossover});
 }
 
 PositionForceMaster::Output PositionForceMaster::respond(const Input& input) noexcept {
+  const auto [below_N, above_N] =
+      stages_.crossover.step(stages_.force_filter.step(force_gain_ * input.arrival.message.force_N));
+  const double damping_N = stages_.damping.step(input.motor_position_m);
   // A NaN passes through clamp, so it reaches the gate, which catches and latches it.
-  const double displayed_N = std::clamp(force_gain_ * input.arrival.message.force_N, -force_limit_N_, force_limit_N_);
-  const double intended_m = cancellation_.intended(input.motor_position_m);
-  const double command_m = mode_ == CancellationMode::on ? intended_m : input.motor_position_m;
+  const double displayed_N = std::clamp(below_N - damping_N, -force_limit_N_, force_limit_N_);
+  const double handle_N = std::clamp(above_N, -force_limit_N_, force_limit_N_);
+  const double intended_m = stages_.cancellation.intended(input.motor_position_m);
+  const double command_m =
+      stages_.command_filter.step(mode_ == CancellationMode::on ? intended_m : input.motor_position_m);
   return {.motor_force_N = -displayed_N,
+          .handle_force_N = -handle_N,
           .message = {.position_m = position_scale_ * command_m},
-          .induced_position_m = cancellation_.model().motor_position_m(),
+          .induced_position_m = stages_.cancellation.model().motor_position_m(),
           .intended_position_m = intended_m};
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <tactus/control/cancellation.hpp>
+#include <tactus/control/crossover.hpp>
+#include <tactus/control/local_damping.hpp>
 #include <tactus/control/servo_pd.hpp>
+#include <tactus/control/shaping_filter.hpp>
 #include <tactus/control/site.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
@@ -18,10 +21,14 @@ constexpr auto enumerators(CancellationMode) {
 
 /// The master site.
 ///
-///     measured position → cancellation → λ → to slave
-///     force from slave → μ → saturation → safety gate → motor
+///     measured position → cancellation → command filter → λ → to slave
+///     force from slave → μ → force filter → crossover → + local damping → saturation → safety gate → motor
+///                                               └→ saturation → safety gate → actuator on the handle
 ///
-/// With cancellation off the model still runs beside the loop, so that its estimate can be looked at.
+/// Filters, crossover and damping are the paper's rivals of cancellation (Sec. IV, eq. 4 to 6). Each is off unless
+/// asked for, and what is off changes no bit. Damping acts on the measured position and counts as displayed force, so
+/// it drives the model of cancellation too. What the actuator on the handle does is no part of the model. With
+/// cancellation off the model still runs beside the loop, so that its estimate can be looked at.
 class PositionForceMaster {
  public:
   struct Params {
@@ -32,6 +39,10 @@ class PositionForceMaster {
     CancellationStep cancellation_step = CancellationStep::exact;
     ModelFriction cancellation_friction = ModelFriction::total_velocity;
     MasterModel model;
+    LocalDamping::Params damping;
+    ShapingFilter::Params command_filter;
+    ShapingFilter::Params force_filter;
+    Crossover::Params crossover;
     static constexpr auto fields() {
       return std::tuple{
           field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
@@ -39,12 +50,16 @@ class PositionForceMaster {
           field("force_gain", &Params::force_gain, units::none, between(0.0, 1000.0),
                 "Displayed force over tip force, mu."),
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
-                "Where the displayed force saturates."),
+                "Where the displayed force saturates, that of the motor and that of the handle each."),
           field("cancellation", &Params::cancellation, "Cancellation of induced master motion."),
           field("cancellation_step", &Params::cancellation_step, "How the model of cancellation is advanced."),
           field("cancellation_friction", &Params::cancellation_friction,
                 "On which velocity the model's Coulomb friction acts."),
-          field("model", &Params::model, "The controller's model of master and hand.")};
+          field("model", &Params::model, "The controller's model of master and hand."),
+          field("damping", &Params::damping, "Local derivative damping of the master's motor."),
+          field("command_filter", &Params::command_filter, "Filter of the position command."),
+          field("force_filter", &Params::force_filter, "Filter of the force from the slave."),
+          field("crossover", &Params::crossover, "Split of the force between motor and handle.")};
     }
   };
   using Input = MasterInput;
@@ -52,31 +67,45 @@ class PositionForceMaster {
 
   static Result<PositionForceMaster> make(const Params& params, Seconds dt);
 
-  /// Force and command for this tick. Real-time safe.
+  /// Forces and command for this tick. Real-time safe.
   Output respond(const Input& input) noexcept;
   /// Drives the model with the force that is really displayed until the next tick. Real-time safe.
-  void applied(double motor_force_N) noexcept { cancellation_.advance(motor_force_N); }
+  void applied(double motor_force_N) noexcept { stages_.cancellation.advance(motor_force_N); }
   /// Both at once, for use without a gate.
   Output step(const Input& input) noexcept {
     const Output output = respond(input);
     applied(output.motor_force_N);
     return output;
   }
-  void reset() noexcept { cancellation_.reset(); }
+  void reset() noexcept {
+    stages_.cancellation.reset();
+    stages_.damping.reset();
+    stages_.command_filter.reset();
+    stages_.force_filter.reset();
+    stages_.crossover.reset();
+  }
 
  private:
-  PositionForceMaster(const Params& params, const Cancellation& cancellation)
+  struct Stages {
+    Cancellation cancellation;
+    LocalDamping damping;
+    ShapingFilter command_filter;
+    ShapingFilter force_filter;
+    Crossover crossover;
+  };
+
+  PositionForceMaster(const Params& params, const Stages& stages)
       : position_scale_(params.position_scale),
         force_gain_(params.force_gain),
         force_limit_N_(params.force_limit_N),
         mode_(params.cancellation),
-        cancellation_(cancellation) {}
+        stages_(stages) {}
 
   double position_scale_;
   double force_gain_;
   double force_limit_N_;
   CancellationMode mode_;
-  Cancellation cancellation_;
+  Stages stages_;
 };
 
 /// The slave site: proportional and derivative feedback of the error on the motor; the tip force goes back as it is

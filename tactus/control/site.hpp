@@ -2,7 +2,9 @@
 
 #include <tactus/control/safety_gate.hpp>
 
+#include <cmath>
 #include <concepts>
+#include <limits>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -34,7 +36,8 @@ struct MasterInput {
 
 /// What the master commands and tells, and what its stages made of it, for the log.
 struct MasterOutput {
-  double motor_force_N = 0.0;  ///< positive toward the environment; a force that pushes the hand back is negative
+  double motor_force_N = 0.0;   ///< positive toward the environment; a force that pushes the hand back is negative
+  double handle_force_N = 0.0;  ///< of a second, vibrotactile actuator on the handle, same sign; zero without one
   Message message;
   double induced_position_m = 0.0;   ///< the estimate of what the displayed force did to the motor, at this instant
   double intended_position_m = 0.0;  ///< measured less induced
@@ -107,43 +110,83 @@ std::unique_ptr<SlaveController> slave_controller(const E& element) {
   return std::make_unique<ControllerOf<SlaveInput, SlaveOutput, E>>(element);
 }
 
-/// A controller behind its safety gate. The gate stands outside of the controller, so none can leave it out. A copy is
-/// a fork: it owns a clone of the controller.
-template <class Input, class Output>
+/// The safety gates of the master: one for its motor, one for the actuator on its handle. A command that is not finite
+/// for either of them releases both: a controller that lost one number is not trusted with the other.
+class MasterGates {
+ public:
+  MasterGates(const SafetyGate& motor, const SafetyGate& handle) : motor_(motor), handle_(handle) {}
+  /// The same limits for both. Implicit, because one gate says all where nobody asked for a second actuator.
+  MasterGates(const SafetyGate& both) : MasterGates(both, both) {}
+
+  /// Puts what may reach the actuators in place of what was commanded. Real-time safe.
+  void pass(MasterOutput& output) noexcept {
+    constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+    const bool finite = std::isfinite(output.motor_force_N) && std::isfinite(output.handle_force_N);
+    output.motor_force_N = motor_.step(finite ? output.motor_force_N : not_a_number);
+    output.handle_force_N = handle_.step(finite ? output.handle_force_N : not_a_number);
+  }
+  void reset() noexcept {
+    motor_.reset();
+    handle_.reset();
+  }
+  [[nodiscard]] GateFault fault() const noexcept { return motor_.fault(); }
+
+ private:
+  SafetyGate motor_;
+  SafetyGate handle_;
+};
+
+/// The safety gate of the slave's motor.
+class SlaveGates {
+ public:
+  SlaveGates(const SafetyGate& motor) : motor_(motor) {}
+
+  /// Puts what may reach the motor in place of what was commanded. Real-time safe.
+  void pass(SlaveOutput& output) noexcept { output.motor_force_N = motor_.step(output.motor_force_N); }
+  void reset() noexcept { motor_.reset(); }
+  [[nodiscard]] GateFault fault() const noexcept { return motor_.fault(); }
+
+ private:
+  SafetyGate motor_;
+};
+
+/// A controller behind its safety gates, one for each actuator. They stand outside of the controller, so none can leave
+/// them out. A copy is a fork: it owns a clone of the controller.
+template <class Input, class Output, class Gates>
 class Site {
  public:
   using Controller = SiteController<Input, Output>;
 
-  Site(std::unique_ptr<Controller> controller, const SafetyGate& gate)
-      : controller_(std::move(controller)), gate_(gate) {}
-  Site(const Site& other) : controller_(other.controller_->clone()), gate_(other.gate_) {}
+  Site(std::unique_ptr<Controller> controller, const Gates& gates)
+      : controller_(std::move(controller)), gates_(gates) {}
+  Site(const Site& other) : controller_(other.controller_->clone()), gates_(other.gates_) {}
   Site(Site&&) noexcept = default;
   Site& operator=(Site other) noexcept {
     std::swap(controller_, other.controller_);
-    gate_ = other.gate_;
+    gates_ = other.gates_;
     return *this;
   }
   ~Site() = default;
 
-  /// One tick; the force in the output is what the gate let through. Real-time safe.
+  /// One tick; the forces in the output are what the gates let through. Real-time safe.
   Output step(const Input& input) noexcept {
     Output output = controller_->respond(input);
-    output.motor_force_N = gate_.step(output.motor_force_N);
+    gates_.pass(output);
     controller_->applied(output.motor_force_N);
     return output;
   }
   void reset() noexcept {
     controller_->reset();
-    gate_.reset();
+    gates_.reset();
   }
-  [[nodiscard]] GateFault fault() const noexcept { return gate_.fault(); }
+  [[nodiscard]] GateFault fault() const noexcept { return gates_.fault(); }
 
  private:
   std::unique_ptr<Controller> controller_;
-  SafetyGate gate_;
+  Gates gates_;
 };
 
-using MasterSite = Site<MasterInput, MasterOutput>;
-using SlaveSite = Site<SlaveInput, SlaveOutput>;
+using MasterSite = Site<MasterInput, MasterOutput, MasterGates>;
+using SlaveSite = Site<SlaveInput, SlaveOutput, SlaveGates>;
 
 }  // namespace tactus::control

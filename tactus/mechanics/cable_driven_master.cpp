@@ -13,14 +13,17 @@ Result<CableDrivenMaster> CableDrivenMaster::make(const Params& params, const Li
   }
   const auto amplifier = CurrentAmplifier::make(params.amplifier, dt);
   if (!amplifier) return under("amplifier", amplifier.error());
+  const auto handle_actuator = CurrentAmplifier::make(params.handle_actuator, dt);
+  if (!handle_actuator) return under("handle_actuator", handle_actuator.error());
   const auto encoder = Encoder::make(params.encoder, dt);
   if (!encoder) return under("encoder", encoder.error());
-  return CableDrivenMaster(*mechanism, *amplifier, *encoder);
+  return CableDrivenMaster(*mechanism, *amplifier, *handle_actuator, *encoder);
 }
 
 void CableDrivenMaster::reset(double position_m) noexcept {
   mechanism_.reset(position_m);
   amplifier_.reset();
+  handle_actuator_.reset();
   encoder_.reset();
 }
 

@@ -10,7 +10,8 @@
 namespace tactus::mechanics {
 
 /// The master device as a plant: amplifier → motor –cable– drum –linkage– handle ← hand, and an encoder on the motor
-/// (paper A, Figs. 2 and 10). The defaults are paper A's Table I.
+/// (paper A, Figs. 2 and 10), with a vibrotactile actuator on the handle (Sec. IV). The defaults are paper A's Table I;
+/// the paper gives no such actuator, its lag and limit are assumed.
 ///
 /// It runs on the plant's substeps; the encoder is read at the servo tick.
 class CableDrivenMaster {
@@ -18,17 +19,21 @@ class CableDrivenMaster {
   struct Params {
     CableChain::Params mechanism;
     CurrentAmplifier::Params amplifier;
+    CurrentAmplifier::Params handle_actuator{.bandwidth_Hz = 1000.0, .limit_N = 2.0};
     Encoder::Params encoder{.resolution_m = 1e-5};
     static constexpr auto fields() {
       return std::tuple{field("mechanism", &Params::mechanism, "Motor, cable, drum, linkage and handle."),
                         field("amplifier", &Params::amplifier, "Current amplifier of the motor."),
+                        field("handle_actuator", &Params::handle_actuator,
+                              "Vibrotactile actuator: applies a force to the handle, idle unless commanded."),
                         field("encoder", &Params::encoder, "Position encoder on the motor.")};
     }
   };
 
   struct Input {
-    double commanded_force_N = 0.0;  ///< to the amplifier, positive toward the environment
-    double grip_position_m = 0.0;    ///< where the hand wants the handle, at the middle of the substep
+    double commanded_force_N = 0.0;         ///< to the amplifier, positive toward the environment
+    double commanded_handle_force_N = 0.0;  ///< to the handle's actuator, same sign
+    double grip_position_m = 0.0;           ///< where the hand wants the handle, at the middle of the substep
     double grip_velocity_m_per_s = 0.0;
   };
   using Output = CableChain::Output;
@@ -41,6 +46,7 @@ class CableDrivenMaster {
   /// Advances by one substep. Real-time safe.
   Output step(const Input& input) noexcept {
     return mechanism_.step({.motor_force_N = amplifier_.step(input.commanded_force_N),
+                            .tip_force_N = handle_actuator_.step(input.commanded_handle_force_N),
                             .grip_position_m = input.grip_position_m,
                             .grip_velocity_m_per_s = input.grip_velocity_m_per_s});
   }
@@ -55,11 +61,13 @@ class CableDrivenMaster {
   [[nodiscard]] const CableChain& mechanism() const noexcept { return mechanism_; }
 
  private:
-  CableDrivenMaster(const CableChain& mechanism, const CurrentAmplifier& amplifier, const Encoder& encoder)
-      : mechanism_(mechanism), amplifier_(amplifier), encoder_(encoder) {}
+  CableDrivenMaster(const CableChain& mechanism, const CurrentAmplifier& amplifier,
+                    const CurrentAmplifier& handle_actuator, const Encoder& encoder)
+      : mechanism_(mechanism), amplifier_(amplifier), handle_actuator_(handle_actuator), encoder_(encoder) {}
 
   CableChain mechanism_;
   CurrentAmplifier amplifier_;
+  CurrentAmplifier handle_actuator_;
   Encoder encoder_;
 };
 

@@ -16,8 +16,8 @@ enum class FilterKind { low_pass, high_pass, notch };
 
 /// The words for a filter kind in a file.
 constexpr auto enumerators(FilterKind) {
-  return std::array{Enumerator<FilterKind>{FilterKind::low_pass, "low_pass"},
-                    Enumerator<FilterKind>{FilterKind::high_pass, "high_pass"},
+  return std::array{Enumerator<FilterKind>{FilterKind::low_pass, "low-pass"},
+                    Enumerator<FilterKind>{FilterKind::high_pass, "high-pass"},
                     Enumerator<FilterKind>{FilterKind::notch, "notch"}};
 }
 
@@ -41,7 +41,7 @@ class SecondOrderFilter {
     double notch_width_Hz = 50.0;
     static constexpr auto fields() {
       return std::tuple{
-          field("kind", &Params::kind, "What passes: low_pass, high_pass or notch (all but a band)."),
+          field("kind", &Params::kind, "What passes: low-pass, high-pass or notch (all but a band)."),
           field("frequency_Hz", &Params::frequency_Hz, units::hertz, positive,
                 "The -3 dB frequency of a low-pass or high-pass, the centre of a notch; below half the sample rate."),
           field("notch_width_Hz", &Params::notch_width_Hz, units::hertz, positive,

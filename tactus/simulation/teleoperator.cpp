@@ -54,7 +54,8 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
                 .command_m = master.message.position_m,
                 .slave_position_m = slave_reading.motor_position_m,
                 .tip_position_m = parts_.slave.mechanism().tip_position_m(),
-                .displayed_force_N = -master.motor_force_N};
+                .displayed_force_N = -master.motor_force_N,
+                .handle_force_N = master.handle_force_N};
 
   const auto aim = parts_.person.step({.path_m = path_m,
                                        .path_at_next_tick_m = path_at_next_tick_m,
@@ -63,10 +64,12 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
   for (int i = 0; i < clock_.substeps; ++i) {
     if (i == clock_.late_substeps) {
       master_command_N_ = master.motor_force_N;
+      handle_command_N_ = master.handle_force_N;
       slave_command_N_ = slave.motor_force_N;
     }
     const double middle_s = (i + 0.5) * clock_.substep_s;
     parts_.master.step({.commanded_force_N = master_command_N_,
+                        .commanded_handle_force_N = handle_command_N_,
                         .grip_position_m = aim.position_m + middle_s * aim.velocity_m_per_s,
                         .grip_velocity_m_per_s = aim.velocity_m_per_s});
     const auto contact = parts_.slave.step(slave_command_N_);

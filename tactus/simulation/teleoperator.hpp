@@ -62,7 +62,8 @@ class Teleoperator {
     double command_m = 0.0;             ///< position command that left the master
     double slave_position_m = 0.0;      ///< measured, at the motor
     double tip_position_m = 0.0;        ///< of the slave, true
-    double displayed_force_N = 0.0;     ///< positive when it pushes the hand back
+    double displayed_force_N = 0.0;     ///< at the motor, positive when it pushes the hand back
+    double handle_force_N = 0.0;        ///< to the handle's actuator, positive toward the environment
     double contact_force_N = 0.0;       ///< true, mean until the next tick
     double peak_contact_force_N = 0.0;  ///< true, largest substep until the next tick
     bool touched = false;               ///< the tip met the wall before the next tick
@@ -96,6 +97,7 @@ class Teleoperator {
   Clock clock_;
   std::int64_t ticks_ = 0;
   double master_command_N_ = 0.0;
+  double handle_command_N_ = 0.0;
   double slave_command_N_ = 0.0;
   control::Arrival arrived_;  ///< at the master, for its next tick
 };

@@ -1,16 +1,20 @@
 #include "tests/laws.hpp"
 
 #include <tactus/control/cancellation.hpp>
+#include <tactus/control/crossover.hpp>
 #include <tactus/control/induced_motion_model.hpp>
+#include <tactus/control/local_damping.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/servo_pd.hpp>
+#include <tactus/control/shaping_filter.hpp>
 
 namespace tactus::laws {
 
 using control::CancellationMode;
 using control::CancellationStep;
 using control::ModelFriction;
+using control::Shaping;
 
 inline control::InducedMotionModel::Params model(CancellationStep step, ModelFriction friction) {
   control::InducedMotionModel::Params params;
@@ -71,14 +75,43 @@ struct Subject<control::PositionForceMaster> {
     control::PositionForceMaster::Params plain;
     plain.cancellation = CancellationMode::off;
     plain.cancellation_step = CancellationStep::euler;
-    return {{}, strong, plain};
+    control::PositionForceMaster::Params rivals = strong;
+    rivals.damping.damping_N_s_per_m = 10.0;
+    rivals.command_filter.kind = Shaping::low_pass;
+    rivals.force_filter.kind = Shaping::notch;
+    rivals.crossover.frequency_Hz = 40.0;
+    return {{}, strong, plain, rivals};
   }
   static void admit(control::PositionForceMaster::Input&) {}
 };
 
+template <>
+struct Subject<control::ShapingFilter> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::ShapingFilter::Params> parameters() {
+    return {{}, {.kind = Shaping::low_pass}, {.kind = Shaping::notch, .frequency_Hz = 200.0, .notch_width_Hz = 1.0}};
+  }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<control::LocalDamping> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::LocalDamping::Params> parameters() { return {{}, {.damping_N_s_per_m = 10.0}}; }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<control::Crossover> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::Crossover::Params> parameters() { return {{}, {.frequency_Hz = 40.0}}; }
+  static void admit(double&) {}
+};
+
 using ControlElements =
     ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
-                     control::PositionForceSlave, control::SafetyGate, control::ServoPd>;
+                     control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::ShapingFilter,
+                     control::LocalDamping, control::Crossover>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws

@@ -102,6 +102,30 @@ TEST(CableDrivenMaster, TheAmplifierSaturatesAndLagsOnTheWayToTheMotor) {
   EXPECT_NEAR(momentum(device, reference), 2.0 * (steps * step_s - lag_s), 2.0 * step_s);
 }
 
+TEST(CableDrivenMaster, ASteadyForceOfTheHandlesActuatorDeflectsTheHandByTheGripAndTheMotorNoFurther) {
+  const ReferenceChain reference = in_a_hand();
+  CableDrivenMaster device = master(reference);
+  constexpr double force_N = 0.1;
+  for (int i = 0; i < 400000; ++i) device.step({.commanded_handle_force_N = force_N});
+  EXPECT_NEAR(device.mechanism().tip_position_m(), force_N / 40.0, 1e-8);
+  EXPECT_NEAR(device.mechanism().motor_position_m(), force_N / 40.0, 1e-8);
+}
+
+TEST(CableDrivenMaster, TheHandlesActuatorSaturatesAndLagsOnItsOwn) {
+  const ReferenceChain reference;
+  CableDrivenMaster::Params params;
+  params.mechanism = reference.params();
+  params.handle_actuator = {.gain = 1.0, .bandwidth_Hz = 100.0, .limit_N = 0.5};
+  CableDrivenMaster device = CableDrivenMaster::make(params, Seconds{step_s}).value();
+  constexpr int steps = 2500;
+  for (int i = 0; i < steps; ++i) device.step({.commanded_handle_force_N = -1000.0});
+  const double lag_s = 1.0 / (2.0 * std::numbers::pi * 100.0);
+  EXPECT_NEAR(momentum(device, reference), -0.5 * (steps * step_s - lag_s), 0.5 * step_s);
+  device.reset();
+  device.step({});
+  EXPECT_EQ(momentum(device, reference), 0.0);
+}
+
 TEST(CableDrivenMaster, TheEncoderReportsTheMotorToHalfACount) {
   CableDrivenMaster device = CableDrivenMaster::make({}, Seconds{step_s}).value();
   double travelled_m = 0.0;
