@@ -1,10 +1,14 @@
 #include "tests/laws.hpp"
 
 #include <tactus/control/cancellation.hpp>
+#include <tactus/control/hand_force_observer.hpp>
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/control/position_force.hpp>
+#include <tactus/control/position_position.hpp>
+#include <tactus/control/projection.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/servo_pd.hpp>
+#include <tactus/control/shared_compliant.hpp>
 
 namespace tactus::laws {
 
@@ -78,7 +82,9 @@ struct Subject<control::PositionForceMaster> {
 
 using ControlElements =
     ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
-                     control::PositionForceSlave, control::SafetyGate, control::ServoPd>;
+                     control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::HandForceObserver,
+                     control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
+                     control::SharedCompliantSlave>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws
