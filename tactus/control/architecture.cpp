@@ -1,4 +1,5 @@
 #include <tactus/control/architecture.hpp>
+#include <tactus/control/position_position.hpp>
 #include <tactus/core/spelling.hpp>
 
 #include <algorithm>
@@ -16,10 +17,43 @@ Result<Controllers> make_position_force(const ControlParams& params, Seconds dt)
   return Controllers{master_controller(*master), slave_controller(*slave)};
 }
 
+/// The error, its parameter taken out of `group`: what is a group of a site is no group of `ControlParams`.
+Error out_of(std::string_view group, Error error) {
+  if (error.parameter.starts_with(group)) error.parameter.erase(0, group.size());
+  return error;
+}
+
+Result<Controllers> make_position_position(const ControlParams& params, Seconds dt) {
+  const auto slave = PositionPositionSlave::make(params.slave, dt);
+  if (!slave) return under("slave", slave.error());
+  const auto master = PositionPositionMaster::make({.position_force = params, .coupling = params.slave}, dt);
+  if (!master) return out_of("position_force.", master.error());
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+Result<Controllers> make_projection(const ControlParams& params, Seconds dt) {
+  const auto master = ProjectionMaster::make({.position_force = params, .projection = params.projection}, dt);
+  if (!master) return out_of("position_force.", master.error());
+  const auto slave = PositionForceSlave::make(params.slave, dt);
+  if (!slave) return under("slave", slave.error());
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+Result<Controllers> make_shared_compliant(const ControlParams& params, Seconds dt) {
+  const auto master = PositionForceMaster::make(params, dt);
+  if (!master) return master.error();
+  const auto slave = SharedCompliantSlave::make({.slave = params.slave, .compliance = params.compliance}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
 std::vector<Architecture>& registry() {
   static std::vector<Architecture> all{
       {"position-force", "the slave follows the master's position, the master displays the slave's tip force",
        make_position_force},
+      {"position-position", "each device is pulled toward the other; no force sensor", make_position_position},
+      {"projection", "position-force that displays at once only what the hand holds", make_projection},
+      {"shared-compliant", "position-force whose slave yields to the tip force by itself", make_shared_compliant},
   };
   return all;
 }

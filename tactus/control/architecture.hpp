@@ -1,6 +1,8 @@
 #pragma once
 
 #include <tactus/control/position_force.hpp>
+#include <tactus/control/projection.hpp>
+#include <tactus/control/shared_compliant.hpp>
 #include <tactus/control/site.hpp>
 #include <tactus/core/parameters.hpp>
 
@@ -19,6 +21,8 @@ struct ControlParams : PositionForceMaster::Params {
   SafetyGate::Params gate;
   SafetyGate::Params handle_gate;
   SafetyGate::Params slave_gate;
+  ProjectionParams projection;
+  ComplianceParams compliance;
   static constexpr auto fields() {
     return std::tuple_cat(
         std::tuple{
@@ -29,7 +33,11 @@ struct ControlParams : PositionForceMaster::Params {
                    field("gate", &ControlParams::gate, "Last limits before the master's motor."),
                    field("handle_gate", &ControlParams::handle_gate,
                          "Last limits before the actuator on the master's handle."),
-                   field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor.")});
+                   field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
+                   field("projection", &ControlParams::projection,
+                         "Architecture projection: what of the force is reflected at once."),
+                   field("compliance", &ControlParams::compliance,
+                         "Architecture shared-compliant: how the slave's command yields to the tip force.")});
   }
 };
 

@@ -2,12 +2,16 @@
 
 #include <tactus/control/cancellation.hpp>
 #include <tactus/control/crossover.hpp>
+#include <tactus/control/hand_force_observer.hpp>
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/control/local_damping.hpp>
 #include <tactus/control/position_force.hpp>
+#include <tactus/control/position_position.hpp>
+#include <tactus/control/projection.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/servo_pd.hpp>
 #include <tactus/control/shaping_filter.hpp>
+#include <tactus/control/shared_compliant.hpp>
 
 namespace tactus::laws {
 
@@ -110,8 +114,10 @@ struct Subject<control::Crossover> {
 
 using ControlElements =
     ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
-                     control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::ShapingFilter,
-                     control::LocalDamping, control::Crossover>;
+                     control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::LocalDamping,
+                     control::ShapingFilter, control::Crossover, control::HandForceObserver,
+                     control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
+                     control::SharedCompliantSlave>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws
