@@ -70,11 +70,18 @@ Line trace_line(const TappingRun& run, std::string name, int colour, Value&& val
 report::Axis time_axis() { return {.label = "time since touch", .unit = "ms"}; }
 
 Panel force_panel(const TappingRun& run) {
+  const bool vibrates =
+      std::any_of(run.trace.begin(), run.trace.end(), [](const auto& record) { return record.handle_force_N != 0.0; });
+  std::vector<Line> lines{trace_line(run, vibrates ? "force of the motor" : "force on the hand", 0,
+                                     [](const auto& record) { return record.displayed_force_N; })};
+  if (vibrates) {
+    lines.push_back(trace_line(run, "force of the handle's actuator", 5,
+                               [](const auto& record) { return -record.handle_force_N; }));
+  }
   return {.title = {},
           .x = time_axis(),
           .y = {.label = "displayed force", .unit = "N"},
-          .lines = {trace_line(run, "force on the hand", 0,
-                               [](const Teleoperator::Record& record) { return record.displayed_force_N; })},
+          .lines = std::move(lines),
           .rules = {}};
 }
 
