@@ -8,8 +8,8 @@ namespace tactus::control {
 
 /// How far and how fast the slave's command yields.
 struct ComplianceParams {
-  double stiffness_N_per_m = 500.0;
-  double cutoff_Hz = 5.0;
+  double stiffness_N_per_m = 100.0;
+  double cutoff_Hz = 2.0;
   static constexpr auto fields() {
     return std::tuple{
         field("stiffness_N_per_m", &ComplianceParams::stiffness_N_per_m, units::newton_per_metre,
@@ -23,11 +23,13 @@ struct ComplianceParams {
 ///
 ///     x_d = x_cmd − F̄_e / K_c,    F̄_e = F_e low-passed at `cutoff_Hz`.
 ///
-/// At rest the tip is as soft as the servo, K_c and the mechanism in series. The yielding is local, so no delay makes
-/// it unstable; it moves the balance of a press from the person, who knows of it a round trip late, to the slave. The
-/// low-pass keeps the local loop, tip force to command to tip force, from crossing where servo and mechanism lag: below
-/// the cutoff it has the gain k_p/K_c against a hard wall, so keep either k_p/K_c below one or the cutoff well below
-/// the servo's bandwidth. The tip force goes to the master as measured.
+/// At rest the tip is as soft as the servo, K_c and the mechanism in series. The yielding is local, so delay leaves it
+/// untouched; it moves the balance of a press from the person, who knows of it a round trip late, to the slave. The tip
+/// force goes to the master as measured.
+///
+/// Against a wall the local loop has the gain k_p/K_c below the cutoff and one low-pass, so while the tip stays in
+/// contact it is stable. But a command that yields much and fast takes the tip off the wall, and the contact bounces:
+/// with the default servo, from 5 Hz up at k_p/K_c = 1, while 2 Hz settles there. So keep the cutoff low.
 /// Source: Kim, Hannaford and Bejczy, Force-reflection and shared compliant control in operating telemanipulators with
 /// time delay, 1992.
 class SharedCompliantSlave {

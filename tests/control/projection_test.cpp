@@ -106,6 +106,14 @@ TEST(HeldForce, IsTheForceCutToWhatLiesBetweenZeroAndTheHandForce) {
   }
 }
 
+TEST(HeldForce, FadesWithTheHandForceWhereThatIsNegligible) {
+  EXPECT_NEAR(held_force_N(0.01, 0.01, 0.02), 0.01 * 0.25, 1e-15);
+  EXPECT_NEAR(held_force_N(0.01, -0.01, 0.02), 0.0, 1e-15);
+  EXPECT_NEAR(held_force_N(-0.02, -0.005, 0.02), -0.005 * 0.25, 1e-15);
+  EXPECT_NEAR(held_force_N(5.0, 0.01, 0.02), 0.01, 1e-15);
+  EXPECT_EQ(held_force_N(5.0, 0.0, 0.02), 0.0);
+}
+
 TEST(HeldForce, NeverExceedsForceOrHandNeverTurnsAndNeverJumps) {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
