@@ -6,6 +6,8 @@
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/servo_pd.hpp>
 
+#include "examples/own-architecture/soft_limit_master.hpp"
+
 namespace tactus::laws {
 
 using control::CancellationMode;
@@ -78,7 +80,7 @@ struct Subject<control::PositionForceMaster> {
 
 using ControlElements =
     ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
-                     control::PositionForceSlave, control::SafetyGate, control::ServoPd>;
+                     control::PositionForceSlave, control::SafetyGate, control::ServoPd, SoftLimitMaster>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws
