@@ -13,6 +13,8 @@
 #include <system_error>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 namespace tactus::cli {
 
 namespace {
@@ -106,9 +108,9 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
       ->allow_extra_args(false);
   verb->add_option("--out", options->out, "Folder for report.html, results.json and the figures")->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
-  verb->callback([options, &command, &status] {
+  verb->callback([options, &app, &command, &status] {
     if (const auto error = run(*options, command)) {
-      std::cerr << "tactus: " << describe(*error) << "\n";
+      std::cerr << app.get_name() << ": " << describe(*error) << "\n";
       status = exit_status(*error);
     }
   });

@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include <CLI/CLI.hpp>
+
 namespace tactus::cli {
 
 namespace {
@@ -25,13 +27,14 @@ void add_schema(CLI::App& app, int& status) {
   }
   verb->add_option("KIND", options->kind, "Kind of experiment: " + kinds)->capture_default_str();
   verb->add_flag("--reference", options->reference, "Print the reference page in Markdown instead");
-  verb->callback([options, kinds, &status] {
+  verb->callback([options, kinds, &app, &status] {
     for (const auto* experiment : simulation::experiments()) {
       if (experiment->kind() != options->kind) continue;
       std::cout << (options->reference ? experiment->reference() : experiment->schema());
       return;
     }
-    std::cerr << "tactus: schema: '" << options->kind << "' is no kind of experiment: write one of " << kinds << "\n";
+    std::cerr << app.get_name() << ": schema: '" << options->kind << "' is no kind of experiment: write one of "
+              << kinds << "\n";
     status = 2;
   });
 }

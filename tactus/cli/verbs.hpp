@@ -2,10 +2,13 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
+// Only declared: headers are installed, and a user of the package need not have CLI11.
+namespace CLI {  // NOLINT: the name is not ours
+class App;
+}
 
 /// The verbs of the `tactus` command. Each adds its subcommand to `app`; when chosen, it does its work and leaves its
-/// exit status (0 done, 1 the job failed, 2 the request was wrong) in `status`.
+/// exit status (0 done, 1 the job failed, 2 the request was wrong) in `status`. Messages begin with the name of `app`.
 namespace tactus::cli {
 
 /// `command` is the whole command line as a person would type it again, for the report.

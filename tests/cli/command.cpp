@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/scratch_path.hpp"
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,10 +33,9 @@ void redirect(int descriptor, const char* file) {
 }  // namespace
 
 void Command::SetUp() {
-  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  const auto name = "tactus_cli_" + std::string(test->test_suite_name()) + "_" + test->name();
-  folder_ = fs::temp_directory_path() / name;
-  streams_ = fs::temp_directory_path() / (name + "_streams");
+  folder_ = scratch_path();
+  streams_ = folder_;
+  streams_ += "_streams";
   for (const fs::path& folder : {folder_, streams_}) {
     fs::remove_all(folder);
     fs::create_directories(folder);

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <string>
 
+#include "tests/scratch_path.hpp"
 #include <gtest/gtest.h>
 #include <tests/configuration/experiment.hpp>
 
@@ -30,10 +31,7 @@ Experiment read(std::string_view text) {
 /// A file in the temporary folder, removed at the end.
 class File {
  public:
-  explicit File(std::string_view content)
-      : path_(std::filesystem::temp_directory_path() /
-              ("tactus_configuration_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) +
-               ".toml")) {
+  explicit File(std::string_view content) : path_(scratch_path().replace_extension(".toml")) {
     std::ofstream(path_, std::ios::binary) << content;
   }
   File(const File&) = delete;

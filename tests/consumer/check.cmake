@@ -1,7 +1,9 @@
-# Installs what BUILD holds into SCRATCH/prefix, and builds and runs the programs of this folder against it.
+# Installs what BUILD holds into SCRATCH/prefix, and builds and runs the programs of this folder and the example of
+# docs/how-to/plug-in-your-own.md against it.
 # GENERATOR, COMPILER and BUILD_TYPE are those of BUILD; SOURCE is the source folder of tactus.
 cmake_minimum_required(VERSION 3.25)
 
+# Leaves what the command printed in `output`.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
@@ -9,6 +11,13 @@ function(run)
     message("${output}")
     message(FATAL_ERROR "`${command}` ended with ${status}")
   endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+function(build_against_the_package source build)
+  run(${CMAKE_COMMAND} -S ${source} -B ${build} -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER}
+      -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix)
+  run(${CMAKE_COMMAND} --build ${build})
 endfunction()
 
 file(REMOVE_RECURSE ${SCRATCH})
@@ -27,9 +36,31 @@ foreach(file IN LISTS package_files)
   endforeach()
 endforeach()
 
-run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${SCRATCH}/build -G ${GENERATOR}
-    -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix)
-run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
+build_against_the_package(${CMAKE_CURRENT_LIST_DIR} ${SCRATCH}/build)
 run(${SCRATCH}/build/consumer)
+run(${SCRATCH}/build/my_controller)
 run(${SCRATCH}/build/everything)
 run(${SCRATCH}/prefix/bin/tactus --help)
+
+# An architecture of a user's own is one that a file can name. The example's force bends from half the force limit on:
+# at a force gain of 0.1 no tap comes near that and the architecture is position-force bit for bit, at 3 it is not.
+build_against_the_package(${SOURCE}/examples/own-architecture ${SCRATCH}/example)
+set(my_tactus ${SCRATCH}/example/my-tactus)
+set(experiment ${SCRATCH}/prefix/share/tactus/experiments/tapping.toml)
+run(${my_tactus} run ${experiment} --json --set task.taps=2 --vary control.force_gain=0.1,3
+    --vary control.architecture=position-force,soft-limit)
+foreach(index RANGE 3)
+  string(JSON metrics_${index} GET "${output}" runs ${index} metrics)
+endforeach()
+if(NOT metrics_0 STREQUAL metrics_1)
+  message(FATAL_ERROR "without a large force soft-limit is not position-force:\n${output}")
+endif()
+if(metrics_2 STREQUAL metrics_3)
+  message(FATAL_ERROR "soft-limit changes nothing:\n${output}")
+endif()
+
+execute_process(COMMAND ${my_tactus} run ${experiment} --set control.architecture=no-such
+                RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE refusal)
+if(NOT status EQUAL 2 OR NOT refusal MATCHES "^my-tactus: .*write one of position-force, .*soft-limit")
+  message(FATAL_ERROR "an unknown architecture ended with ${status} and did not list the one of the example:\n${refusal}")
+endif()

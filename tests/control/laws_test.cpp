@@ -13,6 +13,8 @@
 #include <tactus/control/shaping_filter.hpp>
 #include <tactus/control/shared_compliant.hpp>
 
+#include "examples/own-architecture/soft_limit_master.hpp"
+
 namespace tactus::laws {
 
 using control::CancellationMode;
@@ -117,7 +119,7 @@ using ControlElements =
                      control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::LocalDamping,
                      control::ShapingFilter, control::Crossover, control::HandForceObserver,
                      control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
-                     control::SharedCompliantSlave>;
+                     control::SharedCompliantSlave, SoftLimitMaster>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws

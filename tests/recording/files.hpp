@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/scratch_path.hpp"
 #include <gtest/gtest.h>
 #include <matio.h>
 
@@ -18,9 +19,7 @@ namespace tactus::recording {
 class RecordingFiles : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("tactus_" + std::string(test->test_suite_name()) + "_" + test->name());
+    folder_ = scratch_path();
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "tests/scratch_path.hpp"
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
@@ -13,9 +14,7 @@ namespace tactus::simulation {
 class Scratch : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("tactus_simulation_" + std::string(test->test_suite_name()) + "_" + test->name());
+    folder_ = scratch_path();
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
   }

@@ -1,0 +1,71 @@
+#include <tactus/cli/command.hpp>
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/verbs.hpp>
+#include <tactus/core/version.hpp>
+
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+/// A word of a command line as a person would type it into a shell.
+std::string shell_word(std::string_view word) {
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string_view::npos) return std::string(word);
+  std::string quoted = "'";
+  for (const char c : word) {
+    if (c == '\'') {
+      quoted += "'\\''";
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "'";
+}
+
+int refuse(const std::string& name, std::string_view why) {
+  std::cerr << name << ": " << why << ": `" << name << " --help` and `" << name
+            << " COMMAND --help` list what there is\n";
+  return 2;
+}
+
+}  // namespace
+
+int run_command(int argc, char** argv) {
+  const std::string name = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "tactus";
+  std::string command = shell_word(name);
+  for (int i = 1; i < argc; ++i) command += " " + shell_word(argv[i]);
+
+  // A reader of the results that went away is an error like a full disk and not the end.
+  std::signal(SIGPIPE, SIG_IGN);
+  int status = 0;
+  CLI::App app{"Crisp and stable force-reflecting teleoperation", name};
+  app.set_version_flag("--version", "tactus " + std::string(version()));
+  // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
+  app.require_subcommand(0, 1);
+  add_run(app, command, status);
+  add_schema(app, status);
+  try {
+    app.parse(argc, argv);
+    if (app.get_subcommands().empty()) return refuse(name, "A command is required");
+  } catch (const CLI::ParseError& error) {
+    // Help and version come this way too, with a code of 0.
+    if (error.get_exit_code() != 0) return refuse(name, error.what());
+    app.exit(error);
+  }
+  if (status != 0) return status;
+  if (const auto error = flush_standard_output()) {
+    std::cerr << name << ": " << describe(*error) << "\n";
+    return exit_status(*error);
+  }
+  return 0;
+}
+
+}  // namespace tactus::cli

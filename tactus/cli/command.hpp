@@ -1,0 +1,14 @@
+#pragma once
+
+namespace tactus::cli {
+
+/// The whole `tactus` command, for a program that adds something to it: register architectures of your own, then return
+/// from `main` what this returns. `argc` and `argv` are those of `main`. In messages and reports the command calls
+/// itself by the file name in `argv[0]`.
+///
+/// Returns the exit status: 0 done, 1 the job failed, 2 the request was wrong; why stands on standard error. To be
+/// called once: it prints to standard output and makes the process ignore SIGPIPE, so that a reader that goes away is
+/// an error like a full disk.
+int run_command(int argc, char** argv);
+
+}  // namespace tactus::cli
