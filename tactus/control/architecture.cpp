@@ -16,10 +16,38 @@ Result<Controllers> make_position_force(const ControlParams& params, Seconds dt)
   return Controllers{master_controller(*master), slave_controller(*slave)};
 }
 
+Result<Controllers> make_four_channel(const ControlParams& params, Seconds dt) {
+  const auto master = FourChannelMaster::make({.position_scale = params.position_scale,
+                                               .force_gain = params.force_gain,
+                                               .force_limit_N = params.force_limit_N,
+                                               .four_channel = params.four_channel},
+                                              dt);
+  if (!master) return master.error();
+  const auto slave = FourChannelSlave::make(
+      {.force_gain = params.force_gain, .slave = params.slave, .four_channel = params.four_channel}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+Result<Controllers> make_four_channel_cancellation(const ControlParams& params, Seconds dt) {
+  PositionForceMaster::Params plain = params;
+  plain.cancellation = CancellationMode::off;
+  const auto master = PositionForceMaster::make(plain, dt);
+  if (!master) return master.error();
+  const auto slave = CancellingSlave::make({.master = params, .slave = params.slave}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
 std::vector<Architecture>& registry() {
   static std::vector<Architecture> all{
       {"position-force", "the slave follows the master's position, the master displays the slave's tip force",
        make_position_force},
+      {"four-channel", "both sites tell the other position and force (Lawrence), with local force loops",
+       make_four_channel},
+      {"four-channel-cancellation",
+       "position-force with cancellation as the slave's local force loop (paper A, appendix)",
+       make_four_channel_cancellation},
   };
   return all;
 }

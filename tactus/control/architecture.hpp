@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/four_channel.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/site.hpp>
 #include <tactus/core/parameters.hpp>
@@ -16,6 +17,7 @@ namespace tactus::control {
 struct ControlParams : PositionForceMaster::Params {
   std::string architecture = "position-force";
   ServoPd::Params slave;
+  FourChannelParams four_channel;
   SafetyGate::Params gate;
   SafetyGate::Params slave_gate;
   static constexpr auto fields() {
@@ -25,6 +27,7 @@ struct ControlParams : PositionForceMaster::Params {
                   "How the sites work together; the architecture's page tells which of the keys below it uses.")},
         PositionForceMaster::Params::fields(),
         std::tuple{field("slave", &ControlParams::slave, "The slave's position controller."),
+                   field("four_channel", &ControlParams::four_channel, "The channels of four-channel control."),
                    field("gate", &ControlParams::gate, "Last limits before the master's motor."),
                    field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor.")});
   }

@@ -15,13 +15,16 @@ Result<CableDrivenMaster> CableDrivenMaster::make(const Params& params, const Li
   if (!amplifier) return under("amplifier", amplifier.error());
   const auto encoder = Encoder::make(params.encoder, dt);
   if (!encoder) return under("encoder", encoder.error());
-  return CableDrivenMaster(*mechanism, *amplifier, *encoder);
+  const auto force_sensor = ForceSensor::make(params.force_sensor, dt);
+  if (!force_sensor) return under("force_sensor", force_sensor.error());
+  return CableDrivenMaster(*mechanism, *amplifier, *encoder, *force_sensor);
 }
 
 void CableDrivenMaster::reset(double position_m) noexcept {
   mechanism_.reset(position_m);
   amplifier_.reset();
   encoder_.reset();
+  force_sensor_.reset();
 }
 
 }  // namespace tactus::mechanics
