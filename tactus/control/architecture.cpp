@@ -47,6 +47,29 @@ Result<Controllers> make_shared_compliant(const ControlParams& params, Seconds d
   return Controllers{master_controller(*master), slave_controller(*slave)};
 }
 
+Result<Controllers> make_four_channel(const ControlParams& params, Seconds dt) {
+  const auto master = FourChannelMaster::make({.position_scale = params.position_scale,
+                                               .force_gain = params.force_gain,
+                                               .force_limit_N = params.force_limit_N,
+                                               .four_channel = params.four_channel},
+                                              dt);
+  if (!master) return master.error();
+  const auto slave = FourChannelSlave::make(
+      {.force_gain = params.force_gain, .slave = params.slave, .four_channel = params.four_channel}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+Result<Controllers> make_four_channel_cancellation(const ControlParams& params, Seconds dt) {
+  PositionForceMaster::Params plain = params;
+  plain.cancellation = CancellationMode::off;
+  const auto master = PositionForceMaster::make(plain, dt);
+  if (!master) return master.error();
+  const auto slave = CancellingSlave::make({.master = params, .slave = params.slave}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
 std::vector<Architecture>& registry() {
   static std::vector<Architecture> all{
       {"position-force", "the slave follows the master's position, the master displays the slave's tip force",
@@ -54,6 +77,11 @@ std::vector<Architecture>& registry() {
       {"position-position", "each device is pulled toward the other; no force sensor", make_position_position},
       {"projection", "position-force that displays at once only what the hand holds", make_projection},
       {"shared-compliant", "position-force whose slave yields to the tip force by itself", make_shared_compliant},
+      {"four-channel", "both sites tell the other position and force (Lawrence), with local force loops",
+       make_four_channel},
+      {"four-channel-cancellation",
+       "position-force with cancellation as the slave's local force loop (paper A, appendix)",
+       make_four_channel_cancellation},
   };
   return all;
 }

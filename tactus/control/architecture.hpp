@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/four_channel.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/projection.hpp>
 #include <tactus/control/shared_compliant.hpp>
@@ -18,6 +19,7 @@ namespace tactus::control {
 struct ControlParams : PositionForceMaster::Params {
   std::string architecture = "position-force";
   ServoPd::Params slave;
+  FourChannelParams four_channel;
   SafetyGate::Params gate;
   SafetyGate::Params handle_gate;
   SafetyGate::Params slave_gate;
@@ -30,6 +32,7 @@ struct ControlParams : PositionForceMaster::Params {
                   "How the sites work together; the architecture's page tells which of the keys below it uses.")},
         PositionForceMaster::Params::fields(),
         std::tuple{field("slave", &ControlParams::slave, "The slave's position controller."),
+                   field("four_channel", &ControlParams::four_channel, "The channels of four-channel control."),
                    field("gate", &ControlParams::gate, "Last limits before the master's motor."),
                    field("handle_gate", &ControlParams::handle_gate,
                          "Last limits before the actuator on the master's handle."),

@@ -31,6 +31,7 @@ struct Arrival {
 /// What the master's sensors read at a tick, and what came from the slave.
 struct MasterInput {
   double motor_position_m = 0.0;
+  double hand_force_N = 0.0;  ///< of the hand on the handle, positive when it pushes toward the environment
   Arrival arrival;
 };
 

@@ -60,6 +60,7 @@ class CableChain {
   struct Output {
     double motor_position_m = 0.0;
     double tip_position_m = 0.0;
+    double grip_force_N = 0.0;  ///< of the grip on the tip, mean over the step, positive toward the environment
   };
 
   /// Everything that moves, from the motor outward.
@@ -82,8 +83,9 @@ class CableChain {
 
   /// Advances by the step that `make` was given. Real-time safe.
   Output step(const Input& input) noexcept {
-    advance(input, step_);
-    return {.motor_position_m = state_.position_m[0], .tip_position_m = state_.position_m[2]};
+    const double grip_force_N = advance(input, step_);
+    return {
+        .motor_position_m = state_.position_m[0], .tip_position_m = state_.position_m[2], .grip_force_N = grip_force_N};
   }
   /// Advances by any `duration_s` from 0 to the step that `make` was given: the part of a step up to an event.
   void advance(const Input& input, double duration_s) noexcept { advance(input, step_of(duration_s)); }
@@ -113,7 +115,8 @@ class CableChain {
   };
 
   [[nodiscard]] Step step_of(double duration_s) const noexcept;
-  void advance(const Input& input, const Step& step) noexcept;
+  /// Returns the grip's force on the tip, mean over the step.
+  double advance(const Input& input, const Step& step) noexcept;
 
   CableChain(const Params& params, const LinearSpring::Params& grip, Seconds dt, const ElastoSlipSpring& linkage);
 
@@ -127,7 +130,7 @@ class CableChain {
 };
 
 // In the header so that the plants' substeps, by far the most that a simulation computes, need no call.
-inline void CableChain::advance(const Input& input, const Step& step) noexcept {
+inline double CableChain::advance(const Input& input, const Step& step) noexcept {
   auto& x = state_.position_m;
   auto& v = state_.velocity_m_per_s;
   for (std::size_t i = 0; i < 3; ++i) x[i] += step.half_s * v[i];
@@ -136,6 +139,7 @@ inline void CableChain::advance(const Input& input, const Step& step) noexcept {
   const double linkage_force = state_.linkage.step({.deflection_m = x[1] - x[2]});
   const double grip_force =
       grip_.stiffness_N_per_m * (input.grip_position_m - x[2]) + grip_.damping_N_s_per_m * input.grip_velocity_m_per_s;
+  const double tip_velocity_before = v[2];
 
   // Momenta without friction, the damping's second half still to be taken out by the inverse.
   const double cable_damping = step.cable_damping * (v[0] - v[1]);
@@ -163,6 +167,7 @@ inline void CableChain::advance(const Input& input, const Step& step) noexcept {
   v[1] = step.i01 * q0 + step.i11 * q1;
   v[2] = step.inverse_tip * p2 + step.tip_on_drum * v[1];
   for (std::size_t i = 0; i < 3; ++i) x[i] += step.half_s * v[i];
+  return grip_force - grip_.damping_N_s_per_m * 0.5 * (tip_velocity_before + v[2]);
 }
 
 }  // namespace tactus::mechanics

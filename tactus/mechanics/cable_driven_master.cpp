@@ -17,7 +17,9 @@ Result<CableDrivenMaster> CableDrivenMaster::make(const Params& params, const Li
   if (!handle_actuator) return under("handle_actuator", handle_actuator.error());
   const auto encoder = Encoder::make(params.encoder, dt);
   if (!encoder) return under("encoder", encoder.error());
-  return CableDrivenMaster(*mechanism, *amplifier, *handle_actuator, *encoder);
+  const auto force_sensor = ForceSensor::make(params.force_sensor, dt);
+  if (!force_sensor) return under("force_sensor", force_sensor.error());
+  return CableDrivenMaster(*mechanism, *amplifier, *handle_actuator, *encoder, *force_sensor);
 }
 
 void CableDrivenMaster::reset(double position_m) noexcept {
@@ -25,6 +27,7 @@ void CableDrivenMaster::reset(double position_m) noexcept {
   amplifier_.reset();
   handle_actuator_.reset();
   encoder_.reset();
+  force_sensor_.reset();
 }
 
 }  // namespace tactus::mechanics

@@ -5,15 +5,17 @@
 #include <tactus/mechanics/amplifier.hpp>
 #include <tactus/mechanics/cable_chain.hpp>
 #include <tactus/mechanics/encoder.hpp>
+#include <tactus/mechanics/force_sensor.hpp>
 #include <tactus/mechanics/operator.hpp>
 
 namespace tactus::mechanics {
 
-/// The master device as a plant: amplifier → motor –cable– drum –linkage– handle ← hand, and an encoder on the motor
-/// (paper A, Figs. 2 and 10), with a vibrotactile actuator on the handle (Sec. IV). The defaults are paper A's Table I;
-/// the paper gives no such actuator, its lag and limit are assumed.
+/// The master device as a plant: amplifier → motor –cable– drum –linkage– handle ← hand, with an encoder on the motor
+/// (paper A, Figs. 2 and 10), a vibrotactile actuator on the handle (Sec. IV) and a force sensor between handle and
+/// hand. The defaults are paper A's Table I; the paper gives no such actuator and its master has no force sensor: their
+/// lags, limits and noise are assumed.
 ///
-/// It runs on the plant's substeps; the encoder is read at the servo tick.
+/// It runs on the plant's substeps; the sensors are read at the servo tick.
 class CableDrivenMaster {
  public:
   struct Params {
@@ -21,12 +23,14 @@ class CableDrivenMaster {
     CurrentAmplifier::Params amplifier;
     CurrentAmplifier::Params handle_actuator{.bandwidth_Hz = 1000.0, .limit_N = 2.0};
     Encoder::Params encoder{.resolution_m = 1e-5};
+    ForceSensor::Params force_sensor{.seed = 2};
     static constexpr auto fields() {
       return std::tuple{field("mechanism", &Params::mechanism, "Motor, cable, drum, linkage and handle."),
                         field("amplifier", &Params::amplifier, "Current amplifier of the motor."),
                         field("handle_actuator", &Params::handle_actuator,
                               "Vibrotactile actuator: applies a force to the handle, idle unless commanded."),
-                        field("encoder", &Params::encoder, "Position encoder on the motor.")};
+                        field("encoder", &Params::encoder, "Position encoder on the motor."),
+                        field("force_sensor", &Params::force_sensor, "Force sensor between handle and hand.")};
     }
   };
 
@@ -37,6 +41,11 @@ class CableDrivenMaster {
     double grip_velocity_m_per_s = 0.0;
   };
   using Output = CableChain::Output;
+  /// What the master's sensors read.
+  struct Reading {
+    double motor_position_m = 0.0;
+    double hand_force_N = 0.0;  ///< positive when the hand pushes the handle toward the environment
+  };
 
   /// A master held by a hand with the impedance `grip`.
   static Result<CableDrivenMaster> make(const Params& params, const LinearSpring::Params& grip, Seconds dt);
@@ -45,14 +54,18 @@ class CableDrivenMaster {
 
   /// Advances by one substep. Real-time safe.
   Output step(const Input& input) noexcept {
-    return mechanism_.step({.motor_force_N = amplifier_.step(input.commanded_force_N),
-                            .tip_force_N = handle_actuator_.step(input.commanded_handle_force_N),
-                            .grip_position_m = input.grip_position_m,
-                            .grip_velocity_m_per_s = input.grip_velocity_m_per_s});
+    const Output output = mechanism_.step({.motor_force_N = amplifier_.step(input.commanded_force_N),
+                                           .tip_force_N = handle_actuator_.step(input.commanded_handle_force_N),
+                                           .grip_position_m = input.grip_position_m,
+                                           .grip_velocity_m_per_s = input.grip_velocity_m_per_s});
+    force_sensor_.step(output.grip_force_N);
+    return output;
   }
 
-  /// What the encoder reads now, in m.
-  double measure() noexcept { return encoder_.step(mechanism_.motor_position_m()); }
+  /// What the sensors read now: draws one sample of noise.
+  Reading measure() noexcept {
+    return {.motor_position_m = encoder_.step(mechanism_.motor_position_m()), .hand_force_N = force_sensor_.sample()};
+  }
 
   void reset() noexcept { reset(0.0); }
   /// At rest with every mass at `position_m`.
@@ -62,13 +75,18 @@ class CableDrivenMaster {
 
  private:
   CableDrivenMaster(const CableChain& mechanism, const CurrentAmplifier& amplifier,
-                    const CurrentAmplifier& handle_actuator, const Encoder& encoder)
-      : mechanism_(mechanism), amplifier_(amplifier), handle_actuator_(handle_actuator), encoder_(encoder) {}
+                    const CurrentAmplifier& handle_actuator, const Encoder& encoder, const ForceSensor& force_sensor)
+      : mechanism_(mechanism),
+        amplifier_(amplifier),
+        handle_actuator_(handle_actuator),
+        encoder_(encoder),
+        force_sensor_(force_sensor) {}
 
   CableChain mechanism_;
   CurrentAmplifier amplifier_;
   CurrentAmplifier handle_actuator_;
   Encoder encoder_;
+  ForceSensor force_sensor_;
 };
 
 }  // namespace tactus::mechanics

@@ -52,11 +52,11 @@ class ForceSensor {
   /// Advances the analogue part by one substep under `force_N` and returns its output in N. Real-time safe.
   double step(double force_N) noexcept { return analogue_N_ = filter_.step(force_N); }
 
-  /// The reading in N: the latest analogue output with offset, noise and saturation. Draws one random number.
-  /// Real-time safe but for the unbounded, on average 1.4, draws of `Random::normal`.
+  /// The reading in N: the latest analogue output with offset, noise and saturation. A noisy sensor draws one random
+  /// number. Real-time safe but for the unbounded, on average 1.4, draws of `Random::normal`.
   double sample() noexcept {
-    return std::clamp(analogue_N_ + params_.offset_N + params_.noise_rms_N * noise_.normal(), -params_.limit_N,
-                      params_.limit_N);
+    const double noise_N = params_.noise_rms_N > 0.0 ? params_.noise_rms_N * noise_.normal() : 0.0;
+    return std::clamp(analogue_N_ + params_.offset_N + noise_N, -params_.limit_N, params_.limit_N);
   }
 
   /// No force so far, and the noise from its beginning.

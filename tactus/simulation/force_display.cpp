@@ -125,7 +125,7 @@ ForceDisplay::Playing ForceDisplay::play(double scale, std::int64_t repeat) cons
     const bool playing_now = tick >= approach_ticks && tick - approach_ticks < profile_N_.size();
     const double force_N = playing_now ? scale * profile_N_[tick - approach_ticks] : 0.0;
     const double true_m = master.mechanism().motor_position_m();
-    const double measured_m = master.measure();
+    const double measured_m = master.measure().motor_position_m;
     for (std::size_t i = 0; i < variants.size(); ++i) {
       const double estimate_m = cancellations[i].step({.measured_position_m = measured_m, .motor_force_N = -force_N});
       if (tick >= approach_ticks) playing.estimate_m[i].push_back(estimate_m);

@@ -63,6 +63,7 @@ Result<TappingEnsemble> TappingEnsemble::make(const TappingParams& params) {
     tap.params.control.model = mismatched(params.control.model, mismatch);
     tap.params.channel.to_slave.seed = static_cast<std::int64_t>(draw.bits() >> 1);
     tap.params.channel.to_master.seed = static_cast<std::int64_t>(draw.bits() >> 1);
+    tap.params.master.force_sensor.seed = static_cast<std::int64_t>(draw.bits() >> 1);
 
     // The wall stands half-way, where a minimum-jerk reach is fastest.
     const double wall = params.environment.position_m / params.control.position_scale;

@@ -39,23 +39,26 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
 
 Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {
   const double time_s = static_cast<double>(ticks_) * clock_.tick_s;
-  const double master_position_m = parts_.master.measure();
+  const mechanics::CableDrivenMaster::Reading master_reading = parts_.master.measure();
   const mechanics::ElectricSlave::Reading slave_reading = parts_.slave.measure();
 
-  const auto master = parts_.sites.master.step({.motor_position_m = master_position_m, .arrival = arrived_});
+  const auto master = parts_.sites.master.step({.motor_position_m = master_reading.motor_position_m,
+                                                .hand_force_N = master_reading.hand_force_N,
+                                                .arrival = arrived_});
   const auto slave = parts_.sites.slave.step({.motor_position_m = slave_reading.motor_position_m,
                                               .tip_force_N = slave_reading.tip_force_N,
                                               .arrival = parts_.to_slave.step(master.message)});
   arrived_ = parts_.to_master.step(slave.message);
 
   Record record{.time_s = time_s,
-                .master_position_m = master_position_m,
+                .master_position_m = master_reading.motor_position_m,
                 .induced_position_m = master.induced_position_m,
                 .command_m = master.message.position_m,
                 .slave_position_m = slave_reading.motor_position_m,
                 .tip_position_m = parts_.slave.mechanism().tip_position_m(),
                 .displayed_force_N = -master.motor_force_N,
-                .handle_force_N = master.handle_force_N};
+                .handle_force_N = master.handle_force_N,
+                .hand_force_N = master_reading.hand_force_N};
 
   const auto aim = parts_.person.step({.path_m = path_m,
                                        .path_at_next_tick_m = path_at_next_tick_m,

@@ -2,6 +2,7 @@
 
 #include <tactus/control/cancellation.hpp>
 #include <tactus/control/crossover.hpp>
+#include <tactus/control/four_channel.hpp>
 #include <tactus/control/hand_force_observer.hpp>
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/control/local_damping.hpp>
@@ -55,10 +56,11 @@ struct Subject<control::Cancellation> {
 /// What arrives is doubles and one flag, and always fresh here.
 template <>
 struct Doubles<control::MasterInput> {
-  using Row = std::array<double, 6>;
+  using Row = std::array<double, 7>;
   static control::MasterInput from(const Row& row) {
     return {.motor_position_m = row[0],
-            .arrival = {.message = {row[1], row[2], row[3], row[4], row[5]}, .fresh = true}};
+            .hand_force_N = row[1],
+            .arrival = {.message = {row[2], row[3], row[4], row[5], row[6]}, .fresh = true}};
   }
 };
 template <>
@@ -112,14 +114,52 @@ struct Subject<control::Crossover> {
   static constexpr double dt_s = 200e-6;
   static std::vector<control::Crossover::Params> parameters() { return {{}, {.frequency_Hz = 40.0}}; }
   static void admit(double&) {}
-};
+  inline control::FourChannelParams all_channels() {
+    return {.environment_force_gain = 1.5,
+            .hand_force_gain = 0.7,
+            .slave_force_loop_gain = 0.3,
+            .master_force_loop_gain = 0.5,
+            .master_feedforward_kg = 0.03,
+            .slave_feedforward_kg = 0.04};
+  }
 
-using ControlElements =
-    ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
-                     control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::LocalDamping,
-                     control::ShapingFilter, control::Crossover, control::HandForceObserver,
-                     control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
-                     control::SharedCompliantSlave, SoftLimitMaster>;
-INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
+  template <>
+  struct Subject<control::FourChannelMaster> {
+    static constexpr double dt_s = 200e-6;
+    static std::vector<control::FourChannelMaster::Params> parameters() {
+      return {{}, {.position_scale = 0.1, .force_gain = 15.0, .force_limit_N = 5.0, .four_channel = all_channels()}};
+    }
+    static void admit(control::FourChannelMaster::Input&) {}
+  };
+
+  template <>
+  struct Subject<control::FourChannelSlave> {
+    static constexpr double dt_s = 200e-6;
+    static std::vector<control::FourChannelSlave::Params> parameters() {
+      return {{}, {.force_gain = 15.0, .four_channel = all_channels()}};
+    }
+    static void admit(control::FourChannelSlave::Input&) {}
+  };
+
+  template <>
+  struct Subject<control::CancellingSlave> {
+    static constexpr double dt_s = 200e-6;
+    static std::vector<control::CancellingSlave::Params> parameters() {
+      control::CancellingSlave::Params strong;
+      strong.master.position_scale = 0.1;
+      strong.master.force_gain = 15.0;
+      return {{}, strong};
+    }
+    static void admit(control::CancellingSlave::Input&) {}
+  };
+
+  using ControlElements =
+      ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
+                       control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::LocalDamping,
+                       control::ShapingFilter, control::Crossover, control::HandForceObserver,
+                       control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
+                       control::SharedCompliantSlave, control::FourChannelMaster, control::FourChannelSlave,
+                       control::CancellingSlave, SoftLimitMaster>;
+  INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws

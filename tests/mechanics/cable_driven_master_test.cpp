@@ -44,6 +44,12 @@ TEST(CableDrivenMaster, ASteadyForceDeflectsTheHandByTheGripAndTheMotorByTheChai
   EXPECT_NEAR(device.mechanism().motor_position_m(), force_N * (1.0 / 40.0 + 1.0 / 3950.0 + 1.0 / 39500.0), 1e-8);
 }
 
+TEST(CableDrivenMaster, AHandThatHoldsAgainstTheMotorIsMeasuredToPushTowardTheEnvironmentWithTheDisplayedForce) {
+  CableDrivenMaster device = master(in_a_hand());
+  for (int i = 0; i < 400000; ++i) device.step({.commanded_force_N = -0.3});
+  EXPECT_NEAR(device.measure().hand_force_N, 0.3, 1e-9);
+}
+
 /// Amplitude of the motor's motion over that of a sine on the motor, once settled.
 double swept_gain(const ReferenceChain& reference, double frequency_Hz) {
   CableDrivenMaster device = master(reference);
@@ -131,7 +137,7 @@ TEST(CableDrivenMaster, TheEncoderReportsTheMotorToHalfACount) {
   double travelled_m = 0.0;
   for (int i = 0; i < 2000; ++i) {
     device.step({.commanded_force_N = 0.5});
-    const double read_m = device.measure();
+    const double read_m = device.measure().motor_position_m;
     ASSERT_NEAR(read_m, device.mechanism().motor_position_m(), 0.5e-5 + 1e-12);
     ASSERT_NEAR(read_m / 1e-5, std::round(read_m / 1e-5), 1e-6);
     travelled_m = read_m;
@@ -145,10 +151,26 @@ TEST(CableDrivenMaster, AfterAResetItRestsWhereItWasPut) {
   CableDrivenMaster device = CableDrivenMaster::make(params, reference.grip(), Seconds{step_s}).value();
   for (int i = 0; i < 1000; ++i) device.step({.commanded_force_N = 2.0});
   device.reset(0.04);
-  EXPECT_EQ(device.measure(), 0.04);
+  EXPECT_EQ(device.measure().motor_position_m, 0.04);
   for (int i = 0; i < 100; ++i) device.step({.grip_position_m = 0.04});
   EXPECT_EQ(device.mechanism().motor_position_m(), 0.04);
   EXPECT_EQ(device.mechanism().tip_position_m(), 0.04);
+}
+
+TEST(CableDrivenMaster, NobodysHandIsMeasuredToPushWithTheSensorsOffsetAlone) {
+  CableDrivenMaster::Params params;
+  params.force_sensor.offset_N = 0.02;
+  CableDrivenMaster device = CableDrivenMaster::make(params, Seconds{step_s}).value();
+  for (int i = 0; i < 1000; ++i) device.step({.commanded_force_N = 1.0});
+  EXPECT_EQ(device.measure().hand_force_N, 0.02);
+}
+
+TEST(CableDrivenMaster, AForceSensorThatTheSubstepsCannotCarryIsRefusedByName) {
+  CableDrivenMaster::Params params;
+  params.force_sensor.bandwidth_Hz = 20000.0;
+  const auto refused = CableDrivenMaster::make(params, Seconds{step_s});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().parameter, "force_sensor.bandwidth_Hz");
 }
 
 TEST(CableDrivenMaster, AGripTooStiffForTheStepIsNamedAsTheGrips) {

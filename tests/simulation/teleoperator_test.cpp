@@ -62,13 +62,13 @@ Records run(const Teleoperator::Params& params, const Path& path = tap_path, std
 }
 
 /// All that a record holds, bit by bit; padding has no say.
-std::array<std::uint64_t, 12> bits(const Teleoperator::Record& record) {
-  std::array<std::uint64_t, 12> words{};
+std::array<std::uint64_t, 13> bits(const Teleoperator::Record& record) {
+  std::array<std::uint64_t, 13> words{};
   std::size_t i = 0;
   for (const double value :
        {record.time_s, record.master_position_m, record.induced_position_m, record.command_m, record.slave_position_m,
-        record.tip_position_m, record.displayed_force_N, record.handle_force_N, record.contact_force_N,
-        record.peak_contact_force_N, record.touched_at_s}) {
+        record.tip_position_m, record.displayed_force_N, record.handle_force_N, record.hand_force_N,
+        record.contact_force_N, record.peak_contact_force_N, record.touched_at_s}) {
     words[i++] = std::bit_cast<std::uint64_t>(value);
   }
   words[i] = record.touched ? 1 : 0;
