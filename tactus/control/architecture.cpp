@@ -16,10 +16,49 @@ Result<Controllers> make_position_force(const ControlParams& params, Seconds dt)
   return Controllers{master_controller(*master), slave_controller(*slave)};
 }
 
+Result<Controllers> make_wave_variables(const ControlParams& params, Seconds dt) {
+  const auto master = WaveMaster::make({.position_scale = params.position_scale,
+                                        .force_gain = params.force_gain,
+                                        .force_limit_N = params.force_limit_N,
+                                        .wave = params.wave},
+                                       dt);
+  if (!master) return master.error();
+  const auto slave = WaveSlave::make({.slave = params.slave, .wave = params.wave}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+/// The error of a master that is built upon the one of position-force, by its names in `ControlParams`.
+Error of_control(Error error) {
+  constexpr std::string_view group = "display.";
+  if (error.parameter.starts_with(group)) error.parameter.erase(0, group.size());
+  return error;
+}
+
+Result<Controllers> make_time_domain_passivity(const ControlParams& params, Seconds dt) {
+  const auto master = PassivityMaster::make({.display = params, .passivity = params.passivity}, dt);
+  if (!master) return of_control(master.error());
+  const auto slave = PassivitySlave::make({.slave = params.slave, .passivity = params.passivity}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+Result<Controllers> make_energy_tank(const ControlParams& params, Seconds dt) {
+  const auto master = TankMaster::make({.display = params, .tank = params.tank}, dt);
+  if (!master) return of_control(master.error());
+  const auto slave = TankSlave::make({.slave = params.slave, .tank = params.tank}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
 std::vector<Architecture>& registry() {
   static std::vector<Architecture> all{
       {"position-force", "the slave follows the master's position, the master displays the slave's tip force",
        make_position_force},
+      {"wave-variables", "the sites exchange wave variables: passive for every delay", make_wave_variables},
+      {"time-domain-passivity", "position-force between two passivity observers and controllers",
+       make_time_domain_passivity},
+      {"energy-tank", "position-force, its forces paid from a tank of energy at each site", make_energy_tank},
   };
   return all;
 }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <tactus/control/energy_tank.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/site.hpp>
+#include <tactus/control/time_domain_passivity.hpp>
+#include <tactus/control/wave_variables.hpp>
 #include <tactus/core/parameters.hpp>
 
 #include <span>
@@ -18,6 +21,9 @@ struct ControlParams : PositionForceMaster::Params {
   ServoPd::Params slave;
   SafetyGate::Params gate;
   SafetyGate::Params slave_gate;
+  WaveParams wave;
+  PassivityParams passivity;
+  EnergyTank::Params tank;
   static constexpr auto fields() {
     return std::tuple_cat(
         std::tuple{
@@ -26,7 +32,10 @@ struct ControlParams : PositionForceMaster::Params {
         PositionForceMaster::Params::fields(),
         std::tuple{field("slave", &ControlParams::slave, "The slave's position controller."),
                    field("gate", &ControlParams::gate, "Last limits before the master's motor."),
-                   field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor.")});
+                   field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
+                   field("wave", &ControlParams::wave, "Architecture `wave-variables`."),
+                   field("passivity", &ControlParams::passivity, "Architecture `time-domain-passivity`."),
+                   field("tank", &ControlParams::tank, "Architecture `energy-tank`.")});
   }
 };
 
