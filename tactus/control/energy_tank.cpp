@@ -40,8 +40,8 @@ void EnergyTank::settle(double motor_position_m, const Arrival& arrival) noexcep
 
 double EnergyTank::limit(double motor_force_N) const noexcept {
   const double most_N = std::max(level_J_, 0.0) / longest_step_m_;
-  // Written so that a level that is not a number ends at the gate.
-  return std::fabs(motor_force_N) <= most_N ? motor_force_N : std::copysign(most_N, motor_force_N);
+  // A level that is not a number has to reach the motor's gate, which catches it.
+  return std::isnan(most_N) ? most_N : std::clamp(motor_force_N, -most_N, most_N);
 }
 
 double EnergyTank::refill_damping() const noexcept {

@@ -2,6 +2,7 @@
 #include <tactus/signal/checks.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::control {
 
@@ -41,10 +42,12 @@ PassivityMaster::Output PassivityMaster::respond(const Input& input) noexcept {
   const double lack_J = -port_.available_J(input.arrival.message.energy_J) / power_scale_;
   Output output = display_.respond(input);
   reflected_N_ = output.motor_force_N;
-  // Written so that an energy that is not a number ends at the gate.
+  // Written so that an energy that is not a number reaches the gate.
   if (!(lack_J <= 0.0) && velocity_m_per_s != 0.0) {
-    const double damping_N_s_per_m = lack_J / (dt_s_ * velocity_m_per_s * velocity_m_per_s);
-    output.motor_force_N -= std::min(damping_N_s_per_m, damping_limit_N_s_per_m_) * velocity_m_per_s;
+    const double braking_N = -lack_J / (dt_s_ * velocity_m_per_s);
+    const double driving_N = reflected_N_ * velocity_m_per_s > 0.0 ? std::fabs(reflected_N_) : 0.0;
+    const double most_N = std::max(damping_limit_N_s_per_m_ * std::fabs(velocity_m_per_s), driving_N);
+    output.motor_force_N += std::clamp(braking_N, -most_N, most_N);
   }
   output.message.energy_J = port_.in_J();
   return output;
@@ -86,12 +89,15 @@ PassivitySlave::Output PassivitySlave::respond(const Input& input) noexcept {
   const double reflected_N = reflected_force_ == ReflectedForce::tip ? input.tip_force_N : applied_N_;
   double step_m = command_m - command_before_m_ + recovery_per_tick_ * (command_before_m_ - wanted_m_);
   command_before_m_ = command_m;
-  port_.count(-reflected_N * step_m);
+  const double work_J = reflected_N * step_m;
+  port_.count(-work_J);
   const double lack_J = -port_.available_J(input.arrival.message.energy_J);
-  // β f T = lack / f. The lack is at most the work of this very step, so the slip is at most the step.
-  if (!(lack_J <= 0.0) && reflected_N != 0.0) {
-    step_m -= lack_J / reflected_N;
-    port_.dissipate(lack_J);
+  // β f T = lack / f. The lack is no more than the work of this very step, unless the other site started anew: then
+  // the slave stands still.
+  if (!(lack_J <= 0.0) && work_J > 0.0) {
+    const double slip_J = std::min(lack_J, work_J);
+    step_m -= slip_J / reflected_N;
+    port_.dissipate(slip_J);
   }
   wanted_m_ += step_m;
   return {.motor_force_N = servo_.step(wanted_m_ - input.motor_position_m),

@@ -34,13 +34,13 @@ double WaveReceiver::step(const Arrival& arrival, double start_m) noexcept {
     s.sent_m = arrival.message.position_m;
   }
   s.filtered += smoothing_ * ((arrival.fresh ? arrival.message.wave : 0.0) - s.filtered);
-  // What is still inside the low-pass comes out by itself: the sum of its tail is y (1 − α) / α.
-  const double inside_m = metres_per_wave_ * s.filtered * (1.0 - smoothing_) / smoothing_;
+  // What is still inside the low-pass comes out by itself: its output from now on sums up to y / α.
+  const double inside_m = metres_per_wave_ * s.filtered / smoothing_;
   const double missing_m = s.sent_m - s.taken_m - inside_m;
   double wave = s.filtered + correction_per_tick_ * missing_m / metres_per_wave_;
-  // Written so that an energy that is not a number reaches the motor as one that is not, where the gate catches it.
   const double most = std::sqrt(2.0 * std::max(s.purse_J, 0.0) / dt_s_);
-  if (!(std::fabs(wave) <= most)) wave = std::copysign(most, wave);
+  // An energy that is not a number has to reach the motor's gate, which catches it.
+  wave = std::isnan(most) ? most : std::clamp(wave, -most, most);
   s.taken_m += metres_per_wave_ * wave;
   s.purse_J -= 0.5 * dt_s_ * wave * wave;
   return wave;

@@ -29,7 +29,7 @@ namespace tactus::control {
 struct WaveParams {
   double impedance_N_s_per_m = 5.0;
   double cutoff_Hz = 300.0;
-  double correction_time_s = 0.01;
+  double correction_time_s = 0.05;
   signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
   static constexpr auto fields() {
     return std::tuple{

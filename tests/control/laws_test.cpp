@@ -1,10 +1,13 @@
 #include "tests/laws.hpp"
 
 #include <tactus/control/cancellation.hpp>
+#include <tactus/control/energy_tank.hpp>
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/servo_pd.hpp>
+#include <tactus/control/time_domain_passivity.hpp>
+#include <tactus/control/wave_variables.hpp>
 
 namespace tactus::laws {
 
@@ -76,9 +79,22 @@ struct Subject<control::PositionForceMaster> {
   static void admit(control::PositionForceMaster::Input&) {}
 };
 
+template <>
+struct Subject<control::PassivitySlave> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::PassivitySlave::Params> parameters() {
+    control::PassivitySlave::Params servo;
+    servo.passivity.reflected_force = control::ReflectedForce::servo;
+    return {{}, servo};
+  }
+  static void admit(control::PassivitySlave::Input&) {}
+};
+
 using ControlElements =
     ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
-                     control::PositionForceSlave, control::SafetyGate, control::ServoPd>;
+                     control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::WaveMaster,
+                     control::WaveSlave, control::PassivityMaster, control::PassivitySlave, control::TankMaster,
+                     control::TankSlave>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws
