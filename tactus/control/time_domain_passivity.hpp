@@ -32,15 +32,15 @@
 /// lacks. At the master the force has to be chosen before it is known where the hand goes in the next tick: W falls
 /// below zero by what one tick's work is, and is made good in the next.
 ///
-/// Near standstill α grows without bound, and a sampled damper is passive up to a point only. So the damping is limited,
-/// but never to less than what cancels a force f̂ that drives the hand.
+/// Near standstill α grows without bound, and a sampled damper is passive up to a point only. So the damping is
+/// limited, but never to less than what cancels a force f̂ that drives the hand.
 ///
 /// A slip leaves the slave behind. The difference is closed with the recovery time constant as the balance permits.
 ///
 /// Sources: B. Hannaford and J.-H. Ryu, Time-domain passivity control of haptic interfaces, IEEE Trans. Robotics and
-/// Automation 18(1), 2002; J.-H. Ryu, D.-S. Kwon, B. Hannaford, Stable teleoperation with time-domain passivity control,
-/// IEEE Trans. Robotics and Automation 20(2), 2004; J.-H. Ryu, J. Artigas, C. Preusche, A passive bilateral control
-/// scheme for a teleoperator with time-varying communication delay, Mechatronics 20(7), 2010.
+/// Automation 18(1), 2002; J.-H. Ryu, D.-S. Kwon, B. Hannaford, Stable teleoperation with time-domain passivity
+/// control, IEEE Trans. Robotics and Automation 20(2), 2004; J.-H. Ryu, J. Artigas, C. Preusche, A passive bilateral
+/// control scheme for a teleoperator with time-varying communication delay, Mechatronics 20(7), 2010.
 namespace tactus::control {
 
 /// Which force the slave sends back: that at its tip, or that of its servo. Seen from the line, servo, slave and
@@ -60,7 +60,8 @@ struct PassivityParams {
     return std::tuple{
         field("reflected_force", &PassivityParams::reflected_force, "Which force the slave sends back."),
         field("damping_limit_N_s_per_m", &PassivityParams::damping_limit_N_s_per_m, units::newton_second_per_metre,
-              between(0.0, 1000.0), "Largest damping at the master's motor; beyond it a force that drives the hand is only cancelled."),
+              between(0.0, 1000.0),
+              "Largest damping at the master's motor; beyond it a force that drives the hand is only cancelled."),
         field("recovery_time_s", &PassivityParams::recovery_time_s, units::second, between(0.002, 10.0),
               "Time constant with which the slave closes the distance that its passivity controller opened."),
         field("velocity", &PassivityParams::velocity, "Filter of the velocity on which the master's damping acts.")};

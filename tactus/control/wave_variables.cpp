@@ -76,13 +76,11 @@ WaveMaster::Output WaveMaster::respond(const Input& input) noexcept {
   const double in = receiver_.step(input.arrival, position_m);
   const double wanted_N = b * velocity_m_per_s - std::sqrt(2.0 * b) * in;
   const double displayed_N = std::clamp(force_gain_ * wanted_N, -force_limit_N_, force_limit_N_);
-  // Of a force between none and the wanted one this is never negative: unsaturated it is the square of `nominal`.
-  const double power2 = std::max(in * in + 2.0 * displayed_N / force_gain_ * velocity_m_per_s, 0.0);
-  const double nominal = std::sqrt(2.0 * b) * velocity_m_per_s - in;
-  const double most = std::sqrt(power2);
-  const double out = std::clamp(nominal, -most, most);
-  sent_m_ += std::sqrt(2.0 / b) * dt_s_ * nominal;
-  sent_J_ += 0.5 * dt_s_ * power2;
+  const double out = std::sqrt(2.0 * b) * velocity_m_per_s - in;
+  sent_m_ += std::sqrt(2.0 / b) * dt_s_ * out;
+  // The square of `out` while the force does not saturate, and never negative: a saturated force lies between none and
+  // the wanted one.
+  sent_J_ += 0.5 * dt_s_ * std::max(in * in + 2.0 * displayed_N / force_gain_ * velocity_m_per_s, 0.0);
   return {.motor_force_N = -displayed_N,
           .message = {.position_m = sent_m_, .wave = out, .energy_J = sent_J_},
           .intended_position_m = input.motor_position_m};

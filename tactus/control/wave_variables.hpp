@@ -90,14 +90,13 @@ class WaveMaster {
     double force_limit_N = 1.0;
     WaveParams wave;
     static constexpr auto fields() {
-      return std::tuple{
-          field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
-                "Slave motion over master motion, lambda."),
-          field("force_gain", &Params::force_gain, units::none, positive_up_to(1000.0),
-                "Displayed force over the slave's, mu."),
-          field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
-                "Where the displayed force saturates."),
-          field("wave", &Params::wave, "Wave variables.")};
+      return std::tuple{field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
+                              "Slave motion over master motion, lambda."),
+                        field("force_gain", &Params::force_gain, units::none, positive_up_to(1000.0),
+                              "Displayed force over the slave's, mu."),
+                        field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
+                              "Where the displayed force saturates."),
+                        field("wave", &Params::wave, "Wave variables.")};
     }
   };
   using Input = MasterInput;
@@ -105,8 +104,9 @@ class WaveMaster {
 
   static Result<WaveMaster> make(const Params& params, Seconds dt);
 
-  /// Force, and the wave that leaves: u = √(2b) λẋ − v while the force does not saturate. A saturated force takes less
-  /// from the hand, or gives it less; u² ≤ v² + 2 F λẋ/μ then holds the wave to what is really there. Real-time safe.
+  /// Force, and the wave that leaves: u = √(2b) λẋ − v. A force that saturates takes less from the hand than that wave
+  /// would carry, so the energy that is told is what is really there, v²/2 + F λẋ/μ, and the receiver gives out no
+  /// more. Real-time safe.
   Output respond(const Input& input) noexcept;
   Output step(const Input& input) noexcept { return respond(input); }
   void reset() noexcept;

@@ -54,9 +54,8 @@ TEST(EnergyTank, NoTankFallsBelowZeroAndTheTwoNeverGiveMoreThanTheyStartedWith) 
       if (tick > 0) given_J += hand_N * (hand_m - hand_before_m) + tool_N * (tool_m - tool_before_m);
       const auto out = master.step({.motor_position_m = hand_m, .arrival = back});
       // Somebody leans on the tool with whatever force it likes.
-      const auto answer = slave.step({.motor_position_m = tool_m,
-                                      .tip_force_N = draw.between(-2.0, 2.0),
-                                      .arrival = to_slave.step(out.message)});
+      const auto answer = slave.step(
+          {.motor_position_m = tool_m, .tip_force_N = draw.between(-2.0, 2.0), .arrival = to_slave.step(out.message)});
       back = to_master.step(answer.message);
       hand_N = out.motor_force_N;
       tool_N = answer.motor_force_N;
@@ -92,8 +91,7 @@ TEST(EnergyTank, OnALineThatLosesNothingAtTheEndEveryJouleIsSomewhere) {
     hand_N = out.motor_force_N;
     tool_N = answer.motor_force_N;
     // Lost packets are not lost energy: what is under way is what was sent in all less what arrived in all.
-    const double under_way_J =
-        out.message.energy_J - forth.message.energy_J + answer.message.energy_J - master_got_J;
+    const double under_way_J = out.message.energy_J - forth.message.energy_J + answer.message.energy_J - master_got_J;
     ASSERT_NEAR(master.level_J() + slave.level_J() + under_way_J, put_in_J, 1e-13) << tick;
   }
 }
@@ -156,8 +154,8 @@ TEST(EnergyTank, AForceFadesWithTheLevelThatHasToPayForIt) {
     const double tool_m = 0.1 * tick * tick_s;
     level_J -= held_N * (tick > 0 ? 0.1 * tick_s : 0.0);
     held_N = std::min(1.0, level_J / (0.5 * tick_s));
-    const auto out = slave.step(
-        {.motor_position_m = tool_m, .arrival = {.message = {.position_m = tool_m + 0.01}, .fresh = true}});
+    const auto out =
+        slave.step({.motor_position_m = tool_m, .arrival = {.message = {.position_m = tool_m + 0.01}, .fresh = true}});
     ASSERT_NEAR(out.motor_force_N, held_N, 1e-9) << tick;
   }
   EXPECT_LT(held_N, 1e-3);
@@ -166,8 +164,7 @@ TEST(EnergyTank, AForceFadesWithTheLevelThatHasToPayForIt) {
 TEST(EnergyTank, ALevelThatIsNotANumberReachesTheGate) {
   constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
   TankSlave slave = slave_of({});
-  const auto out =
-      slave.step({.arrival = {.message = {.position_m = 0.01, .energy_J = not_a_number}, .fresh = true}});
+  const auto out = slave.step({.arrival = {.message = {.position_m = 0.01, .energy_J = not_a_number}, .fresh = true}});
   EXPECT_TRUE(std::isnan(out.motor_force_N));
 }
 

@@ -61,7 +61,10 @@ TEST(PassivityMaster, IsThePublishedObserverAndControllerOfImpedanceType) {
     if (k > 0) {
       const double dx = 0.5 * (x - x_before);
       const double in = f_hat * dx;
-      if (in > 0.0) E_in += in; else E_out -= in;
+      if (in > 0.0)
+        E_in += in;
+      else
+        E_out -= in;
       E_PC += f_PC * dx;
     }
     x_before = x;
@@ -73,8 +76,8 @@ TEST(PassivityMaster, IsThePublishedObserverAndControllerOfImpedanceType) {
     f_PC = std::min(alpha, std::max(1000.0, f_hat * v < 0.0 ? -f_hat / v : 0.0)) * v;
     if (alpha > 0.0) ++active;
 
-    const auto out = site.step({.motor_position_m = x,
-                                .arrival = {.message = {.force_N = reflected, .energy_J = arrived_J}, .fresh = true}});
+    const auto out = site.step(
+        {.motor_position_m = x, .arrival = {.message = {.force_N = reflected, .energy_J = arrived_J}, .fresh = true}});
     ASSERT_NEAR(-out.motor_force_N, 2.0 * (f_hat + f_PC), 1e-9) << k;
     ASSERT_NEAR(out.message.energy_J, E_in, 1e-12) << k;
     ASSERT_EQ(out.message.position_m, 0.5 * x);
@@ -101,7 +104,10 @@ TEST(PassivitySlave, IsThePublishedObserverAndControllerOfAdmittanceType) {
     const double v_hat = (command - command_before) / tick_s + (command_before - x_sd) / 0.02;
     command_before = command;
     const double out_J = f * v_hat * tick_s;
-    if (out_J > 0.0) E_out += out_J; else E_in -= out_J;
+    if (out_J > 0.0)
+      E_out += out_J;
+    else
+      E_in -= out_J;
     const double W = arrived_J - E_out + E_PC;
     const double beta = W < 0.0 && f != 0.0 ? -W / (tick_s * f * f) : 0.0;
     E_PC += tick_s * beta * f * f;
@@ -204,8 +210,7 @@ TEST(PassivitySlave, ASlipIsClosedInTheRecoveryTimeOnceNothingHoldsIt) {
   params.passivity.recovery_time_s = 0.02;
   PassivitySlave slave = slave_of(params);
   const auto at = [&](double command_m, double force_N) {
-    return slave
-        .step({.tip_force_N = force_N, .arrival = {.message = {.position_m = command_m}, .fresh = true}})
+    return slave.step({.tip_force_N = force_N, .arrival = {.message = {.position_m = command_m}, .fresh = true}})
         .motor_force_N;
   };
   EXPECT_EQ(at(0.0, 0.0), 0.0);
@@ -219,8 +224,8 @@ TEST(TimeDomainPassivity, AnEnergyThatIsNotANumberReachesTheGate) {
   constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
   PassivityMaster master = master_of(plain_master());
   (void)master.step({});
-  const auto out = master.step(
-      {.motor_position_m = 1e-4, .arrival = {.message = {.energy_J = not_a_number}, .fresh = true}});
+  const auto out =
+      master.step({.motor_position_m = 1e-4, .arrival = {.message = {.energy_J = not_a_number}, .fresh = true}});
   EXPECT_TRUE(std::isnan(out.motor_force_N));
 }
 
