@@ -70,6 +70,34 @@ Result<Controllers> make_four_channel_cancellation(const ControlParams& params, 
   return Controllers{master_controller(*master), slave_controller(*slave)};
 }
 
+Result<Controllers> make_wave_variables(const ControlParams& params, Seconds dt) {
+  const auto master = WaveMaster::make({.position_scale = params.position_scale,
+                                        .force_gain = params.force_gain,
+                                        .force_limit_N = params.force_limit_N,
+                                        .wave = params.wave},
+                                       dt);
+  if (!master) return master.error();
+  const auto slave = WaveSlave::make({.slave = params.slave, .wave = params.wave}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+Result<Controllers> make_time_domain_passivity(const ControlParams& params, Seconds dt) {
+  const auto master = PassivityMaster::make({.display = params, .passivity = params.passivity}, dt);
+  if (!master) return out_of("display.", master.error());
+  const auto slave = PassivitySlave::make({.slave = params.slave, .passivity = params.passivity}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+Result<Controllers> make_energy_tank(const ControlParams& params, Seconds dt) {
+  const auto master = TankMaster::make({.display = params, .tank = params.tank}, dt);
+  if (!master) return out_of("display.", master.error());
+  const auto slave = TankSlave::make({.slave = params.slave, .tank = params.tank}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
 std::vector<Architecture>& registry() {
   static std::vector<Architecture> all{
       {"position-force", "the slave follows the master's position, the master displays the slave's tip force",
@@ -82,6 +110,10 @@ std::vector<Architecture>& registry() {
       {"four-channel-cancellation",
        "position-force with cancellation as the slave's local force loop (paper A, appendix)",
        make_four_channel_cancellation},
+      {"wave-variables", "the sites exchange wave variables: passive for every delay", make_wave_variables},
+      {"time-domain-passivity", "position-force between two passivity observers and controllers",
+       make_time_domain_passivity},
+      {"energy-tank", "position-force, its forces paid from a tank of energy at each site", make_energy_tank},
   };
   return all;
 }

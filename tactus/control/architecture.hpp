@@ -1,10 +1,13 @@
 #pragma once
 
+#include <tactus/control/energy_tank.hpp>
 #include <tactus/control/four_channel.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/projection.hpp>
 #include <tactus/control/shared_compliant.hpp>
 #include <tactus/control/site.hpp>
+#include <tactus/control/time_domain_passivity.hpp>
+#include <tactus/control/wave_variables.hpp>
 #include <tactus/core/parameters.hpp>
 
 #include <span>
@@ -19,28 +22,35 @@ namespace tactus::control {
 struct ControlParams : PositionForceMaster::Params {
   std::string architecture = "position-force";
   ServoPd::Params slave;
-  FourChannelParams four_channel;
   SafetyGate::Params gate;
   SafetyGate::Params handle_gate;
   SafetyGate::Params slave_gate;
+  FourChannelParams four_channel;
   ProjectionParams projection;
   ComplianceParams compliance;
+  WaveParams wave;
+  PassivityParams passivity;
+  EnergyTank::Params tank;
   static constexpr auto fields() {
     return std::tuple_cat(
         std::tuple{
             field("architecture", &ControlParams::architecture,
                   "How the sites work together; the architecture's page tells which of the keys below it uses.")},
         PositionForceMaster::Params::fields(),
-        std::tuple{field("slave", &ControlParams::slave, "The slave's position controller."),
-                   field("four_channel", &ControlParams::four_channel, "The channels of four-channel control."),
-                   field("gate", &ControlParams::gate, "Last limits before the master's motor."),
-                   field("handle_gate", &ControlParams::handle_gate,
-                         "Last limits before the actuator on the master's handle."),
-                   field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
-                   field("projection", &ControlParams::projection,
-                         "Architecture projection: what of the force is reflected at once."),
-                   field("compliance", &ControlParams::compliance,
-                         "Architecture shared-compliant: how the slave's command yields to the tip force.")});
+        std::tuple{
+            field("slave", &ControlParams::slave, "The slave's position controller."),
+            field("gate", &ControlParams::gate, "Last limits before the master's motor."),
+            field("handle_gate", &ControlParams::handle_gate,
+                  "Last limits before the actuator on the master's handle."),
+            field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
+            field("four_channel", &ControlParams::four_channel, "Architecture four-channel: gains of its channels."),
+            field("projection", &ControlParams::projection,
+                  "Architecture projection: what of the force is reflected at once."),
+            field("compliance", &ControlParams::compliance,
+                  "Architecture shared-compliant: how the slave's command yields to the tip force."),
+            field("wave", &ControlParams::wave, "Architecture wave-variables."),
+            field("passivity", &ControlParams::passivity, "Architecture time-domain-passivity."),
+            field("tank", &ControlParams::tank, "Architecture energy-tank.")});
   }
 };
 

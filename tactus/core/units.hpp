@@ -33,6 +33,7 @@ inline constexpr Unit newton_per_second{"N/s", "_N_per_s"};
 inline constexpr Unit newton_per_metre{"N/m", "_N_per_m"};
 inline constexpr Unit newton_per_metre5{"N/m^5", "_N_per_m5"};
 inline constexpr Unit newton_second_per_metre{"N s/m", "_N_s_per_m"};
+inline constexpr Unit joule{"J", "_J"};
 
 /// Every unit that the end of a name can tell, those of recordings among them.
 inline constexpr std::array known{second,
@@ -48,6 +49,7 @@ inline constexpr std::array known{second,
                                   newton_per_metre,
                                   newton_per_metre5,
                                   newton_second_per_metre,
+                                  joule,
                                   Unit{"ms", "_ms"},
                                   Unit{"us", "_us"},
                                   Unit{"ns", "_ns"},
