@@ -97,10 +97,86 @@ struct Subject<control::PositionForceMaster> {
 };
 
 template <>
-control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::LocalDamping, control::ShapingFilter,
-    control::Crossover, control::HandForceObserver, control::PositionPositionMaster, control::PositionPositionSlave,
-    control::ProjectionMaster, control::SharedCompliantSlave, control::FourChannelMaster, control::FourChannelSlave,
-    control::CancellingSlave, control::WaveMaster, control::WaveSlave, control::PassivityMaster,
-    control::PassivitySlave, control::TankMaster, control::TankSlave, SoftLimitMaster > ;
+struct Subject<control::ShapingFilter> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::ShapingFilter::Params> parameters() {
+    return {{}, {.kind = Shaping::low_pass}, {.kind = Shaping::notch, .frequency_Hz = 200.0, .notch_width_Hz = 1.0}};
+  }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<control::LocalDamping> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::LocalDamping::Params> parameters() { return {{}, {.damping_N_s_per_m = 10.0}}; }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<control::Crossover> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::Crossover::Params> parameters() { return {{}, {.frequency_Hz = 40.0}}; }
+  static void admit(double&) {}
+};
+
+inline control::FourChannelParams all_channels() {
+  return {.environment_force_gain = 1.5,
+          .hand_force_gain = 0.7,
+          .slave_force_loop_gain = 0.3,
+          .master_force_loop_gain = 0.5,
+          .master_feedforward_kg = 0.03,
+          .slave_feedforward_kg = 0.04};
+}
+
+template <>
+struct Subject<control::FourChannelMaster> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::FourChannelMaster::Params> parameters() {
+    return {{}, {.position_scale = 0.1, .force_gain = 15.0, .force_limit_N = 5.0, .four_channel = all_channels()}};
+  }
+  static void admit(control::FourChannelMaster::Input&) {}
+};
+
+template <>
+struct Subject<control::FourChannelSlave> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::FourChannelSlave::Params> parameters() {
+    return {{}, {.force_gain = 15.0, .four_channel = all_channels()}};
+  }
+  static void admit(control::FourChannelSlave::Input&) {}
+};
+
+template <>
+struct Subject<control::CancellingSlave> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::CancellingSlave::Params> parameters() {
+    control::CancellingSlave::Params strong;
+    strong.master.position_scale = 0.1;
+    strong.master.force_gain = 15.0;
+    return {{}, strong};
+  }
+  static void admit(control::CancellingSlave::Input&) {}
+};
+
+template <>
+struct Subject<control::PassivitySlave> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::PassivitySlave::Params> parameters() {
+    control::PassivitySlave::Params servo;
+    servo.passivity.reflected_force = control::ReflectedForce::servo;
+    return {{}, servo};
+  }
+  static void admit(control::PassivitySlave::Input&) {}
+};
+
+using ControlElements =
+    ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
+                     control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::LocalDamping,
+                     control::ShapingFilter, control::Crossover, control::HandForceObserver,
+                     control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
+                     control::SharedCompliantSlave, control::FourChannelMaster, control::FourChannelSlave,
+                     control::CancellingSlave, control::WaveMaster, control::WaveSlave, control::PassivityMaster,
+                     control::PassivitySlave, control::TankMaster, control::TankSlave, SoftLimitMaster>;
+INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws
