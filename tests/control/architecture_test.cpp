@@ -61,6 +61,30 @@ TEST(Architecture, AnUnknownNameIsRefusedWithTheNearestAndTheWholeList) {
   EXPECT_NE(sites.error().message.find("did you mean 'position-force'?"), std::string::npos) << sites.error().message;
 }
 
+TEST(Architecture, TheCouplingsNameTheKeyOfTheFileThatCannotBe) {
+  const auto refused_key = [](const char* architecture, auto&& change) {
+    ControlParams params;
+    params.architecture = architecture;
+    change(params);
+    const auto sites = make_sites(params, tick);
+    return sites ? std::string("was made") : sites.error().parameter;
+  };
+  for (const char* architecture : {"position-position", "projection", "shared-compliant"}) {
+    EXPECT_EQ(refused_key(architecture, [](auto&) {}), "was made");
+    EXPECT_EQ(refused_key(architecture, [](auto& p) { p.slave.velocity.cutoff_Hz = 2400.0; }),
+              "slave.velocity.cutoff_Hz");
+    EXPECT_EQ(refused_key(architecture,
+                          [](auto& p) {
+                            p.cancellation_step = CancellationStep::euler;
+                            p.model.cable.stiffness_N_per_m = 1e9;
+                          }),
+              "cancellation_step");
+  }
+  EXPECT_EQ(refused_key("projection", [](auto& p) { p.projection.hand_force_cutoff_Hz = 2400.0; }),
+            "projection.hand_force_cutoff_Hz");
+  EXPECT_EQ(refused_key("shared-compliant", [](auto& p) { p.compliance.cutoff_Hz = 2600.0; }), "compliance.cutoff_Hz");
+}
+
 TEST(Site, ACopyIsAForkWithAControllerOfItsOwn) {
   ControlParams params;
   params.force_gain = 5.0;
