@@ -74,6 +74,48 @@ TEST_P(PassiveArchitecture, StaysFiniteAndOnTheWallOverALineThatReordersAndLoses
 INSTANTIATE_TEST_SUITE_P(Delayed, PassiveArchitecture,
                          ::testing::Values("wave-variables", "time-domain-passivity", "energy-tank"));
 
+/// Force shown to the hand and force at the wall in N, means over the last 100 ms of all taps, at a gain of 1.
+struct Press {
+  double shown_N = 0.0;
+  double contact_N = 0.0;
+};
+
+Press press(const std::string& architecture, double delay_s) {
+  TappingParams params = delayed(architecture, delay_s);
+  params.control.force_gain = 1.0;
+  params.control.force_limit_N = 5.0;
+  params.task.taps = 32;
+  const auto ensemble = TappingEnsemble::make(params).value();
+  constexpr std::size_t ticks = 500;
+  Press sum;
+  for (std::size_t i = 0; i < ensemble.size(); ++i) {
+    std::vector<Teleoperator::Record> trace;
+    ensemble.run(i, &trace);
+    for (std::size_t k = trace.size() - ticks; k < trace.size(); ++k) {
+      sum.shown_N += trace[k].displayed_force_N;
+      sum.contact_N += trace[k].contact_force_N;
+    }
+  }
+  const auto samples = static_cast<double>(ticks * ensemble.size());
+  return {sum.shown_N / samples, sum.contact_N / samples};
+}
+
+TEST(PassiveArchitectures, ShowTheForcesOfThePageOnPassivity) {
+  struct Row {
+    const char* architecture;
+    double delay_s, shown_N, contact_N;
+  };
+  for (const Row& row : {Row{"wave-variables", 0.0, 0.475, 0.454}, Row{"wave-variables", 0.02, 0.380, 0.369},
+                         Row{"wave-variables", 0.1, 0.269, 0.180}, Row{"time-domain-passivity", 0.0, 0.453, 0.477},
+                         Row{"time-domain-passivity", 0.02, 0.318, 0.462},
+                         Row{"time-domain-passivity", 0.1, 0.064, 0.249}, Row{"energy-tank", 0.0, 0.457, 0.457},
+                         Row{"energy-tank", 0.02, 0.452, 0.456}, Row{"energy-tank", 0.1, 0.471, 0.383}}) {
+    const Press measured = press(row.architecture, row.delay_s);
+    EXPECT_NEAR(measured.shown_N, row.shown_N, 0.02) << row.architecture << " at " << row.delay_s << " s";
+    EXPECT_NEAR(measured.contact_N, row.contact_N, 0.02) << row.architecture << " at " << row.delay_s << " s";
+  }
+}
+
 TEST(PositionForce, RingsOverADelayThatThePassiveArchitecturesStand) {
   EXPECT_NE(run(delayed("position-force", 0.1)).metrics.verdict, Verdict::settled);
 }
