@@ -8,14 +8,17 @@ namespace tactus::control {
 
 Result<PositionForceMaster> PositionForceMaster::make(const Params& params, Seconds dt) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
-  const auto cancellation = Cancellation::make(
-      {.model = {.master = params.model, .step = params.cancellation_step, .friction = params.cancellation_friction}},
-      dt);
+  const auto cancellation =
+      GripCancellation::make({.cancellation = {.model = {.master = params.model,
+                                                         .step = params.cancellation_step,
+                                                         .friction = params.cancellation_friction}},
+                              .estimate = params.operator_estimate},
+                             dt);
   if (!cancellation) {
     Error error = cancellation.error();
     // The keys here are flatter than the parameters of the cancellation.
-    constexpr std::string_view nested = "model.master.";
-    if (error.parameter == "model.step") error.parameter = "cancellation_step";
+    constexpr std::string_view nested = "cancellation.model.master.";
+    if (error.parameter == "cancellation.model.step") error.parameter = "cancellation_step";
     if (error.parameter.starts_with(nested)) error.parameter.erase(0, nested.size()).insert(0, "model.");
     return error;
   }
@@ -25,11 +28,11 @@ Result<PositionForceMaster> PositionForceMaster::make(const Params& params, Seco
 PositionForceMaster::Output PositionForceMaster::respond(const Input& input) noexcept {
   // A NaN passes through clamp, so it reaches the gate, which catches and latches it.
   const double displayed_N = std::clamp(force_gain_ * input.arrival.message.force_N, -force_limit_N_, force_limit_N_);
-  const double intended_m = cancellation_.intended(input.motor_position_m);
+  const double intended_m = cancellation_.intended(input.motor_position_m, input.grip);
   const double command_m = mode_ == CancellationMode::on ? intended_m : input.motor_position_m;
   return {.motor_force_N = -displayed_N,
           .message = {.position_m = position_scale_ * command_m},
-          .induced_position_m = cancellation_.model().motor_position_m(),
+          .induced_position_m = cancellation_.induced_position_m(),
           .intended_position_m = intended_m};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/control/cancellation.hpp>
+#include <tactus/control/grip_cancellation.hpp>
 #include <tactus/control/servo_pd.hpp>
 #include <tactus/control/site.hpp>
 #include <tactus/core/element.hpp>
@@ -31,6 +31,7 @@ class PositionForceMaster {
     CancellationMode cancellation = CancellationMode::on;
     CancellationStep cancellation_step = CancellationStep::exact;
     ModelFriction cancellation_friction = ModelFriction::total_velocity;
+    OperatorEstimate operator_estimate = OperatorEstimate::off;
     MasterModel model;
     static constexpr auto fields() {
       return std::tuple{
@@ -44,6 +45,8 @@ class PositionForceMaster {
           field("cancellation_step", &Params::cancellation_step, "How the model of cancellation is advanced."),
           field("cancellation_friction", &Params::cancellation_friction,
                 "On which velocity the model's Coulomb friction acts."),
+          field("operator_estimate", &Params::operator_estimate,
+                "Where cancellation learns how firmly the person holds."),
           field("model", &Params::model, "The controller's model of master and hand.")};
     }
   };
@@ -65,7 +68,7 @@ class PositionForceMaster {
   void reset() noexcept { cancellation_.reset(); }
 
  private:
-  PositionForceMaster(const Params& params, const Cancellation& cancellation)
+  PositionForceMaster(const Params& params, const GripCancellation& cancellation)
       : position_scale_(params.position_scale),
         force_gain_(params.force_gain),
         force_limit_N_(params.force_limit_N),
@@ -76,7 +79,7 @@ class PositionForceMaster {
   double force_gain_;
   double force_limit_N_;
   CancellationMode mode_;
-  Cancellation cancellation_;
+  GripCancellation cancellation_;
 };
 
 /// The slave site: proportional and derivative feedback of the error on the motor; the tip force goes back as it is

@@ -30,6 +30,7 @@ struct Arrival {
 struct MasterInput {
   double motor_position_m = 0.0;
   Arrival arrival;
+  double grip = 1.0;  ///< how firmly the person holds, over nominal, where a sensor tells; 1 without one
 };
 
 /// What the master commands and tells, and what its stages made of it, for the log.

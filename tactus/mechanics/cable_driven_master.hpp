@@ -45,6 +45,9 @@ class CableDrivenMaster {
                             .grip_velocity_m_per_s = input.grip_velocity_m_per_s});
   }
 
+  /// The hand's impedance is `grip` from now on, which must be one that `make` takes. Real-time safe.
+  void hold(const LinearSpring::Params& grip) noexcept { mechanism_.hold(grip); }
+
   /// What the encoder reads now, in m.
   double measure() noexcept { return encoder_.step(mechanism_.motor_position_m()); }
 

@@ -1,6 +1,7 @@
 #include "tests/laws.hpp"
 
 #include <tactus/control/cancellation.hpp>
+#include <tactus/control/grip_cancellation.hpp>
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/safety_gate.hpp>
@@ -42,6 +43,17 @@ struct Subject<control::Cancellation> {
   static void admit(control::Cancellation::Input&) {}
 };
 
+template <>
+struct Subject<control::GripCancellation> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::GripCancellation::Params> parameters() {
+    return {{},
+            {.cancellation = {}, .estimate = control::OperatorEstimate::online},
+            {.cancellation = {}, .estimate = control::OperatorEstimate::scheduled}};
+  }
+  static void admit(control::GripCancellation::Input&) {}
+};
+
 /// What arrives is doubles and one flag, and always fresh here.
 template <>
 struct Doubles<control::MasterInput> {
@@ -77,8 +89,8 @@ struct Subject<control::PositionForceMaster> {
 };
 
 using ControlElements =
-    ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
-                     control::PositionForceSlave, control::SafetyGate, control::ServoPd>;
+    ::testing::Types<control::InducedMotionModel, control::Cancellation, control::GripCancellation,
+                     control::PositionForceMaster, control::PositionForceSlave, control::SafetyGate, control::ServoPd>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws
