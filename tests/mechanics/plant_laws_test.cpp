@@ -64,7 +64,7 @@ struct Subject<mechanics::Operator> {
   static std::vector<mechanics::Operator::Params> parameters() {
     return {{},
             {.correction = {.reaction_time_s = 0.0}, .tremor_phase_cycles = 0.3},
-            {.correction = {.gain_per_s = 0.0}, .tremor_amplitude_m = 0.0}};
+            {.grip_change = {}, .correction = {.gain_per_s = 0.0}, .tremor_amplitude_m = 0.0}};
   }
   static void admit(mechanics::Operator::Input&) {}
 };
