@@ -8,14 +8,17 @@ namespace tactus::control {
 
 Result<PositionForceMaster> PositionForceMaster::make(const Params& params, Seconds dt) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
-  const auto cancellation = Cancellation::make(
-      {.model = {.master = params.model, .step = params.cancellation_step, .friction = params.cancellation_friction}},
-      dt);
+  const auto cancellation =
+      GripCancellation::make({.cancellation = {.model = {.master = params.model,
+                                                         .step = params.cancellation_step,
+                                                         .friction = params.cancellation_friction}},
+                              .estimate = params.operator_estimate},
+                             dt);
   if (!cancellation) {
     Error error = cancellation.error();
     // The keys here are flatter than the parameters of the cancellation.
-    constexpr std::string_view nested = "model.master.";
-    if (error.parameter == "model.step") error.parameter = "cancellation_step";
+    constexpr std::string_view nested = "cancellation.model.master.";
+    if (error.parameter == "cancellation.model.step") error.parameter = "cancellation_step";
     if (error.parameter.starts_with(nested)) error.parameter.erase(0, nested.size()).insert(0, "model.");
     return error;
   }
@@ -41,13 +44,13 @@ PositionForceMaster::Output PositionForceMaster::respond(const Input& input) noe
   // A NaN passes through clamp, so it reaches the gate, which catches and latches it.
   const double displayed_N = std::clamp(below_N - damping_N, -force_limit_N_, force_limit_N_);
   const double handle_N = std::clamp(above_N, -force_limit_N_, force_limit_N_);
-  const double intended_m = stages_.cancellation.intended(input.motor_position_m);
+  const double intended_m = stages_.cancellation.intended(input.motor_position_m, input.grip);
   const double command_m =
       stages_.command_filter.step(mode_ == CancellationMode::on ? intended_m : input.motor_position_m);
   return {.motor_force_N = -displayed_N,
           .handle_force_N = -handle_N,
           .message = {.position_m = position_scale_ * command_m},
-          .induced_position_m = stages_.cancellation.model().motor_position_m(),
+          .induced_position_m = stages_.cancellation.induced_position_m(),
           .intended_position_m = intended_m};
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/control/cancellation.hpp>
 #include <tactus/control/crossover.hpp>
+#include <tactus/control/grip_cancellation.hpp>
 #include <tactus/control/local_damping.hpp>
 #include <tactus/control/servo_pd.hpp>
 #include <tactus/control/shaping_filter.hpp>
@@ -38,6 +38,7 @@ class PositionForceMaster {
     CancellationMode cancellation = CancellationMode::on;
     CancellationStep cancellation_step = CancellationStep::exact;
     ModelFriction cancellation_friction = ModelFriction::total_velocity;
+    OperatorEstimate operator_estimate = OperatorEstimate::off;
     MasterModel model;
     LocalDamping::Params damping;
     ShapingFilter::Params command_filter;
@@ -55,6 +56,8 @@ class PositionForceMaster {
           field("cancellation_step", &Params::cancellation_step, "How the model of cancellation is advanced."),
           field("cancellation_friction", &Params::cancellation_friction,
                 "On which velocity the model's Coulomb friction acts."),
+          field("operator_estimate", &Params::operator_estimate,
+                "Where cancellation learns how firmly the person holds."),
           field("model", &Params::model, "The controller's model of master and hand."),
           field("damping", &Params::damping, "Local derivative damping of the master's motor."),
           field("command_filter", &Params::command_filter, "Filter of the position command."),
@@ -87,7 +90,7 @@ class PositionForceMaster {
 
  private:
   struct Stages {
-    Cancellation cancellation;
+    GripCancellation cancellation;
     LocalDamping damping;
     ShapingFilter command_filter;
     ShapingFilter force_filter;

@@ -33,6 +33,7 @@ struct MasterInput {
   double motor_position_m = 0.0;
   double hand_force_N = 0.0;  ///< of the hand on the handle, positive when it pushes toward the environment
   Arrival arrival;
+  double grip = 1.0;  ///< how firmly the person holds, over nominal, where a sensor tells; 1 without one
 };
 
 /// What the master commands and tells, and what its stages made of it, for the log.

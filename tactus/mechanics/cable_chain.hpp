@@ -90,6 +90,13 @@ class CableChain {
   /// Advances by any `duration_s` from 0 to the step that `make` was given: the part of a step up to an event.
   void advance(const Input& input, double duration_s) noexcept { advance(input, step_of(duration_s)); }
 
+  /// Holds the tip through another grip from now on. Real-time safe. `grip` must be within its bounds and its stiffness
+  /// one that `check_step` allows.
+  void hold(const LinearSpring::Params& grip) noexcept {
+    grip_ = grip;
+    step_ = step_of(step_.h_s);
+  }
+
   /// At rest at the origin, the linkage relaxed.
   void reset() noexcept { reset(0.0); }
   /// At rest with every mass at `position_m`, the linkage relaxed.

@@ -62,6 +62,9 @@ class CableDrivenMaster {
     return output;
   }
 
+  /// The hand's impedance is `grip` from now on, which must be one that `make` takes. Real-time safe.
+  void hold(const LinearSpring::Params& grip) noexcept { mechanism_.hold(grip); }
+
   /// What the sensors read now: draws one sample of noise.
   Reading measure() noexcept {
     return {.motor_position_m = encoder_.step(mechanism_.motor_position_m()), .hand_force_N = force_sensor_.sample()};

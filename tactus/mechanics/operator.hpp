@@ -6,6 +6,8 @@
 #include <tactus/signal/delay_line.hpp>
 #include <tactus/signal/low_pass.hpp>
 
+#include <algorithm>
+
 namespace tactus::mechanics {
 
 /// The person at the master, as a plant. Three things at once:
@@ -36,8 +38,31 @@ class Operator {
     }
   };
 
+  /// A grip that gets firmer or lighter during a run: stiffness and damping go from what they are to `factor` times
+  /// that, along a minimum-jerk curve.
+  struct GripChange {
+    double factor = 1.0;
+    double start_s = 0.0;
+    double duration_s = 0.1;
+    static constexpr auto fields() {
+      return std::tuple{
+          field("factor", &GripChange::factor, units::none, between(0.05, 20.0),
+                "Stiffness and damping of the grip after the change over those before; 1 is no change."),
+          field("start_s", &GripChange::start_s, units::second, non_negative,
+                "When the change begins, from the start of the run."),
+          field("duration_s", &GripChange::duration_s, units::second, non_negative, "How long the change takes.")};
+    }
+    /// The factor in force `time_s` after the start of the run, exactly 1 before the change.
+    [[nodiscard]] double at(double time_s) const noexcept {
+      const double share =
+          duration_s > 0.0 ? std::clamp((time_s - start_s) / duration_s, 0.0, 1.0) : (time_s < start_s ? 0.0 : 1.0);
+      return 1.0 + (factor - 1.0) * share * share * share * (10.0 + share * (6.0 * share - 15.0));
+    }
+  };
+
   struct Params {
     LinearSpring::Params grip{.stiffness_N_per_m = 40.0, .damping_N_s_per_m = 23.0};
+    GripChange grip_change;
     Correction correction;
     double tremor_amplitude_m = 5e-5;
     double tremor_frequency_Hz = 10.0;
@@ -45,6 +70,7 @@ class Operator {
     static constexpr auto fields() {
       return std::tuple{
           field("grip", &Params::grip, "Passive impedance of hand and arm at the handle (paper A, Table I)."),
+          field("grip_change", &Params::grip_change, "A grip that changes during the run."),
           field("correction", &Params::correction, "Slow correction of the handle's position."),
           field("tremor_amplitude_m", &Params::tremor_amplitude_m, units::metre, between(0.0, 0.005),
                 "Amplitude of physiological tremor on the intended path."),

@@ -4,6 +4,16 @@
 
 namespace tactus::simulation {
 
+namespace {
+
+mechanics::LinearSpring::Params scaled(mechanics::LinearSpring::Params grip, double factor) {
+  grip.stiffness_N_per_m *= factor;
+  grip.damping_N_s_per_m *= factor;
+  return grip;
+}
+
+}  // namespace
+
 Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   if (auto error = validate(params)) return *std::move(error);
   const auto clock = Clock::make(params.servo, params.plant);
@@ -15,6 +25,12 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   if (!master) {
     const Error& error = master.error();
     return under(error.parameter.starts_with("grip.") ? "operator" : "master", error);
+  }
+  const double factor = params.person.grip_change.factor;
+  if (const auto changed =
+          mechanics::CableDrivenMaster::make(params.master, scaled(params.person.grip, factor), substep);
+      !changed) {
+    return under("operator", changed.error());
   }
   auto slave = mechanics::ElectricSlave::make(params.slave, params.environment, substep);
   if (!slave) {
@@ -34,17 +50,26 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   const auto to_master = Channel::make(params.channel.to_master, tick, {.position_m = slave_start_m});
   if (!to_master) return under("channel.to_master", to_master.error());
 
-  return Teleoperator(Parts{*master, *slave, *person, *std::move(sites), *to_slave, *to_master}, *clock);
+  return Teleoperator(Parts{*master, *slave, *person, *std::move(sites), *to_slave, *to_master}, *clock, params.person);
+}
+
+void Teleoperator::change_grip(double time_s) noexcept {
+  const double factor = grip_change_.at(time_s);
+  if (factor == grip_factor_) return;
+  grip_factor_ = factor;
+  parts_.master.hold(scaled(grip_, factor));
 }
 
 Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {
   const double time_s = static_cast<double>(ticks_) * clock_.tick_s;
+  change_grip(time_s);
   const mechanics::CableDrivenMaster::Reading master_reading = parts_.master.measure();
   const mechanics::ElectricSlave::Reading slave_reading = parts_.slave.measure();
 
   const auto master = parts_.sites.master.step({.motor_position_m = master_reading.motor_position_m,
                                                 .hand_force_N = master_reading.hand_force_N,
-                                                .arrival = arrived_});
+                                                .arrival = arrived_,
+                                                .grip = grip_factor_});
   const auto slave = parts_.sites.slave.step({.motor_position_m = slave_reading.motor_position_m,
                                               .tip_force_N = slave_reading.tip_force_N,
                                               .arrival = parts_.to_slave.step(master.message)});

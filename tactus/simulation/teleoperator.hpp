@@ -92,10 +92,16 @@ class Teleoperator {
     Channel to_master;
   };
 
-  Teleoperator(Parts parts, const Clock& clock) : parts_(std::move(parts)), clock_(clock) {}
+  Teleoperator(Parts parts, const Clock& clock, const mechanics::Operator::Params& person)
+      : parts_(std::move(parts)), clock_(clock), grip_(person.grip), grip_change_(person.grip_change) {}
+
+  void change_grip(double time_s) noexcept;
 
   Parts parts_;
   Clock clock_;
+  mechanics::LinearSpring::Params grip_;  ///< before any change
+  mechanics::Operator::GripChange grip_change_;
+  double grip_factor_ = 1.0;
   std::int64_t ticks_ = 0;
   double master_command_N_ = 0.0;
   double handle_command_N_ = 0.0;

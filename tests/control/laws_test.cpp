@@ -4,6 +4,7 @@
 #include <tactus/control/crossover.hpp>
 #include <tactus/control/energy_tank.hpp>
 #include <tactus/control/four_channel.hpp>
+#include <tactus/control/grip_cancellation.hpp>
 #include <tactus/control/hand_force_observer.hpp>
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/control/local_damping.hpp>
@@ -54,6 +55,17 @@ struct Subject<control::Cancellation> {
     return {{}, euler};
   }
   static void admit(control::Cancellation::Input&) {}
+};
+
+template <>
+struct Subject<control::GripCancellation> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::GripCancellation::Params> parameters() {
+    return {{},
+            {.cancellation = {}, .estimate = control::OperatorEstimate::online},
+            {.cancellation = {}, .estimate = control::OperatorEstimate::scheduled}};
+  }
+  static void admit(control::GripCancellation::Input&) {}
 };
 
 /// What arrives is doubles and one flag, and always fresh here.
@@ -170,9 +182,9 @@ struct Subject<control::PassivitySlave> {
 };
 
 using ControlElements =
-    ::testing::Types<control::InducedMotionModel, control::Cancellation, control::PositionForceMaster,
-                     control::PositionForceSlave, control::SafetyGate, control::ServoPd, control::LocalDamping,
-                     control::ShapingFilter, control::Crossover, control::HandForceObserver,
+    ::testing::Types<control::InducedMotionModel, control::Cancellation, control::GripCancellation,
+                     control::PositionForceMaster, control::PositionForceSlave, control::SafetyGate, control::ServoPd,
+                     control::LocalDamping, control::ShapingFilter, control::Crossover, control::HandForceObserver,
                      control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
                      control::SharedCompliantSlave, control::FourChannelMaster, control::FourChannelSlave,
                      control::CancellingSlave, control::WaveMaster, control::WaveSlave, control::PassivityMaster,

@@ -17,12 +17,12 @@ constexpr double tau = 2.0 * std::numbers::pi;
 
 Operator person(const Operator::Params& params) { return Operator::make(params, Seconds{tick_s}).value(); }
 
-constexpr Operator::Params calm{.correction = {}, .tremor_amplitude_m = 0.0};
+constexpr Operator::Params calm{.grip_change = {}, .correction = {}, .tremor_amplitude_m = 0.0};
 
 double path_m(double time_s) { return 0.02 * std::sin(3.0 * time_s) + 0.01 * time_s; }
 
 TEST(Operator, WithoutCorrectionAndTremorTheAimIsThePathExactly) {
-  Operator element = person({.correction = {.gain_per_s = 0.0}, .tremor_amplitude_m = 0.0});
+  Operator element = person({.grip_change = {}, .correction = {.gain_per_s = 0.0}, .tremor_amplitude_m = 0.0});
   for (int tick = 0; tick < 10000; ++tick) {
     const double now_m = path_m(tick * tick_s);
     const double next_m = path_m((tick + 1) * tick_s);
@@ -37,7 +37,8 @@ TEST(Operator, TremorIsASineOfItsAmplitudeFrequencyAndPhase) {
   for (const double frequency_Hz : {1.0, 8.3, 10.0, 30.0}) {
     for (const double phase : {0.0, 0.25, 0.7}) {
       constexpr double amplitude_m = 1e-4;
-      Operator element = person({.correction = {.gain_per_s = 0.0},
+      Operator element = person({.grip_change = {},
+                                 .correction = {.gain_per_s = 0.0},
                                  .tremor_amplitude_m = amplitude_m,
                                  .tremor_frequency_Hz = frequency_Hz,
                                  .tremor_phase_cycles = phase});
@@ -51,7 +52,7 @@ TEST(Operator, TremorIsASineOfItsAmplitudeFrequencyAndPhase) {
 }
 
 TEST(Operator, AtItsVelocityTheAimGetsToWhereTheNextTickStarts) {
-  Operator element = person({.correction = {}, .tremor_amplitude_m = 1e-3});
+  Operator element = person({.grip_change = {}, .correction = {}, .tremor_amplitude_m = 1e-3});
   double expected_m = element.step({.path_at_next_tick_m = path_m(0.0), .handle_position_m = 0.01}).position_m;
   element.reset();
   for (int tick = 0; tick < 5000; ++tick) {
@@ -140,10 +141,11 @@ TEST(Operator, AConstantDisplacementOfTheHandleDiesAwayLikeTheDelayDifferentialE
 }
 
 TEST(Operator, APersonQuickerThanTheBoundIsRefusedByName) {
-  const auto hasty = Operator::make({.correction = {.gain_per_s = 9.0}}, Seconds{tick_s});
+  const auto hasty = Operator::make({.grip_change = {}, .correction = {.gain_per_s = 9.0}}, Seconds{tick_s});
   ASSERT_FALSE(hasty);
   EXPECT_EQ(hasty.error().parameter, "correction.gain_per_s");
-  const auto too_long_in_ticks = Operator::make({.correction = {.reaction_time_s = 0.4}}, Seconds{40e-6});
+  const auto too_long_in_ticks =
+      Operator::make({.grip_change = {}, .correction = {.reaction_time_s = 0.4}}, Seconds{40e-6});
   ASSERT_FALSE(too_long_in_ticks);
   EXPECT_EQ(too_long_in_ticks.error().parameter, "correction.reaction_time_s");
 }

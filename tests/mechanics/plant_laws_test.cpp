@@ -63,8 +63,8 @@ struct Subject<mechanics::Operator> {
   static constexpr double dt_s = 200e-6;
   static std::vector<mechanics::Operator::Params> parameters() {
     return {{},
-            {.correction = {.reaction_time_s = 0.0}, .tremor_phase_cycles = 0.3},
-            {.correction = {.gain_per_s = 0.0}, .tremor_amplitude_m = 0.0}};
+            {.grip_change = {}, .correction = {.reaction_time_s = 0.0}, .tremor_phase_cycles = 0.3},
+            {.grip_change = {}, .correction = {.gain_per_s = 0.0}, .tremor_amplitude_m = 0.0}};
   }
   static void admit(mechanics::Operator::Input&) {}
 };

@@ -329,6 +329,25 @@ TEST(TappingSummary, TakesQuantilesOverTheTapsWithUnsettledOnesAtTheirWholeWindo
   EXPECT_DOUBLE_EQ(metrics.residual_rms_N, 0.25);
 }
 
+/// Taps of a hand that is nominal at rest and holds a quarter as firmly when it meets the wall.
+double settled_share(control::OperatorEstimate estimate) {
+  TappingParams params = default_params();
+  params.task.taps = 16;
+  params.control.force_gain = 20.0;
+  params.control.operator_estimate = estimate;
+  params.person.grip_change.factor = 0.25;
+  std::vector<TapResult> taps;
+  const TappingEnsemble ensemble = made(params);
+  for (std::size_t i = 0; i < ensemble.size(); ++i) taps.push_back(ensemble.run(i));
+  return summarise(taps).settled_fraction;
+}
+
+TEST(Tapping, AGripThatGetsLighterFailsTheFixedModelAndNotTheOneThatFollowsIt) {
+  EXPECT_LT(settled_share(control::OperatorEstimate::off), 0.5);
+  EXPECT_GT(settled_share(control::OperatorEstimate::online), 0.95);
+  EXPECT_GT(settled_share(control::OperatorEstimate::scheduled), 0.95);
+}
+
 TEST(MedianTap, IsTheOneInTheMiddleTheLowerOfTwoTheFirstOfEqualOnes) {
   EXPECT_EQ(median_tap({tap_of(0.06), tap_of(0.04), tap_of(0.05)}), 2U);
   EXPECT_EQ(median_tap({tap_of(0.06), tap_of(0.04), tap_of(std::nullopt), tap_of(0.05)}), 3U);

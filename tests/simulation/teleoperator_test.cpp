@@ -304,5 +304,45 @@ TEST(Teleoperator, NamesTheKeyThatCannotBe) {
   EXPECT_EQ(refused_key([](auto& p) { p.channel.to_slave.delay_s = 2.0; }), "channel.to_slave.delay_s");
 }
 
+/// Powers of two, so that both ways to write a grip are the same number.
+Teleoperator::Params lighter_grip(double start_s) {
+  Teleoperator::Params params = tapping_params();
+  params.person.grip_change = {.factor = 0.25, .start_s = start_s, .duration_s = 0.0};
+  return params;
+}
+
+TEST(Teleoperator, AGripThatChangesAtTheStartIsAHandOfThatGrip) {
+  Teleoperator::Params light = tapping_params();
+  light.person.grip.stiffness_N_per_m *= 0.25;
+  light.person.grip.damping_N_s_per_m *= 0.25;
+  EXPECT_EQ(first_difference(run(light), run(lighter_grip(0.0))), nowhere);
+}
+
+TEST(Teleoperator, AGripThatChangesLaterIsTheOldOneUntilThen) {
+  const std::size_t difference = first_difference(run(tapping_params()), run(lighter_grip(0.2)));
+  EXPECT_GE(difference, 1000U);
+  EXPECT_LT(difference, 1020U);
+}
+
+TEST(Teleoperator, AGripThatChangesGraduallyGoesFromOneToItsFactorAndIsHalfWayInTheMiddle) {
+  const mechanics::Operator::GripChange change{.factor = 3.0, .start_s = 0.5, .duration_s = 0.2};
+  EXPECT_EQ(change.at(0.0), 1.0);
+  EXPECT_EQ(change.at(0.5), 1.0);
+  EXPECT_NEAR(change.at(0.6), 2.0, 1e-12);
+  EXPECT_NEAR(change.at(0.7), 3.0, 1e-12);
+  EXPECT_EQ(change.at(9.0), 3.0);
+  for (double time_s = 0.5; time_s < 0.7; time_s += 0.01) EXPECT_LT(change.at(time_s), change.at(time_s + 0.01));
+}
+
+TEST(Teleoperator, RefusesAGripThatBecomesTooStiffForTheSteps) {
+  Teleoperator::Params params = tapping_params();
+  params.person.grip.stiffness_N_per_m = 5e7;
+  ASSERT_TRUE(Teleoperator::make(params, 0.0));
+  params.person.grip_change.factor = 20.0;
+  const auto refused = Teleoperator::make(params, 0.0);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().parameter, "operator.grip.stiffness_N_per_m");
+}
+
 }  // namespace
 }  // namespace tactus::simulation
