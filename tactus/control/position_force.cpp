@@ -7,9 +7,11 @@ namespace tactus::control {
 
 Result<PositionForceMaster> PositionForceMaster::make(const Params& params, Seconds dt) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
-  const auto cancellation = Cancellation::make(
-      {.model = {.master = params.model, .step = params.cancellation_step, .friction = params.cancellation_friction}},
-      dt);
+  const auto cancellation = Cancellation::make({.model = {.master = params.model,
+                                                          .fidelity = params.cancellation_model,
+                                                          .step = params.cancellation_step,
+                                                          .friction = params.cancellation_friction}},
+                                               dt);
   if (!cancellation) {
     Error error = cancellation.error();
     if (error.parameter == "model.step") error.parameter = "cancellation_step";
