@@ -244,13 +244,17 @@ void InducedMotionModel::step_euler(double motor_force_N, const FrictionRange& r
 // Each force f is the clamp, to what friction can give, of what stops its mass while the other force acts. Put one into
 // the other: what stops the motor is a line in the motor's own force, of a slope below one, clamped because the drum's
 // force is. The fixed point of a clamped line is the fixed point of the line, which stops both masses, clamped alike.
-InducedMotionModel::FrictionForces InducedMotionModel::friction_forces(double stops_motor_N, double stops_drum_N,
-                                                                       const FrictionRange& range) const noexcept {
+//
+// On the motor the sum of motor force and friction is found so, and not friction alone: what stops a mass at rest is
+// then zero exactly, and not the motor force to rounding.
+InducedMotionModel::GroundForces InducedMotionModel::ground_forces(double motor_force_N, double stops_motor_N,
+                                                                   double stops_drum_N,
+                                                                   const FrictionRange& range) const noexcept {
   struct Bounds {
     double least_N, most_N;
   };
-  const auto friction_bounds = [&range](const mechanics::RubbingMass& body) {
-    return Bounds{body.friction_N * range.least_share, body.friction_N * range.most_share};
+  const auto bounds = [&range](double force_N, const mechanics::RubbingMass& body) {
+    return Bounds{force_N + body.friction_N * range.least_share, force_N + body.friction_N * range.most_share};
   };
   const auto force = [](double stops_both_N, double stops_alone_N, double per_other, const Bounds& own,
                         const Bounds& other) {
@@ -258,7 +262,7 @@ InducedMotionModel::FrictionForces InducedMotionModel::friction_forces(double st
     const double coupled = std::clamp(stops_both_N, stops_alone_N - std::max(a, b), stops_alone_N - std::min(a, b));
     return std::clamp(coupled, own.least_N, own.most_N);
   };
-  const Bounds motor = friction_bounds(params_.master.motor), drum = friction_bounds(params_.master.drum);
+  const Bounds motor = bounds(motor_force_N, params_.master.motor), drum = bounds(0.0, params_.master.drum);
   const double motor_of_both_N = both_stopped_ * stops_motor_N - (both_stopped_ * motor_per_drum_) * stops_drum_N;
   const double drum_of_both_N = both_stopped_ * stops_drum_N - (both_stopped_ * drum_per_motor_) * stops_motor_N;
   return {.motor_N = force(motor_of_both_N, stops_motor_N, motor_per_drum_, motor, drum),
@@ -273,17 +277,17 @@ void InducedMotionModel::step_exact(double motor_force_N, const FrictionRange& r
   // The sum stands in the order in which its terms become known, so that few of them are waited for.
   Column next;
   for (std::size_t row = 0; row < next.size(); ++row) {
-    const double driven = response_[0][row] * motor_force_N + offset_response_[row] * range.offset_m_per_s;
+    const double offset = offset_response_[row] * range.offset_m_per_s;
     const double positions =
         transition_[0][row] * state_[0] + transition_[1][row] * state_[1] + transition_[2][row] * state_[2];
     const double velocities =
         transition_[3][row] * state_[3] + transition_[4][row] * state_[4] + transition_[5][row] * state_[5];
-    next[row] = (driven + (positions + velocities)) + response_[2][row] * (slipped_N - quintic_N) -
+    next[row] = (offset + (positions + velocities)) + response_[2][row] * (slipped_N - quintic_N) -
                 response_[1][row] * slipped_N;
   }
-  const FrictionForces friction = friction_forces(next[6], next[7], range);
+  const GroundForces ground = ground_forces(motor_force_N, next[6], next[7], range);
   for (std::size_t row = 0; row < state_.size(); ++row) {
-    state_[row] = next[row] + (response_[0][row] * friction.motor_N + response_[1][row] * friction.drum_N);
+    state_[row] = next[row] + (response_[0][row] * ground.motor_N + response_[1][row] * ground.drum_N);
   }
 }
 

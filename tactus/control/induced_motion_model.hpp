@@ -96,7 +96,7 @@ struct MasterModel {
 ///
 /// The exact step: x⁺ = Φ x + Γ u with Φ = exp(A·dt), Γ its integral, and u the motor force, the frictions and the
 /// quintic force and what the linkage lacks to its initial stiffness, held over the tick. Frictions are found at the
-/// end velocity, for both rubbing masses at once and exactly (`friction_forces`); nothing iterates.
+/// end velocity, for both rubbing masses at once and exactly (`ground_forces`); nothing iterates.
 ///
 /// Forces and motion are positive toward the environment, so a displayed force F_f enters as −F_f.
 class InducedMotionModel {
@@ -157,7 +157,8 @@ class InducedMotionModel {
     double least_share, most_share;
     double offset_m_per_s;
   };
-  struct FrictionForces {
+  /// What acts from outside and by friction on the two masses that rub.
+  struct GroundForces {
     double motor_N, drum_N;
   };
 
@@ -167,8 +168,8 @@ class InducedMotionModel {
   void precompute_friction();
 
   [[nodiscard]] FrictionRange friction_range(double intended_velocity_m_per_s) const noexcept;
-  [[nodiscard]] FrictionForces friction_forces(double stops_motor_N, double stops_drum_N,
-                                               const FrictionRange& range) const noexcept;
+  [[nodiscard]] GroundForces ground_forces(double motor_force_N, double stops_motor_N, double stops_drum_N,
+                                           const FrictionRange& range) const noexcept;
   [[nodiscard]] double quintic_force_N(double handle_position_m) const noexcept;
   /// What the linkage pulls with beyond its initial stiffness, in N: nothing for a linear one, else of the other sign.
   double slipped_force_N(double linkage_deflection_m) noexcept;
