@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include <Eigen/Dense>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -12,32 +13,79 @@ namespace tactus::control {
 
 namespace {
 
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
-using Matrix6x3 = Eigen::Matrix<double, 6, 3>;
+int bodies_of(ModelFidelity fidelity) {
+  switch (fidelity) {
+    case ModelFidelity::second_order:
+      return 1;
+    case ModelFidelity::fourth_order:
+      return 2;
+    case ModelFidelity::sixth_order_linear:
+    case ModelFidelity::sixth_order:
+      break;
+  }
+  return 3;
+}
 
-/// ẋ = A x + B u of the linear part, u the forces on motor, drum and handle.
+/// Calls `use` with the number of bodies as a constant.
+template <class Use>
+auto with_bodies(int bodies, const Use& use) {
+  switch (bodies) {
+    case 1:
+      return use(std::integral_constant<int, 1>());
+    case 2:
+      return use(std::integral_constant<int, 2>());
+    default:
+      return use(std::integral_constant<int, 3>());
+  }
+}
+
+/// Which body motor, drum or handle belongs to: links are rigid from the motor outward.
+constexpr Eigen::Index body_of(std::size_t mass, int bodies) {
+  return std::max<Eigen::Index>(0, static_cast<Eigen::Index>(mass) + bodies - 3);
+}
+
+/// The parameters without what a linear model lacks.
+InducedMotionModel::Params what_it_has(InducedMotionModel::Params params) {
+  if (params.fidelity == ModelFidelity::sixth_order) return params;
+  MasterModel& master = params.master;
+  master.motor.friction_N = 0.0;
+  master.drum.friction_N = 0.0;
+  master.linkage.hysteretic_fraction = 0.0;
+  master.hand.quintic_stiffness_N_per_m5 = 0.0;
+  master.hand.stiffness_N_per_m *= master.linear_hand_stiffening;
+  return params;
+}
+
+/// q̇ = A q + B u of the linear part: positions of the bodies, then their velocities; u the forces on them.
+template <int bodies>
 struct LinearPart {
-  Matrix6 a = Matrix6::Zero();
-  Matrix6x3 b = Matrix6x3::Zero();
+  Eigen::Matrix<double, 2 * bodies, 2 * bodies> a = decltype(a)::Zero();
+  Eigen::Matrix<double, 2 * bodies, bodies> b = decltype(b)::Zero();
 };
 
-LinearPart linear_part(const MasterModel& master, double linkage_stiffness_N_per_m) {
+template <int bodies>
+LinearPart<bodies> linear_part(const MasterModel& master, double linkage_stiffness_N_per_m) {
+  using Square = Eigen::Matrix<double, bodies, bodies>;
+  Eigen::Matrix<double, 3, bodies> rigid = Eigen::Matrix<double, 3, bodies>::Zero();
+  for (std::size_t mass = 0; mass < 3; ++mass) rigid(static_cast<Eigen::Index>(mass), body_of(mass, bodies)) = 1.0;
   const Eigen::Vector3d mass{master.motor.mass_kg, master.drum.mass_kg, master.handle.mass_kg};
   const auto coupling = [](double cable, double linkage, double hand) {
     Eigen::Matrix3d matrix;
     matrix << cable, -cable, 0.0, -cable, cable + linkage, -linkage, 0.0, -linkage, linkage + hand;
     return matrix;
   };
-  const Eigen::Matrix3d stiffness =
-      coupling(master.cable.stiffness_N_per_m, linkage_stiffness_N_per_m, master.hand.stiffness_N_per_m);
-  const Eigen::Matrix3d damping =
-      coupling(master.cable.damping_N_s_per_m, master.linkage.damping_N_s_per_m, master.hand.damping_N_s_per_m);
-  const Eigen::Matrix3d inverse_mass = mass.cwiseInverse().asDiagonal();
-  LinearPart part;
-  part.a.topRightCorner<3, 3>().setIdentity();
-  part.a.bottomLeftCorner<3, 3>() = -inverse_mass * stiffness;
-  part.a.bottomRightCorner<3, 3>() = -inverse_mass * damping;
-  part.b.bottomRows<3>() = inverse_mass;
+  const Square stiffness =
+      rigid.transpose() *
+      coupling(master.cable.stiffness_N_per_m, linkage_stiffness_N_per_m, master.hand.stiffness_N_per_m) * rigid;
+  const Square damping =
+      rigid.transpose() *
+      coupling(master.cable.damping_N_s_per_m, master.linkage.damping_N_s_per_m, master.hand.damping_N_s_per_m) * rigid;
+  const Square inverse_mass = (rigid.transpose() * mass).cwiseInverse().asDiagonal();
+  LinearPart<bodies> part;
+  part.a.template topRightCorner<bodies, bodies>().setIdentity();
+  part.a.template bottomLeftCorner<bodies, bodies>() = -inverse_mass * stiffness;
+  part.a.template bottomRightCorner<bodies, bodies>() = -inverse_mass * damping;
+  part.b.template bottomRows<bodies>() = inverse_mass;
   return part;
 }
 
@@ -48,16 +96,18 @@ int euler_substeps(Seconds dt) {
 
 }  // namespace
 
-Result<InducedMotionModel> InducedMotionModel::make(const Params& params, Seconds dt) {
-  if (auto error = signal::check(params, dt)) return *std::move(error);
+Result<InducedMotionModel> InducedMotionModel::make(const Params& requested, Seconds dt) {
+  if (auto error = signal::check(requested, dt)) return *std::move(error);
   if (dt.value > 0.01) return out_of_bounds("dt", dt.value, positive_up_to(0.01), units::second);
+  const Params params = what_it_has(requested);
   const auto linkage = mechanics::BoucWenSpring::make(params.master.linkage, dt);
   if (!linkage) return under("master.linkage", linkage.error());
   if (params.step == CancellationStep::euler) {
     const double substep = dt.value / euler_substeps(dt);
-    const Matrix6 growth =
-        Matrix6::Identity() + substep * linear_part(params.master, linkage->initial_stiffness_N_per_m()).a;
-    const double radius = growth.eigenvalues().cwiseAbs().maxCoeff();
+    const double radius = with_bodies(bodies_of(params.fidelity), [&](auto bodies) {
+      const auto a = linear_part<bodies>(params.master, linkage->initial_stiffness_N_per_m()).a;
+      return (decltype(a)::Identity() + substep * a).eval().eigenvalues().cwiseAbs().maxCoeff();
+    });
     constexpr double round_off = 1e-9;
     if (radius > 1.0 + round_off) {
       return Error{.code = ErrorCode::inconsistent,
@@ -74,33 +124,47 @@ Result<InducedMotionModel> InducedMotionModel::make(const Params& params, Second
 InducedMotionModel::InducedMotionModel(const Params& params, const mechanics::BoucWenSpring& linkage, Seconds dt)
     : params_(params),
       linkage_(linkage),
+      bodies_(bodies_of(params.fidelity)),
       hysteretic_(params.master.linkage.hysteretic_fraction > 0.0),
       linkage_stiffness_N_per_m_(linkage.initial_stiffness_N_per_m()),
       dt_s_(dt.value),
       euler_substeps_(euler_substeps(dt)),
-      euler_substep_s_(dt.value / euler_substeps_),
-      euler_response_{euler_substep_s_ / params.master.motor.mass_kg, euler_substep_s_ / params.master.drum.mass_kg,
-                      euler_substep_s_ / params.master.handle.mass_kg} {
-  precompute_exact_step();
+      euler_substep_s_(dt.value / euler_substeps_) {
+  const std::array<double, 3> mass_kg{params.master.motor.mass_kg, params.master.drum.mass_kg,
+                                      params.master.handle.mass_kg};
+  for (std::size_t i = 0; i < 3; ++i) {
+    double together_kg = 0.0;
+    for (std::size_t j = 0; j < 3; ++j) together_kg += body_of(i, bodies_) == body_of(j, bodies_) ? mass_kg[j] : 0.0;
+    euler_response_[i] = euler_substep_s_ / together_kg;
+  }
+  with_bodies(bodies_, [this](auto bodies) { precompute_exact_step<bodies>(); });
+  if (params_.fidelity == ModelFidelity::sixth_order) precompute_friction();
 }
 
+template <int bodies>
 void InducedMotionModel::precompute_exact_step() {
   // exp of the augmented matrix [A B; 0 0]·dt holds Φ and Γ side by side (Van Loan 1978).
-  const LinearPart part = linear_part(params_.master, linkage_stiffness_N_per_m_);
-  Eigen::Matrix<double, 9, 9> augmented = Eigen::Matrix<double, 9, 9>::Zero();
-  augmented.topLeftCorner<6, 6>() = part.a * dt_s_;
-  augmented.topRightCorner<6, 3>() = part.b * dt_s_;
-  const Eigen::Matrix<double, 9, 9> exponential = augmented.exp();
+  using Augmented = Eigen::Matrix<double, 3 * bodies, 3 * bodies>;
+  const auto part = linear_part<bodies>(params_.master, linkage_stiffness_N_per_m_);
+  Augmented augmented = Augmented::Zero();
+  augmented.template topLeftCorner<2 * bodies, 2 * bodies>() = part.a * dt_s_;
+  augmented.template topRightCorner<2 * bodies, bodies>() = part.b * dt_s_;
+  const Augmented exponential = augmented.exp();
+
+  // Masses of one body have equal rows; the first of them stands for all, and the columns of the others stay zero.
   for (std::size_t row = 0; row < 6; ++row) {
-    const auto r = static_cast<Eigen::Index>(row);
-    for (std::size_t column = 0; column < 6; ++column) {
-      transition_[column][row] = exponential(r, static_cast<Eigen::Index>(column));
-    }
-    for (std::size_t column = 0; column < 3; ++column) {
-      response_[column][row] = exponential(r, static_cast<Eigen::Index>(column + 6));
+    const Eigen::Index r = body_of(row % 3, bodies) + (row < 3 ? 0 : bodies);
+    for (std::size_t mass = 0; mass < 3; ++mass) {
+      const Eigen::Index body = body_of(mass, bodies);
+      response_[mass][row] = exponential(r, body + 2 * bodies);
+      if (mass > 0 && body == body_of(mass - 1, bodies)) continue;
+      transition_[mass][row] = exponential(r, body);
+      transition_[mass + 3][row] = exponential(r, body + bodies);
     }
   }
+}
 
+void InducedMotionModel::precompute_friction() {
   constexpr std::size_t motor_velocity = 3, drum_velocity = 4, stops_motor = 6, stops_drum = 7;
   const double on_motor = response_[0][motor_velocity], on_drum = response_[1][drum_velocity];
   const auto add_stopping_forces = [&](Column& column) {
@@ -164,12 +228,15 @@ void InducedMotionModel::step_euler(double motor_force_N, const FrictionRange& r
                            m.linkage.damping_N_s_per_m * (v_drum - v_handle);
     const double hand =
         quintic_force_N(x_handle) + m.hand.stiffness_N_per_m * x_handle + m.hand.damping_N_s_per_m * v_handle;
+    double on_motor = motor_force_N - cable, on_drum = cable - linkage, on_handle = linkage - hand;
+    if (bodies_ < 3) on_motor = on_drum = on_motor + on_drum;
+    if (bodies_ < 2) on_motor = on_drum = on_handle = on_drum + on_handle;
     x_motor += h * v_motor;
     x_drum += h * v_drum;
     x_handle += h * v_handle;
-    v_motor = rub(v_motor + euler_response_[0] * (motor_force_N - cable), euler_response_[0] * m.motor.friction_N);
-    v_drum = rub(v_drum + euler_response_[1] * (cable - linkage), euler_response_[1] * m.drum.friction_N);
-    v_handle += euler_response_[2] * (linkage - hand);
+    v_motor = rub(v_motor + euler_response_[0] * on_motor, euler_response_[0] * m.motor.friction_N);
+    v_drum = rub(v_drum + euler_response_[1] * on_drum, euler_response_[1] * m.drum.friction_N);
+    v_handle += euler_response_[2] * on_handle;
   }
   state_ = {x_motor, x_drum, x_handle, v_motor, v_drum, v_handle};
 }
@@ -177,13 +244,17 @@ void InducedMotionModel::step_euler(double motor_force_N, const FrictionRange& r
 // Each force f is the clamp, to what friction can give, of what stops its mass while the other force acts. Put one into
 // the other: what stops the motor is a line in the motor's own force, of a slope below one, clamped because the drum's
 // force is. The fixed point of a clamped line is the fixed point of the line, which stops both masses, clamped alike.
-InducedMotionModel::FrictionForces InducedMotionModel::friction_forces(double stops_motor_N, double stops_drum_N,
-                                                                       const FrictionRange& range) const noexcept {
+//
+// On the motor the sum of motor force and friction is found so, and not friction alone: what stops a mass at rest is
+// then zero exactly, and not the motor force to rounding.
+InducedMotionModel::GroundForces InducedMotionModel::ground_forces(double motor_force_N, double stops_motor_N,
+                                                                   double stops_drum_N,
+                                                                   const FrictionRange& range) const noexcept {
   struct Bounds {
     double least_N, most_N;
   };
-  const auto friction_bounds = [&range](const mechanics::RubbingMass& body) {
-    return Bounds{body.friction_N * range.least_share, body.friction_N * range.most_share};
+  const auto bounds = [&range](double force_N, const mechanics::RubbingMass& body) {
+    return Bounds{force_N + body.friction_N * range.least_share, force_N + body.friction_N * range.most_share};
   };
   const auto force = [](double stops_both_N, double stops_alone_N, double per_other, const Bounds& own,
                         const Bounds& other) {
@@ -191,7 +262,7 @@ InducedMotionModel::FrictionForces InducedMotionModel::friction_forces(double st
     const double coupled = std::clamp(stops_both_N, stops_alone_N - std::max(a, b), stops_alone_N - std::min(a, b));
     return std::clamp(coupled, own.least_N, own.most_N);
   };
-  const Bounds motor = friction_bounds(params_.master.motor), drum = friction_bounds(params_.master.drum);
+  const Bounds motor = bounds(motor_force_N, params_.master.motor), drum = bounds(0.0, params_.master.drum);
   const double motor_of_both_N = both_stopped_ * stops_motor_N - (both_stopped_ * motor_per_drum_) * stops_drum_N;
   const double drum_of_both_N = both_stopped_ * stops_drum_N - (both_stopped_ * drum_per_motor_) * stops_motor_N;
   return {.motor_N = force(motor_of_both_N, stops_motor_N, motor_per_drum_, motor, drum),
@@ -206,17 +277,17 @@ void InducedMotionModel::step_exact(double motor_force_N, const FrictionRange& r
   // The sum stands in the order in which its terms become known, so that few of them are waited for.
   Column next;
   for (std::size_t row = 0; row < next.size(); ++row) {
-    const double driven = response_[0][row] * motor_force_N + offset_response_[row] * range.offset_m_per_s;
+    const double offset = offset_response_[row] * range.offset_m_per_s;
     const double positions =
         transition_[0][row] * state_[0] + transition_[1][row] * state_[1] + transition_[2][row] * state_[2];
     const double velocities =
         transition_[3][row] * state_[3] + transition_[4][row] * state_[4] + transition_[5][row] * state_[5];
-    next[row] = (driven + (positions + velocities)) + response_[2][row] * (slipped_N - quintic_N) -
+    next[row] = (offset + (positions + velocities)) + response_[2][row] * (slipped_N - quintic_N) -
                 response_[1][row] * slipped_N;
   }
-  const FrictionForces friction = friction_forces(next[6], next[7], range);
+  const GroundForces ground = ground_forces(motor_force_N, next[6], next[7], range);
   for (std::size_t row = 0; row < state_.size(); ++row) {
-    state_[row] = next[row] + (response_[0][row] * friction.motor_N + response_[1][row] * friction.drum_N);
+    state_[row] = next[row] + (response_[0][row] * ground.motor_N + response_[1][row] * ground.drum_N);
   }
 }
 

@@ -19,6 +19,21 @@ constexpr auto enumerators(CancellationStep) {
   return std::array{Enumerator{CancellationStep::euler, "euler"}, Enumerator{CancellationStep::exact, "exact"}};
 }
 
+/// How much of the mechanism the model tells apart (paper A, Sec. VI and VII-A). The lower ones take links as rigid;
+/// all but the last are linear.
+enum class ModelFidelity {
+  second_order,        ///< motor, drum and handle are one mass on the hand
+  fourth_order,        ///< motor and drum are one mass, the handle another, the linkage between them
+  sixth_order_linear,  ///< three masses
+  sixth_order,         ///< three masses with friction, hysteresis of the linkage and the quintic hand
+};
+constexpr auto enumerators(ModelFidelity) {
+  return std::array{Enumerator{ModelFidelity::second_order, "second-order"},
+                    Enumerator{ModelFidelity::fourth_order, "fourth-order"},
+                    Enumerator{ModelFidelity::sixth_order_linear, "sixth-order-linear"},
+                    Enumerator{ModelFidelity::sixth_order, "sixth-order"}};
+}
+
 /// On which velocity the model's Coulomb friction acts.
 enum class ModelFriction {
   at_rest,         ///< on the induced velocity alone, as if the hand rested: paper A's superposition
@@ -37,6 +52,7 @@ struct MasterModel {
   mechanics::BoucWenSpring::Params linkage;
   mechanics::FreeMass handle{.mass_kg = 0.014};
   mechanics::QuinticSpring::Params hand;
+  double linear_hand_stiffening = 10.0;
   static constexpr auto fields() {
     return std::tuple{
         field("motor", &MasterModel::motor, "Motor rotor."),
@@ -44,7 +60,10 @@ struct MasterModel {
         field("drum", &MasterModel::drum, "Drum."),
         field("linkage", &MasterModel::linkage, "Linkage between drum and handle, with hysteresis."),
         field("handle", &MasterModel::handle, "Handle."),
-        field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections.")};
+        field("hand", &MasterModel::hand, "Hand and arm of the operator, stiff for large slow deflections."),
+        field("linear_hand_stiffening", &MasterModel::linear_hand_stiffening, units::none, between(1.0, 1000.0),
+              "Factor on the stiffness of the hand in the linear models, which have no quintic spring: by about so "
+              "much they underestimate slow deflection.")};
   }
 };
 
@@ -60,6 +79,12 @@ struct MasterModel {
 /// force, a tenth of the real one, because the person takes out slow deflections without help and an overestimate
 /// would be positive feedback (Sec. VI and VIII-A).
 ///
+/// The linear models leave out friction and quintic spring and have the linkage at its average stiffness. A linear hand
+/// of stiffness k_o would let the motor go all the way, so theirs is κ k_o, κ = `linear_hand_stiffening`. The hand's
+/// damper hides the stiffness above κ k_o / (2π b_o), 2.8 Hz by default, so the fast motion does not change. A rigid
+/// link makes one body of two: with x = T q, T of ones and zeros, TᵀM T, TᵀB T and TᵀK T take the place of M, B and K,
+/// and the states of the bodies in one are equal, bit for bit.
+///
 /// The linkage is hysteretic, as the paper's model was. Its law is Bouc and Wen's, not the elasto-slip law of the
 /// simulated devices, so that no model is checked against itself. A `hysteretic_fraction` of 0 makes it linear, and the
 /// tick cheaper.
@@ -71,22 +96,25 @@ struct MasterModel {
 ///
 /// The exact step: x⁺ = Φ x + Γ u with Φ = exp(A·dt), Γ its integral, and u the motor force, the frictions and the
 /// quintic force and what the linkage lacks to its initial stiffness, held over the tick. Frictions are found at the
-/// end velocity, for both rubbing masses at once and exactly (`friction_forces`); nothing iterates.
+/// end velocity, for both rubbing masses at once and exactly (`ground_forces`); nothing iterates.
 ///
 /// Forces and motion are positive toward the environment, so a displayed force F_f enters as −F_f.
 class InducedMotionModel {
  public:
   struct Params {
     MasterModel master;
+    ModelFidelity fidelity = ModelFidelity::sixth_order;
     CancellationStep step = CancellationStep::exact;
     ModelFriction friction = ModelFriction::total_velocity;
     double friction_band_m_per_s = 0.005;
     static constexpr auto fields() {
-      return std::tuple{field("master", &Params::master, "Master and hand."),
-                        field("step", &Params::step, "How the model is advanced."),
-                        field("friction", &Params::friction, "On which velocity Coulomb friction acts."),
-                        field("friction_band_m_per_s", &Params::friction_band_m_per_s, units::metre_per_second,
-                              positive, "Intended velocity above which friction counts as saturated by it.")};
+      return std::tuple{
+          field("master", &Params::master, "Master and hand."),
+          field("fidelity", &Params::fidelity, "How much of them the model tells apart."),
+          field("step", &Params::step, "How the model is advanced."),
+          field("friction", &Params::friction, "On which velocity Coulomb friction acts, in the model that has it."),
+          field("friction_band_m_per_s", &Params::friction_band_m_per_s, units::metre_per_second, positive,
+                "Intended velocity above which friction counts as saturated by it.")};
     }
   };
 
@@ -129,30 +157,34 @@ class InducedMotionModel {
     double least_share, most_share;
     double offset_m_per_s;
   };
-  struct FrictionForces {
+  /// What acts from outside and by friction on the two masses that rub.
+  struct GroundForces {
     double motor_N, drum_N;
   };
 
   InducedMotionModel(const Params& params, const mechanics::BoucWenSpring& linkage, Seconds dt);
+  template <int bodies>
   void precompute_exact_step();
+  void precompute_friction();
 
   [[nodiscard]] FrictionRange friction_range(double intended_velocity_m_per_s) const noexcept;
-  [[nodiscard]] FrictionForces friction_forces(double stops_motor_N, double stops_drum_N,
-                                               const FrictionRange& range) const noexcept;
+  [[nodiscard]] GroundForces ground_forces(double motor_force_N, double stops_motor_N, double stops_drum_N,
+                                           const FrictionRange& range) const noexcept;
   [[nodiscard]] double quintic_force_N(double handle_position_m) const noexcept;
   /// What the linkage pulls with beyond its initial stiffness, in N: nothing for a linear one, else of the other sign.
   double slipped_force_N(double linkage_deflection_m) noexcept;
   void step_euler(double motor_force_N, const FrictionRange& range) noexcept;
   void step_exact(double motor_force_N, const FrictionRange& range) noexcept;
 
-  Params params_;
+  Params params_;  ///< linear ones without what they lack
   mechanics::BoucWenSpring linkage_;
+  int bodies_;  ///< that move on their own
   bool hysteretic_;
   double linkage_stiffness_N_per_m_;  ///< initial
   double dt_s_;
   int euler_substeps_;
   double euler_substep_s_;
-  std::array<double, 3> euler_response_{};          ///< substep over mass of motor, drum, handle
+  std::array<double, 3> euler_response_{};          ///< substep over mass of what motor, drum, handle move with
   alignas(16) std::array<Column, 6> transition_{};  ///< columns of Φ
   std::array<Column, 3> response_{};  ///< columns of Γ: unit force on motor, drum, handle held over a tick
   Column offset_response_{};          ///< what a unit of the friction's velocity offset adds

@@ -10,6 +10,7 @@ Result<PositionForceMaster> PositionForceMaster::make(const Params& params, Seco
   if (auto error = signal::check(params, dt)) return *std::move(error);
   const auto cancellation =
       GripCancellation::make({.cancellation = {.model = {.master = params.model,
+                                                         .fidelity = params.cancellation_model,
                                                          .step = params.cancellation_step,
                                                          .friction = params.cancellation_friction}},
                               .estimate = params.operator_estimate},

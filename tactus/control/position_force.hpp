@@ -36,6 +36,7 @@ class PositionForceMaster {
     double force_gain = 1.0;
     double force_limit_N = 1.0;
     CancellationMode cancellation = CancellationMode::on;
+    ModelFidelity cancellation_model = ModelFidelity::sixth_order;
     CancellationStep cancellation_step = CancellationStep::exact;
     ModelFriction cancellation_friction = ModelFriction::total_velocity;
     OperatorEstimate operator_estimate = OperatorEstimate::off;
@@ -53,9 +54,11 @@ class PositionForceMaster {
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
                 "Where the displayed force saturates, that of the motor and that of the handle each."),
           field("cancellation", &Params::cancellation, "Cancellation of induced master motion."),
+          field("cancellation_model", &Params::cancellation_model,
+                "How much of master and hand the model of cancellation tells apart."),
           field("cancellation_step", &Params::cancellation_step, "How the model of cancellation is advanced."),
           field("cancellation_friction", &Params::cancellation_friction,
-                "On which velocity the model's Coulomb friction acts."),
+                "On which velocity the Coulomb friction of the sixth-order model acts."),
           field("operator_estimate", &Params::operator_estimate,
                 "Where cancellation learns how firmly the person holds."),
           field("model", &Params::model, "The controller's model of master and hand."),

@@ -31,6 +31,7 @@ Result<control::Cancellation> make_variant(const ForceDisplayParams& params, con
   const control::MasterModel& nominal = params.control.model;
   return control::Cancellation::make(
       {.model = {.master = variant.mismatched ? mismatched(nominal, params.task.mismatch) : nominal,
+                 .fidelity = params.control.cancellation_model,
                  .step = params.control.cancellation_step,
                  .friction = variant.friction}},
       Seconds{1.0 / params.servo.rate_Hz});

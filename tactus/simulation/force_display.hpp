@@ -82,10 +82,13 @@ struct ForceDisplayTask {
 
 /// What there is besides the displayed force and the hand: a master, and the controller's model of it.
 struct ForceDisplayControl {
+  control::ModelFidelity cancellation_model = control::ModelFidelity::sixth_order;
   control::CancellationStep cancellation_step = control::CancellationStep::exact;
   control::MasterModel model;
   static constexpr auto fields() {
-    return std::tuple{field("cancellation_step", &ForceDisplayControl::cancellation_step, "How the model is advanced."),
+    return std::tuple{field("cancellation_model", &ForceDisplayControl::cancellation_model,
+                            "How much of master and hand the model tells apart."),
+                      field("cancellation_step", &ForceDisplayControl::cancellation_step, "How the model is advanced."),
                       field("model", &ForceDisplayControl::model, "The controller's model of master and hand.")};
   }
 };

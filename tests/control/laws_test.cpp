@@ -24,6 +24,7 @@ namespace tactus::laws {
 
 using control::CancellationMode;
 using control::CancellationStep;
+using control::ModelFidelity;
 using control::ModelFriction;
 using control::Shaping;
 
@@ -38,7 +39,13 @@ template <>
 struct Subject<control::InducedMotionModel> {
   static constexpr double dt_s = 200e-6;
   static std::vector<control::InducedMotionModel::Params> parameters() {
-    return {model(CancellationStep::exact, ModelFriction::total_velocity),
+    auto second = model(CancellationStep::exact, ModelFriction::total_velocity);
+    second.fidelity = ModelFidelity::second_order;
+    auto fourth = model(CancellationStep::euler, ModelFriction::total_velocity);
+    fourth.fidelity = ModelFidelity::fourth_order;
+    return {second,
+            fourth,
+            model(CancellationStep::exact, ModelFriction::total_velocity),
             model(CancellationStep::exact, ModelFriction::at_rest),
             model(CancellationStep::euler, ModelFriction::total_velocity),
             model(CancellationStep::euler, ModelFriction::at_rest)};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "tests/oracle_table.hpp"
@@ -106,6 +107,26 @@ TEST(PositionForceMaster, TheModelIsDrivenByTheForceThatTheGateLetThrough) {
     ASSERT_LE(std::fabs(out.motor_force_N), 0.3);
     ASSERT_EQ(out.induced_position_m, reference.motor_position_m());
     reference.step({.motor_force_N = out.motor_force_N});
+  }
+}
+
+TEST(PositionForceMaster, CancelsWithTheModelThatTheKeyNames) {
+  for (const auto& [name, fidelity] :
+       {std::pair{"second-order", ModelFidelity::second_order}, std::pair{"fourth-order", ModelFidelity::fourth_order},
+        std::pair{"sixth-order-linear", ModelFidelity::sixth_order_linear},
+        std::pair{"sixth-order", ModelFidelity::sixth_order}}) {
+    EXPECT_STREQ(name_of(fidelity), name);
+    PositionForceMaster::Params params;
+    params.cancellation_model = fidelity;
+    PositionForceMaster site = master(params);
+    InducedMotionModel reference =
+        InducedMotionModel::make({.master = params.model, .fidelity = fidelity}, Seconds{tick_s}).value();
+    for (int tick = 0; tick < 500; ++tick) {
+      // With the command held where the model says, the intended position stays at zero and so does its velocity.
+      const auto out = site.step(input(reference.motor_position_m(), tick % 100 < 50 ? 0.9 : -0.4));
+      ASSERT_EQ(out.message.position_m, 0.0) << name << ", tick " << tick;
+      reference.step({.motor_force_N = out.motor_force_N});
+    }
   }
 }
 
