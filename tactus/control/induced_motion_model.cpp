@@ -260,7 +260,8 @@ InducedMotionModel::GroundForces InducedMotionModel::ground_forces(double motor_
                         const Bounds& other) {
     const double a = per_other * other.least_N, b = per_other * other.most_N;
     const double coupled = std::clamp(stops_both_N, stops_alone_N - std::max(a, b), stops_alone_N - std::min(a, b));
-    return std::clamp(coupled, own.least_N, own.most_N);
+    // In this order, unlike in std::clamp, a motor force that is no number comes out as it went in.
+    return std::min(std::max(own.least_N, coupled), own.most_N);
   };
   const Bounds motor = bounds(motor_force_N, params_.master.motor), drum = bounds(0.0, params_.master.drum);
   const double motor_of_both_N = both_stopped_ * stops_motor_N - (both_stopped_ * motor_per_drum_) * stops_drum_N;

@@ -202,6 +202,21 @@ TEST(InducedMotionModel, AForceBelowTheMotorsFrictionMovesNothing) {
   }
 }
 
+TEST(InducedMotionModel, AForceThatIsNoNumberIsNotTakenForFriction) {
+  for (const CancellationStep step : both_steps) {
+    for (const ModelFidelity fidelity : {ModelFidelity::fourth_order, ModelFidelity::sixth_order}) {
+      InducedMotionModel::Params lost = params(step);
+      lost.fidelity = fidelity;
+      InducedMotionModel model = make(lost);
+      model.step({.motor_force_N = std::numeric_limits<double>::quiet_NaN()});
+      for (int tick = 0; tick < 10; ++tick) model.step({.motor_force_N = 0.5});
+      EXPECT_TRUE(std::isnan(model.motor_position_m())) << name_of(step) << " " << name_of(fidelity);
+      model.reset();
+      EXPECT_TRUE(std::isfinite(model.step({.motor_force_N = 0.5}))) << name_of(step);
+    }
+  }
+}
+
 TEST(InducedMotionModel, AForceThatRisesToJustBelowBothFrictionsOnlyStretchesTheCableAndDoesNotCreep) {
   for (const CancellationStep step : both_steps) {
     InducedMotionModel model = make(params(step));
