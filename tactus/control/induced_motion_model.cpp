@@ -156,7 +156,7 @@ void InducedMotionModel::precompute_exact_step() {
     const Eigen::Index r = body_of(row % 3, bodies) + (row < 3 ? 0 : bodies);
     for (std::size_t mass = 0; mass < 3; ++mass) {
       const Eigen::Index body = body_of(mass, bodies);
-      response_[mass][row] = exponential(r, body + 2 * bodies);
+      response_[mass][row] = exponential(r, body + bodies + bodies);
       if (mass > 0 && body == body_of(mass - 1, bodies)) continue;
       transition_[mass][row] = exponential(r, body);
       transition_[mass + 3][row] = exponential(r, body + bodies);

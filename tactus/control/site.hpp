@@ -58,6 +58,19 @@ struct SlaveOutput {
   Message message;
 };
 
+/// Whether every number that a site reads is one. Real-time safe.
+inline bool is_finite(const Message& message) noexcept {
+  return std::isfinite(message.position_m) && std::isfinite(message.velocity_m_per_s) &&
+         std::isfinite(message.force_N) && std::isfinite(message.wave) && std::isfinite(message.energy_J);
+}
+inline bool is_finite(const MasterInput& input) noexcept {
+  return std::isfinite(input.motor_position_m) && std::isfinite(input.hand_force_N) && std::isfinite(input.grip) &&
+         is_finite(input.arrival.message);
+}
+inline bool is_finite(const SlaveInput& input) noexcept {
+  return std::isfinite(input.motor_position_m) && std::isfinite(input.tip_force_N) && is_finite(input.arrival.message);
+}
+
 /// A controller of one site: where a user plugs in. Once a tick `respond` and then `applied` are called; both must not
 /// allocate, lock or throw.
 template <class Input, class Output>
@@ -173,6 +186,9 @@ class Site {
   /// One tick; the forces in the output are what the gates let through. Real-time safe.
   Output step(const Input& input) noexcept {
     Output output = controller_->respond(input);
+    // What a sensor or the other site says may be nonsense without making the force so: a position enters only the
+    // command. A site that reads nonsense lets go all the same, until it is reset with its controller.
+    if (!is_finite(input)) output.motor_force_N = std::numeric_limits<double>::quiet_NaN();
     gates_.pass(output);
     controller_->applied(output.motor_force_N);
     return output;

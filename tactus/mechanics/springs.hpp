@@ -52,6 +52,13 @@ class LinearSpring {
   Params params_;
 };
 
+/// The same spring and damper, `factor` times as firm.
+constexpr LinearSpring::Params scaled(LinearSpring::Params params, double factor) noexcept {
+  params.stiffness_N_per_m *= factor;
+  params.damping_N_s_per_m *= factor;
+  return params;
+}
+
 /// Spring that stiffens with the fifth power: F = k δ + k₅ c⁵ + b δ̇, c = δ clamped to ±`guard_m`. No state.
 ///
 /// This is the operator in the controller's model (paper A, Table I): 3.125e13 N/m^5 · (2 mm)⁵ = 1 N holds the model's

@@ -78,22 +78,12 @@ struct ForceDisplay::Playing {
   std::array<std::vector<double>, variants.size()> estimate_m;
 };
 
-namespace {
-
-mechanics::LinearSpring::Params scaled(mechanics::LinearSpring::Params grip, double factor) {
-  grip.stiffness_N_per_m *= factor;
-  grip.damping_N_s_per_m *= factor;
-  return grip;
-}
-
-}  // namespace
-
 Result<ForceDisplay> ForceDisplay::make(const ForceDisplayParams& params) {
   if (auto error = validate(params)) return *std::move(error);
   const auto clock = Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
   for (const double factor : {1.0, params.person.grip_change.factor}) {
-    const auto master = mechanics::CableDrivenMaster::make(params.master, scaled(params.person.grip, factor),
+    const auto master = mechanics::CableDrivenMaster::make(params.master, mechanics::scaled(params.person.grip, factor),
                                                            Seconds{clock->substep_s});
     if (!master) {
       const Error& error = master.error();
@@ -138,7 +128,7 @@ ForceDisplay::Playing ForceDisplay::play(double scale, std::int64_t repeat) cons
     };
     const bool playing_now = tick >= approach_ticks && tick - approach_ticks < profile_N_.size();
     const double force_N = playing_now ? scale * profile_N_[tick - approach_ticks] : 0.0;
-    master.hold(scaled(hand.grip, hand.grip_change.at(static_cast<double>(tick) * clock_.tick_s)));
+    master.hold(mechanics::scaled(hand.grip, hand.grip_change.at(static_cast<double>(tick) * clock_.tick_s)));
     const double true_m = master.mechanism().motor_position_m();
     const double measured_m = master.measure().motor_position_m;
     for (std::size_t i = 0; i < variants.size(); ++i) {

@@ -4,16 +4,6 @@
 
 namespace tactus::simulation {
 
-namespace {
-
-mechanics::LinearSpring::Params scaled(mechanics::LinearSpring::Params grip, double factor) {
-  grip.stiffness_N_per_m *= factor;
-  grip.damping_N_s_per_m *= factor;
-  return grip;
-}
-
-}  // namespace
-
 Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   if (auto error = validate(params)) return *std::move(error);
   const auto clock = Clock::make(params.servo, params.plant);
@@ -28,7 +18,7 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   }
   const double factor = params.person.grip_change.factor;
   if (const auto changed =
-          mechanics::CableDrivenMaster::make(params.master, scaled(params.person.grip, factor), substep);
+          mechanics::CableDrivenMaster::make(params.master, mechanics::scaled(params.person.grip, factor), substep);
       !changed) {
     return under("operator", changed.error());
   }
@@ -57,7 +47,7 @@ void Teleoperator::change_grip(double time_s) noexcept {
   const double factor = grip_change_.at(time_s);
   if (factor == grip_factor_) return;
   grip_factor_ = factor;
-  parts_.master.hold(scaled(grip_, factor));
+  parts_.master.hold(mechanics::scaled(grip_, factor));
 }
 
 Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {

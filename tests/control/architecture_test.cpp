@@ -85,6 +85,30 @@ TEST(Architecture, TheCouplingsNameTheKeyOfTheFileThatCannotBe) {
   EXPECT_EQ(refused_key("shared-compliant", [](auto& p) { p.compliance.cutoff_Hz = 2600.0; }), "compliance.cutoff_Hz");
 }
 
+TEST(Site, AMeasurementOrMessageThatIsNoNumberLetsGoAndStaysSoUntilReset) {
+  const auto gate = SafetyGate::make({.force_limit_N = 0.5}, tick);
+  ASSERT_TRUE(gate.ok());
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto with = [](auto&& spoil) {
+    MasterInput input;
+    spoil(input);
+    return input;
+  };
+  for (const MasterInput& spoilt :
+       {with([](auto& input) { input.motor_position_m = nan; }), with([](auto& input) { input.hand_force_N = nan; }),
+        with([](auto& input) { input.grip = nan; }), with([](auto& input) { input.arrival.message.position_m = nan; }),
+        with([](auto& input) { input.arrival.message.wave = nan; }),
+        with([](auto& input) { input.arrival.message.energy_J = nan; })}) {
+    MasterSite site(master_controller(Scripted{.force_N = 0.01}), *gate);
+    EXPECT_DOUBLE_EQ(site.step({}).motor_force_N, 0.01);
+    EXPECT_EQ(site.step(spoilt).motor_force_N, 0.0);
+    EXPECT_EQ(site.step({}).motor_force_N, 0.0);
+    EXPECT_EQ(site.fault(), GateFault::not_finite);
+    site.reset();
+    EXPECT_DOUBLE_EQ(site.step({}).motor_force_N, 0.01);
+  }
+}
+
 TEST(Site, ACopyIsAForkWithAControllerOfItsOwn) {
   ControlParams params;
   params.force_gain = 5.0;
