@@ -31,19 +31,30 @@ Result<PositionForceMaster> PositionForceMaster::make(const Params& params, Seco
   if (!force_filter) return under("force_filter", force_filter.error());
   const auto crossover = Crossover::make(params.crossover, dt);
   if (!crossover) return under("crossover", crossover.error());
+  const auto hand_compensation =
+      HandForceCompensation::make({.master = params.model, .band_Hz = params.hand_compensation_Hz}, dt);
+  if (!hand_compensation) {
+    Error error = hand_compensation.error();
+    if (error.parameter == "band_Hz") error.parameter = "hand_compensation_Hz";
+    return error;
+  }
   return PositionForceMaster(params, {.cancellation = *cancellation,
                                       .damping = *damping,
                                       .command_filter = *command_filter,
                                       .force_filter = *force_filter,
-                                      .crossover = *crossover});
+                                      .crossover = *crossover,
+                                      .hand_compensation = *hand_compensation});
 }
 
 PositionForceMaster::Output PositionForceMaster::respond(const Input& input) noexcept {
   const auto [below_N, above_N] =
       stages_.crossover.step(stages_.force_filter.step(force_gain_ * input.arrival.message.force_N));
+  const double wanted_N = stages_.hand_compensation.on()
+                              ? stages_.hand_compensation.step(std::clamp(below_N, -force_limit_N_, force_limit_N_))
+                              : below_N;
   const double damping_N = stages_.damping.step(input.motor_position_m);
   // A NaN passes through clamp, so it reaches the gate, which catches and latches it.
-  const double displayed_N = std::clamp(below_N - damping_N, -force_limit_N_, force_limit_N_);
+  const double displayed_N = std::clamp(wanted_N - damping_N, -force_limit_N_, force_limit_N_);
   const double handle_N = std::clamp(above_N, -force_limit_N_, force_limit_N_);
   const double intended_m = stages_.cancellation.intended(input.motor_position_m, input.grip);
   const double command_m =

@@ -2,6 +2,7 @@
 
 #include <tactus/control/crossover.hpp>
 #include <tactus/control/grip_cancellation.hpp>
+#include <tactus/control/hand_force_compensation.hpp>
 #include <tactus/control/local_damping.hpp>
 #include <tactus/control/servo_pd.hpp>
 #include <tactus/control/shaping_filter.hpp>
@@ -22,19 +23,22 @@ constexpr auto enumerators(CancellationMode) {
 /// The master site.
 ///
 ///     measured position → cancellation → command filter → λ → to slave
-///     force from slave → μ → force filter → crossover → + local damping → saturation → safety gate → motor
+///     force from slave → μ → force filter → crossover → compensation → + local damping → saturation → gate → motor
 ///                                               └→ saturation → safety gate → actuator on the handle
 ///
 /// Filters, crossover and damping are the paper's rivals of cancellation (Sec. IV, eq. 4 to 6). Each is off unless
 /// asked for, and what is off changes no bit. Damping acts on the measured position and counts as displayed force, so
-/// it drives the model of cancellation too. What the actuator on the handle does is no part of the model. With
-/// cancellation off the model still runs beside the loop, so that its estimate can be looked at.
+/// it drives the model of cancellation too; so does what compensation of the way from motor to hand makes of the force.
+/// That takes the force saturated, for the hand should get no more than the limit. What the actuator on the handle does
+/// is no part of the model. With cancellation off the model still runs beside the loop, so that its estimate can be
+/// looked at.
 class PositionForceMaster {
  public:
   struct Params {
     double position_scale = 1.0;
     double force_gain = 1.0;
     double force_limit_N = 1.0;
+    double hand_compensation_Hz = 0.0;
     CancellationMode cancellation = CancellationMode::on;
     ModelFidelity cancellation_model = ModelFidelity::sixth_order;
     CancellationStep cancellation_step = CancellationStep::exact;
@@ -53,6 +57,9 @@ class PositionForceMaster {
                 "Displayed force over tip force, mu."),
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
                 "Where the displayed force saturates, that of the motor and that of the handle each."),
+          field("hand_compensation_Hz", &Params::hand_compensation_Hz, units::hertz, non_negative,
+                "Up to where the master's dynamics between motor and hand are undone, so that the hand gets the force "
+                "that the slave felt; below half the servo rate; 0 is off."),
           field("cancellation", &Params::cancellation, "Cancellation of induced master motion."),
           field("cancellation_model", &Params::cancellation_model,
                 "How much of master and hand the model of cancellation tells apart."),
@@ -89,6 +96,7 @@ class PositionForceMaster {
     stages_.command_filter.reset();
     stages_.force_filter.reset();
     stages_.crossover.reset();
+    stages_.hand_compensation.reset();
   }
 
  private:
@@ -98,6 +106,7 @@ class PositionForceMaster {
     ShapingFilter command_filter;
     ShapingFilter force_filter;
     Crossover crossover;
+    HandForceCompensation hand_compensation;
   };
 
   PositionForceMaster(const Params& params, const Stages& stages)

@@ -18,11 +18,11 @@ using namespace measure;
 constexpr int slots = static_cast<int>(light_palette.series.size());
 constexpr int rule_dashes = 4;
 
-int slot_of(const Line& line) { return (line.colour % slots + slots) % slots; }
+int slot_of(int colour) { return (colour % slots + slots) % slots; }
 
 std::string line_attributes(const Line& line) {
   constexpr std::array<const char*, 4> dashes{"", " dashed", " dotted", " dash-dotted"};
-  return "class=\"line colour-" + std::to_string(slot_of(line)) + dashes[static_cast<std::size_t>(line.dash)] +
+  return "class=\"line colour-" + std::to_string(slot_of(line.colour)) + dashes[static_cast<std::size_t>(line.dash)] +
          "\" stroke-width=\"" + pixels(line.width_px) + "\"";
 }
 
@@ -125,8 +125,31 @@ std::string rule_path(const PlacedPanel& panel, const Rule& rule, int style) {
                                                  : segment({at, frame.top}, {at, frame.bottom()}));
 }
 
+std::string bars_of(const PlacedPanel& panel) {
+  constexpr double used_share = 0.8;  // of the height of a category
+  const std::vector<Bars>& series = panel.panel->bars;
+  const Rectangle& frame = panel.frame;
+  const double lane = used_share / static_cast<double>(series.size());
+  std::string svg;
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    const std::string style = "fill-" + std::to_string(slot_of(series[s].colour));
+    for (std::size_t i = 0; i < std::min(series[s].lengths.size(), panel.panel->y.categories.size()); ++i) {
+      const double top = panel.y(static_cast<double>(i) - 0.5 * used_share + lane * static_cast<double>(s));
+      const double bottom = panel.y(static_cast<double>(i) - 0.5 * used_share + lane * static_cast<double>(s + 1));
+      const double end = std::clamp(panel.x(series[s].lengths[i]), frame.left, frame.right());
+      if (end > frame.left) svg += rectangle(style.c_str(), {frame.left, top, end - frame.left, bottom - top});
+      if (i < series[s].labels.size()) {
+        const double start = std::isfinite(end) ? end : frame.left;
+        svg += text({series[s].labels[i], {start + 4.0, 0.5 * (top + bottom) + 0.36 * tick_font}, "start", "tick"});
+      }
+    }
+  }
+  return svg;
+}
+
 std::string draw_panel(const PlacedPanel& panel, const std::vector<LegendEntry>& legend) {
   std::string content;
+  content += bars_of(panel);
   for (const Rule& rule : panel.panel->rules) content += rule_path(panel, rule, rule_style(legend, rule));
   for (const Line& line : panel.panel->lines) content += line_path(panel, line);
   if (content.empty()) {
@@ -144,26 +167,30 @@ std::string draw_entry(const LegendEntry& entry) {
   std::string svg;
   if (entry.line != nullptr) {
     svg = path(line_attributes(*entry.line), segment(at, end));
+  } else if (entry.bars != nullptr) {
+    const std::string style = "fill-" + std::to_string(slot_of(entry.bars->colour));
+    svg = rectangle(style.c_str(), {at.x, at.y - 4.0, swatch, 8.0});
   } else if (entry.rule->direction == Rule::Direction::horizontal) {
     svg = path(rule_attributes(entry.rule_style), segment(at, end));
   } else {
     const double middle = at.x + 0.5 * swatch;
     svg = path(rule_attributes(entry.rule_style), segment({middle, at.y - 7.0}, {middle, at.y + 7.0}));
   }
-  const std::string& name = entry.line != nullptr ? entry.line->name : entry.rule->label;
-  return svg + text({name, {end.x + 5.0, at.y + 0.36 * font}, "start", "name"});
+  return svg + text({text_of(entry), {end.x + 5.0, at.y + 0.36 * font}, "start", "name"});
 }
 
 std::string description(const Figure& figure) {
   std::string names;
   std::set<std::string> seen;
   for (const Panel& panel : figure.panels) {
-    for (const Line& line : panel.lines) {
-      if (!line.name.empty() && seen.insert(line.name).second) names += (names.empty() ? "" : ", ") + line.name;
-    }
+    const auto add = [&](const std::string& name) {
+      if (!name.empty() && seen.insert(name).second) names += (names.empty() ? "" : ", ") + name;
+    };
+    for (const Line& line : panel.lines) add(line.name);
+    for (const Bars& bars : panel.bars) add(bars.name);
   }
   return figure.caption + (figure.caption.empty() ? "" : " ") + "Panels: " + std::to_string(figure.panels.size()) +
-         (names.empty() ? "." : ". Lines: " + names + ".");
+         (names.empty() ? "." : ". Shown: " + names + ".");
 }
 
 std::string opening(const std::string& attributes, const Layout& layout) {
@@ -225,6 +252,7 @@ std::string figure_style() {
   for (std::size_t i = 0; i < light.series.size(); ++i) {
     const std::string slot = std::to_string(i);
     css += ".tactus-figure .colour-" + slot + "{" + coloured("stroke", light.series[i], slot) + "}\n";
+    css += ".tactus-figure .fill-" + slot + "{" + coloured("fill", light.series[i], slot) + "}\n";
   }
   css +=
       ".tactus-figure .dashed{stroke-dasharray:5 3}\n.tactus-figure .dotted{stroke-dasharray:.1 2.6}\n"

@@ -14,6 +14,9 @@ struct Axis {
   std::optional<double> lower = {};  ///< in `unit`
   std::optional<double> upper = {};  ///< in `unit`
   Scale scale = Scale::linear;
+  /// Only for y: names instead of numbers, from the top. Category i stands at the value i, and the limits, set or from
+  /// data, do not count.
+  std::vector<std::string> categories = {};
 };
 
 enum class Dash { solid, dashed, dotted, dash_dotted };
@@ -26,6 +29,15 @@ struct Line {
   int colour = 0;         ///< slot 0 to 7 of the palette, taken modulo 8
   Dash dash = Dash::solid;
   double width_px = 1.2;
+};
+
+/// Horizontal bars over the categories of the y axis, from the panel's left edge; several series share the height of a
+/// category, the first on top.
+struct Bars {
+  std::string name;                      ///< entry of the legend; bars without a name have none
+  std::vector<double> lengths;           ///< one for each category, in the unit of the x axis; not finite: no bar
+  std::vector<std::string> labels = {};  ///< written behind the bar of the same index
+  int colour = 0;                        ///< slot 0 to 7 of the palette, taken modulo 8
 };
 
 /// A straight reference across a panel: a limit, an event.
@@ -43,6 +55,7 @@ struct Panel {
   Axis y;
   std::vector<Line> lines;
   std::vector<Rule> rules;
+  std::vector<Bars> bars = {};
 };
 
 /// Which panels have equal limits. Neighbours with equal limits are labelled only at the outer edge.

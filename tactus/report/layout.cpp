@@ -27,8 +27,12 @@ constexpr double legend_gap = 18.0;
 struct PanelSize {
   double width, height;
 };
-PanelSize panel_size(int columns, int rows) {
+PanelSize panel_size(const Figure& figure, int columns, int rows) {
+  constexpr double category_height = 20.0;
+  std::size_t categories = 0;
+  for (const Panel& panel : figure.panels) categories = std::max(categories, panel.y.categories.size());
   const double width = columns == 1 ? 620.0 : std::max(110.0, std::floor(920.0 / columns));
+  if (categories > 0) return {width, category_height * static_cast<double>(categories)};
   return {width, std::clamp(std::floor(0.62 * width), 90.0, rows > 1 ? 220.0 : 300.0)};
 }
 
@@ -45,6 +49,14 @@ void choose_ticks(PlacedAxis& axis, int most, Room&& room) {
     }
     if (fits) return;
   }
+}
+
+/// Category i at the value i, the first on top.
+void place_categories(PlacedAxis& axis, const std::vector<std::string>& categories) {
+  axis.logarithmic = false;
+  axis.limits = {static_cast<double>(categories.size()) - 0.5, -0.5};
+  axis.ticks.labels = categories;
+  for (std::size_t i = 0; i < categories.size(); ++i) axis.ticks.major.push_back(static_cast<double>(i));
 }
 
 std::string name_of(const Axis& axis, int exponent) {
@@ -66,7 +78,7 @@ class Builder {
       : figure_(figure),
         columns_(std::max(1, figure.columns)),
         rows_((static_cast<int>(figure.panels.size()) + columns_ - 1) / columns_),
-        size_(panel_size(columns_, rows_)) {}
+        size_(panel_size(figure, columns_, rows_)) {}
 
   Layout build() {
     place_axes();
@@ -95,8 +107,12 @@ class Builder {
       choose_ticks(across, static_cast<int>(size_.width / 25.0), [](const std::string& a, const std::string& b) {
         return 0.5 * (text_width(a, tick_font) + text_width(b, tick_font)) + 8.0;
       });
-      choose_ticks(up, static_cast<int>(size_.height / 22.0),
-                   [](const std::string&, const std::string&) { return tick_font + 2.0; });
+      if (panel.y.categories.empty()) {
+        choose_ticks(up, static_cast<int>(size_.height / 22.0),
+                     [](const std::string&, const std::string&) { return tick_font + 2.0; });
+      } else {
+        place_categories(up, panel.y.categories);
+      }
       across.labelled = i + columns >= count || x_group[i + columns] != x_group[i];
       up.labelled = i % columns == 0 || y_group[i - 1] != y_group[i];
       across.name = name_of(panel.x, across.ticks.exponent);
@@ -183,20 +199,26 @@ class Builder {
           return entry.line != nullptr && entry.line->name == line.name && entry.line->colour == line.colour &&
                  entry.line->dash == line.dash && entry.line->width_px == line.width_px;
         });
-        if (!known && !line.name.empty()) entries.push_back({&line, nullptr, -1, {}});
+        if (!known && !line.name.empty()) entries.push_back({&line, nullptr, nullptr, -1, {}});
+      }
+      for (const Bars& bars : panel.bars) {
+        const bool known = std::any_of(entries.begin(), entries.end(), [&](const LegendEntry& entry) {
+          return entry.bars != nullptr && entry.bars->name == bars.name && entry.bars->colour == bars.colour;
+        });
+        if (!known && !bars.name.empty()) entries.push_back({nullptr, &bars, nullptr, -1, {}});
       }
     }
     for (const Panel& panel : figure_.panels) {
       for (const Rule& rule : panel.rules) {
-        if (!rule.label.empty() && rule_style(entries, rule) < 0) entries.push_back({nullptr, &rule, rule_count++, {}});
+        if (!rule.label.empty() && rule_style(entries, rule) < 0)
+          entries.push_back({nullptr, nullptr, &rule, rule_count++, {}});
       }
     }
     const double left = at(lefts_, 0);
     double x = left;
     double y = 0.5 * legend_line;
     for (LegendEntry& entry : entries) {
-      const std::string& text = entry.line != nullptr ? entry.line->name : entry.rule->label;
-      const double width = swatch + label_gap + text_width(text, font);
+      const double width = swatch + label_gap + text_width(text_of(entry), font);
       if (x > left && x + width > layout_.width - margin) {
         x = left;
         y += legend_line;
@@ -348,6 +370,11 @@ int rule_style(const std::vector<LegendEntry>& legend, const Rule& rule) {
     return entry.rule != nullptr && entry.rule->label == rule.label && entry.rule->direction == rule.direction;
   });
   return found == legend.end() ? -1 : found->rule_style;
+}
+
+const std::string& text_of(const LegendEntry& entry) {
+  if (entry.line != nullptr) return entry.line->name;
+  return entry.bars != nullptr ? entry.bars->name : entry.rule->label;
 }
 
 Layout lay_out(const Figure& figure) { return Builder(figure).build(); }

@@ -55,9 +55,11 @@ struct PlacedText {
   bool rotated = false;  ///< reads upward
 };
 
-/// An entry of the legend: a line or a rule that stands for all of its name and look.
+/// An entry of the legend: a line, a series of bars or a rule that stands for all of its name and look. The others are
+/// null.
 struct LegendEntry {
   const Line* line;
+  const Bars* bars;
   const Rule* rule;
   int rule_style;  ///< counts the labels of rules
   Point at;        ///< left end of the swatch, middle of the line of text
@@ -70,6 +72,9 @@ struct Layout {
   std::vector<Rectangle> group_bars;
   std::vector<LegendEntry> legend;
 };
+
+/// The name that the entry shows.
+const std::string& text_of(const LegendEntry& entry);
 
 Layout lay_out(const Figure& figure);
 

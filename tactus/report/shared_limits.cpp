@@ -85,6 +85,10 @@ std::vector<Limits> x_limits(const Figure& figure, const std::vector<std::size_t
         if (other.shows(line.y[k])) extent.add(line.x[k]);
       }
     }
+    for (const Bars& bars : panel.bars) {
+      extent.add(0.0);
+      for (const double length : bars.lengths) extent.add(length);
+    }
     add_rules(extent, panel, Rule::Direction::vertical);
   });
 }

@@ -1,3 +1,4 @@
+#include <tactus/simulation/contest_experiment.hpp>
 #include <tactus/simulation/experiment.hpp>
 #include <tactus/simulation/force_display_experiment.hpp>
 #include <tactus/simulation/tapping_experiment.hpp>
@@ -79,7 +80,8 @@ Error blame_variation(Error error, const Settings& settings) {
 std::span<const Experiment* const> experiments() {
   static const TappingExperiment tapping;
   static const ForceDisplayExperiment force_display;
-  static constexpr std::array<const Experiment*, 2> all{&tapping, &force_display};
+  static const ContestExperiment contest;
+  static constexpr std::array<const Experiment*, 3> all{&tapping, &force_display, &contest};
   return all;
 }
 

@@ -145,7 +145,7 @@ TappingMetrics summarise(const std::vector<TapResult>& taps) {
     metrics.verdict = Verdict::diverged;
   } else if (metrics.settled_fraction < 0.5) {
     metrics.verdict = Verdict::limit_cycle;
-  } else if (metrics.settled_fraction >= 0.95 && metrics.settling_time_median_s <= 0.1) {
+  } else if (metrics.settled_fraction >= 0.95 && metrics.settling_time_median_s <= settled_within_s) {
     metrics.verdict = Verdict::settled;
   } else {
     metrics.verdict = Verdict::ringing;

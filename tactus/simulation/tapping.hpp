@@ -13,14 +13,9 @@
 /// The main experiment: a person taps a stiff wall through the teleoperator (paper A, Fig. 13).
 namespace tactus::simulation {
 
-/// The word that selects an experiment in a file.
-enum class TappingKind { tapping };
-constexpr auto enumerators(TappingKind) { return std::array{Enumerator{TappingKind::tapping, "tapping"}}; }
-
-/// An ensemble of taps. A single tap near the boundary of stability is decided by accident, so each tap draws its
-/// approach speed, its depth and its tremor, and its own error of the controller's model.
-struct TappingTask {
-  TappingKind kind = TappingKind::tapping;
+/// Taps that differ. A single tap near the boundary of stability is decided by accident, so each tap draws its approach
+/// speed, its depth and its tremor, and its own error of the controller's model.
+struct TapSeries {
   std::int64_t taps = 32;
   std::int64_t seed = 1;
   double slowest_m_per_s = 0.04;
@@ -32,22 +27,33 @@ struct TappingTask {
   ModelMismatch mismatch;
   static constexpr auto fields() {
     return std::tuple{
-        field("kind", &TappingTask::kind, "Which experiment this is."),
-        field("taps", &TappingTask::taps, between(1, 100000), "Number of taps in the ensemble."),
-        field("seed", &TappingTask::seed, non_negative, "Seed that draws the ensemble and the noise."),
-        field("slowest_m_per_s", &TappingTask::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+        field("taps", &TapSeries::taps, between(1, 100000), "Number of taps in the ensemble."),
+        field("seed", &TapSeries::seed, non_negative, "Seed that draws the ensemble and the noise."),
+        field("slowest_m_per_s", &TapSeries::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
               "Slowest approach: intended speed at the wall."),
-        field("fastest_m_per_s", &TappingTask::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+        field("fastest_m_per_s", &TapSeries::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
               "Fastest approach."),
-        field("shallowest_m", &TappingTask::shallowest_m, units::metre, between(1e-4, 0.1),
+        field("shallowest_m", &TapSeries::shallowest_m, units::metre, between(1e-4, 0.1),
               "Smallest depth: how far beyond the wall the person means to go."),
-        field("deepest_m", &TappingTask::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
-        field("observation_s", &TappingTask::observation_s, units::second, between(0.15, 10.0),
+        field("deepest_m", &TapSeries::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
+        field("observation_s", &TapSeries::observation_s, units::second, between(0.15, 10.0),
               "How long a tap is observed from first touch, while the person keeps pressing."),
-        field("model_error", &TappingTask::model_error, units::none, between(0.0, 0.5),
+        field("model_error", &TapSeries::model_error, units::none, between(0.0, 0.5),
               "Every tap draws the errors of the model's masses, linkage stiffness and operator damping evenly from "
               "minus to plus this share."),
-        field("mismatch", &TappingTask::mismatch, "Fixed errors of the model, on top of what is drawn.")};
+        field("mismatch", &TapSeries::mismatch, "Fixed errors of the model, on top of what is drawn.")};
+  }
+};
+
+/// The word that selects an experiment in a file.
+enum class TappingKind { tapping };
+constexpr auto enumerators(TappingKind) { return std::array{Enumerator{TappingKind::tapping, "tapping"}}; }
+
+struct TappingTask : TapSeries {
+  TappingKind kind = TappingKind::tapping;
+  static constexpr auto fields() {
+    return std::tuple_cat(std::tuple{field("kind", &TappingTask::kind, "Which experiment this is.")},
+                          TapSeries::fields());
   }
 };
 
@@ -71,6 +77,9 @@ constexpr auto enumerators(Verdict) {
   return std::array{Enumerator{Verdict::settled, "settled"}, Enumerator{Verdict::ringing, "ringing"},
                     Enumerator{Verdict::limit_cycle, "limit-cycle"}, Enumerator{Verdict::diverged, "diverged"}};
 }
+
+/// The longest median settling time of an ensemble that counts as settled.
+inline constexpr double settled_within_s = 0.1;
 
 /// An ensemble in a few numbers. A tap that did not settle enters the quantiles of the settling time with its whole
 /// observation window, a lower bound.

@@ -110,6 +110,7 @@ struct Subject<control::PositionForceMaster> {
     rivals.command_filter.kind = Shaping::low_pass;
     rivals.force_filter.kind = Shaping::notch;
     rivals.crossover.frequency_Hz = 40.0;
+    rivals.hand_compensation_Hz = 200.0;
     return {{}, strong, plain, rivals};
   }
   static void admit(control::PositionForceMaster::Input&) {}
@@ -128,6 +129,15 @@ template <>
 struct Subject<control::LocalDamping> {
   static constexpr double dt_s = 200e-6;
   static std::vector<control::LocalDamping::Params> parameters() { return {{}, {.damping_N_s_per_m = 10.0}}; }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<control::HandForceCompensation> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::HandForceCompensation::Params> parameters() {
+    return {{}, {.master = {}, .band_Hz = 200.0}};
+  }
   static void admit(double&) {}
 };
 
@@ -191,11 +201,12 @@ struct Subject<control::PassivitySlave> {
 using ControlElements =
     ::testing::Types<control::InducedMotionModel, control::Cancellation, control::GripCancellation,
                      control::PositionForceMaster, control::PositionForceSlave, control::SafetyGate, control::ServoPd,
-                     control::LocalDamping, control::ShapingFilter, control::Crossover, control::HandForceObserver,
-                     control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
-                     control::SharedCompliantSlave, control::FourChannelMaster, control::FourChannelSlave,
-                     control::CancellingSlave, control::WaveMaster, control::WaveSlave, control::PassivityMaster,
-                     control::PassivitySlave, control::TankMaster, control::TankSlave, SoftLimitMaster>;
+                     control::LocalDamping, control::ShapingFilter, control::Crossover, control::HandForceCompensation,
+                     control::HandForceObserver, control::PositionPositionMaster, control::PositionPositionSlave,
+                     control::ProjectionMaster, control::SharedCompliantSlave, control::FourChannelMaster,
+                     control::FourChannelSlave, control::CancellingSlave, control::WaveMaster, control::WaveSlave,
+                     control::PassivityMaster, control::PassivitySlave, control::TankMaster, control::TankSlave,
+                     SoftLimitMaster>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws

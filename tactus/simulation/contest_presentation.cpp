@@ -1,0 +1,156 @@
+#include <tactus/report/text.hpp>
+#include <tactus/simulation/contest_presentation.hpp>
+
+#include <limits>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus::simulation {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t shown_gain = 1;  // of `contest_gains`: where plain position-force has failed and others have not
+
+std::string text_of(const GainLimit& limit, const ContestParams& params) {
+  if (limit.gain == 0.0) return "< " + report::number(params.task.lowest_gain, 3);
+  return (limit.beyond_search ? "≥ " : "") + report::number(limit.gain, 3);
+}
+
+bool settles(const GainScore& score) { return score.metrics.verdict == Verdict::settled; }
+
+std::string percent(const std::optional<double>& share) {
+  return share ? report::number(100.0 * *share, 2) : std::string("–");
+}
+
+std::string in_newton(double force_N) { return format_number(force_N) + " N"; }
+
+Json json_of(const GainLimit& limit) { return {{"gain_limit", limit.gain}, {"beyond_search", limit.beyond_search}}; }
+
+Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+Json json_of(const GainScore& score) {
+  return {{"force_gain", score.force_gain},
+          {"force_limit_N", score.force_limit_N},
+          {"settled_fraction", score.metrics.settled_fraction},
+          {"settling_time_median_s", score.metrics.settling_time_median_s},
+          {"settling_time_p90_s", score.metrics.settling_time_p90_s},
+          {"verdict", name_of(score.metrics.verdict)},
+          {"spectral_error", json_of(score.spectral_error)}};
+}
+
+template <std::size_t n>
+Json json_of(const char* condition, const std::array<double, n>& values, const std::array<GainLimit, n>& limits) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < n; ++i) {
+    Json entry{{condition, values[i]}};
+    entry.update(json_of(limits[i]));
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+}  // namespace
+
+report::Table contest_table(const std::vector<MethodScore>& scores, const ContestParams& params) {
+  using Align = report::Column::Align;
+  std::vector<report::Column> columns{
+      {"method", "", Align::left}, {"gain limit"}, {"at " + in_newton(params.task.strong_display_N)}};
+  for (const double delay_s : contest_delays_s) columns.push_back({"at " + report::number(1e3 * delay_s, 3) + " ms"});
+  for (const double grip : contest_grips) columns.push_back({"grip × " + format_number(grip)});
+  const std::string at_gain = "at " + format_number(contest_gains[shown_gain]);
+  columns.insert(columns.end(),
+                 {{"settling " + at_gain, "ms"}, {"hand error " + at_gain, "%"}, {"effort", "mN RMS"}, {"lag", "ms"}});
+  report::Table table(columns, "The largest force gain that settles, and what the method costs");
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const MethodScore& score = scores[i];
+    std::vector<std::string> cells{std::string(contest_methods()[i].name), text_of(score.limit, params),
+                                   text_of(score.strong_display, params)};
+    for (const GainLimit& limit : score.delayed) cells.push_back(text_of(limit, params));
+    for (const GainLimit& limit : score.gripped) cells.push_back(text_of(limit, params));
+    const GainScore& shown = score.at_gain[shown_gain];
+    cells.push_back(settles(shown) ? report::number(1e3 * shown.metrics.settling_time_median_s, 3) : "–");
+    cells.push_back(settles(shown) ? percent(shown.spectral_error) : "–");
+    cells.push_back(report::number(1e3 * score.free_space.hand_force_rms_N, 3));
+    cells.push_back(score.free_space.lag_s ? report::number(1e3 * *score.free_space.lag_s, 3) : "–");
+    table.add_row(cells);
+  }
+  return table;
+}
+
+report::Figure contest_figure(const std::vector<MethodScore>& scores, const ContestParams& params) {
+  std::vector<std::string> names;
+  report::Bars limit{.name = "display up to " + in_newton(params.control.force_limit_N), .lengths = {}, .colour = 0};
+  report::Bars strong{.name = "display up to " + in_newton(params.task.strong_display_N), .lengths = {}, .colour = 1};
+  report::Bars error{.name = "", .lengths = {}, .colour = 0};
+  report::Bars lag{.name = "", .lengths = {}, .colour = 0};
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const MethodScore& score = scores[i];
+    names.emplace_back(contest_methods()[i].name);
+    limit.lengths.push_back(score.limit.gain);
+    limit.labels.push_back(text_of(score.limit, params));
+    strong.lengths.push_back(score.strong_display.gain);
+    strong.labels.push_back(text_of(score.strong_display, params));
+    const GainScore& shown = score.at_gain[shown_gain];
+    const bool heard = settles(shown) && shown.spectral_error;
+    error.lengths.push_back(heard ? 100.0 * *shown.spectral_error : none);
+    error.labels.push_back(heard ? percent(shown.spectral_error) : "does not settle");
+    lag.lengths.push_back(score.free_space.lag_s ? 1e3 * *score.free_space.lag_s : none);
+    lag.labels.push_back(score.free_space.lag_s ? report::number(1e3 * *score.free_space.lag_s, 2) : "never there");
+  }
+  const report::Axis methods{.label = "", .categories = names};
+  const auto panel = [&methods](std::string title, report::Axis x, std::vector<report::Bars> bars) {
+    return report::Panel{
+        .title = std::move(title), .x = std::move(x), .y = methods, .lines = {}, .rules = {}, .bars = std::move(bars)};
+  };
+  report::Figure figure{.title = "How much force gain each method allows, and what it costs",
+                        .caption = "A good method has a long bar on the left and short ones beside it.",
+                        .columns = 3,
+                        .panels = {},
+                        .share_y = report::Sharing::in_line};
+  figure.panels.push_back(panel("largest gain that settles",
+                                {.label = "force gain",
+                                 .lower = params.task.lowest_gain,
+                                 .upper = 2.0 * params.task.highest_gain,
+                                 .scale = report::Axis::Scale::logarithmic},
+                                {limit, strong}));
+  const std::string gain = format_number(contest_gains[shown_gain]);
+  figure.panels.push_back(
+      panel("error of the force at the hand, gain " + gain, {.label = "spectral error", .unit = "%"}, {error}));
+  figure.panels.push_back(panel("lag of the slave in free space", {.label = "lag", .unit = "ms"}, {lag}));
+  return figure;
+}
+
+std::string contest_json(const std::string& experiment, const std::vector<MethodScore>& scores,
+                         const ContestParams& params) {
+  Json document{{"experiment", experiment},
+                {"lowest_gain", params.task.lowest_gain},
+                {"highest_gain", params.task.highest_gain},
+                {"methods", Json::array()}};
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const MethodScore& score = scores[i];
+    const ContestMethod& method = contest_methods()[i];
+    Json at_gain = Json::array();
+    for (const GainScore& one : score.at_gain) at_gain.push_back(json_of(one));
+    for (const GainScore& one : score.strong_at_gain) at_gain.push_back(json_of(one));
+    Json strong{{"force_limit_N", params.task.strong_display_N}};
+    strong.update(json_of(score.strong_display));
+    document["methods"].push_back({{"name", method.name},
+                                   {"set", method.settings},
+                                   {"gain_limit", score.limit.gain},
+                                   {"beyond_search", score.limit.beyond_search},
+                                   {"metrics",
+                                    {{"strong_display", strong},
+                                     {"delays", json_of("delay_s", contest_delays_s, score.delayed)},
+                                     {"grips", json_of("grip", contest_grips, score.gripped)},
+                                     {"gains", at_gain},
+                                     {"free_space_hand_force_rms_N", score.free_space.hand_force_rms_N},
+                                     {"free_space_lag_s", json_of(score.free_space.lag_s)}}}});
+  }
+  return document.dump(2) + "\n";
+}
+
+}  // namespace tactus::simulation
