@@ -129,6 +129,8 @@ std::string bars_of(const PlacedPanel& panel) {
   constexpr double used_share = 0.8;  // of the height of a category
   const std::vector<Bars>& series = panel.panel->bars;
   const Rectangle& frame = panel.frame;
+  const double zero = panel.x(0.0);
+  const double base = std::isfinite(zero) ? std::clamp(zero, frame.left, frame.right()) : frame.left;
   const double lane = used_share / static_cast<double>(series.size());
   std::string svg;
   for (std::size_t s = 0; s < series.size(); ++s) {
@@ -137,9 +139,11 @@ std::string bars_of(const PlacedPanel& panel) {
       const double top = panel.y(static_cast<double>(i) - 0.5 * used_share + lane * static_cast<double>(s));
       const double bottom = panel.y(static_cast<double>(i) - 0.5 * used_share + lane * static_cast<double>(s + 1));
       const double end = std::clamp(panel.x(series[s].lengths[i]), frame.left, frame.right());
-      if (end > frame.left) svg += rectangle(style.c_str(), {frame.left, top, end - frame.left, bottom - top});
+      const double left = std::min(base, end);
+      const double width = std::abs(end - base);
+      if (width > 0.0) svg += rectangle(style.c_str(), {left, top, width, bottom - top});
       if (i < series[s].labels.size()) {
-        const double start = std::isfinite(end) ? end : frame.left;
+        const double start = std::isfinite(end) ? std::max(base, end) : base;
         svg += text({series[s].labels[i], {start + 4.0, 0.5 * (top + bottom) + 0.36 * tick_font}, "start", "tick"});
       }
     }

@@ -31,8 +31,8 @@ struct Line {
   double width_px = 1.2;
 };
 
-/// Horizontal bars over the categories of the y axis, from the panel's left edge; several series share the height of a
-/// category, the first on top.
+/// Horizontal bars over the categories of the y axis, from 0, on a logarithmic axis from its lower limit; several
+/// series share the height of a category, the first on top.
 struct Bars {
   std::string name;                      ///< entry of the legend; bars without a name have none
   std::vector<double> lengths;           ///< one for each category, in the unit of the x axis; not finite: no bar

@@ -33,8 +33,6 @@ std::span<const ContestMethod> contest_methods() {
       {"cancellation, local damping", {on, "control.damping.damping_N_s_per_m=5"}},
       {"cancellation, command notch", {on, "control.command_filter.kind=notch"}},
       {"cancellation, hand compensation", {on, "control.hand_compensation_Hz=200"}},
-      {"cancellation, hand comp., damping",
-       {on, "control.hand_compensation_Hz=200", "control.damping.damping_N_s_per_m=5"}},
       {"four-channel, cancellation", {on, "control.architecture=four-channel-cancellation"}},
   };
   return methods;

@@ -1,6 +1,7 @@
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/contest_presentation.hpp>
 
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -58,7 +59,7 @@ report::Table contest_table(const std::vector<MethodScore>& scores, const Contes
   using Align = report::Column::Align;
   std::vector<report::Column> columns{
       {"method", "", Align::left}, {"gain limit"}, {"at " + in_newton(params.task.strong_display_N)}};
-  for (const double delay_s : contest_delays_s) columns.push_back({"at " + report::number(1e3 * delay_s, 3) + " ms"});
+  for (const double delay_s : contest_delays_s) columns.push_back({"at " + format_number(1e3 * delay_s) + " ms"});
   for (const double grip : contest_grips) columns.push_back({"grip × " + format_number(grip)});
   const std::string at_gain = "at " + format_number(contest_gains[shown_gain]);
   columns.insert(columns.end(),
@@ -82,45 +83,58 @@ report::Table contest_table(const std::vector<MethodScore>& scores, const Contes
 
 report::Figure contest_figure(const std::vector<MethodScore>& scores, const ContestParams& params) {
   std::vector<std::string> names;
-  report::Bars limit{.name = "display up to " + in_newton(params.control.force_limit_N), .lengths = {}, .colour = 0};
+  report::Bars limit{.name = "display up to " + in_newton(params.control.force_limit_N), .lengths = {}};
   report::Bars strong{.name = "display up to " + in_newton(params.task.strong_display_N), .lengths = {}, .colour = 1};
-  report::Bars error{.name = "", .lengths = {}, .colour = 0};
-  report::Bars lag{.name = "", .lengths = {}, .colour = 0};
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  report::Bars error{.name = "", .lengths = {}, .colour = 2};
+  report::Bars effort = error;
+  report::Bars lag = error;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const MethodScore& score = scores[i];
     names.emplace_back(contest_methods()[i].name);
-    limit.lengths.push_back(score.limit.gain);
-    limit.labels.push_back(text_of(score.limit, params));
-    strong.lengths.push_back(score.strong_display.gain);
-    strong.labels.push_back(text_of(score.strong_display, params));
+    const auto add = [](report::Bars& bars, const std::optional<double>& length, const std::string& label) {
+      bars.lengths.push_back(length.value_or(std::numeric_limits<double>::quiet_NaN()));
+      bars.labels.push_back(label);
+    };
+    const auto scaled = [](const std::optional<double>& value, double factor) {
+      return value ? std::optional(factor * *value) : std::nullopt;
+    };
+    add(limit, score.limit.gain, text_of(score.limit, params));
+    add(strong, score.strong_display.gain, text_of(score.strong_display, params));
     const GainScore& shown = score.at_gain[shown_gain];
-    const bool heard = settles(shown) && shown.spectral_error;
-    error.lengths.push_back(heard ? 100.0 * *shown.spectral_error : none);
-    error.labels.push_back(heard ? percent(shown.spectral_error) : "does not settle");
-    lag.lengths.push_back(score.free_space.lag_s ? 1e3 * *score.free_space.lag_s : none);
-    lag.labels.push_back(score.free_space.lag_s ? report::number(1e3 * *score.free_space.lag_s, 2) : "never there");
+    const std::optional<double> heard = settles(shown) ? shown.spectral_error : std::nullopt;
+    add(error, scaled(heard, 100.0), heard ? percent(heard) : "does not settle");
+    const double force_mN = 1e3 * score.free_space.hand_force_rms_N;
+    add(effort, force_mN, report::number(force_mN, 2));
+    const std::optional<double> lag_ms = scaled(score.free_space.lag_s, 1e3);
+    add(lag, lag_ms, lag_ms ? report::number(*lag_ms, 2) : "never there");
   }
   const report::Axis methods{.label = "", .categories = names};
   const auto panel = [&methods](std::string title, report::Axis x, std::vector<report::Bars> bars) {
     return report::Panel{
         .title = std::move(title), .x = std::move(x), .y = methods, .lines = {}, .rules = {}, .bars = std::move(bars)};
   };
+  // Room for the labels behind the bars.
+  const auto room_for = [](const report::Bars& bars) {
+    double longest = 0.0;
+    for (const double length : bars.lengths) longest = std::fmax(longest, length);
+    return 1.3 * longest;
+  };
   report::Figure figure{.title = "How much force gain each method allows, and what it costs",
-                        .caption = "A good method has a long bar on the left and short ones beside it.",
-                        .columns = 3,
+                        .caption = "A good method has long bars on the left and short ones beside them.",
+                        .columns = 4,
                         .panels = {},
                         .share_y = report::Sharing::in_line};
   figure.panels.push_back(panel("largest gain that settles",
                                 {.label = "force gain",
                                  .lower = params.task.lowest_gain,
-                                 .upper = 2.0 * params.task.highest_gain,
+                                 .upper = 4.0 * params.task.highest_gain,
                                  .scale = report::Axis::Scale::logarithmic},
                                 {limit, strong}));
-  const std::string gain = format_number(contest_gains[shown_gain]);
+  figure.panels.push_back(panel("error at the hand, gain " + format_number(contest_gains[shown_gain]),
+                                {.label = "spectral error", .unit = "%", .upper = room_for(error)}, {error}));
   figure.panels.push_back(
-      panel("error of the force at the hand, gain " + gain, {.label = "spectral error", .unit = "%"}, {error}));
-  figure.panels.push_back(panel("lag of the slave in free space", {.label = "lag", .unit = "ms"}, {lag}));
+      panel("effort in free space", {.label = "force", .unit = "mN RMS", .upper = room_for(effort)}, {effort}));
+  figure.panels.push_back(panel("lag in free space", {.label = "lag", .unit = "ms", .upper = room_for(lag)}, {lag}));
   return figure;
 }
 

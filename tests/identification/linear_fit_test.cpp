@@ -14,7 +14,7 @@ namespace {
 const std::vector<double> line_regressors{1, 1, 1, 2, 1, 3, 1, 4, 1, 5};
 const std::vector<double> line_observations{2, 4, 5, 4, 5};
 
-TEST(LinearFit, a_line_worked_by_hand_has_its_parameters_errors_and_residual) {
+TEST(LinearFit, ALineWorkedByHandHasItsParametersErrorsAndResidual) {
   const auto fit = fit_linear(line_regressors, 2, line_observations);
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->parameters[0], 2.2, 1e-12);
@@ -24,7 +24,7 @@ TEST(LinearFit, a_line_worked_by_hand_has_its_parameters_errors_and_residual) {
   EXPECT_NEAR(fit->residual_rms, std::sqrt(2.4 / 5), 1e-12);
 }
 
-TEST(LinearFit, the_unit_of_a_regressor_does_not_matter) {
+TEST(LinearFit, TheUnitOfARegressorDoesNotMatter) {
   std::vector<double> in_nanounits = line_regressors;
   for (std::size_t row = 0; row < line_observations.size(); ++row) in_nanounits[2 * row + 1] *= 1e9;
   const auto fit = fit_linear(in_nanounits, 2, line_observations);
@@ -33,7 +33,7 @@ TEST(LinearFit, the_unit_of_a_regressor_does_not_matter) {
   EXPECT_NEAR(fit->standard_errors[1], std::sqrt(0.08) * 1e-9, 1e-21);
 }
 
-TEST(LinearFit, parameters_that_the_data_cannot_tell_apart_are_refused) {
+TEST(LinearFit, ParametersThatTheDataCannotTellApartAreRefused) {
   const std::vector<double> twice{1, 2, 2, 4, 3, 6};
   const auto fit = fit_linear(twice, 2, std::vector<double>{1, 2, 3});
   ASSERT_FALSE(fit);
@@ -41,13 +41,13 @@ TEST(LinearFit, parameters_that_the_data_cannot_tell_apart_are_refused) {
   EXPECT_NE(fit.error().message.find("cannot tell the parameters apart"), std::string::npos);
 }
 
-TEST(LinearFit, a_regressor_that_is_always_zero_is_named) {
+TEST(LinearFit, ARegressorThatIsAlwaysZeroIsNamed) {
   const auto fit = fit_linear(std::vector<double>{1, 0, 2, 0, 3, 0}, 2, std::vector<double>{1, 2, 3});
   ASSERT_FALSE(fit);
   EXPECT_NE(fit.error().message.find("column 1"), std::string::npos);
 }
 
-TEST(LinearFit, sizes_that_do_not_fit_too_few_observations_and_values_that_are_no_numbers_are_refused) {
+TEST(LinearFit, SizesThatDoNotFitTooFewObservationsAndValuesThatAreNoNumbersAreRefused) {
   EXPECT_FALSE(fit_linear(std::vector<double>{1, 2, 3}, 2, std::vector<double>{1, 2, 3}));
   EXPECT_FALSE(fit_linear(std::vector<double>{1, 2, 3, 5}, 2, std::vector<double>{1, 2}));
   EXPECT_FALSE(fit_linear(std::vector<double>{}, 0, std::vector<double>{}));

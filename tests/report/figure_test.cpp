@@ -253,7 +253,7 @@ TEST(Figure, IsAccessibleAndStandsAlone) {
   EXPECT_EQ(fault_of(svg), "");
   EXPECT_EQ(attribute(tags(svg, "svg").at(0), "role"), "img");
   EXPECT_NE(svg.find("<title>Contact</title>"), std::string::npos);
-  EXPECT_NE(svg.find("<desc>One tap for each gain. Panels: 24. Lines: force, position.</desc>"), std::string::npos);
+  EXPECT_NE(svg.find("<desc>One tap for each gain. Panels: 24. Shown: force, position.</desc>"), std::string::npos);
   EXPECT_NE(svg.find("prefers-color-scheme:dark"), std::string::npos);
   EXPECT_EQ(svg.find("href"), std::string::npos);
   EXPECT_EQ(svg.find("url("), std::string::npos);

@@ -330,10 +330,11 @@ TEST(TappingSummary, TakesQuantilesOverTheTapsWithUnsettledOnesAtTheirWholeWindo
 }
 
 /// Taps of a hand that is nominal at rest and holds a quarter as firmly when it meets the wall.
-double settled_share(control::OperatorEstimate estimate) {
+double settled_share(control::OperatorEstimate estimate, double force_gain, double delay_s) {
   TappingParams params = default_params();
   params.task.taps = 16;
-  params.control.force_gain = 20.0;
+  params.control.force_gain = force_gain;
+  params.channel.to_master.delay_s = delay_s;
   params.control.operator_estimate = estimate;
   params.person.grip_change.factor = 0.25;
   std::vector<TapResult> taps;
@@ -343,9 +344,11 @@ double settled_share(control::OperatorEstimate estimate) {
 }
 
 TEST(Tapping, AGripThatGetsLighterFailsTheFixedModelAndNotTheOneThatFollowsIt) {
-  EXPECT_LT(settled_share(control::OperatorEstimate::off), 0.5);
-  EXPECT_GT(settled_share(control::OperatorEstimate::online), 0.95);
-  EXPECT_GT(settled_share(control::OperatorEstimate::scheduled), 0.95);
+  for (const auto& [force_gain, delay_s, fixed_at_most] : {std::tuple{20.0, 0.0, 0.5}, {10.0, 0.005, 0.9}}) {
+    EXPECT_LT(settled_share(control::OperatorEstimate::off, force_gain, delay_s), fixed_at_most) << force_gain;
+    EXPECT_GT(settled_share(control::OperatorEstimate::online, force_gain, delay_s), 0.95) << force_gain;
+    EXPECT_GT(settled_share(control::OperatorEstimate::scheduled, force_gain, delay_s), 0.95) << force_gain;
+  }
 }
 
 TEST(MedianTap, IsTheOneInTheMiddleTheLowerOfTwoTheFirstOfEqualOnes) {
