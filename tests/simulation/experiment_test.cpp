@@ -170,11 +170,12 @@ TEST(ChooseExperiment, KnowsItsKindsAndListsThemForAnother) {
   };
   EXPECT_EQ(chosen("task.kind = 'tapping'").value()->kind(), "tapping");
   EXPECT_EQ(chosen("task.kind = 'force-display'").value()->kind(), "force-display");
+  EXPECT_EQ(chosen("task.kind = 'contest'").value()->kind(), "contest");
   const auto unknown = chosen("[task]\nkind = 'grasping'");
   ASSERT_FALSE(unknown);
   EXPECT_EQ(describe(unknown.error()),
             "test.toml:2:8: task.kind: 'grasping' is no kind of experiment: write one of "
-            "tapping, force-display");
+            "tapping, force-display, contest");
   const auto missing = chosen("[control]\nforce_gain = 1.0");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, ErrorCode::missing);
