@@ -2,13 +2,16 @@
 
 #include <tactus/control/cancellation.hpp>
 #include <tactus/control/crossover.hpp>
+#include <tactus/control/disturbance_observer.hpp>
 #include <tactus/control/energy_tank.hpp>
 #include <tactus/control/four_channel.hpp>
 #include <tactus/control/grip_cancellation.hpp>
 #include <tactus/control/hand_force_observer.hpp>
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/control/inverse_model_estimator.hpp>
+#include <tactus/control/kalman_force_estimator.hpp>
 #include <tactus/control/local_damping.hpp>
+#include <tactus/control/momentum_observer.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/position_position.hpp>
 #include <tactus/control/projection.hpp>
@@ -133,6 +136,25 @@ struct Subject<control::LocalDamping> {
   static void admit(double&) {}
 };
 
+inline control::SlaveModel rubbing_slave() {
+  return {.viscous_damping_N_s_per_m = 0.5,
+          .friction = {.law = control::FrictionLaw::smooth_coulomb, .force_N = 0.03},
+          .actuator_gain = 2.0};
+}
+
+template <class Observer>
+struct ObserverSubject {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<typename Observer::Params> parameters() { return {{}, {.model = rubbing_slave()}}; }
+  static void admit(typename Observer::Input&) {}
+};
+template <>
+struct Subject<control::DisturbanceObserver> : ObserverSubject<control::DisturbanceObserver> {};
+template <>
+struct Subject<control::MomentumObserver> : ObserverSubject<control::MomentumObserver> {};
+template <>
+struct Subject<control::KalmanForceEstimator> : ObserverSubject<control::KalmanForceEstimator> {};
+
 template <>
 struct Subject<control::HandForceCompensation> {
   static constexpr double dt_s = 200e-6;
@@ -200,7 +222,8 @@ struct Subject<control::PassivitySlave> {
 };
 
 using ControlElements =
-    ::testing::Types<control::InducedMotionModel, control::InverseModelEstimator, control::Cancellation,
+    ::testing::Types<control::InducedMotionModel, control::InverseModelEstimator, control::DisturbanceObserver,
+                     control::MomentumObserver, control::KalmanForceEstimator, control::Cancellation,
                      control::GripCancellation, control::PositionForceMaster, control::PositionForceSlave,
                      control::SafetyGate, control::ServoPd, control::LocalDamping, control::ShapingFilter,
                      control::Crossover, control::HandForceCompensation, control::HandForceObserver,
