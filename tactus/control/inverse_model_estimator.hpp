@@ -7,6 +7,7 @@
 #include <tactus/signal/rational_filter.hpp>
 
 #include <array>
+#include <complex>
 
 namespace tactus::control {
 
@@ -45,8 +46,7 @@ struct FrictionFunction {
         field("velocity_scale_m_per_s", &FrictionFunction::velocity_scale_m_per_s, units::metre_per_second, positive,
               "Velocity at which r is 1."),
         field("linear", &FrictionFunction::linear, units::none, non_negative, "Linear share of the sigmoid."),
-        field("quadratic", &FrictionFunction::quadratic, units::none, non_negative,
-              "Quadratic share of the sigmoid.")};
+        field("quadratic", &FrictionFunction::quadratic, units::none, non_negative, "Quadratic share of the sigmoid.")};
   }
   /// The force in N that moving at `velocity_m_per_s` takes. Real-time safe.
   [[nodiscard]] double operator()(double velocity_m_per_s) const noexcept;
@@ -63,10 +63,10 @@ constexpr auto enumerators(LinearModelForm) {
 
 /// Environment force from command and position through the inverse of the slave's model (paper B, eqs. 2 to 4):
 ///
-///     F_e = friction(v) + [ (M·s + h)·s / K_s · B(s) · x_s / (T_d·s + 1) − K_a·u ] / (T_f·s + 1)
+///     F_e = [ friction(v) + (M·s + h)·s / K_s · B(s) · x_s / (T_d·s + 1) − K_a·u ] / (T_f·s + 1)
 ///     B(s) = ((2·Tp·s + 1)/(Tp·s + 1))^n
 ///
-/// `rational` takes x/F = N(s)/D(s) instead of 1/((M·s + h)·s). friction(v) is filtered by T_f too, v is the predicted
+/// `rational` takes x/F = N(s)/D(s) instead of 1/((M·s + h)·s). v is the predicted
 /// position behind s/(T_d·s + 1). The blocks predict the measured position, so also the instant at which friction
 /// changes sign. All of it is sampled by the bilinear transform, which moves no zero of the model across the axis.
 ///
@@ -80,7 +80,7 @@ class InverseModelEstimator {
     LinearModelForm form = LinearModelForm::mass_damping;
     double mass_kg = 10.0;
     double viscous_damping_N_s_per_m = 1.0;
-    signal::RationalFunction plant{.numerator_0 = 1.0, .denominator_0 = 0.0, .denominator_1 = 1.0, .denominator_2 = 10.0};
+    signal::RationalFunction plant{.denominator_0 = 0.0, .denominator_1 = 1.0, .denominator_2 = 10.0};
     FrictionFunction friction;
     double actuator_gain = 1.0;
     double sensor_gain = 1.0;
