@@ -197,11 +197,6 @@ double explained_swapped(const AxisSignals& signals, double cutoff_Hz) {
 
 Check check_plausible(const InverseDynamics& model, const Problem& problem, const AxisSignals& signals) {
   const std::string explained = text(100.0 * model.explained) + " %";
-  if (model.inertia.upper < 0.0) {
-    return refuse("the inertia comes out negative (" + text(model.inertia.value) +
-                  "): the force has the opposite sign of the motion it makes (turn it with --force-sign -1), or "
-                  "position and force are swapped or not of one axis");
-  }
   if (model.explained < least_explained && explained_swapped(signals, model.cutoff_Hz) > least_explained) {
     return refuse("position and force look swapped: as named, the model explains " + explained +
                   " of the force, and the other way round more than half; exchange --position and --force");
@@ -211,6 +206,11 @@ Check check_plausible(const InverseDynamics& model, const Problem& problem, cons
     return refuse("the force follows the position (the model explains " + explained + " of it, with a spring " +
                   text(100.0 * *with_position) +
                   " %): the axis was in contact, on a spring or under gravity; record free motion");
+  }
+  if (model.inertia.upper < 0.0) {
+    return refuse("the inertia comes out negative (" + text(model.inertia.value) +
+                  "): the force has the opposite sign of the motion it makes (turn it with --force-sign -1), or "
+                  "position and force are swapped or not of one axis");
   }
   if (model.explained < least_explained) {
     return refuse("the model explains only " + explained +
