@@ -19,6 +19,8 @@ constexpr int parameters = 4;
 constexpr int blocks = 12;
 constexpr double student_95 = 2.201;           // two-sided, 11 degrees of freedom
 constexpr double friction_speed_share = 0.02;  // of the rms speed
+constexpr double standstill_share = 0.06;      // of the rms speed
+constexpr double filter_reach = 0.4;           // periods of the cutoff within which the filter weighs samples
 constexpr double default_cutoff_Hz = 30.0;
 constexpr double least_explained = 0.5;
 
@@ -99,14 +101,19 @@ std::vector<double> every_second(const std::vector<double>& values, std::size_t 
   return result;
 }
 
+/// The fast velocity passes a filter with four times the cutoff: it tells when friction changes sign, and then friction
+/// passes the filter of the force.
 struct Kinematics {
-  std::vector<double> velocity, acceleration;
+  std::vector<double> velocity, acceleration, fast_velocity;
 };
 
 Result<Kinematics> differentiate(const std::vector<double>& position, double cutoff_Hz, Seconds dt) {
   const auto smooth = zero_phase_low_pass(position, cutoff_Hz, dt);
   if (!smooth) return smooth.error();
-  Kinematics motion{.velocity = central_difference(*smooth, dt), .acceleration = {}};
+  const auto fast = zero_phase_low_pass(position, std::min(4.0 * cutoff_Hz, 0.4 / dt.value), dt);
+  if (!fast) return fast.error();
+  Kinematics motion{
+      .velocity = central_difference(*smooth, dt), .acceleration = {}, .fast_velocity = central_difference(*fast, dt)};
   motion.acceleration = central_difference(motion.velocity, dt);
   return motion;
 }
@@ -116,10 +123,26 @@ double root_mean_square(std::span<const double> values) {
                    static_cast<double>(values.size()));
 }
 
+/// 1 for the samples whose filtered force and friction stem from motion: none nearer to a standstill than the filter
+/// reaches. All ones where that would leave less than a third.
+Vector moving_samples(const std::vector<double>& fast_velocity, double slow, std::size_t reach, std::size_t cut) {
+  const std::size_t rows = fast_velocity.size() - 2 * cut;
+  Vector moving = Vector::Ones(static_cast<Eigen::Index>(rows));
+  std::size_t since = reach + 1;
+  for (std::size_t i = 0; i < fast_velocity.size(); ++i) {
+    since = std::abs(fast_velocity[i]) < slow ? 0 : since + 1;
+    if (since > 2 * reach || i < reach + cut || i - reach - cut >= rows) continue;
+    moving[static_cast<Eigen::Index>(i - reach - cut)] = 0.0;
+  }
+  if (moving.mean() < 1.0 / 3.0) moving.setOnes();
+  return moving;
+}
+
 /// What the fit works on; the ends, where the filter has to guess, are cut off.
 struct Problem {
   Regressors regressors, instruments;
   Vector force;
+  Vector moving;  ///< 1, or 0 near standstill, where friction is whatever holds the axis
   std::vector<double> velocity;
   double friction_speed = 0;
   std::size_t cut = 0;
@@ -128,7 +151,7 @@ struct Problem {
 Result<Regressors> regressors_of(const Kinematics& motion, double friction_speed, double cutoff_Hz, Seconds dt,
                                  std::size_t cut) {
   std::vector<double> direction(motion.velocity.size());
-  std::transform(motion.velocity.begin(), motion.velocity.end(), direction.begin(),
+  std::transform(motion.fast_velocity.begin(), motion.fast_velocity.end(), direction.begin(),
                  [=](double v) { return std::tanh(v / friction_speed); });
   const auto smooth = zero_phase_low_pass(direction, cutoff_Hz, dt);
   if (!smooth) return smooth.error();
@@ -157,6 +180,10 @@ Result<Problem> prepare(const AxisSignals& signals, double cutoff_Hz) {
   if (!regressors || !instruments) return refuse("the recording could not be filtered: choose another --cutoff-Hz");
   problem.regressors = *regressors;
   problem.instruments = *instruments;
+  const double slow = standstill_share * root_mean_square(motion->velocity);
+  const auto reach = static_cast<std::size_t>(filter_reach / (cutoff_Hz * dt.value));
+  problem.moving = moving_samples(motion->fast_velocity, slow, reach, problem.cut);
+  problem.instruments.array().colwise() *= problem.moving.array();
   const auto rows = problem.regressors.rows();
   problem.force = Eigen::Map<const Vector>(force->data() + problem.cut, rows);
   const auto first = motion->velocity.begin() + static_cast<std::ptrdiff_t>(problem.cut);
@@ -181,8 +208,10 @@ Result<double> explained_with(const Problem& problem, std::span<const double> po
 }
 
 Result<LinearFit> least_squares(const Problem& problem) {
-  return fit_linear(std::span(problem.regressors.data(), static_cast<std::size_t>(problem.regressors.size())),
-                    parameters, std::span(problem.force.data(), static_cast<std::size_t>(problem.force.size())));
+  const Regressors regressors = problem.regressors.array().colwise() * problem.moving.array();
+  const Vector force = problem.force.array() * problem.moving.array();
+  return fit_linear(std::span(regressors.data(), static_cast<std::size_t>(regressors.size())), parameters,
+                    std::span(force.data(), static_cast<std::size_t>(force.size())));
 }
 
 /// How much of the force the model explains when the two columns change places; 0 when that makes no sense.
