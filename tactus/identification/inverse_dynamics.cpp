@@ -20,7 +20,7 @@ constexpr int blocks = 12;
 constexpr double student_95 = 2.201;           // two-sided, 11 degrees of freedom
 constexpr double friction_speed_share = 0.02;  // of the rms speed
 constexpr double standstill_share = 0.06;      // of the rms speed
-constexpr double filter_reach = 0.4;           // periods of the cutoff within which the filter weighs samples
+constexpr double filter_reach = 0.6;           // periods of the cutoff within which the filter weighs samples
 constexpr double default_cutoff_Hz = 30.0;
 constexpr double least_explained = 0.5;
 
