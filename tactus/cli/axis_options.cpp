@@ -14,6 +14,8 @@ void add_axis_options(CLI::App& verb, AxisOptions& options) {
   verb.add_option("--position", roles.position, "Column of the position; in a MATLAB file NAME:COLUMN")
       ->type_name("NAME");
   verb.add_option("--force", roles.force, "Column of the actuator's force or torque")->type_name("NAME");
+  verb.add_option("--external", roles.external, "Column of another force that drives the axis, as a hand's; added")
+      ->type_name("NAME");
   verb.add_option("--time", roles.time, "Column of the times")->type_name("NAME");
   verb.add_option("--sample-time-s", roles.sample_time_s, "Time between samples, where the file has none")
       ->type_name("S");

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -200,7 +201,8 @@ Result<AxisRecording> read_axis(const AxisRoles& wanted, bool needs_measured) {
   if (auto error = find_columns(roles, *entries, needs_measured)) return *std::move(error);
   auto position = read_column(roles, roles.position, position_units, "position", roles.position_sign.value_or(1.0));
   if (!position) return position.error();
-  auto force = read_column(roles, roles.force, force_units, "force", roles.force_sign.value_or(1.0));
+  const double force_sign = roles.force_sign.value_or(1.0);
+  auto force = read_column(roles, roles.force, force_units, "force", force_sign);
   if (!force) return force.error();
   if (position->rotary && force->rotary && *position->rotary != *force->rotary) {
     return Error{ErrorCode::inconsistent,
@@ -231,6 +233,16 @@ Result<AxisRecording> read_axis(const AxisRoles& wanted, bool needs_measured) {
     result.measured = std::move(measured->column);
   }
   const std::size_t count = result.position.values.size();
+  if (!roles.external.empty()) {
+    const auto external = read_column(roles, roles.external, force_units, "external force", force_sign);
+    if (!external) return external.error();
+    if (external->column.values.size() == result.force.values.size()) {
+      std::transform(result.force.values.begin(), result.force.values.end(), external->column.values.begin(),
+                     result.force.values.begin(), std::plus<>());
+    } else {
+      result.force.values.clear();
+    }
+  }
   if (result.force.values.size() != count || (result.measured && result.measured->values.size() != count)) {
     return Error{
         ErrorCode::inconsistent, {}, "the named columns have different numbers of samples", roles.file.string()};

@@ -22,6 +22,7 @@ struct AxisRoles {
   std::filesystem::path file = {};
   std::string position = {};
   std::string force = {};     ///< of the actuator
+  std::string external = {};  ///< another force that drives the axis, such as a hand's; none unless named
   std::string measured = {};  ///< of the environment, to compare with
   std::string time = {};
   std::optional<double> sample_time_s = {};
@@ -38,7 +39,8 @@ struct AxisColumn {
 };
 
 struct AxisRecording {
-  AxisColumn position, force;
+  AxisColumn position;
+  AxisColumn force;                    ///< of the actuator, the external one added
   std::optional<AxisColumn> measured;  ///< force of the environment on the axis
   Seconds sample_time{0.0};
   bool rotary = false;  ///< N m and rad instead of N and m

@@ -73,6 +73,14 @@ TEST_F(Recordings, columns_that_are_not_recognised_are_listed_with_the_option_th
   EXPECT_EQ(named.status, 0) << named.err;
 }
 
+TEST_F(Recordings, a_wall_whose_force_is_given_as_external_leaves_the_mass_as_it_is) {
+  write("wall.csv", carriage(header, true));
+  const Outcome outcome = tactus({"identify", "inverse", "wall.csv", "--external", "contact_N", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json model = Json::parse(outcome.out);
+  EXPECT_NEAR(model["parameters"][0]["value"].get<double>(), mass_kg, 0.02 * mass_kg);
+}
+
 TEST_F(Recordings, a_bad_recording_gives_a_message_and_no_model) {
   const std::string good = carriage(header, false);
   std::string gap = good;
