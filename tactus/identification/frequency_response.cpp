@@ -9,6 +9,8 @@
 #include <numbers>
 #include <string>
 
+#include <Eigen/Core>
+
 namespace tactus::identification {
 namespace {
 
@@ -20,7 +22,12 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 Error inconsistent(std::string message) { return {ErrorCode::inconsistent, {}, std::move(message), {}}; }
 
+Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> samples) {
+  return {samples.data(), static_cast<Eigen::Index>(samples.size())};
+}
+
 Check check_signal(std::span<const double> samples, const std::string& what) {
+  if (samples.empty() || (as_array(samples) * 0.0).sum() == 0.0) return std::nullopt;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!std::isfinite(samples[i])) {
       return Error{
@@ -53,11 +60,7 @@ Check check_runs(std::span<const InputOutput> runs) {
   return std::nullopt;
 }
 
-double mean(std::span<const double> samples) {
-  double sum = 0.0;
-  for (const double sample : samples) sum += sample;
-  return sum / static_cast<double>(samples.size());
-}
+double mean(std::span<const double> samples) { return as_array(samples).mean(); }
 
 /// Square of the 95 % radius of the mean of n complex values with unit variance: F(2, 2n − 2) / n in closed form.
 double squared_radius(double n) {
@@ -149,6 +152,8 @@ FrequencyResponse smooth(std::span<const Complex> sums, std::span<const double> 
                          std::size_t half_width) {
   FrequencyResponse result;
   const std::size_t lines = sums.size();
+  result.response.reserve(lines);
+  result.radius_95.reserve(lines);
   for (std::size_t k = 0; k < lines; ++k) {
     const std::size_t first = k > half_width ? k - half_width : 0;
     const std::size_t last = std::min(lines - 1, k + half_width);
@@ -274,8 +279,11 @@ Result<FrequencyResponse> etfe(std::span<const InputOutput> runs, Seconds sample
     double largest = 0.0;
     for (const ComplexPair& line : spectra) largest = std::max(largest, input_power(line));
     for (std::size_t k = 1; k < lines; ++k) {  // with the means removed, line 0 holds rounding only
-      if (input_power(spectra[k]) <= largest * smallest_input * smallest_input) continue;
-      const Complex ratio = Complex{spectra[k].re[1], spectra[k].im[1]} / Complex{spectra[k].re[0], spectra[k].im[0]};
+      const double power = input_power(spectra[k]);
+      if (power <= largest * smallest_input * smallest_input) continue;
+      const auto [x_re, y_re] = spectra[k].re;
+      const auto [x_im, y_im] = spectra[k].im;
+      const Complex ratio{(x_re * y_re + x_im * y_im) / power, (x_re * y_im - x_im * y_re) / power};
       sums[k] += ratio;
       squares[k] += std::norm(ratio);
       counts[k] += 1.0;
@@ -302,12 +310,12 @@ Result<Linearity> judge_linearity(std::span<const FrequencyResponse> responses, 
   for (std::size_t k = 0; k < frequency_Hz.size(); ++k) {
     if (frequency_Hz[k] < lower_Hz || frequency_Hz[k] > upper_Hz) continue;
     Complex sum{};
-    bool finite = true;
+    bool told = true;
     for (const FrequencyResponse& response : responses) {
       sum += response.response[k];
-      finite = finite && std::isfinite(response.radius_95[k]);
+      told = told && response.radius_95[k] < std::abs(response.response[k]);
     }
-    if (!finite || !std::isfinite(std::abs(sum)) || sum == Complex{}) continue;
+    if (!told || !std::isfinite(std::abs(sum)) || sum == Complex{}) continue;
     double largest = 0.0;
     for (std::size_t i = 0; i < responses.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
@@ -323,7 +331,9 @@ Result<Linearity> judge_linearity(std::span<const FrequencyResponse> responses, 
       found.worst_Hz = frequency_Hz[k];
     }
   }
-  if (spreads.empty()) return inconsistent("no line between the given frequencies can be compared");
+  if (spreads.empty())
+    return inconsistent(
+        "on no line between the given frequencies do all responses rise above their bands, so nothing can be compared");
   const auto middle = spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2);
   std::nth_element(spreads.begin(), middle, spreads.end());
   found.spread = *middle;

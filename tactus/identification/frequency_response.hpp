@@ -114,8 +114,8 @@ struct Linearity {
   bool linear = false;  ///< `outside` is at most 0.1, twice what chance alone would give
 };
 
-/// Compares responses on the same lines between `lower_Hz` and `upper_Hz`, both included. Lines where a response or its
-/// band is not finite are left out.
+/// Compares responses on the same lines between `lower_Hz` and `upper_Hz`, both included. Lines where one of them does
+/// not rise above its band are left out: they tell of noise alone.
 /// Errors: `inconsistent` for fewer than two responses, different lines, or no line to compare. Not real-time safe.
 Result<Linearity> judge_linearity(std::span<const FrequencyResponse> responses, double lower_Hz, double upper_Hz);
 
