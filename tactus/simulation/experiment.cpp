@@ -1,5 +1,7 @@
 #include <tactus/simulation/experiment.hpp>
 #include <tactus/simulation/force_display_experiment.hpp>
+#include <tactus/simulation/inverse_model_chirp_experiment.hpp>
+#include <tactus/simulation/prediction_block_experiment.hpp>
 #include <tactus/simulation/tapping_experiment.hpp>
 
 #include <algorithm>
@@ -79,7 +81,10 @@ Error blame_variation(Error error, const Settings& settings) {
 std::span<const Experiment* const> experiments() {
   static const TappingExperiment tapping;
   static const ForceDisplayExperiment force_display;
-  static constexpr std::array<const Experiment*, 2> all{&tapping, &force_display};
+  static const InverseModelChirpExperiment inverse_model_chirp;
+  static const PredictionBlockExperiment prediction_block;
+  static constexpr std::array<const Experiment*, 4> all{&tapping, &force_display, &inverse_model_chirp,
+                                                        &prediction_block};
   return all;
 }
 
