@@ -12,6 +12,7 @@ void add_identify(CLI::App& app, const std::string& command, int& status) {
   verb->require_subcommand(1);
   const std::string name = app.get_name();
   add_identify_inverse(*verb, name, command, status);
+  add_identify_prediction(*verb, name, status);
 }
 
 }  // namespace tactus::cli
