@@ -13,6 +13,10 @@ Findings model_tick(const Times& times);
 /// How much longer the slowest ticks of the model take than the usual ones.
 Findings tick_tail();
 
+/// One tick of each force estimator.
+void add_force_estimators();
+Findings force_estimators(const Times& times);
+
 /// The plants and the closed loop in virtual time.
 void add_virtual_time();
 Findings virtual_time(const Times& times);

@@ -1,6 +1,8 @@
 #include <tactus/simulation/contest_experiment.hpp>
 #include <tactus/simulation/experiment.hpp>
 #include <tactus/simulation/force_display_experiment.hpp>
+#include <tactus/simulation/inverse_model_chirp_experiment.hpp>
+#include <tactus/simulation/prediction_block_experiment.hpp>
 #include <tactus/simulation/tapping_experiment.hpp>
 
 #include <algorithm>
@@ -81,7 +83,10 @@ std::span<const Experiment* const> experiments() {
   static const TappingExperiment tapping;
   static const ForceDisplayExperiment force_display;
   static const ContestExperiment contest;
-  static constexpr std::array<const Experiment*, 3> all{&tapping, &force_display, &contest};
+  static const InverseModelChirpExperiment inverse_model_chirp;
+  static const PredictionBlockExperiment prediction_block;
+  static constexpr auto all =
+      std::to_array<const Experiment*>({&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block});
   return all;
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 TEST(RationalFilter, TheSampledResponseIsTheContinuousOneAtTheWarpedFrequency) {
   // (s + 30)(s + 80)(s² + 20 s + 4000) below (s + 100)² (s + 200)(s + 50), and the same with fewer powers.
-  const RationalFunction fourth{9.6e6, 4.888e5, 8600.0, 130.0, 1.0, 1e8, 4.5e6, 70000.0, 450.0, 1.0};
+  const RationalFunction fourth{9.6e6, 4.88e5, 8600.0, 130.0, 1.0, 1e8, 4.5e6, 70000.0, 450.0, 1.0};
   const RationalFunction second{.numerator_0 = 0.0,
                                 .numerator_1 = 3.0,
                                 .numerator_2 = 10.0,

@@ -1,0 +1,136 @@
+#include <tactus/cli/identify.hpp>
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/configuration/document.hpp>
+#include <tactus/identification/prediction_time.hpp>
+#include <tactus/recording/recording.hpp>
+#include <tactus/report/table.hpp>
+#include <tactus/report/text.hpp>
+#include <tactus/simulation/inverse_model_chirp.hpp>
+
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+struct Options {
+  std::string experiment;
+  std::vector<std::string> set;
+  std::int64_t blocks = 2;
+  double band_Hz = 1.0;
+  std::string recording, command, position;
+  std::int64_t command_column = 1, position_column = 1;
+  bool json = false;
+};
+
+struct Motion {
+  std::vector<double> command, position;
+  double sample_time_s;
+};
+
+Result<Motion> recorded(const Options& options) {
+  const auto command =
+      recording::read({.file = options.recording, .variable = options.command, .column = options.command_column});
+  if (!command) return command.error();
+  auto position =
+      recording::read({.file = options.recording, .variable = options.position, .column = options.position_column});
+  if (!position) return position.error();
+  if (!command->sample_time_s) {
+    return Error{.code = ErrorCode::missing,
+                 .parameter = {},
+                 .message = "the recording does not say its sample time: add a column of times",
+                 .place = options.recording};
+  }
+  // From where the slave is at the start, so that the filters start at rest.
+  const double start = position->values.front();
+  for (double& value : position->values) value -= start;
+  return Motion{
+      .command = command->values, .position = std::move(position->values), .sample_time_s = *command->sample_time_s};
+}
+
+Result<Motion> simulated(const Options& options, const simulation::InverseModelChirpParams& params) {
+  const double dt_s = 1.0 / params.task.sample_rate_Hz;
+  auto record = simulation::follow(params.slave, simulation::chirp_path(params.task, options.band_Hz),
+                                   params.task.duration_s, dt_s);
+  if (!record) return record.error();
+  return Motion{.command = std::move(record->command), .position = std::move(record->position), .sample_time_s = dt_s};
+}
+
+Check identify(const Options& options) {
+  auto document = configuration::Document::load(options.experiment);
+  if (!document) return document.error();
+  for (const std::string& assignment : options.set) {
+    if (auto error = document->set(assignment)) return error;
+  }
+  const auto params = document->read<simulation::InverseModelChirpParams>();
+  if (!params) return params.error();
+  if (Check error = simulation::check(*params)) return document->locate(*std::move(error));
+
+  const auto closed = identification::prediction_time_closed_form(
+      params->slave.delays_and_lags_s(), params->estimator.derivative_filter_s, options.blocks);
+  if (!closed) return closed.error();
+  const auto limit = identification::prediction_time_limit(
+      [&](double s) { return simulation::transfer(params->slave, s).real(); }, params->estimator, options.blocks);
+  if (!limit) return limit.error();
+  const auto motion = options.recording.empty() ? simulated(options, *params) : recorded(options);
+  if (!motion) return motion.error();
+  const auto data = identification::prediction_time_from_data(
+      {.command = motion->command, .position = motion->position, .sample_time_s = motion->sample_time_s},
+      params->estimator, options.blocks);
+  if (!data) return document->locate(under("estimator", data.error()));
+
+  if (options.json) {
+    std::cout << "{\n  \"blocks\": " << options.blocks << ",\n  \"closed_form_s\": " << format_number(*closed)
+              << ",\n  \"limit_s\": " << format_number(*limit)
+              << ",\n  \"from_data_s\": " << format_number(data->time_constant_s)
+              << ",\n  \"error_rms_N\": " << format_number(data->error_rms_N) << "\n}\n";
+    return flush_standard_output();
+  }
+  report::Table table({{"time constant", "", report::Column::Align::left}, {"Tp", "ms"}},
+                      "Prediction with " + std::to_string(options.blocks) + " blocks");
+  table.add_row({"closed form", report::number(1e3 * *closed, 5)});
+  table.add_row({"numeric limit", report::number(1e3 * *limit, 5)});
+  table.add_row({options.recording.empty() ? "from a simulated chirp up to " + format_number(options.band_Hz) + " Hz"
+                                           : "from the recording",
+                 report::number(1e3 * data->time_constant_s, 5)});
+  std::cout << table.to_text() << "Force felt in this free motion: " << report::number(data->error_rms_N, 3)
+            << " RMS\n";
+  return flush_standard_output();
+}
+
+}  // namespace
+
+void add_identify_prediction(CLI::App& identify_verb, const std::string& name, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb =
+      identify_verb.add_subcommand("prediction", "Time constant of prediction blocks: closed form, limit, from data");
+  verb->add_option("EXPERIMENT", options->experiment, "inverse-model-chirp file: slave and estimator")->required();
+  verb->add_option("--set", options->set, "Override one value: key=value")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  verb->add_option("--blocks", options->blocks, "Blocks in series, 1 to 4");
+  verb->add_option("--band", options->band_Hz, "Where the simulated chirp ends, in Hz")->check(CLI::Range(0.1, 100.0));
+  auto* recording =
+      verb->add_option("--recording", options->recording, "Free motion as recorded, in place of the simulated chirp");
+  verb->add_option("--command", options->command, "Its variable of the command")->needs(recording);
+  verb->add_option("--position", options->position, "Its variable of the slave's position, in m or rad")
+      ->needs(recording);
+  verb->add_option("--command-column", options->command_column, "Column of that variable (.mat), from 1");
+  verb->add_option("--position-column", options->position_column, "Column of that variable (.mat), from 1");
+  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  verb->callback([options, name, &status] {
+    if (const auto error = identify(*options)) {
+      std::cerr << name << ": " << describe(*error) << "\n";
+      status = exit_status(*error);
+    }
+  });
+}
+
+}  // namespace tactus::cli
