@@ -51,6 +51,7 @@ int run_command(int argc, char** argv) {
   // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
   app.require_subcommand(0, 1);
   add_run(app, command, status);
+  add_estimate(app, command, status);
   add_identify(app, command, status);
   add_schema(app, status);
   try {

@@ -7,6 +7,7 @@
 #include <tactus/control/grip_cancellation.hpp>
 #include <tactus/control/hand_force_observer.hpp>
 #include <tactus/control/induced_motion_model.hpp>
+#include <tactus/control/inverse_model_estimator.hpp>
 #include <tactus/control/local_damping.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/position_position.hpp>
@@ -189,13 +190,14 @@ struct Subject<control::PassivitySlave> {
 };
 
 using ControlElements =
-    ::testing::Types<control::InducedMotionModel, control::Cancellation, control::GripCancellation,
-                     control::PositionForceMaster, control::PositionForceSlave, control::SafetyGate, control::ServoPd,
-                     control::LocalDamping, control::ShapingFilter, control::Crossover, control::HandForceObserver,
-                     control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
-                     control::SharedCompliantSlave, control::FourChannelMaster, control::FourChannelSlave,
-                     control::CancellingSlave, control::WaveMaster, control::WaveSlave, control::PassivityMaster,
-                     control::PassivitySlave, control::TankMaster, control::TankSlave, SoftLimitMaster>;
+    ::testing::Types<control::InducedMotionModel, control::InverseModelEstimator, control::Cancellation,
+                     control::GripCancellation, control::PositionForceMaster, control::PositionForceSlave,
+                     control::SafetyGate, control::ServoPd, control::LocalDamping, control::ShapingFilter,
+                     control::Crossover, control::HandForceObserver, control::PositionPositionMaster,
+                     control::PositionPositionSlave, control::ProjectionMaster, control::SharedCompliantSlave,
+                     control::FourChannelMaster, control::FourChannelSlave, control::CancellingSlave,
+                     control::WaveMaster, control::WaveSlave, control::PassivityMaster, control::PassivitySlave,
+                     control::TankMaster, control::TankSlave, SoftLimitMaster>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws

@@ -3,6 +3,8 @@
 #include <tactus/signal/delay_line.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
 #include <tactus/signal/low_pass.hpp>
+#include <tactus/signal/prediction_block.hpp>
+#include <tactus/signal/rational_filter.hpp>
 #include <tactus/signal/second_order_filter.hpp>
 
 #include <cstdlib>
@@ -31,6 +33,7 @@ struct Subject<signal::DelayLine<double, Capacity>> {
 };
 
 using SignalElements = ::testing::Types<signal::LowPass, SecondOrderFilter, signal::FilteredDerivative,
+                                        signal::PredictionBlock, signal::PredictionCascade, signal::RationalFilter,
                                         signal::DelayLine<double, 1>, signal::DelayLine<double, 64>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Signal, ElementLaws, SignalElements);
 

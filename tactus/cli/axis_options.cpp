@@ -1,0 +1,61 @@
+#include <tactus/cli/axis_options.hpp>
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/report/files.hpp>
+
+#include <iostream>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+void add_axis_options(CLI::App& verb, AxisOptions& options) {
+  identification::AxisRoles& roles = options.roles;
+  verb.add_option("RECORDING", options.file, "Recording: .csv, .tsv, .txt or .mat (version 5)")->required();
+  verb.add_option("--position", roles.position, "Column of the position; in a MATLAB file NAME:COLUMN")
+      ->type_name("NAME");
+  verb.add_option("--force", roles.force, "Column of the actuator's force or torque")->type_name("NAME");
+  verb.add_option("--external", roles.external, "Column of another force that drives the axis, as a hand's; added")
+      ->type_name("NAME");
+  verb.add_option("--time", roles.time, "Column of the times")->type_name("NAME");
+  verb.add_option("--sample-time-s", roles.sample_time_s, "Time between samples, where the file has none")
+      ->type_name("S");
+  verb.add_option("--position-sign", roles.position_sign, "-1 turns the position round")
+      ->type_name("SIGN")
+      ->check(CLI::IsMember({-1.0, 1.0}));
+  verb.add_option("--force-sign", roles.force_sign, "-1 turns the actuator's force round")
+      ->type_name("SIGN")
+      ->check(CLI::IsMember({-1.0, 1.0}));
+  verb.add_option("--out", options.out, "Folder for report.html, results.json and the model")->type_name("DIR");
+  verb.add_flag("--json", options.json, "Print one JSON document and nothing else");
+}
+
+Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool needs_measured) {
+  if (options.out && options.out->empty()) {
+    return Error{ErrorCode::syntax, {}, "no folder is named: write one, as in --out results", "--out"};
+  }
+  identification::AxisRoles roles = options.roles;
+  roles.file = options.file;
+  auto axis = identification::read_axis(roles, needs_measured);
+  if (axis) return axis;
+  Error error = axis.error();
+  if (error.place.empty()) error.place = options.file;
+  return error;
+}
+
+Check present(const AxisOptions& options, const std::string& text, const std::string& json, const report::Page& page,
+              const std::string& model) {
+  std::cout << (options.json ? json : text);
+  if (auto error = flush_standard_output()) return error;
+  if (!options.out) return std::nullopt;
+  const std::filesystem::path folder = *options.out;
+  if (auto error = report::prepare_directory(folder)) return error;
+  if (!model.empty()) {
+    if (auto error = report::write_file(folder / "model.toml", model)) return error;
+  }
+  if (auto error = report::write_file(folder / "results.json", json)) return error;
+  if (auto error = report::write_file(folder / "report.html", page.to_html())) return error;
+  (options.json ? std::cerr : std::cout) << "Report: " << (folder / "report.html").string() << "\n";
+  return std::nullopt;
+}
+
+}  // namespace tactus::cli

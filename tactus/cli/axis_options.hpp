@@ -1,0 +1,35 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/identification/axis_recording.hpp>
+#include <tactus/report/page.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace CLI {  // NOLINT: the name is not ours
+class App;
+}
+
+/// What the verbs that read one axis of a recording share.
+namespace tactus::cli {
+
+struct AxisOptions {
+  std::string file;
+  identification::AxisRoles roles;
+  std::optional<std::string> out;
+  bool json = false;
+};
+
+/// Adds RECORDING, the roles of its columns, `--out` and `--json` to a verb.
+void add_axis_options(CLI::App& verb, AxisOptions& options);
+
+/// The recording that the options name.
+Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool needs_measured = false);
+
+/// Prints `text` or `json`, then writes results.json, report.html and, if given, model.toml to `--out`.
+Check present(const AxisOptions& options, const std::string& text, const std::string& json, const report::Page& page,
+              const std::string& model = {});
+
+}  // namespace tactus::cli

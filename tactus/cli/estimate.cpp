@@ -1,0 +1,189 @@
+#include <tactus/cli/axis_options.hpp>
+#include <tactus/cli/verbs.hpp>
+#include <tactus/configuration/document.hpp>
+#include <tactus/control/inverse_model_estimator.hpp>
+#include <tactus/core/version.hpp>
+#include <tactus/identification/force_comparison.hpp>
+#include <tactus/identification/zero_phase.hpp>
+#include <tactus/report/text.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+using identification::AxisRecording;
+using identification::ForceComparison;
+
+constexpr double comparison_cutoff_Hz = 60.0;
+constexpr double shortest_free_motion_s = 0.1;
+constexpr double settling_s = 0.05;  ///< of the estimator's filters, left out of the figures
+
+struct EstimateOptions {
+  AxisOptions axis;
+  std::string model;
+};
+
+struct Run {
+  std::vector<double> force;
+  double friction;  ///< of the model: less than this cannot be told from free motion [N or N m]
+};
+
+/// One tick after another, as on a servo: no sample sees a later one. The position counts from where it begins, so that
+/// the filters start at rest.
+Result<Run> run_estimator(const AxisRecording& axis, const std::string& model) {
+  const auto document = configuration::Document::load(model);
+  if (!document) return document.error();
+  const auto params = document->read<control::InverseModelEstimator::Params>();
+  if (!params) return params.error();
+  auto estimator = control::InverseModelEstimator::make(*params, axis.sample_time);
+  if (!estimator) return document->locate(estimator.error());
+  Run run{.force = {}, .friction = params->friction.force_N};
+  run.force.reserve(axis.position.values.size());
+  for (std::size_t i = 0; i < axis.position.values.size(); ++i) {
+    run.force.push_back(estimator
+                            ->step({.command = axis.force.values[i],
+                                    .position = axis.position.values[i] - axis.position.values.front()})
+                            .force);
+  }
+  return run;
+}
+
+/// Where the axis moves and the measured force stays within 1.5 times the model's friction or a tenth of its greatest
+/// value, whichever is more: the samples that count as free motion, and the RMS of the estimate there.
+struct FreeMotion {
+  std::size_t samples = 0;
+  double residual = 0;
+};
+
+Result<FreeMotion> free_motion(const Run& run, const AxisRecording& axis, const std::vector<double>& reference,
+                               std::size_t skip) {
+  const auto smooth = identification::zero_phase_low_pass(
+      axis.position.values, std::min(30.0, 0.1 / axis.sample_time.value), axis.sample_time);
+  if (!smooth) return smooth.error();
+  const auto velocity = identification::central_difference(*smooth, axis.sample_time);
+  double greatest_force = 0.0;
+  double fastest = 0.0;
+  for (std::size_t i = skip; i < run.force.size(); ++i) {
+    greatest_force = std::max(greatest_force, std::abs(reference[i]));
+    fastest = std::max(fastest, std::abs(velocity[i]));
+  }
+  const double small = std::max(0.1 * greatest_force, 1.5 * run.friction);
+  FreeMotion result;
+  double squares = 0.0;
+  for (std::size_t i = skip; i < run.force.size(); ++i) {
+    if (std::abs(reference[i]) > small || std::abs(velocity[i]) < 0.05 * fastest) continue;
+    squares += run.force[i] * run.force[i];
+    ++result.samples;
+  }
+  if (result.samples > 0) result.residual = std::sqrt(squares / static_cast<double>(result.samples));
+  return result;
+}
+
+std::string json_of(const EstimateOptions& options, const AxisRecording& axis, const Run& run,
+                    const std::optional<ForceComparison>& comparison, const FreeMotion& free, std::size_t skip) {
+  using Json = nlohmann::ordered_json;
+  const std::string unit = axis.rotary ? "_N_m" : "_N";
+  Json document{{"recording", options.axis.file},
+                {"model", options.model},
+                {"position", axis.position.name},
+                {"force", axis.force.name},
+                {"sample_time_s", axis.sample_time.value},
+                {"samples", run.force.size()},
+                {"causal", true},
+                {"sign", "force of the environment on the axis, positive toward +position"}};
+  double peak = 0.0;
+  for (std::size_t i = skip; i < run.force.size(); ++i) peak = std::max(peak, std::abs(run.force[i]));
+  document["peak" + unit] = peak;
+  if (comparison) {
+    document["compared_with"] = axis.measured->name;
+    document["comparison_cutoff_Hz"] = comparison_cutoff_Hz;
+    document["rmse" + unit] = comparison->rmse;
+    document["mean_error" + unit] = comparison->mean_error;
+    document["correlation"] = comparison->correlation;
+    document["lead_s"] = comparison->lead_s;
+  }
+  const bool moved_freely = static_cast<double>(free.samples) * axis.sample_time.value >= shortest_free_motion_s;
+  document["free_motion_residual" + unit] = moved_freely ? Json(free.residual) : Json(nullptr);
+  document["free_motion_s"] = static_cast<double>(free.samples) * axis.sample_time.value;
+  return document.dump(2) + "\n";
+}
+
+Check estimate_force(const EstimateOptions& options, const std::string& command) {
+  const auto axis = read_axis(options.axis, true);
+  if (!axis) return axis.error();
+  const auto run = run_estimator(*axis, options.model);
+  if (!run) return run.error();
+  const auto skip = static_cast<std::size_t>(settling_s / axis->sample_time.value);
+  std::optional<ForceComparison> comparison;
+  FreeMotion free;
+  if (axis->measured) {
+    auto compared = identification::compare_force(run->force, axis->measured->values, comparison_cutoff_Hz,
+                                                  axis->sample_time, skip);
+    if (!compared) return compared.error();
+    comparison = *std::move(compared);
+    const auto found = free_motion(*run, *axis, comparison->reference, skip);
+    if (!found) return found.error();
+    free = *found;
+  }
+  const std::string json = json_of(options, *axis, *run, comparison, free, skip);
+
+  const std::string unit = axis->rotary ? "N m" : "N";
+  std::string text = "Estimated " + std::to_string(run->force.size()) + " samples, causal";
+  if (comparison) {
+    text += "; against " + axis->measured->name + ": RMSE " + report::number(comparison->rmse, 3) + " " + unit +
+            ", correlation " + report::number(comparison->correlation, 4) + ", lead " +
+            report::number(1e3 * comparison->lead_s, 2) + " ms";
+  } else {
+    text += "; name a measured force with --compare to judge it";
+  }
+  report::Page page("Estimated force, " + options.axis.file);
+  page.paragraph(text + ".");
+  report::Panel panel{.title = "Force of the environment on the axis",
+                      .x = {.label = "time", .unit = "s"},
+                      .y = {.label = "force", .unit = unit},
+                      .lines = {},
+                      .rules = {}};
+  std::vector<double> time_s;
+  for (std::size_t i = 0; i < run->force.size(); ++i)
+    time_s.push_back(static_cast<double>(i) * axis->sample_time.value);
+  if (comparison) panel.lines.push_back({.name = "measured, zero-phase", .x = time_s, .y = comparison->reference});
+  panel.lines.push_back({.name = "estimated, causal", .x = time_s, .y = run->force, .colour = 1});
+  page.figure({.title = "Force", .caption = "Estimate from command and position alone.", .panels = {panel}});
+  page.footer("tactus " + std::string(version()), command);
+  return present(options.axis, text + "\n", json, page);
+}
+
+}  // namespace
+
+void add_estimate(CLI::App& app, const std::string& command, int& status) {
+  auto options = std::make_shared<EstimateOptions>();
+  CLI::App* estimate = app.add_subcommand("estimate", "Estimate what no sensor measures");
+  estimate->require_subcommand(1);
+  CLI::App* verb = estimate->add_subcommand("force", "Force of the environment from command and position");
+  add_axis_options(*verb, options->axis);
+  verb->add_option("--model", options->model, "Model file, as `identify inverse --out` writes it")->required();
+  verb->add_option("--compare", options->axis.roles.measured, "Column of the measured force")->type_name("NAME");
+  verb->add_option("--compare-sign", options->axis.roles.measured_sign,
+                   "-1 where the file holds the force on the environment, not on the axis")
+      ->type_name("SIGN")
+      ->check(CLI::IsMember({-1.0, 1.0}));
+  verb->callback([options, name = app.get_name(), &command, &status] {
+    if (const auto error = estimate_force(*options, command)) {
+      std::cerr << name << ": " << describe(*error) << "\n";
+      status = exit_status(*error);
+    }
+  });
+}
+
+}  // namespace tactus::cli
