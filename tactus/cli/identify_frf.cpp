@@ -203,6 +203,7 @@ report::Table table_of(const std::vector<Row>& rows, const std::string& unit) {
 
 report::Figure figure_of(const std::vector<Row>& rows, const std::string& unit, bool with_coherence) {
   std::vector<double> x, gain, above, below, phase, later, earlier, coherence;
+  double before_deg = std::nan("");
   for (const Row& row : rows) {
     x.push_back(row.frequency_Hz);
     gain.push_back(row.gain);
@@ -210,10 +211,12 @@ report::Figure figure_of(const std::vector<Row>& rows, const std::string& unit, 
     below.push_back(row.gain - row.gain_95);
     // No line across the edge at 180 degrees, and none where the band is the whole circle.
     const bool told = row.phase_95_deg < 180.0;
-    const bool wraps = !phase.empty() && std::abs(row.phase_deg - phase.back()) > 180.0;
-    phase.push_back(told && !wraps ? row.phase_deg : std::nan(""));
-    later.push_back(told ? row.phase_deg - row.phase_95_deg : std::nan(""));
-    earlier.push_back(told ? row.phase_deg + row.phase_95_deg : std::nan(""));
+    const bool wraps = std::abs(row.phase_deg - before_deg) > 180.0;
+    before_deg = row.phase_deg;
+    const bool drawn = told && !wraps;
+    phase.push_back(drawn ? row.phase_deg : std::nan(""));
+    later.push_back(drawn ? row.phase_deg - row.phase_95_deg : std::nan(""));
+    earlier.push_back(drawn ? row.phase_deg + row.phase_95_deg : std::nan(""));
     coherence.push_back(row.coherence);
   }
   using Scale = report::Axis::Scale;
