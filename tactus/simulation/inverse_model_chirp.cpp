@@ -83,6 +83,13 @@ Check check(const InverseModelChirpParams& params) {
   const auto tried =
       InverseModelEstimator::make(with_blocks(params.estimator, 0, 0.0), Seconds{1.0 / params.task.sample_rate_Hz});
   if (!tried) return under("estimator", tried.error());
+  if (const double margin_deg = phase_margin_deg(params.slave); !(margin_deg > 0.0)) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "slave.controller_gain_N_per_m",
+                 .message = "the slave's position loop is unstable, its phase margin " + format_number(margin_deg) +
+                            " degrees: lower the gain or the delays, or add damping",
+                 .place = {}};
+  }
   return {};
 }
 

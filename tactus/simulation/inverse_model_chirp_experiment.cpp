@@ -96,14 +96,15 @@ std::string json_of(const Request& request, const std::vector<ChirpRun>& runs) {
 
 report::Figure figure_of(const ChirpRun& run) {
   const SlaveRecord& record = run.result.chirp;
-  report::Figure figure{.title = "Free motion along a chirp",
-                        .caption =
-                            "Above: the command that the controller gave and what each inverse model says was needed. "
-                            "Below: their difference, the force that is fed back though nothing is touched. Compare "
-                            "Fig. 5 of Saków et al.",
-                        .columns = 1,
-                        .panels = {},
-                        .share_x = report::Sharing::in_line};
+  report::Figure figure{
+      .title = "Free motion along a chirp",
+      .caption =
+          "Above: the command that the controller gave, and with the force that each inverse model feels added. "
+          "Below: that force, which is fed back though nothing is touched. Compare "
+          "Fig. 5 of Saków et al.",
+      .columns = 1,
+      .panels = {},
+      .share_x = report::Sharing::in_line};
   const report::Axis time{.label = "time", .unit = "s"};
   report::Panel needed{.title = {}, .x = time, .y = {.label = "command", .unit = "N"}, .lines = {}, .rules = {}};
   needed.lines.push_back({.name = "command", .x = record.time_s, .y = record.command, .colour = 7});
@@ -113,8 +114,7 @@ report::Figure figure_of(const ChirpRun& run) {
     if (one.blocks == 1 || one.blocks == 3) continue;  // the paper shows two blocks
     std::vector<double> said = one.felt_N;
     for (std::size_t i = 0; i < said.size(); ++i) said[i] += record.command[i];
-    needed.lines.push_back(
-        {.name = label(one), .x = record.time_s, .y = std::move(said), .colour = colour, .dash = report::Dash::dashed});
+    needed.lines.push_back({.name = label(one), .x = record.time_s, .y = std::move(said), .colour = colour});
     felt.lines.push_back({.name = label(one), .x = record.time_s, .y = one.felt_N, .colour = colour++});
   }
   figure.panels = {std::move(needed), std::move(felt)};

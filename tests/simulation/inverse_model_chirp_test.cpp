@@ -29,5 +29,13 @@ TEST(InverseModelChirp, AnInverseThatCannotRunIsRefusedBeforeTheRun) {
   EXPECT_TRUE(error->parameter.starts_with("estimator."));
 }
 
+TEST(InverseModelChirp, ALoopThatIsUnstableIsRefusedBeforeTheRun) {
+  InverseModelChirpParams params;
+  params.slave.controller_gain_N_per_m = 1000.0;
+  const Check error = check(params);
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->parameter, "slave.controller_gain_N_per_m");
+}
+
 }  // namespace
 }  // namespace tactus::simulation
