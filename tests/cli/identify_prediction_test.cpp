@@ -31,8 +31,7 @@ TEST_F(IdentifyPrediction, what_cannot_be_is_refused_by_name) {
   EXPECT_EQ(recording.status, 2);
   EXPECT_NE(recording.err.find("none.csv"), std::string::npos) << recording.err;
 
-  const Outcome unstable =
-      tactus({"identify", "prediction", chirp, "--set", "slave.controller_gain_N_per_m=1000"});
+  const Outcome unstable = tactus({"identify", "prediction", chirp, "--set", "slave.controller_gain_N_per_m=1000"});
   EXPECT_EQ(unstable.status, 2);
   EXPECT_NE(unstable.err.find("unstable"), std::string::npos) << unstable.err;
 }

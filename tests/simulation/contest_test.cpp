@@ -1,4 +1,5 @@
 #include <tactus/simulation/contest.hpp>
+#include <tactus/simulation/contest_presentation.hpp>
 #include <tactus/simulation/experiment.hpp>
 
 #include <algorithm>
@@ -6,6 +7,9 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "tests/simulation/default_experiment.hpp"
 #include <gtest/gtest.h>
@@ -128,6 +132,54 @@ TEST(Contest, ScoresEveryMethodInWordsPictureAndJson) {
     EXPECT_EQ(method["metrics"]["grips"].size(), contest_grips.size());
     EXPECT_EQ(method["metrics"]["gains"].size(), 2 * contest_gains.size());
     EXPECT_GT(method["metrics"]["free_space_hand_force_rms_N"], 0.0);
+  }
+}
+
+/// The parameters of each method in a small contest.
+std::vector<ContestParams> small_contest_params() {
+  std::vector<ContestParams> all;
+  for (const ContestMethod& method : contest_methods()) {
+    configuration::Document document = small_contest().document;
+    for (const std::string_view setting : method.settings) EXPECT_FALSE(document.set(setting));
+    all.push_back(document.read<ContestParams>().value());
+  }
+  return all;
+}
+
+TEST(Contest, GivesTheSameBitsInWhateverOrderItsPiecesAreComputed) {
+  const std::vector<ContestParams> all = small_contest_params();
+  const auto json = [&all](bool reversed) {
+    std::vector<ContestJob> jobs;
+    for (std::size_t method = 0; method < all.size(); ++method) {
+      auto own = contest_jobs(method, all[method]);
+      for (ContestJob& job : *own) jobs.push_back(std::move(job));
+    }
+    if (reversed) std::reverse(jobs.begin(), jobs.end());
+    std::vector<MethodScore> scores(all.size());
+    for (const ContestJob& job : jobs) job.run(scores[job.method]);
+    return contest_json("contest", scores, all.front());
+  };
+  EXPECT_EQ(json(false), json(true));
+}
+
+TEST(Contest, EveryMethodReachesTheWallAndStaysThereOverALineThatReordersAndLoses) {
+  const std::vector<ContestParams> all = small_contest_params();
+  for (std::size_t method = 0; method < all.size(); ++method) {
+    TappingParams params;
+    static_cast<Teleoperator::Params&>(params) = all[method];
+    params.task.taps = 2;
+    for (Channel::Params* way : {&params.channel.to_slave, &params.channel.to_master}) {
+      way->delay_s = 0.02;
+      way->jitter_s = 0.01;
+      way->loss_fraction = 0.1;
+    }
+    const auto ensemble = TappingEnsemble::make(params);
+    ASSERT_TRUE(ensemble) << describe(ensemble.error());
+    for (std::size_t tap = 0; tap < ensemble->size(); ++tap) {
+      const TapResult result = ensemble->run(tap);
+      EXPECT_TRUE(result.touched) << contest_methods()[method].name;
+      EXPECT_FALSE(result.diverged) << contest_methods()[method].name;
+    }
   }
 }
 
