@@ -1,4 +1,7 @@
+#include <tactus/control/disturbance_observer.hpp>
 #include <tactus/control/inverse_model_estimator.hpp>
+#include <tactus/control/kalman_force_estimator.hpp>
+#include <tactus/control/momentum_observer.hpp>
 
 #include <cmath>
 #include <vector>
@@ -36,17 +39,33 @@ control::InverseModelEstimator inverse_model(control::FrictionLaw law) {
   return *control::InverseModelEstimator::make(params, Seconds{200e-6});
 }
 
+/// With the same friction law in each.
+template <class Observer>
+Observer observer() {
+  typename Observer::Params params;
+  params.model.friction = {.law = control::FrictionLaw::smooth_coulomb, .force_N = 0.02};
+  return *Observer::make(params, Seconds{200e-6});
+}
+
 }  // namespace
 
 void add_force_estimators() {
   add_estimator("inverse model", inverse_model(control::FrictionLaw::none));
   add_estimator("inverse model, sigmoid", inverse_model(control::FrictionLaw::sigmoid));
+  add_estimator("inverse model, tanh", inverse_model(control::FrictionLaw::smooth_coulomb));
+  add_estimator("disturbance observer", observer<control::DisturbanceObserver>());
+  add_estimator("momentum observer", observer<control::MomentumObserver>());
+  add_estimator("Kalman filter", observer<control::KalmanForceEstimator>());
 }
 
 Findings force_estimators(const Times& times) {
   const auto tick_ns = [&times](const char* name) { return 1e9 * times.at(name) / ticks; };
   return {{section, "inverse model, two blocks", tick_ns("inverse model"), "ns"},
-          {section, "the same with the paper's damping function", tick_ns("inverse model, sigmoid"), "ns"}};
+          {section, "the same with the paper's damping function", tick_ns("inverse model, sigmoid"), "ns"},
+          {section, "the same with smoothed Coulomb friction", tick_ns("inverse model, tanh"), "ns"},
+          {section, "disturbance observer, smoothed Coulomb friction", tick_ns("disturbance observer"), "ns"},
+          {section, "momentum observer, smoothed Coulomb friction", tick_ns("momentum observer"), "ns"},
+          {section, "Kalman filter, smoothed Coulomb friction", tick_ns("Kalman filter"), "ns"}};
 }
 
 }  // namespace tactus::bench

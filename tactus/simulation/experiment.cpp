@@ -1,6 +1,7 @@
 #include <tactus/simulation/contest_experiment.hpp>
 #include <tactus/simulation/experiment.hpp>
 #include <tactus/simulation/force_display_experiment.hpp>
+#include <tactus/simulation/force_estimators_experiment.hpp>
 #include <tactus/simulation/inverse_model_chirp_experiment.hpp>
 #include <tactus/simulation/prediction_block_experiment.hpp>
 #include <tactus/simulation/tapping_experiment.hpp>
@@ -85,8 +86,9 @@ std::span<const Experiment* const> experiments() {
   static const ContestExperiment contest;
   static const InverseModelChirpExperiment inverse_model_chirp;
   static const PredictionBlockExperiment prediction_block;
-  static constexpr auto all =
-      std::to_array<const Experiment*>({&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block});
+  static const ForceEstimatorsExperiment force_estimators;
+  static constexpr auto all = std::to_array<const Experiment*>(
+      {&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block, &force_estimators});
   return all;
 }
 

@@ -175,7 +175,8 @@ TEST(ChooseExperiment, KnowsItsKindsAndListsThemForAnother) {
   ASSERT_FALSE(unknown);
   EXPECT_EQ(describe(unknown.error()),
             "test.toml:2:8: task.kind: 'grasping' is no kind of experiment: write one of "
-            "tapping, force-display, contest, inverse-model-chirp, prediction-block");
+            "tapping, force-display, contest, inverse-model-chirp, prediction-block, "
+            "force-estimators");
   const auto missing = chosen("[control]\nforce_gain = 1.0");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, ErrorCode::missing);

@@ -1,0 +1,201 @@
+#include <tactus/identification/force_comparison.hpp>
+#include <tactus/mechanics/minimum_jerk.hpp>
+#include <tactus/simulation/force_estimators.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+namespace tactus::simulation {
+
+namespace {
+
+using control::InverseModelEstimator;
+
+/// Contact forces are compared up to here, with a zero-phase low-pass of the true force.
+constexpr double comparison_cutoff_Hz = 200.0;
+
+double rms(std::span<const double> values, double about = 0.0) {
+  double squares = 0.0;
+  for (const double value : values) squares += (value - about) * (value - about);
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+double mean(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double start_of(const ForceEstimatorsParams& params) {
+  return params.environment.position_m - 3.0 * params.task.free_amplitude_m;
+}
+
+/// Where the slave is told to be.
+double path_m(const ForceEstimatorsParams& params, const ForceEstimatorsPlan& plan, double time_s) {
+  const double start_m = start_of(params);
+  if (time_s < plan.rest_s) return start_m;
+  if (time_s < plan.free_until_s) {
+    const double phase = 2.0 * std::numbers::pi * params.task.free_frequency_Hz * (time_s - plan.rest_s);
+    return start_m + params.task.free_amplitude_m * (1.0 - std::cos(phase));
+  }
+  const double pressed_m = params.environment.position_m + params.task.press_depth_m;
+  const mechanics::MinimumJerk press{start_m, pressed_m, plan.press_s, plan.hold_s - plan.press_s};
+  const mechanics::MinimumJerk release{0.0, start_m - pressed_m, plan.release_s, plan.end_s - plan.release_s};
+  return press.position_m(time_s) + release.position_m(time_s);
+}
+
+EstimatorScore score(std::string name, std::vector<double> estimate_N, const SlaveRun& run,
+                     const ForceEstimatorsPlan& plan) {
+  const auto part = [&](const std::vector<double>& signal, double from_s, double until_s) {
+    const auto tick = [&](double time_s) { return static_cast<std::size_t>(std::lround(time_s / run.tick_s)); };
+    return std::span(signal).subspan(tick(from_s), tick(until_s) - tick(from_s));
+  };
+  const auto rest = part(estimate_N, 0.5 * plan.rest_s, plan.rest_s);
+  EstimatorScore result{.name = std::move(name),
+                        .rest_noise_N = rms(rest, mean(rest)),
+                        .free_residual_N = rms(part(estimate_N, plan.rest_s, plan.free_until_s)),
+                        .contact_error_N = 0.0,
+                        .lead_s = 0.0,
+                        .estimate_N = {}};
+  // Equal lengths, and longer than the comparison asks for: it cannot fail.
+  const auto comparison = identification::compare_force(part(estimate_N, plan.press_s, plan.end_s),
+                                                        part(run.true_N, plan.press_s, plan.end_s),
+                                                        comparison_cutoff_Hz, Seconds{run.tick_s}, 0)
+                              .value();
+  result.contact_error_N = comparison.rmse;
+  result.lead_s = comparison.lead_s;
+  result.estimate_N = std::move(estimate_N);
+  return result;
+}
+
+/// Slave, controller and their clock, each valid.
+struct Loop {
+  Clock clock;
+  mechanics::ElectricSlave slave;
+  control::ServoPd controller;
+};
+
+Result<Loop> make_loop(const ForceEstimatorsParams& params) {
+  const auto clock = Clock::make(params.servo, params.plant);
+  if (!clock) return clock.error();
+  const auto slave = mechanics::ElectricSlave::make(params.slave, params.environment, Seconds{clock->substep_s});
+  if (!slave) {
+    const bool of_wall = slave.error().parameter.starts_with("environment");
+    return of_wall ? slave.error() : under("slave", slave.error());
+  }
+  const auto controller = control::ServoPd::make(params.controller, Seconds{clock->tick_s});
+  if (!controller) return under("controller", controller.error());
+  return Loop{*clock, *slave, *controller};
+}
+
+struct Estimators {
+  InverseModelEstimator unpredicted;
+  InverseModelEstimator inverse_model;
+  control::DisturbanceObserver disturbance_observer;
+  control::MomentumObserver momentum_observer;
+  control::KalmanForceEstimator kalman;
+};
+
+Result<Estimators> make_estimators(const ForceEstimatorsParams& params, Seconds dt) {
+  const auto inverse_model = InverseModelEstimator::make(params.inverse_model, dt);
+  if (!inverse_model) return under("inverse_model", inverse_model.error());
+  InverseModelEstimator::Params without = params.inverse_model;
+  without.prediction.blocks = 0;
+  without.declared_delay_s = 0.0;
+  const auto unpredicted = InverseModelEstimator::make(without, dt);
+  if (!unpredicted) return under("inverse_model", unpredicted.error());
+  const auto disturbance = control::DisturbanceObserver::make(params.disturbance_observer, dt);
+  if (!disturbance) return under("disturbance_observer", disturbance.error());
+  const auto momentum = control::MomentumObserver::make(params.momentum_observer, dt);
+  if (!momentum) return under("momentum_observer", momentum.error());
+  const auto kalman = control::KalmanForceEstimator::make(params.kalman, dt);
+  if (!kalman) return under("kalman", kalman.error());
+  return Estimators{*unpredicted, *inverse_model, *disturbance, *momentum, *kalman};
+}
+
+template <class Estimator>
+std::vector<double> along(const SlaveRun& run, Estimator estimator) {
+  const double start = run.samples.front().position;
+  std::vector<double> estimate_N;
+  estimate_N.reserve(run.samples.size());
+  for (const control::SlaveMotionSample& sample : run.samples) {
+    estimate_N.push_back(estimator.step({.command = sample.command, .position = sample.position - start}).force);
+  }
+  return estimate_N;
+}
+
+}  // namespace
+
+ForceEstimatorsPlan plan_of(const ForceEstimatorsTask& task) {
+  constexpr double rest_s = 0.5;
+  // Two periods or more, whole ones, so that the motion ends where it began.
+  const double free_s = std::max(2.0, std::ceil(2.0 * task.free_frequency_Hz)) / task.free_frequency_Hz;
+  const double press_s = rest_s + free_s + 0.25;
+  return {.rest_s = rest_s,
+          .free_until_s = rest_s + free_s,
+          .press_s = press_s,
+          .hold_s = press_s + 0.5,
+          .release_s = press_s + 1.0,
+          .end_s = press_s + 1.5};
+}
+
+Check check(const ForceEstimatorsParams& params) {
+  if (auto error = validate(params)) return error;
+  const auto loop = make_loop(params);
+  if (!loop) return loop.error();
+  const auto estimators = make_estimators(params, Seconds{loop->clock.tick_s});
+  if (!estimators) return estimators.error();
+  return std::nullopt;
+}
+
+Result<SlaveRun> drive_slave(const ForceEstimatorsParams& params) {
+  if (auto error = validate(params)) return *std::move(error);
+  auto loop = make_loop(params);
+  if (!loop) return loop.error();
+  auto& [clock, slave, controller] = *loop;
+  slave.reset(start_of(params));
+
+  const ForceEstimatorsPlan plan = plan_of(params.task);
+  SlaveRun run{.tick_s = clock.tick_s, .samples = {}, .sensor_N = {}, .true_N = {}};
+  const auto ticks = static_cast<std::size_t>(std::lround(plan.end_s / clock.tick_s));
+  double command_N = 0.0;
+  double contact_N = 0.0;
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    const auto reading = slave.measure();
+    run.samples.push_back({.command = command_N, .position = reading.motor_position_m});
+    run.sensor_N.push_back(-reading.tip_force_N);
+    run.true_N.push_back(-contact_N);
+    const double wanted_m = path_m(params, plan, static_cast<double>(tick) * clock.tick_s);
+    const double next_N = controller.step(wanted_m - reading.motor_position_m);
+    contact_N = 0.0;
+    for (int i = 0; i < clock.substeps; ++i) {
+      if (i == clock.late_substeps) command_N = next_N;
+      contact_N += slave.step(command_N).contact_force_N / clock.substeps;
+    }
+  }
+  return run;
+}
+
+Result<ForceEstimatorsResult> compare_force_estimators(const ForceEstimatorsParams& params) {
+  auto run = drive_slave(params);
+  if (!run) return run.error();
+  const auto estimators = make_estimators(params, Seconds{run->tick_s});
+  if (!estimators) return estimators.error();
+  const ForceEstimatorsPlan plan = plan_of(params.task);
+  ForceEstimatorsResult result{.run = *std::move(run), .scores = {}};
+  const auto add = [&](const char* name, std::vector<double> estimate_N) {
+    result.scores.push_back(score(name, std::move(estimate_N), result.run, plan));
+  };
+  add("force sensor", result.run.sensor_N);
+  add("inverse model, no prediction", along(result.run, estimators->unpredicted));
+  add("inverse model, prediction", along(result.run, estimators->inverse_model));
+  add("disturbance observer", along(result.run, estimators->disturbance_observer));
+  add("momentum observer", along(result.run, estimators->momentum_observer));
+  add("Kalman filter", along(result.run, estimators->kalman));
+  return result;
+}
+
+}  // namespace tactus::simulation
