@@ -4,7 +4,6 @@
 #include <tactus/control/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/force_comparison.hpp>
-#include <tactus/identification/zero_phase.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
@@ -23,6 +22,7 @@ namespace tactus::cli {
 namespace {
 
 using identification::AxisRecording;
+using identification::FalseForce;
 using identification::ForceComparison;
 
 constexpr double comparison_cutoff_Hz = 60.0;
@@ -59,39 +59,8 @@ Result<Run> run_estimator(const AxisRecording& axis, const std::string& model) {
   return run;
 }
 
-/// Where the axis moves and the measured force stays within 1.5 times the model's friction or a tenth of its greatest
-/// value, whichever is more: the samples that count as free motion, and the RMS of the estimate there.
-struct FreeMotion {
-  std::size_t samples = 0;
-  double residual = 0;
-};
-
-Result<FreeMotion> free_motion(const Run& run, const AxisRecording& axis, const std::vector<double>& reference,
-                               std::size_t skip) {
-  const auto smooth = identification::zero_phase_low_pass(
-      axis.position.values, std::min(30.0, 0.1 / axis.sample_time.value), axis.sample_time);
-  if (!smooth) return smooth.error();
-  const auto velocity = identification::central_difference(*smooth, axis.sample_time);
-  double greatest_force = 0.0;
-  double fastest = 0.0;
-  for (std::size_t i = skip; i < run.force.size(); ++i) {
-    greatest_force = std::max(greatest_force, std::abs(reference[i]));
-    fastest = std::max(fastest, std::abs(velocity[i]));
-  }
-  const double small = std::max(0.1 * greatest_force, 1.5 * run.friction);
-  FreeMotion result;
-  double squares = 0.0;
-  for (std::size_t i = skip; i < run.force.size(); ++i) {
-    if (std::abs(reference[i]) > small || std::abs(velocity[i]) < 0.05 * fastest) continue;
-    squares += run.force[i] * run.force[i];
-    ++result.samples;
-  }
-  if (result.samples > 0) result.residual = std::sqrt(squares / static_cast<double>(result.samples));
-  return result;
-}
-
 std::string json_of(const EstimateOptions& options, const AxisRecording& axis, const Run& run,
-                    const std::optional<ForceComparison>& comparison, const FreeMotion& free, std::size_t skip) {
+                    const std::optional<ForceComparison>& comparison, const FalseForce& free, std::size_t skip) {
   using Json = nlohmann::ordered_json;
   const std::string unit = axis.rotary ? "_N_m" : "_N";
   Json document{{"recording", options.axis.file},
@@ -113,9 +82,9 @@ std::string json_of(const EstimateOptions& options, const AxisRecording& axis, c
     document["correlation"] = comparison->correlation;
     document["lead_s"] = comparison->lead_s;
   }
-  const bool moved_freely = static_cast<double>(free.samples) * axis.sample_time.value >= shortest_free_motion_s;
-  document["free_motion_residual" + unit] = moved_freely ? Json(free.residual) : Json(nullptr);
-  document["free_motion_s"] = static_cast<double>(free.samples) * axis.sample_time.value;
+  const bool moved_freely = free.duration_s >= shortest_free_motion_s;
+  document["free_motion_residual" + unit] = moved_freely ? Json(free.rms) : Json(nullptr);
+  document["free_motion_s"] = free.duration_s;
   return document.dump(2) + "\n";
 }
 
@@ -126,13 +95,14 @@ Check estimate_force(const EstimateOptions& options, const std::string& command)
   if (!run) return run.error();
   const auto skip = static_cast<std::size_t>(settling_s / axis->sample_time.value);
   std::optional<ForceComparison> comparison;
-  FreeMotion free;
+  FalseForce free;
   if (axis->measured) {
     auto compared = identification::compare_force(run->force, axis->measured->values, comparison_cutoff_Hz,
                                                   axis->sample_time, skip);
     if (!compared) return compared.error();
     comparison = *std::move(compared);
-    const auto found = free_motion(*run, *axis, comparison->reference, skip);
+    const auto found = identification::false_force(run->force, comparison->reference, axis->position.values,
+                                                   run->friction, axis->sample_time, skip);
     if (!found) return found.error();
     free = *found;
   }

@@ -71,4 +71,28 @@ Result<ForceComparison> compare_force(std::span<const double> estimate, std::spa
   return result;
 }
 
+Result<FalseForce> false_force(std::span<const double> estimate, std::span<const double> reference,
+                               std::span<const double> position, double friction, Seconds dt, std::size_t skip) {
+  const auto smooth = zero_phase_low_pass(position, std::min(30.0, 0.1 / dt.value), dt);
+  if (!smooth) return smooth.error();
+  const auto velocity = central_difference(*smooth, dt);
+  double greatest_force = 0.0;
+  double fastest = 0.0;
+  for (std::size_t i = skip; i < estimate.size(); ++i) {
+    greatest_force = std::max(greatest_force, std::abs(reference[i]));
+    fastest = std::max(fastest, std::abs(velocity[i]));
+  }
+  const double small = std::max(0.1 * greatest_force, 1.5 * friction);
+  double squares = 0.0;
+  std::size_t samples = 0;
+  for (std::size_t i = skip; i < estimate.size(); ++i) {
+    if (std::abs(reference[i]) > small || std::abs(velocity[i]) < 0.05 * fastest) continue;
+    squares += estimate[i] * estimate[i];
+    ++samples;
+  }
+  if (samples == 0) return FalseForce{};
+  return FalseForce{.rms = std::sqrt(squares / static_cast<double>(samples)),
+                    .duration_s = static_cast<double>(samples) * dt.value};
+}
+
 }  // namespace tactus::identification

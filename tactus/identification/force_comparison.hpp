@@ -24,4 +24,16 @@ struct ForceComparison {
 Result<ForceComparison> compare_force(std::span<const double> estimate, std::span<const double> measured,
                                       double cutoff_Hz, Seconds dt, std::size_t skip);
 
+/// What an estimate feels where there is nothing to feel.
+struct FalseForce {
+  double rms = 0;         ///< [unit of the forces]; 0 where the axis never moves freely
+  double duration_s = 0;  ///< of free motion in the recording
+};
+
+/// The estimate in free motion: where the axis moves, faster than a twentieth of its greatest speed below 30 Hz, and
+/// the `reference` stays within 1.5 times the model's `friction` or a tenth of its own greatest value, whichever is
+/// more. All of one length, the first `skip` samples left out. Errors: those of the filter. Not real-time safe.
+Result<FalseForce> false_force(std::span<const double> estimate, std::span<const double> reference,
+                               std::span<const double> position, double friction, Seconds dt, std::size_t skip);
+
 }  // namespace tactus::identification

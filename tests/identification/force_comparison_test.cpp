@@ -1,6 +1,7 @@
 #include <tactus/identification/force_comparison.hpp>
 #include <tactus/identification/zero_phase.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -62,6 +63,24 @@ TEST(ForceComparison, an_offset_is_all_error_and_no_loss_of_correlation) {
   EXPECT_NEAR(comparison->rmse, 0.25, 1e-4);
   EXPECT_NEAR(comparison->mean_error, 0.25, 1e-4);
   EXPECT_NEAR(comparison->correlation, 1.0, 1e-6);
+}
+
+TEST(FalseForce, IsTheEstimateWhereTheAxisMovesAndNothingIsMeasured) {
+  // One second of free motion, one of contact, one at rest, at 1 kHz.
+  std::vector<double> estimate(3000, 0.0);
+  std::vector<double> reference(3000, 0.0);
+  std::vector<double> position(3000, 0.0);
+  for (std::size_t i = 0; i < 3000; ++i) {
+    if (i < 2000) estimate[i] = i < 1000 ? 0.02 : 5.0;
+    reference[i] = i >= 1000 && i < 2000 ? 1.0 : 0.0;
+    position[i] = 0.001 * static_cast<double>(std::min<std::size_t>(i, 2000));
+  }
+  const auto felt = false_force(estimate, reference, position, 0.01, Seconds{1e-3}, 100);
+  ASSERT_TRUE(felt);
+  EXPECT_NEAR(felt->duration_s, 0.9, 0.02);
+  // The filter smears the stop over a few samples, which count with an estimate of 0.
+  EXPECT_NEAR(felt->rms, 0.02, 5e-4);
+  EXPECT_EQ(false_force(estimate, std::vector<double>(3000, 1.0), position, 0.01, Seconds{1e-3}, 100)->duration_s, 0.0);
 }
 
 }  // namespace
