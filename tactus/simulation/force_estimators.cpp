@@ -103,7 +103,7 @@ Result<Estimators> make_estimators(const ForceEstimatorsParams& params, Seconds 
   const auto inverse_model = InverseModelEstimator::make(params.inverse_model, dt);
   if (!inverse_model) return under("inverse_model", inverse_model.error());
   InverseModelEstimator::Params without = params.inverse_model;
-  without.prediction.blocks = 0;
+  without.prediction = signal::Predictor::Params::none();
   without.declared_delay_s = 0.0;
   const auto unpredicted = InverseModelEstimator::make(without, dt);
   if (!unpredicted) return under("inverse_model", unpredicted.error());
