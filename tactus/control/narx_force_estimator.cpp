@@ -48,7 +48,7 @@ NarxMemory::Variables NarxMemory::see(const SlaveMotionSample& sample) noexcept 
   positions_m_[now_] = position_filter_.step(sample.position);
   command_N_ = command_filter_.step(actuator_gain_ * sample.command);
   const auto ago = [this](std::size_t lags) { return (now_ + capacity - lags * lag_ticks_) % capacity; };
-  Variables variables{1.0, held(positions_m_[now_] / scales_.position_scale_m)};
+  Variables variables{1.0};
   for (std::size_t i = 0; i < NarxVariables::most_differences; ++i) {
     const double difference_m = positions_m_[ago(i)] - positions_m_[ago(i + 1)];
     variables[NarxVariables::first_difference + i] = held(difference_m / scales_.difference_scale_m);

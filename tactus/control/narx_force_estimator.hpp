@@ -12,12 +12,13 @@
 
 namespace tactus::control {
 
-/// What a term of a NARX model can be a product of, by number: 0 the one; 1 the position; 2 to 7 the difference of
-/// positions i − 2 and i − 1 lags old; 8 to 10 the model's own output i − 7 lags before. All but the one over their
-/// scales. Position and differences span the same polynomials as the lagged positions do, and are told apart better.
+/// What a term of a NARX model can be a product of, by number: 0 the one; 1 to 6 the difference of the positions i − 1
+/// and i lags old, over its scale; 7 to 9 the model's own output i − 6 lags before, over its limit. Differences tell
+/// lagged positions apart far better than positions do, and hold wherever the slave is; a slave with a spring of its
+/// own needs another model.
 struct NarxVariables {
   static constexpr std::size_t most_differences = 6, most_outputs = 3;
-  static constexpr std::size_t position = 1, first_difference = 2, first_output = 8, count = 11;
+  static constexpr std::size_t first_difference = 1, first_output = 7, count = 10;
 };
 
 /// coefficient·v_1·v_2·v_3, each v by its number.
@@ -29,9 +30,9 @@ struct NarxTerm {
   static constexpr auto fields() {
     return std::tuple{field("coefficient_N", &NarxTerm::coefficient_N, units::newton, between(-1e9, 1e9),
                             "Force where each variable is at its scale; 0 drops the term."),
-                      field("variable_1", &NarxTerm::variable_1, between(0, 10), "First factor; 0 is the one."),
-                      field("variable_2", &NarxTerm::variable_2, between(0, 10), "Second factor."),
-                      field("variable_3", &NarxTerm::variable_3, between(0, 10), "Third factor.")};
+                      field("variable_1", &NarxTerm::variable_1, between(0, 9), "First factor; 0 is the one."),
+                      field("variable_2", &NarxTerm::variable_2, between(0, 9), "Second factor."),
+                      field("variable_3", &NarxTerm::variable_3, between(0, 9), "Third factor.")};
   }
 };
 
@@ -59,8 +60,7 @@ struct NarxTerms {
 /// How a NARX model sees the slave: filters, lags and scales.
 struct NarxScales {
   double cutoff_Hz = 100.0;
-  double lag_s = 0.004;
-  double position_scale_m = 0.01;
+  double lag_s = 0.002;
   double difference_scale_m = 1e-4;
   double force_limit_N = 10.0;
   static constexpr auto fields() {
@@ -69,7 +69,6 @@ struct NarxScales {
                             "Butterworth low-pass on position and command, below half the sample rate."),
                       field("lag_s", &S::lag_s, units::second, positive,
                             "From one lag to the next; rounded to samples, 1 to 64 of them."),
-                      field("position_scale_m", &S::position_scale_m, units::metre, positive, "Scale of the position."),
                       field("difference_scale_m", &S::difference_scale_m, units::metre, positive,
                             "Scale of each difference of lagged positions."),
                       field("force_limit_N", &S::force_limit_N, units::newton, between(1e-9, 1e9),

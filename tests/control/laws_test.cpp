@@ -163,8 +163,8 @@ struct Subject<control::NarxForceEstimator> {
   static std::vector<control::NarxForceEstimator::Params> parameters() {
     control::NarxForceEstimator::Params unstable{.actuator_gain = 2.0};
     unstable.scales.lag_s = dt_s;
-    unstable.terms.term_0 = {.coefficient_N = 50.0, .variable_1 = 8};
-    unstable.terms.term_1 = {.coefficient_N = -1e9, .variable_1 = 8, .variable_2 = 2, .variable_3 = 7};
+    unstable.terms.term_0 = {.coefficient_N = 50.0, .variable_1 = 7};
+    unstable.terms.term_1 = {.coefficient_N = -1e9, .variable_1 = 7, .variable_2 = 1, .variable_3 = 6};
     unstable.terms.term_11 = {.coefficient_N = 1e9, .variable_1 = 1, .variable_2 = 1, .variable_3 = 1};
     return {{}, unstable};
   }
