@@ -41,9 +41,9 @@ class Predictor {
     }
     /// Predicts nothing.
     static Params none() { return {.blocks = 0}; }
-    /// How far the chosen one looks ahead at low frequency.
+    /// How far the chosen one looks ahead at low frequency; a mean (degree 0) does not.
     [[nodiscard]] double lead_s() const noexcept {
-      if (kind == PredictionKind::polynomial) return polynomial.horizon_s;
+      if (kind == PredictionKind::polynomial) return polynomial.degree > 0 ? polynomial.horizon_s : 0.0;
       if (kind == PredictionKind::kalman) return kalman.horizon_s;
       return static_cast<double>(blocks) * block.time_constant_s;
     }
