@@ -72,11 +72,11 @@ constexpr std::size_t cascades = 4;
 
 /// A rival, which exists only sampled.
 template <class Element>
-PredictorRow rival(std::string name, const signal::Predictor::Params& params, const Element& element,
+PredictorRow rival(const std::string& name, const signal::Predictor::Params& params, const Element& element,
                    const PredictionBlockTask& task) {
   const auto response = [element](double frequency_Hz) { return element.response(frequency_Hz); };
   const double highest_Hz = 0.5 * task.sample_rate_Hz;
-  return {.name = std::move(name),
+  return {.name = name,
           .params = params,
           .response = response,
           .lead_s = params.lead_s(),
