@@ -2,7 +2,11 @@
 
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/signal/filtered_derivative.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -34,14 +38,44 @@ struct RigLimits {
   double upper_position_m = 0.05;
 };
 
-/// What the motor is told to do, one entry a tick: force = force_N + k (reference_m − x) + b · d/dt(reference_m − x).
-/// With a stiffness and no reference it is the virtual spring of paper A, Sec. VII-B; with a reference, position
-/// control. `force_N` and `reference_m` have the same length, or one of them is empty and counts as 0.
+/// What the motor is told to do, one entry a tick: force = force_N + k (reference_m − x) + b · d/dt(reference_m − x),
+/// the derivative by `signal::FilteredDerivative`. With a stiffness and no reference it is the virtual spring of paper
+/// A, Sec. VII-B; with a reference, position control. `force_N` and `reference_m` have the same length, or one of them
+/// is empty and counts as 0.
 struct MotorProgram {
   std::vector<double> force_N;
   std::vector<double> reference_m;
   double stiffness_N_per_m = 0.0;
   double damping_N_s_per_m = 0.0;
+  double derivative_cutoff_Hz = 100.0;
+};
+
+/// The ticks of a program.
+inline std::size_t length(const MotorProgram& program) {
+  return std::max(program.force_N.size(), program.reference_m.size());
+}
+
+/// An error for a program that is empty, holds a number that is not finite, or leaves the limits by itself.
+Check check(const MotorProgram& program, const RigLimits& limits);
+
+/// The feedback law of a program, one tick after the other: for rigs, and for what imitates one.
+class MotorFeedback {
+ public:
+  /// For a program that `check` passes. Errors: `inconsistent` for a derivative's cutoff beyond the tick.
+  static Result<MotorFeedback> make(const MotorProgram& program, Seconds tick);
+  /// Force in N for an error, reference less position, in m. Real-time safe.
+  double step(double error_m) noexcept {
+    return stiffness_N_per_m_ * error_m + damping_N_s_per_m_ * derivative_.step(error_m);
+  }
+
+ private:
+  MotorFeedback(const MotorProgram& program, const signal::FilteredDerivative& derivative)
+      : stiffness_N_per_m_(program.stiffness_N_per_m),
+        damping_N_s_per_m_(program.damping_N_s_per_m),
+        derivative_(derivative) {}
+  double stiffness_N_per_m_;
+  double damping_N_s_per_m_;
+  signal::FilteredDerivative derivative_;
 };
 
 /// What came of it, one entry a tick.
