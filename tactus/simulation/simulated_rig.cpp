@@ -126,6 +126,7 @@ SimulatedRigParams draw_rig(std::int64_t seed) {
   off_by(person.grip.damping_N_s_per_m, 0.4);
   off_by(person.correction.gain_per_s, 0.3);
   off_by(person.correction.reaction_time_s, 0.2);
+  off_by(person.correction.bandwidth_Hz, 0.2);
   auto& amplifier = rig.benched.master.amplifier;
   amplifier.gain = draw.uniform(0.95, 1.05);
   amplifier.bandwidth_Hz = 1500.0 * std::pow(5000.0 / 1500.0, draw.uniform());

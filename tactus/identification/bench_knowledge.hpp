@@ -1,0 +1,92 @@
+#pragma once
+
+#include <tactus/core/units.hpp>
+#include <tactus/identification/bench_model.hpp>
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// What has been found of a bench so far, how well, and how one finds more.
+namespace tactus::identification {
+
+/// The parameters of a bench that identification looks for, in the order in which they are found.
+enum class BenchVariable {
+  amplifier_gain,
+  amplifier_offset,
+  amplifier_bandwidth,
+  amplifier_delay,
+  motor_mass,
+  motor_friction,
+  cable_stiffness,
+  cable_damping,
+  drum_mass,
+  drum_friction,
+  linkage_stiffness,
+  linkage_hysteretic_fraction,
+  linkage_slip_deflection,
+  linkage_damping,
+  handle_mass,
+  operator_stiffness,
+  operator_damping,
+  operator_correction,
+  operator_reaction,
+};
+inline constexpr std::size_t bench_variables = 19;
+
+/// A parameter as a person reads it.
+struct FoundParameter {
+  std::string name;  ///< dotted, with the suffix of its unit: `motor.mass_kg`
+  std::string unit;
+  double value = 0.0;
+  std::array<double, 2> interval_95{};
+  /// The interval is narrower than half the value either way (for offset and delay: than 5 mN and 20 µs) and leaves
+  /// zero out.
+  bool determined = false;
+};
+
+/// One run of one program, for a fit.
+struct BenchExperiment {
+  std::string title;
+  Assembly assembly = Assembly::motor;
+  MotorProgram program;
+  RigRun run;
+  int steps_per_tick = 1;
+  double lower_Hz = 0.0;  ///< of what it excites, for figures; 0 for what is no sweep
+  double upper_Hz = 0.0;
+};
+
+/// Values so far with the joint covariance of all that is known.
+class BenchKnowledge {
+ public:
+  /// Nothing is known; fits start from these values.
+  explicit BenchKnowledge(const BenchParams& start);
+
+  [[nodiscard]] const BenchParams& params() const { return params_; }
+  [[nodiscard]] bool knows(BenchVariable variable) const;
+  /// Covariance of the variables `a` and `b` of fits: logarithms of what is greater than 0.
+  [[nodiscard]] double covariance(BenchVariable a, BenchVariable b) const;
+  /// Takes over a value without knowing it.
+  void assume(const BenchParams& params) { params_ = params; }
+
+  /// Finds `wanted` from the positions of the experiments (from the current for the amplifier's alone), everything
+  /// else as it is; a constant force in each experiment is fitted along. Returns the root mean square of what is left,
+  /// in m or N. Errors: as `fit_nonlinear`.
+  Result<double> fit(std::span<const BenchVariable> wanted, std::span<const BenchExperiment> experiments);
+
+  [[nodiscard]] FoundParameter found(BenchVariable variable) const;
+  /// Energy that the linkage loses in a closed loop of its reference deflection, in J.
+  [[nodiscard]] FoundParameter loop_area() const;
+
+ private:
+  BenchParams params_;
+  std::array<bool, bench_variables> known_{};
+  std::vector<double> covariance_;  ///< of all variables, row by row; zero for what is not known
+};
+
+/// Position at every tick as the knowledge has it, the constant force of the experiment fitted.
+std::vector<double> replay(const BenchKnowledge& knowledge, const BenchExperiment& experiment);
+
+}  // namespace tactus::identification
