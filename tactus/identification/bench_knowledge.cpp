@@ -10,6 +10,11 @@ namespace tactus::identification {
 namespace {
 
 constexpr double normal_95 = 1.96;
+/// A parameter counts as told when its interval reaches no further than this part of it.
+constexpr double told_within = 0.1;
+/// What the model's laws and steps are off themselves, as a standard deviation in proportion: the integrator places a
+/// resonance to about this.
+constexpr double model_error = 5e-4;
 
 /// How a parameter becomes a variable of about unit scale: its logarithm, the logarithm of its odds, or a multiple.
 enum class Scale { logarithm, odds, linear };
@@ -28,8 +33,8 @@ constexpr std::array<Description, bench_variables> descriptions{{
      [](BenchParams& p) -> double& { return p.amplifier_offset_N; }},
     {"amplifier.bandwidth_Hz", units::hertz, Scale::logarithm, 0,
      [](BenchParams& p) -> double& { return p.amplifier_bandwidth_Hz; }},
-    {"amplifier.delay_s", units::second, Scale::linear, 1e-4,
-     [](BenchParams& p) -> double& { return p.amplifier_delay_s; }},
+    {"amplifier.lag_s", units::second, Scale::logarithm, 0,
+     [](BenchParams& p) -> double& { return p.amplifier_lag_s; }},
     {"motor.mass_kg", units::kilogram, Scale::logarithm, 0,
      [](BenchParams& p) -> double& { return p.master.motor.mass_kg; }},
     {"motor.friction_N", units::newton, Scale::logarithm, 0,
@@ -60,6 +65,8 @@ constexpr std::array<Description, bench_variables> descriptions{{
      [](BenchParams& p) -> double& { return p.correction_gain_per_s; }},
     {"operator.reaction_time_s", units::second, Scale::logarithm, 0,
      [](BenchParams& p) -> double& { return p.reaction_time_s; }},
+    {"operator.sight_bandwidth_Hz", units::hertz, Scale::logarithm, 0,
+     [](BenchParams& p) -> double& { return p.sight_bandwidth_Hz; }},
 }};
 
 const Description& describe(BenchVariable variable) { return descriptions[static_cast<std::size_t>(variable)]; }
@@ -95,14 +102,9 @@ double get(const BenchParams& params, const Description& description) {
 
 constexpr double bias_scale_N = 0.01;
 
-std::vector<double> residual(const BenchParams& params, const BenchExperiment& experiment, bool of_current) {
-  const RigRun& run = experiment.run;
-  const std::vector<double>& measured = of_current ? run.current_force_N : run.position_m;
-  std::vector<double> left =
-      of_current ? simulate_current(params, run)
-                 : simulate_position(params, experiment.assembly, experiment.program, run, experiment.steps_per_tick);
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] = measured[i] - left[i];
-  return left;
+void append_difference(std::vector<double>& to, const std::vector<double>& measured,
+                       const std::vector<double>& modelled, double weight) {
+  for (std::size_t i = 0; i < modelled.size(); ++i) to.push_back(weight * (measured[i] - modelled[i]));
 }
 
 double loop_area_J(const mechanics::BoucWenSpring::Params& spring) {
@@ -134,9 +136,8 @@ double BenchKnowledge::covariance(BenchVariable a, BenchVariable b) const {
   return covariance_[static_cast<std::size_t>(a) * bench_variables + static_cast<std::size_t>(b)];
 }
 
-Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted,
-                                   std::span<const BenchExperiment> experiments) {
-  const bool of_current = wanted.front() <= BenchVariable::amplifier_delay;
+Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted, std::span<const BenchExperiment> experiments,
+                                   const MeasurementWeights& weights) {
   // The variables of the fit: those wanted, a constant force in each experiment, those known.
   std::vector<std::size_t> fitted;
   for (const BenchVariable variable : wanted) fitted.push_back(static_cast<std::size_t>(variable));
@@ -145,7 +146,7 @@ Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted,
     const bool wanted_now = std::find(fitted.begin(), fitted.end(), i) != fitted.end();
     if (known_[i] && !wanted_now) given.push_back(i);
   }
-  const std::size_t biases = of_current ? 0 : experiments.size();
+  const std::size_t biases = weights.position_per_m > 0.0 ? experiments.size() : 0;
   NonlinearProblem problem;
   problem.given = given.size();
   for (const std::size_t i : fitted) {
@@ -166,13 +167,27 @@ Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted,
     std::vector<double> all;
     for (std::size_t e = 0; e < experiments.size(); ++e) {
       trial.bias_N = biases > 0 ? bias_scale_N * variables[first_bias + e] : 0.0;
-      const std::vector<double> one = residual(trial, experiments[e], of_current);
-      all.insert(all.end(), one.begin(), one.end());
+      const auto& [title, assembly, program, run, steps_per_tick, lower_Hz, upper_Hz] = experiments[e];
+      if (weights.position_per_m > 0.0) {
+        append_difference(all, run.position_m, simulate_position(trial, assembly, program, run, steps_per_tick),
+                          weights.position_per_m);
+      }
+      if (weights.current_per_N > 0.0) {
+        append_difference(all, run.current_force_N, simulate_current(trial, run), weights.current_per_N);
+      }
     }
     return all;
   };
   const auto result = fit_nonlinear(problem);
-  if (!result) return result.error();
+  if (!result) {
+    Error error = result.error();
+    for (std::size_t k = 0; k < problem.start.size(); ++k) {
+      if (error.parameter != std::to_string(k)) continue;
+      error.parameter = k < fitted.size() ? descriptions[fitted[k]].name : "constant force";
+      break;
+    }
+    return error;
+  }
 
   // Rows of the fit's covariance by where they belong; the constant forces belong nowhere.
   const std::size_t size = problem.start.size();
@@ -196,16 +211,15 @@ FoundParameter BenchKnowledge::found(BenchVariable variable) const {
   FoundParameter parameter{.name = description.name, .unit = description.unit.symbol};
   parameter.value = get(params_, description);
   const double middle = to_variable(description, parameter.value);
-  const double reach = normal_95 * std::sqrt(covariance(variable, variable));
+  const double own = description.scale == Scale::linear ? 0.0 : model_error;
+  const double reach = normal_95 * std::hypot(std::sqrt(covariance(variable, variable)), own);
   parameter.interval_95 = {to_value(description, middle - reach), to_value(description, middle + reach)};
   if (!knows(variable)) return parameter;
   if (variable == BenchVariable::amplifier_offset) {
     parameter.determined = reach * description.unit_scale < 0.005;
-  } else if (variable == BenchVariable::amplifier_delay) {
-    parameter.determined = reach * description.unit_scale < 20e-6;
   } else {
     const double half = 0.5 * (parameter.interval_95[1] - parameter.interval_95[0]);
-    parameter.determined = parameter.interval_95[0] > 0.0 && half < 0.5 * parameter.value;
+    parameter.determined = half <= told_within * std::fabs(parameter.value);
   }
   return parameter;
 }
@@ -230,7 +244,8 @@ FoundParameter BenchKnowledge::loop_area() const {
   }
   const double factor = std::exp(normal_95 * std::sqrt(variance));
   parameter.interval_95 = {parameter.value / factor, parameter.value * factor};
-  parameter.determined = std::all_of(shape.begin(), shape.end(), [this](auto v) { return knows(v); }) && factor < 1.5;
+  parameter.determined =
+      std::all_of(shape.begin(), shape.end(), [this](auto v) { return knows(v); }) && factor <= 1.0 + told_within;
   return parameter;
 }
 

@@ -17,7 +17,7 @@ enum class BenchVariable {
   amplifier_gain,
   amplifier_offset,
   amplifier_bandwidth,
-  amplifier_delay,
+  amplifier_lag,
   motor_mass,
   motor_friction,
   cable_stiffness,
@@ -33,8 +33,9 @@ enum class BenchVariable {
   operator_damping,
   operator_correction,
   operator_reaction,
+  operator_sight,
 };
-inline constexpr std::size_t bench_variables = 19;
+inline constexpr std::size_t bench_variables = 20;
 
 /// A parameter as a person reads it.
 struct FoundParameter {
@@ -42,8 +43,7 @@ struct FoundParameter {
   std::string unit;
   double value = 0.0;
   std::array<double, 2> interval_95{};
-  /// The interval is narrower than half the value either way (for offset and delay: than 5 mN and 20 µs) and leaves
-  /// zero out.
+  /// The interval reaches no further than a tenth of the value either way (for the amplifier's offset: than 5 mN).
   bool determined = false;
 };
 
@@ -56,6 +56,12 @@ struct BenchExperiment {
   int steps_per_tick = 1;
   double lower_Hz = 0.0;  ///< of what it excites, for figures; 0 for what is no sweep
   double upper_Hz = 0.0;
+};
+
+/// What a measurement counts for in a fit: the reciprocal of what it is expected to be off. 0 leaves it out.
+struct MeasurementWeights {
+  double position_per_m = 0.0;
+  double current_per_N = 0.0;
 };
 
 /// Values so far with the joint covariance of all that is known.
@@ -71,10 +77,11 @@ class BenchKnowledge {
   /// Takes over a value without knowing it.
   void assume(const BenchParams& params) { params_ = params; }
 
-  /// Finds `wanted` from the positions of the experiments (from the current for the amplifier's alone), everything
-  /// else as it is; a constant force in each experiment is fitted along. Returns the root mean square of what is left,
-  /// in m or N. Errors: as `fit_nonlinear`.
-  Result<double> fit(std::span<const BenchVariable> wanted, std::span<const BenchExperiment> experiments);
+  /// Finds `wanted` from the experiments, everything else as it is; where positions count, a constant force in each
+  /// experiment is fitted along. Returns the root mean square of what is left of the weighted measurements. Errors: as
+  /// `fit_nonlinear`.
+  Result<double> fit(std::span<const BenchVariable> wanted, std::span<const BenchExperiment> experiments,
+                     const MeasurementWeights& weights);
 
   [[nodiscard]] FoundParameter found(BenchVariable variable) const;
   /// Energy that the linkage loses in a closed loop of its reference deflection, in J.

@@ -5,57 +5,72 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 namespace tactus::identification {
 
 namespace {
 
 constexpr double locked_kg = 1e9;
-constexpr double sight_Hz = 5.0;
 
-/// Applied force of a first-order amplifier whose command changes `delay_s` after each tick.
+/// Applied force of a first-order amplifier whose command changes a delay after each tick.
+///
+/// A step of the model holds its force, the amplifier's changes within it. So that mean and centre of the force are
+/// right all the same, what its centre M₁ = ∫(t − h/2)·F dt is off is made up for by a pair of opposite forces: M₁/h²
+/// less in this step, as much more in the next.
 class Amplifier {
  public:
   Amplifier(const BenchParams& params, double step_s, int steps_per_tick)
       : gain_(params.amplifier_gain),
         offset_N_(params.amplifier_offset_N),
-        rate_per_s_(2.0 * std::numbers::pi * params.amplifier_bandwidth_Hz),
+        rate_per_s_(std::max(2.0 * std::numbers::pi * params.amplifier_bandwidth_Hz, 1.0 / params.amplifier_lag_s)),
         step_s_(step_s) {
     const double tick_s = step_s * steps_per_tick;
-    const double delay_s = std::clamp(params.amplifier_delay_s, 0.0, 0.999 * tick_s);
+    const double delay_s = std::clamp(params.amplifier_lag_s - 1.0 / rate_per_s_, 0.0, 0.999 * tick_s);
     switch_step_ = static_cast<int>(delay_s / step_s);
-    whole_ = over(step_s);
-    before_ = over(delay_s - switch_step_ * step_s);
-    after_ = over(step_s - before_.duration_s);
+    whole_ = over(0.0, step_s);
+    before_ = over(0.0, delay_s - switch_step_ * step_s);
+    after_ = over(before_.duration_s, step_s - before_.duration_s);
   }
 
-  /// Mean applied force over step `step` of a tick with the command `command_N`.
-  double mean_N(int step, double command_N) {
+  /// Force to be held over step `step` of a tick with the command `command_N`.
+  double held_N(int step, double command_N) {
     const double target_N = gain_ * command_N + offset_N_;
-    double impulse_N_s = 0.0;
+    Moments moments;
     if (step == switch_step_) {
-      impulse_N_s = advance(target_before_N_, before_);
+      advance(target_before_N_, before_, moments);
       target_before_N_ = target_N;
-      impulse_N_s += advance(target_N, after_);
+      advance(target_N, after_, moments);
     } else {
-      impulse_N_s = advance(target_before_N_, whole_);
+      advance(target_before_N_, whole_, moments);
     }
-    return impulse_N_s / step_s_;
+    const double off_N = (moments.first_N_s2 - 0.5 * step_s_ * moments.impulse_N_s) / (step_s_ * step_s_);
+    const double owed_N = std::exchange(owed_N_, off_N);
+    return moments.impulse_N_s / step_s_ - off_N + owed_N;
   }
   [[nodiscard]] double applied_N() const { return applied_N_; }
 
  private:
-  struct Span {
-    double duration_s, decay, decayed_s;
+  struct Moments {
+    double impulse_N_s = 0.0;  ///< ∫F dt
+    double first_N_s2 = 0.0;   ///< ∫t·F dt, from the start of the step
   };
-  [[nodiscard]] Span over(double duration_s) const {
+  /// A part of a step with a constant target, and what an exponential decay integrates to over it.
+  struct Span {
+    double start_s, duration_s, decay, decayed_s, decayed_s2;
+  };
+  [[nodiscard]] Span over(double start_s, double duration_s) const {
     const double lost = -std::expm1(-rate_per_s_ * duration_s);
-    return {duration_s, 1.0 - lost, lost / rate_per_s_};
+    const double decayed_s = lost / rate_per_s_;
+    return {start_s, duration_s, 1.0 - lost, decayed_s, (decayed_s - duration_s * (1.0 - lost)) / rate_per_s_};
   }
-  double advance(double target_N, const Span& span) {
+  void advance(double target_N, const Span& span, Moments& moments) {
     const double away_N = applied_N_ - target_N;
     applied_N_ = target_N + away_N * span.decay;
-    return target_N * span.duration_s + away_N * span.decayed_s;
+    const double impulse_N_s = target_N * span.duration_s + away_N * span.decayed_s;
+    moments.impulse_N_s += impulse_N_s;
+    moments.first_N_s2 +=
+        span.start_s * impulse_N_s + 0.5 * target_N * span.duration_s * span.duration_s + away_N * span.decayed_s2;
   }
 
   double gain_, offset_N_, rate_per_s_, step_s_;
@@ -63,6 +78,7 @@ class Amplifier {
   Span whole_, before_, after_;
   double target_before_N_ = 0.0;
   double applied_N_ = 0.0;
+  double owed_N_ = 0.0;
 };
 
 /// Force of a grip whose aim moves, less that of the same grip at rest.
@@ -72,8 +88,9 @@ class Correction {
       : gain_per_s_(params.correction_gain_per_s),
         hand_(params.master.hand),
         tick_s_(tick_s),
-        sight_(-std::expm1(-2.0 * std::numbers::pi * sight_Hz * tick_s)) {
-    const double ticks = std::clamp(params.reaction_time_s / tick_s, 0.0, 1e6);
+        sight_(-std::expm1(-2.0 * std::numbers::pi * params.sight_bandwidth_Hz * tick_s)) {
+    const double sight_s = 1.0 / (2.0 * std::numbers::pi * params.sight_bandwidth_Hz);
+    const double ticks = std::clamp((params.reaction_time_s - sight_s) / tick_s, 0.0, 1e6);
     whole_ticks_ = static_cast<std::size_t>(ticks);
     rest_ = ticks - static_cast<double>(whole_ticks_);
     seen_m_.assign(whole_ticks_ + 2, 0.0);
@@ -120,7 +137,7 @@ std::vector<double> simulate_current(const BenchParams& params, const RigRun& ru
   current_N.reserve(run.commanded_force_N.size());
   for (const double command_N : run.commanded_force_N) {
     current_N.push_back(amplifier.applied_N());
-    amplifier.mean_N(0, command_N);
+    amplifier.held_N(0, command_N);
   }
   return current_N;
 }
@@ -147,7 +164,7 @@ std::vector<double> simulate_position(const BenchParams& params, Assembly assemb
     if (fed_back) command_N += feedback->step(run.position_m[i] - position_m[i]);
     const double handle_N = held ? correction.force_N(model->state()[2]) : 0.0;
     for (int s = 0; s < steps_per_tick; ++s) {
-      model->step({.motor_force_N = amplifier.mean_N(s, command_N) + params.bias_N, .handle_force_N = handle_N});
+      model->step({.motor_force_N = amplifier.held_N(s, command_N) + params.bias_N, .handle_force_N = handle_N});
     }
   }
   return position_m;

@@ -14,12 +14,16 @@ struct BenchParams {
   double amplifier_gain = 1.0;
   double amplifier_offset_N = 0.0;  ///< applied without a command
   double amplifier_bandwidth_Hz = 3000.0;
-  double amplifier_delay_s = 0.0;  ///< from a sample to the change of the command that follows, less than a tick
+  /// By how much the force comes after the sample that it follows from, on average: the computation's delay and the
+  /// amplifier's lag, 1/(2π bandwidth), together. The delay is what is left of it, from none to a tick; a bandwidth too
+  /// low for it counts as 1/(2π lag).
+  double amplifier_lag_s = 1e-4;
   control::MasterModel master = bare();
   /// The person shifts the aim of the grip at −gain times what is seen of the handle's position, which is low-passed at
-  /// 5 Hz (paper A, Sec. VI) and late by the reaction time.
+  /// the sight's bandwidth and late by what is left of the reaction time, 1/(2π bandwidth) less.
   double correction_gain_per_s = 4.0;
-  double reaction_time_s = 0.1;
+  double reaction_time_s = 0.13;
+  double sight_bandwidth_Hz = 5.0;  ///< paper A, Sec. VI
   double bias_N = 0.0;  ///< constant force on the motor that is nobody's: cogging where the run happens to be
 
   /// Table I without the quintic spring, which belongs to cancellation and to no hand.
@@ -31,7 +35,7 @@ struct BenchParams {
 };
 
 /// The measured current at every tick, in N, of what the amplifier would make of these commands. For parameters greater
-/// than 0, the delay less than a tick.
+/// than 0.
 std::vector<double> simulate_current(const BenchParams& params, const RigRun& run);
 
 /// The motor's position at every tick of a run, in m, not quantised.
@@ -40,9 +44,9 @@ std::vector<double> simulate_current(const BenchParams& params, const RigRun& ru
 /// would have made of the difference between measured and simulated position, so that the simulated motor is held by
 /// its virtual spring as the real one was, and small errors of the model do not make it drift off.
 ///
-/// The integrator is the controller's (`control::InducedMotionModel`, exact step), `steps_per_tick` steps a tick with
-/// the applied force averaged over each; it shares nothing with the simulated devices. What is beyond the assembly is
-/// left out, what is locked weighs 1e9 kg. Not a number where the parameters make no model.
+/// The integrator is the controller's (`control::InducedMotionModel`, exact step), `steps_per_tick` steps a tick each
+/// with the mean and the centre of the applied force; it shares nothing with the simulated devices. What is beyond the
+/// assembly is left out, what is locked weighs 1e9 kg. Not a number where the parameters make no model.
 std::vector<double> simulate_position(const BenchParams& params, Assembly assembly, const MotorProgram& program,
                                       const RigRun& run, int steps_per_tick);
 

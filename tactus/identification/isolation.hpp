@@ -13,7 +13,7 @@ namespace tactus::identification {
 /// size.
 struct IsolationParams {
   double sweep_s = 2.0;             ///< each swept sine but the held one
-  double held_sweep_s = 40.0;       ///< with the operator, down to 0.1 Hz
+  double held_sweep_s = 60.0;       ///< with the operator, down to 0.1 Hz
   double full_force_N = 1.0;        ///< the largest that teleoperation will display
   double full_deflection_m = 2e-3;  ///< to which the model for cancellation lets it move the hand
   BenchParams start;                ///< where the fits start: a data sheet, or a guess
@@ -24,7 +24,7 @@ struct IsolationStage {
   std::string title;  ///< `cable, drum locked`
   std::vector<BenchExperiment> experiments;
   std::vector<std::vector<double>> modelled_m;  ///< positions that the model gives for them, after the stage
-  double residual_rms = 0.0;                    ///< in m; of the amplifier in N
+  double residual_rms_m = 0.0;                  ///< of measured less modelled position
 };
 
 struct Isolation {

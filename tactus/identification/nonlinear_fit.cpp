@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double difference = 1e-3;
-constexpr Index blocks = 40;
+constexpr Index blocks = 20;
 /// A variable whose column, less what the others explain, is shorter than this part of the longest tells nothing.
 constexpr double smallest_column = 1e-7;
 
@@ -118,8 +118,10 @@ Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem) {
   qr.setThreshold(smallest_column);
   qr.compute(jacobian);
   if (qr.rank() < free) {
-    return inconsistent("the data do not tell variable " + std::to_string(qr.colsPermutation().indices()[qr.rank()]) +
-                        " of the fit");
+    return Error{ErrorCode::inconsistent,
+                 std::to_string(qr.colsPermutation().indices()[qr.rank()]),
+                 "the data do not tell it from the others: excite the device more richly",
+                 {}};
   }
   const MatrixXd inverse = (jacobian.transpose() * jacobian).inverse();
   const MatrixXd own = inverse * scatter(jacobian, residuals) * inverse;

@@ -33,11 +33,11 @@ struct NonlinearFit {
 /// Least squares by Levenberg and Marquardt (Eigen's port of MINPACK), Jacobian by forward differences.
 ///
 /// The covariance has two parts. Residuals of a simulation are not white, so their part is that of a regression with
-/// clusters: (JᵀJ)⁻¹ Σ_b (J_bᵀ r_b)(J_bᵀ r_b)ᵀ (JᵀJ)⁻¹ over forty blocks b of neighbouring residuals, times n_b/(n_b −
+/// clusters: (JᵀJ)⁻¹ Σ_b (J_bᵀ r_b)(J_bᵀ r_b)ᵀ (JᵀJ)⁻¹ over twenty blocks b of neighbouring residuals, times n_b/(n_b −
 /// p). To it comes what the given variables do not know: S C Sᵀ with S = −(JᵀJ)⁻¹ Jᵀ J_given.
 ///
 /// Errors: `inconsistent` for residuals that are not finite at the start, or that do not tell the variables apart, with
-/// the index of one that cannot be told. Not real-time safe.
+/// the index of one that cannot be told as the parameter. Not real-time safe.
 /// Sources: J. Moré, The Levenberg–Marquardt algorithm, 1978; K.-Y. Liang and S. Zeger, Longitudinal data analysis
 /// using generalized linear models, 1986.
 Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem);

@@ -230,9 +230,9 @@ Result<identification::RigRun> SimulatedRig::run(const identification::MotorProg
         std::sin(2.0 * std::numbers::pi * (true_position_m / params_.ripple_period_m + params_.ripple_phase_cycles));
     for (int s = 0; s < clock->substeps; ++s) {
       if (s == clock->late_substeps) held_command_N = command_N;
-      applied_N = amplifier->step(held_command_N + bias_N);
+      const double before_N = std::exchange(applied_N, amplifier->step(held_command_N + bias_N));
       const double middle_s = (s + 0.5) * substep.value;
-      chain->step({.motor_force_N = applied_N + ripple_N,
+      chain->step({.motor_force_N = 0.5 * (before_N + applied_N) + ripple_N,
                    .grip_position_m = aim.position_m + middle_s * aim.velocity_m_per_s,
                    .grip_velocity_m_per_s = aim.velocity_m_per_s});
     }
@@ -247,7 +247,7 @@ std::optional<double> SimulatedRig::truth(std::string_view name) const {
       {"amplifier.gain", amplifier.gain},
       {"amplifier.offset_N", params_.amplifier_offset_N},
       {"amplifier.bandwidth_Hz", amplifier.bandwidth_Hz},
-      {"amplifier.delay_s", ServoParams{}.computation_delay_s},
+      {"amplifier.lag_s", ServoParams{}.computation_delay_s + 1.0 / (2.0 * std::numbers::pi * amplifier.bandwidth_Hz)},
       {"motor.mass_kg", mechanism.motor.mass_kg},
       {"motor.friction_N", mechanism.motor.friction_N},
       {"cable.stiffness_N_per_m", mechanism.cable.stiffness_N_per_m},
@@ -261,7 +261,9 @@ std::optional<double> SimulatedRig::truth(std::string_view name) const {
       {"operator.stiffness_N_per_m", grip.stiffness_N_per_m},
       {"operator.damping_N_s_per_m", grip.damping_N_s_per_m},
       {"operator.correction_gain_per_s", correction.gain_per_s},
-      {"operator.reaction_time_s", correction.reaction_time_s},
+      {"operator.reaction_time_s",
+       correction.reaction_time_s + 1.0 / (2.0 * std::numbers::pi * correction.bandwidth_Hz)},
+      {"operator.sight_bandwidth_Hz", correction.bandwidth_Hz},
   };
   for (const auto& [known_name, value] : known) {
     if (known_name == name) return value;
