@@ -1,5 +1,6 @@
 #include <tactus/identification/rig.hpp>
 
+#include <bit>
 #include <cmath>
 
 namespace tactus::identification {
@@ -40,6 +41,35 @@ Check check(const MotorProgram& program, const RigLimits& limits) {
   }
   return check_range(program.reference_m, "reference_m", limits.lower_position_m, limits.upper_position_m,
                      units::metre);
+}
+
+std::uint64_t fingerprint(const MotorProgram& program) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  const auto add = [&hash](double value) { hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3; };
+  for (const double force_N : program.force_N) add(force_N);
+  for (const double reference_m : program.reference_m) add(reference_m);
+  add(program.stiffness_N_per_m);
+  add(program.damping_N_s_per_m);
+  add(program.derivative_cutoff_Hz);
+  return hash;
+}
+
+std::string instruction(Assembly assembly) {
+  switch (assembly) {
+    case Assembly::motor:
+      return "Take the cable off the motor, so that it turns alone.";
+    case Assembly::cable:
+      return "Put the cable on and lock the drum.";
+    case Assembly::drum:
+      return "Unlock the drum and take the linkage off it.";
+    case Assembly::linkage:
+      return "Put the linkage on and lock the handle.";
+    case Assembly::handle:
+      return "Unlock the handle and let go of it.";
+    case Assembly::held:
+      break;
+  }
+  return "Hold the handle in a comfortable grip and keep it where it is.";
 }
 
 Result<MotorFeedback> MotorFeedback::make(const MotorProgram& program, Seconds tick) {

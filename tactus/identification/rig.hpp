@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ constexpr auto enumerators(Assembly) {
                     Enumerator{Assembly::handle, "handle"}, Enumerator{Assembly::held, "held"}};
 }
 
+/// What a person has to do to bring a master into this state, as one sentence.
+std::string instruction(Assembly assembly);
+
 /// What the motor may do. A program that would leave them is refused; a run that leaves them all the same is stopped.
 struct RigLimits {
   double force_N = 5.0;
@@ -54,6 +58,9 @@ struct MotorProgram {
 inline std::size_t length(const MotorProgram& program) {
   return std::max(program.force_N.size(), program.reference_m.size());
 }
+
+/// A number that tells programs apart: FNV-1a over the bits of all that they hold.
+std::uint64_t fingerprint(const MotorProgram& program);
 
 /// An error for a program that is empty, holds a number that is not finite, or leaves the limits by itself.
 Check check(const MotorProgram& program, const RigLimits& limits);

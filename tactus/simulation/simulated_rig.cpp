@@ -1,7 +1,6 @@
 #include <tactus/simulation/clock.hpp>
 #include <tactus/simulation/simulated_rig.hpp>
 
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -71,18 +70,6 @@ class Wander {
   double second_m_ = 0.0;
   signal::Random random_;
 };
-
-/// FNV-1a over the bits of a program: the stream of its noise.
-std::uint64_t fingerprint(const identification::MotorProgram& program) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  const auto add = [&hash](double value) { hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3; };
-  for (const double force_N : program.force_N) add(force_N);
-  for (const double reference_m : program.reference_m) add(reference_m);
-  add(program.stiffness_N_per_m);
-  add(program.damping_N_s_per_m);
-  add(program.derivative_cutoff_Hz);
-  return hash;
-}
 
 Error stopped(double time_s, const char* what, double value, double lower, double upper, const Unit& unit) {
   return {ErrorCode::failed,
@@ -178,7 +165,7 @@ Result<identification::RigRun> SimulatedRig::run(const identification::MotorProg
   if (!encoder) return encoder.error();
 
   const auto stream = signal::Random(static_cast<std::uint64_t>(params_.seed))
-                          .fork(fingerprint(program) + static_cast<std::uint64_t>(assembly_));
+                          .fork(identification::fingerprint(program) + static_cast<std::uint64_t>(assembly_));
   signal::Random current_noise = stream.fork(0);
   const bool held = assembly_ == Assembly::held;
   Wander wander(params_.wander_rms_m, tick.value, stream.fork(1));
