@@ -31,6 +31,8 @@ class Isolator {
       if (auto error = (this->*next)()) return *std::move(error);
     }
     for (std::size_t i = 0; i < bench_variables; ++i) {
+      // What the person's sight does beside being late, a fit needs and nobody else.
+      if (static_cast<BenchVariable>(i) == operator_sight) continue;
       result_.parameters.push_back(knowledge_.found(static_cast<BenchVariable>(i)));
       if (static_cast<BenchVariable>(i) == linkage_damping) result_.parameters.push_back(knowledge_.loop_area());
     }
