@@ -17,6 +17,9 @@ Findings tick_tail();
 void add_force_estimators();
 Findings force_estimators(const Times& times);
 
+/// A whole successive isolation, the runs on the rig taken as recorded.
+Findings isolation();
+
 /// The plants and the closed loop in virtual time.
 void add_virtual_time();
 Findings virtual_time(const Times& times);

@@ -21,6 +21,7 @@ namespace {
 
 struct RunOptions {
   std::string file;
+  std::vector<std::string> with;
   std::vector<std::string> set;
   std::vector<std::string> vary;
   std::optional<std::string> out;
@@ -30,6 +31,11 @@ struct RunOptions {
 Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
   auto document = configuration::Document::load(options.file);
   if (!document) return document.error();
+  for (const std::string& file : options.with) {
+    const auto other = configuration::Document::load(file);
+    if (!other) return other.error();
+    if (auto error = document->merge(*other)) return *std::move(error);
+  }
   for (const std::string& assignment : options.set) {
     if (auto error = document->set(assignment)) return *std::move(error);
   }
@@ -100,6 +106,10 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* verb = app.add_subcommand("run", "Run an experiment in virtual time");
   verb->add_option("EXPERIMENT", options->file, "Experiment file (TOML)")->required();
+  verb->add_option("--with", options->with,
+                   "File whose keys take the place of the experiment's, as an identified model")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   verb->add_option("--set", options->set, "Override one value: key=value")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);

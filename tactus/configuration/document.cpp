@@ -95,7 +95,8 @@ Result<Entry> read_assignment(std::string_view assignment) {
                .key_position = {},
                .value_position = {},
                .assignment = std::string(assignment),
-               .typed = std::string(typed)};
+               .typed = std::string(typed),
+               .file = {}};
 }
 
 }  // namespace
@@ -142,6 +143,26 @@ Check Document::set(std::string_view assignment) {
   std::erase_if(entries_, [&](const Entry& entry) { return entry.path == key; });
   entries_.insert(entries_.end(), missing_sections.rbegin(), missing_sections.rend());
   entries_.push_back(*fresh);
+  return {};
+}
+
+Check Document::merge(const Document& other) {
+  for (const Entry& entry : other.entries_) {
+    const bool section = std::holds_alternative<Table>(entry.value);
+    if (const Entry* present = find(entry.path); present != nullptr) {
+      if (section != std::holds_alternative<Table>(present->value)) {
+        Error problem = refusal(ErrorCode::wrong_type, entry.path,
+                                concat({"this is a ", section ? "section here and a value" : "value here and a section",
+                                        " in ", name_, ": write it alike in both"}));
+        problem.place = other.place_of(entry, entry.key_position);
+        return problem;
+      }
+      if (section) continue;
+    }
+    std::erase_if(entries_, [&](const Entry& mine) { return mine.path == entry.path; });
+    entries_.push_back(entry);
+    if (entry.file.empty()) entries_.back().file = other.name_;
+  }
   return {};
 }
 
@@ -203,7 +224,8 @@ const Entry* Document::find(std::string_view path) const {
 
 std::string Document::place_of(const Entry& entry, Position position) const {
   if (!entry.assignment.empty()) return concat({"--set ", printable(entry.assignment)});
-  return name_ + ":" + std::to_string(position.line) + ":" + std::to_string(position.column);
+  return (entry.file.empty() ? name_ : entry.file) + ":" + std::to_string(position.line) + ":" +
+         std::to_string(position.column);
 }
 
 }  // namespace tactus::configuration

@@ -40,6 +40,13 @@ class Document {
   /// value in the place of a section, and a key below a value. Whether the key exists is known only to `read`.
   Check set(std::string_view assignment);
 
+  /// Takes over every key of `other`, where both have it in place of this document's: what a file that holds part of a
+  /// configuration, such as an identified model, says on top of an experiment. Errors found later name the file that
+  /// a key came from.
+  ///
+  /// Errors: `wrong_type` where one has a section and the other a value.
+  Check merge(const Document& other);
+
   /// The whole document as a `T`. Keys that are not written keep the defaults of `T`.
   ///
   /// Errors: the first in document order, overrides last: `unknown_key`, `wrong_type`, or `out_of_bounds`, which

@@ -32,6 +32,7 @@ struct Entry {
   Position value_position;
   std::string assignment;  ///< `control.force_gain=3` when this is an override, else empty
   std::string typed;       ///< the right side of the assignment as it was typed
+  std::string file;        ///< the name of the document that it was merged from, else empty
 };
 
 }  // namespace tactus::configuration

@@ -87,7 +87,8 @@ void append_entries(const toml::table& table, const std::string& section, std::v
                 .key_position = position_of(key.source().begin),
                 .value_position = position_of(node.source().begin),
                 .assignment = {},
-                .typed = {}};
+                .typed = {},
+                .file = {}};
     entries.push_back(entry);
     if (const toml::table* below = node.as_table()) append_entries(*below, entry.path, entries);
   }

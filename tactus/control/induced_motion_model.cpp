@@ -190,9 +190,9 @@ InducedMotionModel::FrictionRange InducedMotionModel::friction_range(double inte
 InducedMotionModel::Output InducedMotionModel::step(const Input& input) noexcept {
   const FrictionRange range = friction_range(input.intended_velocity_m_per_s);
   if (params_.step == CancellationStep::exact) {
-    step_exact(input.motor_force_N, range);
+    step_exact(input, range);
   } else {
-    step_euler(input.motor_force_N, range);
+    step_euler(input, range);
   }
   return state_[0];
 }
@@ -209,7 +209,7 @@ double InducedMotionModel::slipped_force_N(double linkage_deflection_m) noexcept
   return linkage_.step({.deflection_m = linkage_deflection_m}) - linkage_stiffness_N_per_m_ * linkage_deflection_m;
 }
 
-void InducedMotionModel::step_euler(double motor_force_N, const FrictionRange& range) noexcept {
+void InducedMotionModel::step_euler(const Input& input, const FrictionRange& range) noexcept {
   const MasterModel& m = params_.master;
   const double h = euler_substep_s_;
   const auto rub = [&range](double free_velocity, double most) {
@@ -224,7 +224,8 @@ void InducedMotionModel::step_euler(double motor_force_N, const FrictionRange& r
                            m.linkage.damping_N_s_per_m * (v_drum - v_handle);
     const double hand =
         quintic_force_N(x_handle) + m.hand.stiffness_N_per_m * x_handle + m.hand.damping_N_s_per_m * v_handle;
-    double on_motor = motor_force_N - cable, on_drum = cable - linkage, on_handle = linkage - hand;
+    double on_motor = input.motor_force_N - cable, on_drum = cable - linkage,
+           on_handle = input.handle_force_N + linkage - hand;
     if (bodies_ < 3) on_motor = on_drum = on_motor + on_drum;
     if (bodies_ < 2) on_motor = on_drum = on_handle = on_drum + on_handle;
     x_motor += h * v_motor;
@@ -266,10 +267,12 @@ InducedMotionModel::GroundForces InducedMotionModel::ground_forces(double motor_
           .drum_N = force(drum_of_both_N, stops_drum_N, drum_per_motor_, drum, motor)};
 }
 
-void InducedMotionModel::step_exact(double motor_force_N, const FrictionRange& range) noexcept {
+void InducedMotionModel::step_exact(const Input& input, const FrictionRange& range) noexcept {
   // The nonlinear forces where the masses will be in the middle of the tick: half a tick of lag would cost an order.
   const double quintic_N = quintic_force_N(state_[2] + 0.5 * dt_s_ * state_[5]);
   const double slipped_N = slipped_force_N(state_[1] - state_[2] + 0.5 * dt_s_ * (state_[4] - state_[5]));
+
+  const double on_handle_N = slipped_N - quintic_N + input.handle_force_N;
 
   // The sum stands in the order in which its terms become known, so that few of them are waited for.
   Column next;
@@ -279,10 +282,9 @@ void InducedMotionModel::step_exact(double motor_force_N, const FrictionRange& r
         transition_[0][row] * state_[0] + transition_[1][row] * state_[1] + transition_[2][row] * state_[2];
     const double velocities =
         transition_[3][row] * state_[3] + transition_[4][row] * state_[4] + transition_[5][row] * state_[5];
-    next[row] = (offset + (positions + velocities)) + response_[2][row] * (slipped_N - quintic_N) -
-                response_[1][row] * slipped_N;
+    next[row] = (offset + (positions + velocities)) + response_[2][row] * on_handle_N - response_[1][row] * slipped_N;
   }
-  const GroundForces ground = ground_forces(motor_force_N, next[6], next[7], range);
+  const GroundForces ground = ground_forces(input.motor_force_N, next[6], next[7], range);
   for (std::size_t row = 0; row < state_.size(); ++row) {
     state_[row] = next[row] + (response_[0][row] * ground.motor_N + response_[1][row] * ground.drum_N);
   }

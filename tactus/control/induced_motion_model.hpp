@@ -121,6 +121,7 @@ class InducedMotionModel {
   struct Input {
     double motor_force_N = 0.0;              ///< applied until the next tick, positive toward the environment
     double intended_velocity_m_per_s = 0.0;  ///< of the master without the force; used by `total_velocity` alone
+    double handle_force_N = 0.0;             ///< on the handle until the next tick, from outside, same sign
   };
   /// Position of the motor in m at the end of the tick, less where it would be without the force.
   using Output = double;
@@ -172,8 +173,8 @@ class InducedMotionModel {
   [[nodiscard]] double quintic_force_N(double handle_position_m) const noexcept;
   /// What the linkage pulls with beyond its initial stiffness, in N: nothing for a linear one, else of the other sign.
   double slipped_force_N(double linkage_deflection_m) noexcept;
-  void step_euler(double motor_force_N, const FrictionRange& range) noexcept;
-  void step_exact(double motor_force_N, const FrictionRange& range) noexcept;
+  void step_euler(const Input& input, const FrictionRange& range) noexcept;
+  void step_exact(const Input& input, const FrictionRange& range) noexcept;
 
   Params params_;  ///< linear ones without what they lack
   mechanics::BoucWenSpring linkage_;

@@ -130,5 +130,39 @@ TEST(Override, ASectionAndAValueDoNotTakeEachOthersPlace) {
                "must be finite and greater than 0 kg: write for instance mass_kg = 0.5");
 }
 
+TEST(Merge, AnotherFilesKeysTakeThePlaceOfTheFirstsAndTheRestStay) {
+  Document written = document("duration_s = 3\n[control]\nforce_gain = 2\n[task]\nkind = \"hold\"\n");
+  const Document other = *Document::parse("[slave]\nmass_kg = 2\n[control]\nforce_gain = 7\n", "model.toml");
+  ASSERT_FALSE(written.merge(other));
+  const Result<Experiment> read = written.read<Experiment>();
+  ASSERT_TRUE(read) << describe(read.error());
+  EXPECT_EQ(read->control.force_gain, 7.0);
+  EXPECT_EQ(read->slave.mass_kg, 2.0);
+  EXPECT_EQ(read->duration_s, 3.0);
+  ASSERT_FALSE(written.set("control.force_gain=1"));
+  EXPECT_EQ(written.read<Experiment>()->control.force_gain, 1.0);
+}
+
+TEST(Merge, AnErrorNamesTheFileThatTheKeyCameFrom) {
+  Document written = document();
+  ASSERT_FALSE(written.merge(*Document::parse("[slave]\nmas_kg = 2\n", "model.toml")));
+  ASSERT_FALSE(written.read<Experiment>());
+  EXPECT_EQ(written.read<Experiment>().error().place, "model.toml:2:1");
+  written = document();
+  ASSERT_FALSE(written.merge(*Document::parse("[control]\nforce_gain = -2\n", "model.toml")));
+  EXPECT_EQ(written.read<Experiment>().error().place, "model.toml:2:14");
+}
+
+TEST(Merge, ASectionDoesNotReplaceAValueNorAValueASection) {
+  Document written = document();
+  const Check value = written.merge(*Document::parse("control = 3\n", "model.toml"));
+  ASSERT_TRUE(value);
+  EXPECT_EQ(value->code, ErrorCode::wrong_type);
+  EXPECT_EQ(value->place, "model.toml:1:1");
+  const Check section = written.merge(*Document::parse("[control.force_gain]\nx = 1\n", "model.toml"));
+  ASSERT_TRUE(section);
+  EXPECT_EQ(section->parameter, "control.force_gain");
+}
+
 }  // namespace
 }  // namespace tactus::configuration

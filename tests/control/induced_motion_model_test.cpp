@@ -316,6 +316,20 @@ TEST(InducedMotionModel, ForwardEulerIsRefusedWhereTheCableIsStifferThanItsDampi
   }
 }
 
+TEST(InducedMotionModel, AForceOnTheHandleMovesTheMotorAsOneOnTheMotorMovesTheHandle) {
+  // Maxwell and Betti: what is linear and has no gyroscope answers alike both ways.
+  for (const CancellationStep step : both_steps) {
+    InducedMotionModel at_motor = make(LinearModel::linear(step)), at_handle = at_motor;
+    for (int tick = 0; tick < 500; ++tick) {
+      const double force_N = tick % 37 < 12 ? 1.0 : -0.4;
+      at_motor.step({.motor_force_N = force_N});
+      at_handle.step({.handle_force_N = force_N});
+      EXPECT_NEAR(at_handle.motor_position_m(), at_motor.state()[2], 1e-12) << name_of(step) << " " << tick;
+    }
+    EXPECT_GT(std::fabs(at_handle.motor_position_m()), 1e-4);
+  }
+}
+
 TEST(InducedMotionModel, ForwardEulerIsRefusedWithoutAHandThatDampsTheLinkage) {
   InducedMotionModel::Params loose = params(CancellationStep::euler);
   loose.master.hand.damping_N_s_per_m = 0.0;

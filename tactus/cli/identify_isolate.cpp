@@ -1,0 +1,204 @@
+#include <tactus/cli/identify.hpp>
+#include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/configuration/toml_writer.hpp>
+#include <tactus/core/version.hpp>
+#include <tactus/identification/cancellation_model.hpp>
+#include <tactus/identification/isolation.hpp>
+#include <tactus/identification/isolation_figures.hpp>
+#include <tactus/identification/session.hpp>
+#include <tactus/report/files.hpp>
+#include <tactus/report/page.hpp>
+#include <tactus/report/table.hpp>
+#include <tactus/report/text.hpp>
+#include <tactus/simulation/simulated_rig.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+using identification::FoundParameter;
+using identification::ImpactCheck;
+using identification::Isolation;
+using identification::SessionRig;
+using simulation::SimulatedRig;
+
+struct IsolateOptions {
+  std::string rig;
+  std::int64_t seed = 1;
+  std::optional<std::string> session;
+  std::optional<std::string> out;
+  bool json = false;
+};
+
+/// `model.toml`: what `tactus run --with` loads.
+struct ModelFile {
+  struct Control {
+    control::MasterModel model;
+    static constexpr auto fields() { return std::tuple{field("model", &Control::model, "The controller's model.")}; }
+  };
+  Control control;
+  static constexpr auto fields() { return std::tuple{field("control", &ModelFile::control, "The controllers.")}; }
+};
+
+/// Asks for the mechanical steps, one at a time: here of a rig that takes them by itself.
+class AnnouncedRig final : public identification::Rig {
+ public:
+  explicit AnnouncedRig(Rig& rig) : rig_(rig) {}
+  [[nodiscard]] std::string name() const override { return rig_.name(); }
+  [[nodiscard]] double tick_s() const override { return rig_.tick_s(); }
+  [[nodiscard]] identification::RigLimits limits() const override { return rig_.limits(); }
+  Check assemble(identification::Assembly assembly) override {
+    if (standing_ != assembly) {
+      std::cerr << rig_.name() << ": " << identification::instruction(assembly) << " Done by itself.\n";
+    }
+    standing_ = assembly;
+    return rig_.assemble(assembly);
+  }
+  Result<identification::RigRun> run(const identification::MotorProgram& program) override { return rig_.run(program); }
+
+ private:
+  Rig& rig_;
+  std::optional<identification::Assembly> standing_;
+};
+
+std::string json_of(const Isolation& isolation, const ImpactCheck& check, const SimulatedRig& rig) {
+  using Json = nlohmann::ordered_json;
+  Json document{{"rig", rig.name()}, {"parameters", Json::array()}};
+  for (const FoundParameter& parameter : isolation.parameters) {
+    Json entry{{"name", parameter.name},
+               {"value", parameter.value},
+               {"unit", parameter.unit},
+               {"interval_95", parameter.interval_95},
+               {"determined", parameter.determined}};
+    if (const auto truth = rig.truth(parameter.name)) entry["truth"] = *truth;
+    document["parameters"].push_back(std::move(entry));
+  }
+  document["stages"] = Json::array();
+  for (const auto& stage : isolation.stages) {
+    document["stages"].push_back({{"name", stage.title}, {"residual_rms_m", stage.residual_rms_m}});
+  }
+  document["impact_residual"] = check.residual;
+  return document.dump(2) + "\n";
+}
+
+report::Table table_of(const Isolation& isolation, const SimulatedRig& rig) {
+  using Align = report::Column::Align;
+  report::Table table({{"parameter", "", Align::left},
+                       {"value"},
+                       {"95 % from"},
+                       {"to"},
+                       {"unit", "", Align::left},
+                       {"", "", Align::left},
+                       {"truth"}},
+                      "Master of " + rig.name());
+  for (const FoundParameter& parameter : isolation.parameters) {
+    const auto truth = rig.truth(parameter.name);
+    table.add_row({parameter.name, report::number(parameter.value, 4), report::number(parameter.interval_95[0], 4),
+                   report::number(parameter.interval_95[1], 4), parameter.unit,
+                   parameter.determined ? "" : "the data cannot tell", truth ? report::number(*truth, 4) : "–"});
+  }
+  return table;
+}
+
+Check write_results(const IsolateOptions& options, const Isolation& isolation, const ImpactCheck& check,
+                    const ModelFile& model, const SimulatedRig& rig, const std::string& json,
+                    const report::Table& table, const std::string& command) {
+  const std::filesystem::path folder = *options.out;
+  const std::string origin = "# " + command + "\n";
+  report::Page page("Successive isolation of " + rig.name());
+  page.table(table);
+  page.paragraph(
+      "Found from the motor outward, each stage with what the earlier ones found. The intervals hold what the "
+      "residuals "
+      "of a stage leave open and what the earlier stages did not know.");
+  for (const report::Figure& figure : figures(isolation)) page.figure(figure);
+  page.figure(figure(check));
+  const std::string model_text = origin + configuration::to_toml(model);
+  page.code(model_text, "model.toml, for tactus run --with");
+  page.footer("tactus " + std::string(version()), command);
+  if (auto error = report::write_file(folder / "model.toml", model_text)) return error;
+  if (auto error = report::write_file(folder / "rig.toml", "# The truth behind " + rig.name() + "\n" +
+                                                               configuration::to_toml(rig.truth().benched))) {
+    return error;
+  }
+  if (auto error = report::write_file(folder / "results.json", json)) return error;
+  return report::write_file(folder / "report.html", page.to_html());
+}
+
+Check identify(const IsolateOptions& options, const std::string& command) {
+  if (options.rig != "simulated") {
+    return Error{ErrorCode::out_of_bounds, {}, "'" + options.rig + "' is no rig: there is simulated", "--rig"};
+  }
+  auto rig = SimulatedRig::make(simulation::draw_rig(options.seed));
+  if (!rig) return rig.error();
+  if (options.out) {
+    if (auto error = report::prepare_directory(*options.out)) return error;
+  }
+  AnnouncedRig announced(*rig);
+  identification::Rig* bench = &announced;
+  std::optional<SessionRig> session;
+  if (options.session) {
+    auto opened = SessionRig::open(announced, *options.session);
+    if (!opened) return opened.error();
+    bench = &session.emplace(*std::move(opened));
+  }
+
+  const identification::IsolationParams params;
+  ProgressLine line("isolate");
+  const auto isolation =
+      identification::isolate(*bench, params, [&line](const std::string&, double done) { line.update(done); });
+  if (!isolation) return isolation.error();
+  ModelFile model;
+  model.control.model =
+      identification::model_for_cancellation(isolation->found, params.full_force_N, params.full_deflection_m);
+  const auto check = identification::check_on_impacts(*bench, model.control.model, params.full_force_N);
+  if (!check) return check.error();
+
+  const std::string json = json_of(*isolation, *check, *rig);
+  const report::Table table = table_of(*isolation, *rig);
+  if (options.json) {
+    std::cout << json;
+  } else {
+    std::cout << table.to_text() << "Of what impacts induce above 20 Hz, the model leaves "
+              << report::number(100.0 * check->residual, 2) << " %.\n";
+  }
+  if (auto error = flush_standard_output()) return error;
+  if (!options.out) return {};
+  if (auto error = write_results(options, *isolation, *check, model, *rig, json, table, command)) return error;
+  (options.json ? std::cerr : std::cout) << "Report: " << (std::filesystem::path(*options.out) / "report.html").string()
+                                         << "\n";
+  return {};
+}
+
+}  // namespace
+
+void add_identify_isolate(CLI::App& identify_verb, const std::string& name, const std::string& command, int& status) {
+  auto options = std::make_shared<IsolateOptions>();
+  CLI::App* verb = identify_verb.add_subcommand("isolate", "A master from the motor outward, by successive isolation");
+  verb->add_option("--rig", options->rig, "What stands on the bench: simulated")->required()->type_name("RIG");
+  verb->add_option("--seed", options->seed, "Which of the simulated rigs")->check(CLI::NonNegativeNumber);
+  verb->add_option("--session", options->session, "Folder that keeps every run, to stop and go on later")
+      ->type_name("DIR");
+  verb->add_option("--out", options->out, "Folder for report.html, results.json, model.toml and rig.toml")
+      ->type_name("DIR");
+  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  verb->callback([options, name, &command, &status] {
+    if (const auto error = identify(*options, command)) {
+      std::cerr << name << ": " << describe(*error) << "\n";
+      status = exit_status(*error);
+    }
+  });
+}
+
+}  // namespace tactus::cli
