@@ -4,6 +4,7 @@
 #include <tactus/simulation/force_estimators_experiment.hpp>
 #include <tactus/simulation/inverse_model_chirp_experiment.hpp>
 #include <tactus/simulation/prediction_block_experiment.hpp>
+#include <tactus/simulation/sensorless_experiment.hpp>
 #include <tactus/simulation/tapping_experiment.hpp>
 
 #include <algorithm>
@@ -87,8 +88,9 @@ std::span<const Experiment* const> experiments() {
   static const InverseModelChirpExperiment inverse_model_chirp;
   static const PredictionBlockExperiment prediction_block;
   static const ForceEstimatorsExperiment force_estimators;
+  static const SensorlessExperiment sensorless;
   static constexpr auto all = std::to_array<const Experiment*>(
-      {&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block, &force_estimators});
+      {&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block, &force_estimators, &sensorless});
   return all;
 }
 
