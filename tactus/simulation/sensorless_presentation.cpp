@@ -125,7 +125,7 @@ report::Figure sensorless_figure(const std::vector<SensorlessCase>& rows, const 
       all.push_back(std::move(bars));
     }
     // Room for the labels behind the bars.
-    if (!x.upper) x.upper = 1.3 * longest;
+    x.upper = (x.scale == report::Axis::Scale::logarithmic ? 3.0 : 1.3) * longest;
     return report::Panel{.title = std::move(title),
                          .x = std::move(x),
                          .y = {.label = "", .categories = names},
@@ -143,10 +143,8 @@ report::Figure sensorless_figure(const std::vector<SensorlessCase>& rows, const 
       .columns = 3,
       .panels = {},
       .share_y = report::Sharing::in_line};
-  const report::Axis gain{.label = "force gain",
-                          .lower = 0.5 * params.task.lowest_gain,
-                          .upper = 4.0 * params.task.highest_gain,
-                          .scale = report::Axis::Scale::logarithmic};
+  const report::Axis gain{
+      .label = "force gain", .lower = 0.5 * params.task.lowest_gain, .scale = report::Axis::Scale::logarithmic};
   for (std::size_t delay = 0; delay < sensorless_delays_s.size(); ++delay) {
     const double delay_s = rows[row_of(delay, 0, 0)].delay_s;
     figure.panels.push_back(panel("gain limit, " + delay_text(delay_s), delay, gain, [&](const SensorlessScore& score) {
