@@ -16,7 +16,6 @@ namespace tactus::simulation {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using control::CancellationMode;
 
 constexpr double not_drawn = std::numeric_limits<double>::quiet_NaN();
 
