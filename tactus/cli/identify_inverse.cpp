@@ -83,7 +83,7 @@ std::string toml_of(const InverseDynamics& model, const AxisRecording& axis, con
   const double filter_s = 1.0 / (2.0 * std::numbers::pi * 2.0 * model.cutoff_Hz);
   params.force_filter_s = filter_s;
   params.derivative_filter_s = filter_s;
-  params.prediction.blocks = 0;
+  params.prediction = signal::Predictor::Params::none();
   return "# " + command + "\n" +
          (axis.rotary ? "# Of a rotary axis: read kg as kg m^2, N as N m and m as rad.\n" : "") +
          configuration::to_toml(params);

@@ -1,10 +1,10 @@
 #include <tactus/control/hand_force_compensation.hpp>
 #include <tactus/signal/checks.hpp>
+#include <tactus/signal/matrix_functions.hpp>
 
+#include <array>
 #include <cmath>
 #include <numbers>
-
-#include <Eigen/Dense>
 
 namespace tactus::control {
 
@@ -13,15 +13,28 @@ std::complex<double> linkage_mode(const MasterModel& master) {
   const double outer_kg = master.handle.mass_kg;
   const double linkage_stiffness = master.linkage.stiffness_N_per_m;
   const double linkage_damping = master.linkage.damping_N_s_per_m;
-  Eigen::Matrix4d a = Eigen::Matrix4d::Zero();  // of positions of inner and outer mass, then velocities
-  a.topRightCorner<2, 2>().setIdentity();
-  a.bottomRows<2>() << -linkage_stiffness / inner_kg, linkage_stiffness / inner_kg, -linkage_damping / inner_kg,
-      linkage_damping / inner_kg, linkage_stiffness / outer_kg,
-      -(linkage_stiffness + master.hand.stiffness_N_per_m) / outer_kg, linkage_damping / outer_kg,
-      -(linkage_damping + master.hand.damping_N_s_per_m) / outer_kg;
+  const double outer_stiffness = linkage_stiffness + master.hand.stiffness_N_per_m;
+  const double outer_damping = linkage_damping + master.hand.damping_N_s_per_m;
+  // Of positions of inner and outer mass, then velocities.
+  const std::array<double, 16> a{0.0,
+                                 0.0,
+                                 1.0,
+                                 0.0,  //
+                                 0.0,
+                                 0.0,
+                                 0.0,
+                                 1.0,  //
+                                 -linkage_stiffness / inner_kg,
+                                 linkage_stiffness / inner_kg,
+                                 -linkage_damping / inner_kg,
+                                 linkage_damping / inner_kg,  //
+                                 linkage_stiffness / outer_kg,
+                                 -outer_stiffness / outer_kg,
+                                 linkage_damping / outer_kg,
+                                 -outer_damping / outer_kg};
   std::complex<double> lightest = 0.0;
   double least_damping = 1.0;
-  for (const std::complex<double>& pole : a.eigenvalues()) {
+  for (const std::complex<double>& pole : signal::eigenvalues(a, 4)) {
     const double damping = pole.imag() > 0.0 ? -pole.real() / std::abs(pole) : 1.0;
     if (damping < least_damping) {
       least_damping = damping;

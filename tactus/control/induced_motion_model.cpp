@@ -1,19 +1,17 @@
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/mechanics/friction.hpp>
 #include <tactus/signal/checks.hpp>
+#include <tactus/signal/matrix_functions.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
-
-#include <Eigen/Dense>
-#include <unsupported/Eigen/MatrixFunctions>
+#include <vector>
 
 namespace tactus::control {
 
 namespace {
 
-int bodies_of(ModelFidelity fidelity) {
+std::size_t bodies_of(ModelFidelity fidelity) {
   switch (fidelity) {
     case ModelFidelity::second_order:
       return 1;
@@ -26,22 +24,9 @@ int bodies_of(ModelFidelity fidelity) {
   return 3;
 }
 
-/// Calls `use` with the number of bodies as a constant.
-template <class Use>
-auto with_bodies(int bodies, const Use& use) {
-  switch (bodies) {
-    case 1:
-      return use(std::integral_constant<int, 1>());
-    case 2:
-      return use(std::integral_constant<int, 2>());
-    default:
-      return use(std::integral_constant<int, 3>());
-  }
-}
-
 /// Which body motor, drum or handle belongs to: links are rigid from the motor outward.
-constexpr Eigen::Index body_of(std::size_t mass, int bodies) {
-  return std::max<Eigen::Index>(0, static_cast<Eigen::Index>(mass) + bodies - 3);
+constexpr std::size_t body_of(std::size_t mass, std::size_t bodies) {
+  return mass + bodies > 3 ? mass + bodies - 3 : 0;
 }
 
 /// The parameters without what a linear model lacks.
@@ -56,37 +41,49 @@ InducedMotionModel::Params what_it_has(InducedMotionModel::Params params) {
   return params;
 }
 
-/// q̇ = A q + B u of the linear part: positions of the bodies, then their velocities; u the forces on them.
-template <int bodies>
+/// q̇ = A q + B u of the linear part: positions of the bodies, then their velocities; u the forces on them. Row by row.
 struct LinearPart {
-  Eigen::Matrix<double, 2 * bodies, 2 * bodies> a = decltype(a)::Zero();
-  Eigen::Matrix<double, 2 * bodies, bodies> b = decltype(b)::Zero();
+  std::size_t bodies;
+  std::vector<double> a;  ///< 2 bodies by 2 bodies
+  std::vector<double> b;  ///< 2 bodies by bodies
 };
 
-template <int bodies>
-LinearPart<bodies> linear_part(const MasterModel& master, double linkage_stiffness_N_per_m) {
-  using Square = Eigen::Matrix<double, bodies, bodies>;
-  Eigen::Matrix<double, 3, bodies> rigid = Eigen::Matrix<double, 3, bodies>::Zero();
-  for (std::size_t mass = 0; mass < 3; ++mass) rigid(static_cast<Eigen::Index>(mass), body_of(mass, bodies)) = 1.0;
-  const Eigen::Vector3d mass{master.motor.mass_kg, master.drum.mass_kg, master.handle.mass_kg};
+LinearPart linear_part(const MasterModel& master, std::size_t bodies, double linkage_stiffness_N_per_m) {
+  const std::array mass_kg{master.motor.mass_kg, master.drum.mass_kg, master.handle.mass_kg};
+  std::array<double, 3> together_kg{};
+  for (std::size_t mass = 0; mass < 3; ++mass) together_kg[body_of(mass, bodies)] += mass_kg[mass];
   const auto coupling = [](double cable, double linkage, double hand) {
-    Eigen::Matrix3d matrix;
-    matrix << cable, -cable, 0.0, -cable, cable + linkage, -linkage, 0.0, -linkage, linkage + hand;
-    return matrix;
+    return std::array<std::array<double, 3>, 3>{
+        {{cable, -cable, 0.0}, {-cable, cable + linkage, -linkage}, {0.0, -linkage, linkage + hand}}};
   };
-  const Square stiffness =
-      rigid.transpose() *
-      coupling(master.cable.stiffness_N_per_m, linkage_stiffness_N_per_m, master.hand.stiffness_N_per_m) * rigid;
-  const Square damping =
-      rigid.transpose() *
-      coupling(master.cable.damping_N_s_per_m, master.linkage.damping_N_s_per_m, master.hand.damping_N_s_per_m) * rigid;
-  const Square inverse_mass = (rigid.transpose() * mass).cwiseInverse().asDiagonal();
-  LinearPart<bodies> part;
-  part.a.template topRightCorner<bodies, bodies>().setIdentity();
-  part.a.template bottomLeftCorner<bodies, bodies>() = -inverse_mass * stiffness;
-  part.a.template bottomRightCorner<bodies, bodies>() = -inverse_mass * damping;
-  part.b.template bottomRows<bodies>() = inverse_mass;
+  const auto stiffness =
+      coupling(master.cable.stiffness_N_per_m, linkage_stiffness_N_per_m, master.hand.stiffness_N_per_m);
+  const auto damping =
+      coupling(master.cable.damping_N_s_per_m, master.linkage.damping_N_s_per_m, master.hand.damping_N_s_per_m);
+  LinearPart part{bodies, std::vector<double>(4 * bodies * bodies), std::vector<double>(2 * bodies * bodies)};
+  for (std::size_t i = 0; i < bodies; ++i) {
+    part.a[2 * bodies * i + bodies + i] = 1.0;
+    part.b[bodies * (bodies + i) + i] = 1.0 / together_kg[i];
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t row = body_of(i, bodies);
+    double* const accelerations = &part.a[2 * bodies * (bodies + row)];
+    for (std::size_t j = 0; j < 3; ++j) {
+      accelerations[body_of(j, bodies)] -= stiffness[i][j] / together_kg[row];
+      accelerations[bodies + body_of(j, bodies)] -= damping[i][j] / together_kg[row];
+    }
+  }
   return part;
+}
+
+/// By how much the mode that grows most grows in one step of forward Euler.
+double euler_growth(const LinearPart& part, double step_s) {
+  std::vector<double> transition = part.a;
+  for (double& entry : transition) entry *= step_s;
+  for (std::size_t i = 0; i < 2 * part.bodies; ++i) transition[2 * part.bodies * i + i] += 1.0;
+  double growth = 0.0;
+  for (const auto& value : signal::eigenvalues(transition, 2 * part.bodies)) growth = std::max(growth, std::abs(value));
+  return growth;
 }
 
 int euler_substeps(Seconds dt) {
@@ -104,10 +101,8 @@ Result<InducedMotionModel> InducedMotionModel::make(const Params& requested, Sec
   if (!linkage) return under("master.linkage", linkage.error());
   if (params.step == CancellationStep::euler) {
     const double substep = dt.value / euler_substeps(dt);
-    const double radius = with_bodies(bodies_of(params.fidelity), [&](auto bodies) {
-      const auto a = linear_part<bodies>(params.master, linkage->initial_stiffness_N_per_m()).a;
-      return (decltype(a)::Identity() + substep * a).eval().eigenvalues().cwiseAbs().maxCoeff();
-    });
+    const double radius = euler_growth(
+        linear_part(params.master, bodies_of(params.fidelity), linkage->initial_stiffness_N_per_m()), substep);
     constexpr double round_off = 1e-9;
     if (radius > 1.0 + round_off) {
       return Error{.code = ErrorCode::inconsistent,
@@ -137,29 +132,30 @@ InducedMotionModel::InducedMotionModel(const Params& params, const mechanics::Bo
     for (std::size_t j = 0; j < 3; ++j) together_kg += body_of(i, bodies_) == body_of(j, bodies_) ? mass_kg[j] : 0.0;
     euler_response_[i] = euler_substep_s_ / together_kg;
   }
-  with_bodies(bodies_, [this](auto bodies) { precompute_exact_step<bodies>(); });
+  precompute_exact_step();
   if (params_.fidelity == ModelFidelity::sixth_order) precompute_friction();
 }
 
-template <int bodies>
 void InducedMotionModel::precompute_exact_step() {
   // exp of the augmented matrix [A B; 0 0]·dt holds Φ and Γ side by side (Van Loan 1978).
-  using Augmented = Eigen::Matrix<double, 3 * bodies, 3 * bodies>;
-  const auto part = linear_part<bodies>(params_.master, linkage_stiffness_N_per_m_);
-  Augmented augmented = Augmented::Zero();
-  augmented.template topLeftCorner<2 * bodies, 2 * bodies>() = part.a * dt_s_;
-  augmented.template topRightCorner<2 * bodies, bodies>() = part.b * dt_s_;
-  const Augmented exponential = augmented.exp();
+  const LinearPart part = linear_part(params_.master, bodies_, linkage_stiffness_N_per_m_);
+  const std::size_t states = 2 * bodies_, size = 3 * bodies_;
+  std::vector<double> exponential(size * size);
+  for (std::size_t row = 0; row < states; ++row) {
+    for (std::size_t i = 0; i < states; ++i) exponential[size * row + i] = part.a[states * row + i] * dt_s_;
+    for (std::size_t i = 0; i < bodies_; ++i) exponential[size * row + states + i] = part.b[bodies_ * row + i] * dt_s_;
+  }
+  signal::exponentiate(exponential, size);
 
   // Masses of one body have equal rows; the first of them stands for all, and the columns of the others stay zero.
   for (std::size_t row = 0; row < 6; ++row) {
-    const Eigen::Index r = body_of(row % 3, bodies) + (row < 3 ? 0 : bodies);
+    const double* const held = &exponential[size * (body_of(row % 3, bodies_) + (row < 3 ? 0 : bodies_))];
     for (std::size_t mass = 0; mass < 3; ++mass) {
-      const Eigen::Index body = body_of(mass, bodies);
-      response_[mass][row] = exponential(r, body + bodies + bodies);
-      if (mass > 0 && body == body_of(mass - 1, bodies)) continue;
-      transition_[mass][row] = exponential(r, body);
-      transition_[mass + 3][row] = exponential(r, body + bodies);
+      const std::size_t body = body_of(mass, bodies_);
+      response_[mass][row] = held[body + states];
+      if (mass > 0 && body == body_of(mass - 1, bodies_)) continue;
+      transition_[mass][row] = held[body];
+      transition_[mass + 3][row] = held[body + bodies_];
     }
   }
 }

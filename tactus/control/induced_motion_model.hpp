@@ -164,7 +164,6 @@ class InducedMotionModel {
   };
 
   InducedMotionModel(const Params& params, const mechanics::BoucWenSpring& linkage, Seconds dt);
-  template <int bodies>
   void precompute_exact_step();
   void precompute_friction();
 
@@ -179,7 +178,7 @@ class InducedMotionModel {
 
   Params params_;  ///< linear ones without what they lack
   mechanics::BoucWenSpring linkage_;
-  int bodies_;  ///< that move on their own
+  std::size_t bodies_;  ///< that move on their own
   bool hysteretic_;
   double linkage_stiffness_N_per_m_;  ///< initial
   double dt_s_;

@@ -77,21 +77,25 @@ Check check_inverse(const InverseModelEstimator::Params& params) {
 
 /// Why prediction does not fit the declared delay, if so.
 Check check_prediction(const InverseModelEstimator::Params& params, Seconds dt) {
-  const double blocks = static_cast<double>(params.prediction.blocks);
-  const double time_constant_s = params.prediction.block.time_constant_s;
-  if (params.prediction.blocks > 0 && time_constant_s < 0.5 * dt.value) {
+  const signal::Predictor::Params& prediction = params.prediction;
+  const bool by_blocks = prediction.kind == signal::PredictionKind::blocks;
+  const double time_constant_s = prediction.block.time_constant_s;
+  if (by_blocks && prediction.blocks > 0 && time_constant_s < 0.5 * dt.value) {
     return inconsistent("prediction.block.time_constant_s",
                         "is " + format_number(time_constant_s) + " s, less than half a sample (" +
                             format_number(0.5 * dt.value) + " s): predict further or set prediction.blocks to 0");
   }
   const double wanted_s = params.declared_delay_s + params.derivative_filter_s;
-  if (params.declared_delay_s > 0.0 && std::abs(wanted_s - blocks * time_constant_s) > 0.5 * wanted_s) {
-    const std::string remedy = params.prediction.blocks > 0
-                                   ? "set prediction.block.time_constant_s near " + format_number(wanted_s / blocks)
-                                   : "set prediction.blocks to 1 or more";
+  if (params.declared_delay_s > 0.0 && std::abs(wanted_s - prediction.lead_s()) > 0.5 * wanted_s) {
+    std::string remedy = "set prediction.blocks to 1 or more";
+    if (!by_blocks) {
+      remedy = "set prediction." + std::string(name_of(prediction.kind)) + ".horizon_s near " + format_number(wanted_s);
+    } else if (prediction.blocks > 0) {
+      remedy = "set prediction.block.time_constant_s near " +
+               format_number(wanted_s / static_cast<double>(prediction.blocks));
+    }
     return inconsistent("declared_delay_s", "is " + format_number(params.declared_delay_s) +
-                                                " s, and prediction looks ahead " +
-                                                format_number(blocks * time_constant_s) +
+                                                " s, and prediction looks ahead " + format_number(prediction.lead_s()) +
                                                 " s: more than half of the delay is left, and free motion would feel "
                                                 "like a force; " +
                                                 remedy + ", or declare no delay");
@@ -138,7 +142,7 @@ Result<InverseModelEstimator> InverseModelEstimator::make(const Params& params, 
   if (!velocity) return under("derivative_filter_s", velocity.error());
   const auto low_pass = RationalFilter::make(lag(params.force_filter_s), dt);
   if (!low_pass) return under("force_filter_s", low_pass.error());
-  const auto prediction = signal::PredictionCascade::make(params.prediction, dt);
+  const auto prediction = signal::Predictor::make(params.prediction, dt);
   if (!prediction) return under("prediction", prediction.error());
   return InverseModelEstimator(params.friction, params.actuator_gain, 1.0 / params.sensor_gain, *prediction, *inverse,
                                *velocity, *low_pass);
@@ -159,8 +163,7 @@ void InverseModelEstimator::reset() noexcept {
 }
 
 std::complex<double> inverse_response(const InverseModelEstimator::Params& params, std::complex<double> s) {
-  return signal::response(params.prediction, s) / (plant_of(params)(s) * params.sensor_gain) /
-         (params.derivative_filter_s * s + 1.0);
+  return 1.0 / (plant_of(params)(s) * params.sensor_gain) / (params.derivative_filter_s * s + 1.0);
 }
 
 }  // namespace tactus::control

@@ -3,7 +3,7 @@
 #include <tactus/control/force_estimator.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
-#include <tactus/signal/prediction_block.hpp>
+#include <tactus/signal/predictor.hpp>
 #include <tactus/signal/rational_filter.hpp>
 
 #include <array>
@@ -68,7 +68,8 @@ constexpr auto enumerators(LinearModelForm) {
 ///
 /// `rational` takes x/F = N(s)/D(s) instead of 1/((M·s + h)·s). v is the predicted
 /// position behind s/(T_d·s + 1). The blocks predict the measured position, so also the instant at which friction
-/// changes sign. All of it is sampled by the bilinear transform, which moves no zero of the model across the axis.
+/// changes sign. `prediction.kind` puts a polynomial or a Kalman predictor in their place. All of it is sampled by the
+/// bilinear transform, which moves no zero of the model across the axis.
 ///
 /// `make` refuses what no choice of the other keys can repair: an unstable or undamped inverse (zeros of the plant not
 /// left of the imaginary axis), an inverse that is improper behind its filters, a time constant below half a sample,
@@ -87,7 +88,7 @@ class InverseModelEstimator {
     double force_filter_s = 0.0005;
     double derivative_filter_s = 0.0005;
     double declared_delay_s = 0.0;
-    signal::PredictionCascade::Params prediction;
+    signal::Predictor::Params prediction;
     static constexpr auto fields() {
       return std::tuple{
           field("form", &Params::form, "Which keys state the linear model: mass-damping or rational."),
@@ -107,7 +108,8 @@ class InverseModelEstimator {
           field("declared_delay_s", &Params::declared_delay_s, units::second, non_negative,
                 "Delays and lags of actuator and sensor together, as far as prediction must make up for them; 0 "
                 "declares none."),
-          field("prediction", &Params::prediction, "Blocks that predict the measured position.")};
+          field("prediction", &Params::prediction,
+                "What predicts the measured position: blocks or one of their rivals.")};
     }
   };
   using Input = SlaveMotionSample;
@@ -121,7 +123,7 @@ class InverseModelEstimator {
 
  private:
   InverseModelEstimator(const FrictionFunction& friction, double actuator_gain, double position_gain,
-                        const signal::PredictionCascade& prediction, const signal::RationalFilter& inverse,
+                        const signal::Predictor& prediction, const signal::RationalFilter& inverse,
                         const signal::RationalFilter& velocity, const signal::RationalFilter& low_pass)
       : friction_(friction),
         actuator_gain_(actuator_gain),
@@ -135,15 +137,15 @@ class InverseModelEstimator {
   FrictionFunction friction_;
   double actuator_gain_;
   double position_gain_;
-  signal::PredictionCascade prediction_;
+  signal::Predictor prediction_;
   signal::RationalFilter inverse_;
   signal::RationalFilter velocity_;
   signal::RationalFilter friction_filter_;
   signal::RationalFilter command_filter_;
 };
 
-/// The inverse model as eq. 4 has it, from measured position to force in N, friction left out; `s` in 1/s. Without the
-/// filter T_f, which command and model share.
+/// The inverse model as eq. 4 has it, from measured position to force in N, friction and prediction left out; `s` in
+/// 1/s. Without the filter T_f, which command and model share.
 std::complex<double> inverse_response(const InverseModelEstimator::Params& params, std::complex<double> s);
 
 }  // namespace tactus::control

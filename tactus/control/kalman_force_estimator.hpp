@@ -17,12 +17,10 @@ namespace tactus::control {
 ///
 ///     Q = ∫₀^dt e^{Fτ} diag(0, w²/M², q²) e^{Fᵀτ} dτ,   R = r²,
 ///
-/// K = P Cᵀ/(C P Cᵀ + R) from the P that solves the discrete Riccati equation, found once by doubling. The output is
+/// K = P Cᵀ/(C P Cᵀ + R) from the P that solves the discrete Riccati equation (`signal::steady_kalman`). The output is
 /// the estimate that includes this sample. r of an encoder is its step over √12. The larger q, the faster and the
-/// noisier. Starts at rest, with no force, wherever the first sample is. Sources: R. E. Kalman, A new approach to
-/// linear filtering and prediction problems, J. Basic Engineering 82, 1960; B. D. O. Anderson, Second-order convergent
-/// algorithms for the steady-state Riccati equation, Int. J. Control 28(2), 1978 (doubling); C. F. Van Loan, Computing
-/// integrals involving the matrix exponential, IEEE Trans. Automatic Control 23(3), 1978.
+/// noisier. Starts at rest, with no force, wherever the first sample is. Source: R. E. Kalman, A new approach to
+/// linear filtering and prediction problems, J. Basic Engineering 82, 1960.
 class KalmanForceEstimator {
  public:
   struct Params {

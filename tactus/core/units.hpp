@@ -34,6 +34,14 @@ inline constexpr Unit newton_per_metre{"N/m", "_N_per_m"};
 inline constexpr Unit newton_per_metre5{"N/m^5", "_N_per_m5"};
 inline constexpr Unit newton_second_per_metre{"N s/m", "_N_s_per_m"};
 inline constexpr Unit joule{"J", "_J"};
+inline constexpr Unit milliampere{"mA", "_mA"};
+inline constexpr Unit milliampere_per_metre{"mA/m", "_mA_per_m"};
+inline constexpr Unit newton_per_milliampere{"N/mA", "_N_per_mA"};
+inline constexpr Unit pascal{"Pa", "_Pa"};
+inline constexpr Unit square_metre{"m^2", "_m2"};
+inline constexpr Unit cubic_metre{"m^3", "_m3"};
+inline constexpr Unit cubic_metre_per_second{"m^3/s", "_m3_per_s"};
+inline constexpr Unit cubic_metre_per_second_per_pascal{"m^3/(s Pa)", "_m3_per_s_per_Pa"};
 
 /// Every unit that the end of a name can tell, those of recordings among them.
 inline constexpr std::array known{second,

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <string>
+#include <utility>
 
 namespace tactus::identification {
 
@@ -146,6 +149,8 @@ double loop_area_J(const mechanics::BoucWenSpring::Params& spring) {
 BenchKnowledge::BenchKnowledge(const BenchParams& start)
     : params_(start), covariance_(bench_variables * bench_variables, 0.0) {}
 
+const char* BenchKnowledge::name(BenchVariable variable) { return describe(variable).name; }
+
 bool BenchKnowledge::knows(BenchVariable variable) const { return known_[static_cast<std::size_t>(variable)]; }
 
 double BenchKnowledge::covariance(BenchVariable a, BenchVariable b) const {
@@ -240,11 +245,14 @@ FoundParameter BenchKnowledge::found(BenchVariable variable) const {
   const Description& description = describe(variable);
   FoundParameter parameter{.name = description.name, .unit = description.unit.symbol};
   parameter.value = get(params_, description);
+  if (!knows(variable)) {
+    parameter.interval_95 = {0.0, std::numeric_limits<double>::max()};
+    return parameter;
+  }
   const double middle = to_variable(description, parameter.value);
   const double own = description.scale == Scale::linear ? 0.0 : model_error;
   const double reach = normal_95 * std::hypot(std::sqrt(covariance(variable, variable)), own);
   parameter.interval_95 = {to_value(description, middle - reach), to_value(description, middle + reach)};
-  if (!knows(variable)) return parameter;
   if (variable == BenchVariable::amplifier_offset) {
     parameter.determined = reach * description.unit_scale < 0.005;
   } else {
@@ -259,6 +267,10 @@ FoundParameter BenchKnowledge::loop_area() const {
                              BenchVariable::linkage_slip_deflection};
   FoundParameter parameter{.name = "linkage.loop_area_J", .unit = units::joule.symbol};
   parameter.value = loop_area_J(params_.master.linkage);
+  if (!std::all_of(shape.begin(), shape.end(), [this](auto v) { return knows(v); })) {
+    parameter.interval_95 = {0.0, std::numeric_limits<double>::max()};
+    return parameter;
+  }
   std::array<double, shape.size()> slope{};
   constexpr double difference = 1e-4;
   for (std::size_t i = 0; i < shape.size(); ++i) {
@@ -274,8 +286,7 @@ FoundParameter BenchKnowledge::loop_area() const {
   }
   const double factor = std::exp(normal_95 * std::sqrt(variance));
   parameter.interval_95 = {parameter.value / factor, parameter.value * factor};
-  parameter.determined =
-      std::all_of(shape.begin(), shape.end(), [this](auto v) { return knows(v); }) && factor <= 1.0 + told_within;
+  parameter.determined = factor <= 1.0 + told_within;
   return parameter;
 }
 

@@ -69,6 +69,9 @@ struct MeasurementWeights {
 /// Values so far with the joint covariance of all that is known.
 class BenchKnowledge {
  public:
+  /// `motor.mass_kg` and so on, also the parameter of an error.
+  static const char* name(BenchVariable variable);
+
   /// Nothing is known; fits start from these values.
   explicit BenchKnowledge(const BenchParams& start);
 
@@ -80,6 +83,8 @@ class BenchKnowledge {
   /// deviation (a linear variable: to `share` of its unit scale). Positions must then be weighed by what they are
   /// really off.
   void suppose(BenchVariable variable, double share);
+  /// Takes the linkage for a linear spring from now on, without knowing it.
+  void assume_no_hysteresis() { params_.master.linkage.hysteretic_fraction = 0.0; }
 
   /// Finds `wanted` from the experiments, everything else as it is; where positions count, a constant force in each
   /// experiment is fitted along. Returns the root mean square of what is left of the weighted measurements. Errors: as
@@ -91,6 +96,7 @@ class BenchKnowledge {
   /// part left out where the experiment says so.
   [[nodiscard]] std::vector<double> left_m(const BenchExperiment& experiment) const;
 
+  /// What is not known reaches from 0 to the largest number there is.
   [[nodiscard]] FoundParameter found(BenchVariable variable) const;
   /// Energy that the linkage loses in a closed loop of its reference deflection, in J.
   [[nodiscard]] FoundParameter loop_area() const;
@@ -106,7 +112,7 @@ class BenchKnowledge {
   std::vector<double> covariance_;  ///< of all variables, row by row; zero for what is not known
 };
 
-/// Position at every tick as the knowledge has it, the constant force of the experiment fitted.
+/// Position at every tick as the knowledge has it, without the constant force that a fit allows for.
 std::vector<double> replay(const BenchKnowledge& knowledge, const BenchExperiment& experiment);
 
 }  // namespace tactus::identification

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace tactus::identification {
 
@@ -102,9 +105,25 @@ class Isolator {
     return {};
   }
 
+  /// Finds what the data tell of `wanted`, and leaves the rest unknown where it is. A linkage whose loop tells no shape
+  /// is taken for linear.
   Check fit(std::span<const BenchVariable> wanted, const Programs& experiments) {
-    const auto left = knowledge_.fit(wanted, experiments, {.position_per_m = 1.0});
-    if (!left) return left.error();
+    std::vector<BenchVariable> left(wanted.begin(), wanted.end());
+    while (!left.empty()) {
+      const auto residual = knowledge_.fit(left, experiments, {.position_per_m = 1.0});
+      if (residual) return {};
+      const auto untold = [&](BenchVariable variable) {
+        return residual.error().parameter == BenchKnowledge::name(variable);
+      };
+      if (std::none_of(left.begin(), left.end(), untold)) return residual.error();
+      if (untold(linkage_hysteretic_fraction) || untold(linkage_slip_deflection)) {
+        knowledge_.assume_no_hysteresis();
+        std::erase(left, linkage_hysteretic_fraction);
+        std::erase(left, linkage_slip_deflection);
+      } else {
+        std::erase_if(left, untold);
+      }
+    }
     return {};
   }
 

@@ -65,7 +65,8 @@ void add_response(std::vector<Panel>& panels, const BenchExperiment& experiment,
       if (h.frequency_Hz[k] < experiment.lower_Hz || h.frequency_Hz[k] > experiment.upper_Hz) continue;
       magnitude.x.push_back(h.frequency_Hz[k]);
       magnitude.y.push_back(1e3 * std::abs(h.response[k]));
-      angle.y.push_back(180.0 / std::numbers::pi * std::arg(h.response[k]));
+      const double phase_deg = 180.0 / std::numbers::pi * std::arg(h.response[k]);
+      angle.y.push_back(phase_deg > 90.0 ? phase_deg - 360.0 : phase_deg);  // a mass lags by 180, and a little more
       coherent.y.push_back(h.coherence[k]);
     }
     angle.x = coherent.x = magnitude.x;
@@ -121,21 +122,27 @@ void add_motion(std::vector<Panel>& panels, const BenchExperiment& experiment, c
 std::vector<report::Figure> figures(const Isolation& isolation) {
   std::vector<report::Figure> all;
   for (const IsolationStage& stage : isolation.stages) {
-    report::Figure picture;
-    picture.title = stage.title;
-    picture.caption = "Measured less modelled position: " + report::number(1e6 * stage.residual_rms_m, 2) + " um rms.";
+    report::Figure motions, responses;
+    motions.title = responses.title = stage.title;
+    motions.caption = responses.caption =
+        "Measured less modelled position of the whole stage: " + report::number(1e6 * stage.residual_rms_m, 2) +
+        " um rms.";
+    motions.columns = 2;
+    responses.columns = 3;
     for (std::size_t i = 0; i < stage.experiments.size(); ++i) {
       const BenchExperiment& experiment = stage.experiments[i];
       if (experiment.upper_Hz > 0.0) {
-        add_response(picture.panels, experiment, stage.modelled_m[i]);
-      } else if (stage.experiments.front().assembly == Assembly::linkage) {
-        add_loop(picture.panels, experiment, stage.modelled_m[i]);
+        add_response(responses.panels, experiment, stage.modelled_m[i]);
+      } else if (experiment.assembly == Assembly::linkage) {
+        add_loop(motions.panels, experiment, stage.modelled_m[i]);
       } else {
-        add_motion(picture.panels, experiment, stage.modelled_m[i]);
+        add_motion(motions.panels, experiment, stage.modelled_m[i]);
       }
     }
-    picture.columns = picture.panels.size() > 2 ? 3 : static_cast<int>(picture.panels.size());
-    all.push_back(std::move(picture));
+    for (report::Figure* picture : {&motions, &responses}) {
+      picture->columns = std::min(picture->columns, static_cast<int>(picture->panels.size()));
+      if (!picture->panels.empty()) all.push_back(std::move(*picture));
+    }
   }
   return all;
 }

@@ -35,10 +35,8 @@ Result<double> prediction_time_closed_form(double delays_and_lags_s, double deri
 Result<double> prediction_time_limit(const TransferFunction& plant, const InverseModelEstimator::Params& model,
                                      std::int64_t blocks) {
   if (Check error = check_blocks(blocks)) return *std::move(error);
-  InverseModelEstimator::Params unpredicted = model;
-  unpredicted.prediction.blocks = 0;
   const auto root = [&](double s) {
-    const double passed = plant(s) * control::inverse_response(unpredicted, s).real() / model.actuator_gain;
+    const double passed = plant(s) * control::inverse_response(model, s).real() / model.actuator_gain;
     return std::pow(passed, -1.0 / static_cast<double>(blocks));
   };
   constexpr double near_one = 1e-2;
@@ -84,6 +82,7 @@ Result<double> free_motion_error(const FreeMotion& motion, const InverseModelEst
 Result<PredictionFromData> prediction_time_from_data(const FreeMotion& motion, InverseModelEstimator::Params model,
                                                      std::int64_t blocks) {
   if (Check error = check_blocks(blocks)) return *std::move(error);
+  model.prediction.kind = signal::PredictionKind::blocks;
   model.prediction.blocks = blocks;
   model.declared_delay_s = 0.0;  // it is what is looked for
   model.prediction.block.time_constant_s = std::max(motion.sample_time_s, 1e-6);

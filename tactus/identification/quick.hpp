@@ -11,8 +11,6 @@ struct QuickParams {
   double data_sheet_error = 0.3;  ///< their standard deviation in proportion; twice that for the hand
   double slow_sweep_s = 30.0;     ///< 20 to 0.1 Hz
   double sweep_s = 6.0;           ///< each of the three faster sweeps
-  double full_force_N = 1.0;      ///< as in `IsolationParams`
-  double full_deflection_m = 2e-3;
 };
 
 /// Excites the held master with sweeps of several amplitudes and with bursts, and fits the whole chain at once.

@@ -8,6 +8,11 @@
 
 namespace tactus::mechanics {
 
+/// The nearest multiple of `resolution`, halves up; the value itself for a resolution of 0.
+inline double quantised(double value, double resolution) noexcept {
+  return resolution > 0.0 ? std::floor(value / resolution + 0.5) * resolution : value;
+}
+
 /// Quantised position, as an encoder reports it at the servo tick: the nearest multiple of the resolution, halves up.
 ///
 /// Nearest and not next lower, although a counter of edges does the latter: the two differ by a constant half step,
@@ -31,9 +36,7 @@ class Encoder {
   }
 
   /// Position in m as reported, from the true position in m. Real-time safe.
-  double step(double position_m) noexcept {
-    return resolution_m_ > 0.0 ? std::floor(position_m / resolution_m_ + 0.5) * resolution_m_ : position_m;
-  }
+  double step(double position_m) noexcept { return quantised(position_m, resolution_m_); }
 
   void reset() noexcept {}
 

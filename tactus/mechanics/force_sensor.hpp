@@ -2,22 +2,15 @@
 
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/mechanics/analogue_sensor.hpp>
 #include <tactus/signal/checks.hpp>
-#include <tactus/signal/random.hpp>
-#include <tactus/signal/second_order_filter.hpp>
 
-#include <algorithm>
 #include <cstdint>
 
 namespace tactus::mechanics {
 
-/// Force sensor with its analogue front end and its converter, which run on two clocks.
-///
-/// `step`, on the plant's substeps, is the analogue part: the force through a second-order Butterworth low-pass, −3 dB
-/// at `bandwidth_Hz`, as an anti-aliasing filter is. `sample`, once a servo tick, is the converter: plus the offset,
-/// plus white noise, then saturation. The noise is drawn per sample and not per substep, so its RMS does not depend on
-/// how finely the plant is stepped; it is drawn from its own seeded stream, so no other sensor can shift it. Range:
-/// bandwidth below half the rate of the substeps.
+/// Force sensor with its analogue front end and its converter: an `AnalogueSensor`. Range: bandwidth below half the
+/// rate of the substeps.
 class ForceSensor {
  public:
   struct Params {
@@ -43,35 +36,29 @@ class ForceSensor {
 
   static Result<ForceSensor> make(const Params& params, Seconds dt) {
     if (Check error = signal::check(params, dt)) return *std::move(error);
-    if (Check error = signal::check_below_nyquist("bandwidth_Hz", params.bandwidth_Hz, dt)) return *std::move(error);
-    const auto filter = signal::SecondOrderFilter::make({.frequency_Hz = params.bandwidth_Hz}, dt);
-    if (!filter) return filter.error();
-    return ForceSensor(params, *filter);
+    const auto sensor = AnalogueSensor::make({.bandwidth_Hz = params.bandwidth_Hz,
+                                              .noise_rms = params.noise_rms_N,
+                                              .offset = params.offset_N,
+                                              .limit = params.limit_N,
+                                              .seed = params.seed},
+                                             dt);
+    if (!sensor) return sensor.error();
+    return ForceSensor(*sensor);
   }
 
   /// Advances the analogue part by one substep under `force_N` and returns its output in N. Real-time safe.
-  double step(double force_N) noexcept { return analogue_N_ = filter_.step(force_N); }
+  double step(double force_N) noexcept { return sensor_.step(force_N); }
 
-  /// The reading in N: the latest analogue output with offset, noise and saturation. A noisy sensor draws one random
-  /// number. Real-time safe but for the unbounded, on average 1.4, draws of `Random::normal`.
-  double sample() noexcept {
-    const double noise_N = params_.noise_rms_N > 0.0 ? params_.noise_rms_N * noise_.normal() : 0.0;
-    return std::clamp(analogue_N_ + params_.offset_N + noise_N, -params_.limit_N, params_.limit_N);
-  }
+  /// The reading in N: the latest analogue output with offset, noise and saturation. Real-time safe as
+  /// `AnalogueSensor::sample` is.
+  double sample() noexcept { return sensor_.sample(); }
 
   /// No force so far, and the noise from its beginning.
-  void reset() noexcept {
-    filter_.reset();
-    analogue_N_ = 0.0;
-    noise_ = signal::Random(static_cast<std::uint64_t>(params_.seed));
-  }
+  void reset() noexcept { sensor_.reset(0.0); }
 
  private:
-  ForceSensor(const Params& params, const signal::SecondOrderFilter& filter) : params_(params), filter_(filter) {}
-  Params params_;
-  signal::SecondOrderFilter filter_;
-  double analogue_N_ = 0.0;
-  signal::Random noise_{static_cast<std::uint64_t>(params_.seed)};
+  explicit ForceSensor(const AnalogueSensor& sensor) : sensor_(sensor) {}
+  AnalogueSensor sensor_;
 };
 
 }  // namespace tactus::mechanics

@@ -116,20 +116,29 @@ inline std::complex<double> response(const PredictionCascade::Params& params, st
   return product;
 }
 
-/// The usable band: the highest frequency in Hz up to which the continuous cascade differs from the ideal prediction
-/// exp(s·n·Tp) by no more than `tolerance` (0.1: a tenth of the signal). Near it, the error is n·3/2·(ω·Tp)².
+/// The usable band: the highest frequency in Hz up to which `response(f)` differs from the ideal prediction
+/// exp(2πi·f·lead_s) by no more than `tolerance`, and no higher than `highest_Hz`. Not real-time safe.
+template <class Response>
+double usable_band_Hz(const Response& response, double lead_s, double tolerance, double highest_Hz) {
+  const auto error = [&](double frequency_Hz) {
+    const double angle = 2.0 * std::numbers::pi * frequency_Hz * lead_s;
+    return std::abs(response(frequency_Hz) * std::polar(1.0, -angle) - 1.0);
+  };
+  double low = 0.0, high = 1e-3 * highest_Hz;
+  while (error(high) < tolerance && high < highest_Hz) low = high, high *= 1.1;
+  for (int i = 0; i < 60; ++i) (error(0.5 * (low + high)) < tolerance ? low : high) = 0.5 * (low + high);
+  return std::min(low, highest_Hz);
+}
+
+/// The usable band of the continuous cascade (0.1: a tenth of the signal). Near it, the error is n·3/2·(ω·Tp)².
 /// Infinite for no blocks. Not real-time safe.
 inline double usable_band_Hz(const PredictionCascade::Params& params, double tolerance = 0.1) {
   if (params.blocks == 0) return std::numeric_limits<double>::infinity();
   const double lead_s = static_cast<double>(params.blocks) * params.block.time_constant_s;
-  const auto error = [&](double frequency_Hz) {
-    const std::complex<double> s(0.0, 2.0 * std::numbers::pi * frequency_Hz);
-    return std::abs(response(params, s) * std::exp(-lead_s * s) - 1.0);
+  const auto continuous = [&](double frequency_Hz) {
+    return response(params, std::complex<double>(0.0, 2.0 * std::numbers::pi * frequency_Hz));
   };
-  double low = 0.0, high = 1e-3 / lead_s;
-  while (error(high) < tolerance && high * lead_s < 1.0) low = high, high *= 1.1;
-  for (int i = 0; i < 60; ++i) (error(0.5 * (low + high)) < tolerance ? low : high) = 0.5 * (low + high);
-  return low;
+  return usable_band_Hz(continuous, lead_s, tolerance, 1.0 / lead_s);
 }
 
 /// By how much the sampled cascade amplifies the RMS of white noise: the square root of the sum of its squared impulse

@@ -2,6 +2,8 @@
 #include <tactus/simulation/experiment.hpp>
 #include <tactus/simulation/force_display_experiment.hpp>
 #include <tactus/simulation/force_estimators_experiment.hpp>
+#include <tactus/simulation/hydraulic_chirp_experiment.hpp>
+#include <tactus/simulation/hydraulic_rigid_contact_experiment.hpp>
 #include <tactus/simulation/inverse_model_chirp_experiment.hpp>
 #include <tactus/simulation/prediction_block_experiment.hpp>
 #include <tactus/simulation/tapping_experiment.hpp>
@@ -87,8 +89,11 @@ std::span<const Experiment* const> experiments() {
   static const InverseModelChirpExperiment inverse_model_chirp;
   static const PredictionBlockExperiment prediction_block;
   static const ForceEstimatorsExperiment force_estimators;
-  static constexpr auto all = std::to_array<const Experiment*>(
-      {&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block, &force_estimators});
+  static const HydraulicChirpExperiment hydraulic_chirp;
+  static const HydraulicRigidContactExperiment hydraulic_rigid_contact;
+  static constexpr auto all =
+      std::to_array<const Experiment*>({&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block,
+                                        &force_estimators, &hydraulic_chirp, &hydraulic_rigid_contact});
   return all;
 }
 

@@ -91,21 +91,60 @@ Result<Loop> make_loop(const ForceEstimatorsParams& params) {
   return Loop{*clock, *slave, *controller};
 }
 
+/// The closed loop for `seconds`, told to be at `path_m(time_s)`.
+template <class Path>
+Result<SlaveRun> drive(const ForceEstimatorsParams& params, double seconds, Path path_m) {
+  if (auto error = validate(params)) return *std::move(error);
+  auto loop = make_loop(params);
+  if (!loop) return loop.error();
+  auto& [clock, slave, controller] = *loop;
+  slave.reset(start_of(params));
+
+  SlaveRun run{.tick_s = clock.tick_s, .samples = {}, .sensor_N = {}, .true_N = {}};
+  const auto ticks = static_cast<std::size_t>(std::lround(seconds / clock.tick_s));
+  double command_N = 0.0;
+  double contact_N = 0.0;
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    const auto reading = slave.measure();
+    run.samples.push_back({.command = command_N, .position = reading.motor_position_m});
+    run.sensor_N.push_back(-reading.tip_force_N);
+    run.true_N.push_back(-contact_N);
+    const double wanted_m = path_m(static_cast<double>(tick) * clock.tick_s);
+    const double next_N = controller.step(wanted_m - reading.motor_position_m);
+    contact_N = 0.0;
+    for (int i = 0; i < clock.substeps; ++i) {
+      if (i == clock.late_substeps) command_N = next_N;
+      contact_N += slave.step(command_N).contact_force_N / clock.substeps;
+    }
+  }
+  return run;
+}
+
 struct Estimators {
   InverseModelEstimator unpredicted;
-  InverseModelEstimator inverse_model;
+  InverseModelEstimator by_blocks;
+  InverseModelEstimator by_polynomial;
+  InverseModelEstimator by_kalman;
   control::DisturbanceObserver disturbance_observer;
   control::MomentumObserver momentum_observer;
   control::KalmanForceEstimator kalman;
 };
 
 Result<Estimators> make_estimators(const ForceEstimatorsParams& params, Seconds dt) {
-  const auto inverse_model = InverseModelEstimator::make(params.inverse_model, dt);
-  if (!inverse_model) return under("inverse_model", inverse_model.error());
-  InverseModelEstimator::Params without = params.inverse_model;
-  without.prediction.blocks = 0;
-  without.declared_delay_s = 0.0;
-  const auto unpredicted = InverseModelEstimator::make(without, dt);
+  InverseModelEstimator::Params variant = params.inverse_model;
+  const auto predicted_by = [&variant, dt](signal::PredictionKind kind) {
+    variant.prediction.kind = kind;
+    return InverseModelEstimator::make(variant, dt);
+  };
+  const auto by_blocks = predicted_by(signal::PredictionKind::blocks);
+  if (!by_blocks) return under("inverse_model", by_blocks.error());
+  const auto by_polynomial = predicted_by(signal::PredictionKind::polynomial);
+  if (!by_polynomial) return under("inverse_model", by_polynomial.error());
+  const auto by_kalman = predicted_by(signal::PredictionKind::kalman);
+  if (!by_kalman) return under("inverse_model", by_kalman.error());
+  variant.prediction = signal::Predictor::Params::none();
+  variant.declared_delay_s = 0.0;
+  const auto unpredicted = InverseModelEstimator::make(variant, dt);
   if (!unpredicted) return under("inverse_model", unpredicted.error());
   const auto disturbance = control::DisturbanceObserver::make(params.disturbance_observer, dt);
   if (!disturbance) return under("disturbance_observer", disturbance.error());
@@ -113,7 +152,7 @@ Result<Estimators> make_estimators(const ForceEstimatorsParams& params, Seconds 
   if (!momentum) return under("momentum_observer", momentum.error());
   const auto kalman = control::KalmanForceEstimator::make(params.kalman, dt);
   if (!kalman) return under("kalman", kalman.error());
-  return Estimators{*unpredicted, *inverse_model, *disturbance, *momentum, *kalman};
+  return Estimators{*unpredicted, *by_blocks, *by_polynomial, *by_kalman, *disturbance, *momentum, *kalman};
 }
 
 template <class Estimator>
@@ -148,35 +187,26 @@ Check check(const ForceEstimatorsParams& params) {
   if (!loop) return loop.error();
   const auto estimators = make_estimators(params, Seconds{loop->clock.tick_s});
   if (!estimators) return estimators.error();
+  const auto narx = control::NarxMemory::make({.cutoff_Hz = params.narx.cutoff_Hz, .lag_s = params.narx.lag_s},
+                                              params.narx.actuator_gain, Seconds{loop->clock.tick_s});
+  if (!narx) return under("narx", narx.error());
   return std::nullopt;
 }
 
 Result<SlaveRun> drive_slave(const ForceEstimatorsParams& params) {
-  if (auto error = validate(params)) return *std::move(error);
-  auto loop = make_loop(params);
-  if (!loop) return loop.error();
-  auto& [clock, slave, controller] = *loop;
-  slave.reset(start_of(params));
-
   const ForceEstimatorsPlan plan = plan_of(params.task);
-  SlaveRun run{.tick_s = clock.tick_s, .samples = {}, .sensor_N = {}, .true_N = {}};
-  const auto ticks = static_cast<std::size_t>(std::lround(plan.end_s / clock.tick_s));
-  double command_N = 0.0;
-  double contact_N = 0.0;
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
-    const auto reading = slave.measure();
-    run.samples.push_back({.command = command_N, .position = reading.motor_position_m});
-    run.sensor_N.push_back(-reading.tip_force_N);
-    run.true_N.push_back(-contact_N);
-    const double wanted_m = path_m(params, plan, static_cast<double>(tick) * clock.tick_s);
-    const double next_N = controller.step(wanted_m - reading.motor_position_m);
-    contact_N = 0.0;
-    for (int i = 0; i < clock.substeps; ++i) {
-      if (i == clock.late_substeps) command_N = next_N;
-      contact_N += slave.step(command_N).contact_force_N / clock.substeps;
+  return drive(params, plan.end_s, [&](double time_s) { return path_m(params, plan, time_s); });
+}
+
+Result<SlaveRun> drive_for_narx(const ForceEstimatorsParams& params) {
+  const double frequency_Hz = params.task.free_frequency_Hz;
+  return drive(params, std::max(10.0, 10.0 / frequency_Hz), [&](double time_s) {
+    double wave = 0.0;
+    for (const double times : {0.7, 1.7, 4.1}) {
+      wave += (1.0 - std::cos(2.0 * std::numbers::pi * times * frequency_Hz * time_s)) / 3.0;
     }
-  }
-  return run;
+    return start_of(params) + params.task.free_amplitude_m * wave;
+  });
 }
 
 Result<ForceEstimatorsResult> compare_force_estimators(const ForceEstimatorsParams& params) {
@@ -184,17 +214,29 @@ Result<ForceEstimatorsResult> compare_force_estimators(const ForceEstimatorsPara
   if (!run) return run.error();
   const auto estimators = make_estimators(params, Seconds{run->tick_s});
   if (!estimators) return estimators.error();
+  const auto training = drive_for_narx(params);
+  if (!training) return training.error();
+  std::vector<control::SlaveMotionSample> motion = training->samples;
+  const double start = motion.front().position;
+  for (control::SlaveMotionSample& sample : motion) sample.position -= start;
+  auto narx = identification::fit_narx(motion, params.narx, Seconds{run->tick_s});
+  if (!narx) return under("narx", narx.error());
+  const auto narx_estimator = control::NarxForceEstimator::make(narx->model, Seconds{run->tick_s});
+  if (!narx_estimator) return under("narx", narx_estimator.error());
   const ForceEstimatorsPlan plan = plan_of(params.task);
-  ForceEstimatorsResult result{.run = *std::move(run), .scores = {}};
+  ForceEstimatorsResult result{.run = *std::move(run), .narx = *std::move(narx), .scores = {}};
   const auto add = [&](const char* name, std::vector<double> estimate_N) {
     result.scores.push_back(score(name, std::move(estimate_N), result.run, plan));
   };
   add("force sensor", result.run.sensor_N);
   add("inverse model, no prediction", along(result.run, estimators->unpredicted));
-  add("inverse model, prediction", along(result.run, estimators->inverse_model));
+  add("inverse model, prediction blocks", along(result.run, estimators->by_blocks));
+  add("inverse model, polynomial", along(result.run, estimators->by_polynomial));
+  add("inverse model, Kalman predictor", along(result.run, estimators->by_kalman));
   add("disturbance observer", along(result.run, estimators->disturbance_observer));
   add("momentum observer", along(result.run, estimators->momentum_observer));
   add("Kalman filter", along(result.run, estimators->kalman));
+  add("NARX model", along(result.run, *narx_estimator));
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <tactus/control/momentum_observer.hpp>
 #include <tactus/control/servo_pd.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/identification/narx_fit.hpp>
 #include <tactus/mechanics/electric_slave.hpp>
 #include <tactus/simulation/clock.hpp>
 
@@ -52,6 +53,7 @@ struct ForceEstimatorsParams {
   control::DisturbanceObserver::Params disturbance_observer;
   control::MomentumObserver::Params momentum_observer;
   control::KalmanForceEstimator::Params kalman;
+  identification::NarxStructure narx;
   static constexpr auto fields() {
     using Params = ForceEstimatorsParams;
     return std::tuple{
@@ -61,10 +63,12 @@ struct ForceEstimatorsParams {
         field("controller", &Params::controller, "The slave's position controller."),
         field("servo", &Params::servo, "The servo clock."),
         field("plant", &Params::plant, "The clock of the simulated plant."),
-        field("inverse_model", &Params::inverse_model, "The inverse model; it also runs without its prediction."),
+        field("inverse_model", &Params::inverse_model,
+              "The inverse model; it runs without prediction and with each kind of it, whichever kind says."),
         field("disturbance_observer", &Params::disturbance_observer, "The disturbance observer."),
         field("momentum_observer", &Params::momentum_observer, "The momentum observer."),
-        field("kalman", &Params::kalman, "The Kalman filter.")};
+        field("kalman", &Params::kalman, "The Kalman filter."),
+        field("narx", &Params::narx, "The NARX model, fitted to another free motion of the same slave.")};
   }
 };
 
@@ -93,6 +97,7 @@ struct EstimatorScore {
 
 struct ForceEstimatorsResult {
   SlaveRun run;
+  identification::NarxFit narx;        ///< from `drive_for_narx`
   std::vector<EstimatorScore> scores;  ///< the sensor first
 };
 
@@ -102,7 +107,12 @@ Check check(const ForceEstimatorsParams& params);
 /// The closed loop of slave and wall. Errors: whatever slave, wall, controller or clock refuse, under their names.
 Result<SlaveRun> drive_slave(const ForceEstimatorsParams& params);
 
-/// Everything: every estimator on the same samples. Errors: also those of the estimators' `make`.
+/// Free motion to fit the NARX model to: three cosines at 0.7, 1.7 and 4.1 times the frequency of the task's, together
+/// of its amplitude, for ten of its periods and at least 10 s. Errors: as those of `drive_slave`.
+Result<SlaveRun> drive_for_narx(const ForceEstimatorsParams& params);
+
+/// Everything: every estimator on the same samples. Errors: also those of the estimators' `make` and
+/// of `fit_narx`.
 Result<ForceEstimatorsResult> compare_force_estimators(const ForceEstimatorsParams& params);
 
 }  // namespace tactus::simulation

@@ -46,6 +46,50 @@ report::Table table_of(const std::vector<EstimatorsRun>& runs) {
   return table;
 }
 
+/// A term as a product: d_0 is the newest difference of positions, u_1 the model's output one lag ago.
+std::string words_of(const control::NarxTerm& term) {
+  using Variables = control::NarxVariables;
+  std::string words;
+  for (const std::int64_t variable : {term.variable_1, term.variable_2, term.variable_3}) {
+    const auto i = static_cast<std::size_t>(variable);
+    if (i == 0) continue;
+    if (!words.empty()) words += " ";
+    if (i < Variables::first_output) {
+      words += "d_" + std::to_string(i - Variables::first_difference);
+    } else {
+      words += "u_" + std::to_string(i - Variables::first_output + 1);
+    }
+  }
+  return words.empty() ? "1" : words;
+}
+
+report::Table narx_table_of(const identification::NarxFit& fit) {
+  report::Table table({{"term", "", report::Column::Align::left},
+                       {"error reduction", "%"},
+                       {"coefficient", "mN"},
+                       {"standard error", "mN"}},
+                      "NARX model: " + std::to_string(fit.terms.size()) + " of " + std::to_string(fit.candidates) +
+                          " terms, on " + std::to_string(fit.rows) + " rows of another motion");
+  for (const identification::RankedNarxTerm& term : fit.terms) {
+    table.add_row({words_of(term.term), report::number(100.0 * term.error_reduction, 3),
+                   report::number(1e3 * term.term.coefficient_N, 3), report::number(1e3 * term.standard_error_N, 2)});
+  }
+  return table;
+}
+
+nlohmann::ordered_json narx_json(const identification::NarxFit& fit) {
+  nlohmann::ordered_json terms = nlohmann::ordered_json::array();
+  for (const identification::RankedNarxTerm& term : fit.terms) {
+    terms.push_back({{"term", words_of(term.term)},
+                     {"error_reduction", term.error_reduction},
+                     {"coefficient_N", term.term.coefficient_N},
+                     {"standard_error_N", term.standard_error_N}});
+  }
+  return {{"candidates", fit.candidates},           {"rows", fit.rows},
+          {"command_rms_N", fit.command_rms_N},     {"residual_rms_N", fit.residual_rms_N},
+          {"simulated_rms_N", fit.simulated_rms_N}, {"terms", terms}};
+}
+
 /// The true force and what each estimator makes of it, in free motion and in contact.
 report::Figure figure_of(const EstimatorsRun& run) {
   const ForceEstimatorsPlan plan = plan_of(run.params.task);
@@ -91,8 +135,9 @@ std::string json_of(const Request& request, const std::vector<EstimatorsRun>& ru
                             {"free_motion_residual_N", score.free_residual_N},
                             {"rest_noise_N", score.rest_noise_N}});
     }
-    document["runs"].push_back(
-        {{"set", nlohmann::ordered_json::parse(settings_json(run.settings))}, {"estimators", estimators}});
+    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))},
+                                {"estimators", estimators},
+                                {"narx", narx_json(run.result.narx)}});
   }
   return document.dump(2) + "\n";
 }
@@ -122,6 +167,7 @@ Result<Outcome> ForceEstimatorsExperiment::run(const Request& request, const Pro
     progress(static_cast<double>(runs.size()) / static_cast<double>(cases->all.size()));
   }
   const report::Table table = table_of(runs);
+  const report::Table narx_table = narx_table_of(runs.front().result.narx);
   report::Figure figure = figure_of(runs.front());
   report::Page page(request.name + ": " + std::string(title));
   page.paragraph(
@@ -134,10 +180,17 @@ Result<Outcome> ForceEstimatorsExperiment::run(const Request& request, const Pro
        {"lead", "By how much the estimate is ahead of the true force where the two correlate most."},
        {"false force in free motion", "What is estimated while nothing is touched."},
        {"noise at rest", "About the mean, before anything moves."}});
+  page.table(narx_table);
+  page.definitions({{"term",
+                     "Product of d_i, the difference of positions i and i + 1 lags old, and u_i, "
+                     "the model's own output i lags ago; each over its scale."},
+                    {"error reduction", "Share of the squared force that the term explained when it was chosen."}});
   page.figure(figure);
   add_provenance(page, request, cases->first_configuration);
-  return Outcome{
-      .text = table.to_text(), .json = json_of(request, runs), .html = page.to_html(), .figures = {std::move(figure)}};
+  return Outcome{.text = table.to_text() + "\n" + narx_table.to_text(),
+                 .json = json_of(request, runs),
+                 .html = page.to_html(),
+                 .figures = {std::move(figure)}};
 }
 
 }  // namespace tactus::simulation

@@ -60,6 +60,7 @@ std::vector<double> along(const SlaveRecord& record, Estimate estimate) {
 }
 
 InverseModelEstimator::Params with_blocks(InverseModelEstimator::Params estimator, int blocks, double time_constant_s) {
+  estimator.prediction.kind = signal::PredictionKind::blocks;
   estimator.prediction.blocks = blocks;
   if (blocks > 0) estimator.prediction.block.time_constant_s = time_constant_s;
   estimator.declared_delay_s = 0.0;  // the experiment is there to show what an unpredicted delay does

@@ -184,6 +184,9 @@ Result<identification::RigRun> SimulatedRig::run(const identification::MotorProg
   record.commanded_force_N.reserve(ticks);
   record.position_m.reserve(ticks);
   record.current_force_N.reserve(ticks);
+  // The mean of an exponential over a substep, as a share of its way.
+  const double substeps_of_lag = 2.0 * std::numbers::pi * params_.benched.master.amplifier.bandwidth_Hz * substep.value;
+  const double mean_share = -1.0 / std::expm1(-substeps_of_lag) - 1.0 / substeps_of_lag;
   const double bias_N = params_.amplifier_offset_N / params_.benched.master.amplifier.gain;
   double held_command_N = 0.0;
   double applied_N = 0.0;
@@ -219,7 +222,7 @@ Result<identification::RigRun> SimulatedRig::run(const identification::MotorProg
       if (s == clock->late_substeps) held_command_N = command_N;
       const double before_N = std::exchange(applied_N, amplifier->step(held_command_N + bias_N));
       const double middle_s = (s + 0.5) * substep.value;
-      chain->step({.motor_force_N = 0.5 * (before_N + applied_N) + ripple_N,
+      chain->step({.motor_force_N = before_N + mean_share * (applied_N - before_N) + ripple_N,
                    .grip_position_m = aim.position_m + middle_s * aim.velocity_m_per_s,
                    .grip_velocity_m_per_s = aim.velocity_m_per_s});
     }

@@ -103,6 +103,25 @@ TEST(InverseModelEstimator, ADeclaredDelayThatIsNotPredictedIsRefusedWithTheReas
   EXPECT_EQ(refused(params), "");
 }
 
+TEST(InverseModelEstimator, ARivalOfTheBlocksTakesASensorsDelayOutAsTheyDo) {
+  // A mass in free motion whose position arrives 3 ms late; the derivative filter adds 0.5 ms.
+  constexpr double delay_s = 0.003, omega = 2.0 * std::numbers::pi;
+  Params params = unpredicted();
+  params.viscous_damping_N_s_per_m = 0.0;
+  const auto command = [&](double t) {
+    return -params.mass_kg * 0.1 * omega * omega * std::sin(omega * (t + delay_s));
+  };
+  const double late_N = largest_estimate(params, 1.0, command);
+  params.declared_delay_s = delay_s;
+  params.prediction.polynomial.horizon_s = params.prediction.kalman.horizon_s = delay_s + params.derivative_filter_s;
+  for (const auto kind : {signal::PredictionKind::polynomial, signal::PredictionKind::kalman}) {
+    params.prediction.kind = kind;
+    EXPECT_LT(largest_estimate(params, 1.0, command), 0.05 * late_N) << name_of(kind);
+  }
+  params.prediction.kalman.horizon_s = 0.0;
+  EXPECT_NE(refused(params).find("set prediction.kalman.horizon_s near 0.0035"), std::string::npos) << refused(params);
+}
+
 TEST(InverseModelEstimator, NeitherMassNorDampingAndNoGainAreRefused) {
   Params params;
   params.mass_kg = params.viscous_damping_N_s_per_m = 0.0;

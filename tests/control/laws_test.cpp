@@ -12,6 +12,7 @@
 #include <tactus/control/kalman_force_estimator.hpp>
 #include <tactus/control/local_damping.hpp>
 #include <tactus/control/momentum_observer.hpp>
+#include <tactus/control/narx_force_estimator.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/position_position.hpp>
 #include <tactus/control/projection.hpp>
@@ -155,6 +156,21 @@ struct Subject<control::MomentumObserver> : ObserverSubject<control::MomentumObs
 template <>
 struct Subject<control::KalmanForceEstimator> : ObserverSubject<control::KalmanForceEstimator> {};
 
+/// No term, then recursions that would run away: linear and of third degree.
+template <>
+struct Subject<control::NarxForceEstimator> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::NarxForceEstimator::Params> parameters() {
+    control::NarxForceEstimator::Params unstable{.actuator_gain = 2.0};
+    unstable.scales.lag_s = dt_s;
+    unstable.terms.term_0 = {.coefficient_N = 50.0, .variable_1 = 7};
+    unstable.terms.term_1 = {.coefficient_N = -1e9, .variable_1 = 7, .variable_2 = 1, .variable_3 = 6};
+    unstable.terms.term_11 = {.coefficient_N = 1e9, .variable_1 = 1, .variable_2 = 1, .variable_3 = 1};
+    return {{}, unstable};
+  }
+  static void admit(control::NarxForceEstimator::Input&) {}
+};
+
 template <>
 struct Subject<control::HandForceCompensation> {
   static constexpr double dt_s = 200e-6;
@@ -221,16 +237,15 @@ struct Subject<control::PassivitySlave> {
   static void admit(control::PassivitySlave::Input&) {}
 };
 
-using ControlElements =
-    ::testing::Types<control::InducedMotionModel, control::InverseModelEstimator, control::DisturbanceObserver,
-                     control::MomentumObserver, control::KalmanForceEstimator, control::Cancellation,
-                     control::GripCancellation, control::PositionForceMaster, control::PositionForceSlave,
-                     control::SafetyGate, control::ServoPd, control::LocalDamping, control::ShapingFilter,
-                     control::Crossover, control::HandForceCompensation, control::HandForceObserver,
-                     control::PositionPositionMaster, control::PositionPositionSlave, control::ProjectionMaster,
-                     control::SharedCompliantSlave, control::FourChannelMaster, control::FourChannelSlave,
-                     control::CancellingSlave, control::WaveMaster, control::WaveSlave, control::PassivityMaster,
-                     control::PassivitySlave, control::TankMaster, control::TankSlave, SoftLimitMaster>;
+using ControlElements = ::testing::Types<
+    control::InducedMotionModel, control::InverseModelEstimator, control::DisturbanceObserver,
+    control::MomentumObserver, control::KalmanForceEstimator, control::NarxForceEstimator, control::Cancellation,
+    control::GripCancellation, control::PositionForceMaster, control::PositionForceSlave, control::SafetyGate,
+    control::ServoPd, control::LocalDamping, control::ShapingFilter, control::Crossover, control::HandForceCompensation,
+    control::HandForceObserver, control::PositionPositionMaster, control::PositionPositionSlave,
+    control::ProjectionMaster, control::SharedCompliantSlave, control::FourChannelMaster, control::FourChannelSlave,
+    control::CancellingSlave, control::WaveMaster, control::WaveSlave, control::PassivityMaster,
+    control::PassivitySlave, control::TankMaster, control::TankSlave, SoftLimitMaster>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws

@@ -3,6 +3,10 @@
 #include <tactus/mechanics/electric_slave.hpp>
 #include <tactus/mechanics/environment.hpp>
 #include <tactus/mechanics/operator.hpp>
+#include <tactus/mechanics/position_transducer.hpp>
+#include <tactus/mechanics/pressure_sensor.hpp>
+#include <tactus/mechanics/servo_hydraulic_slave.hpp>
+#include <tactus/mechanics/servo_valve.hpp>
 
 #include "tests/laws.hpp"
 
@@ -69,8 +73,39 @@ struct Subject<mechanics::Operator> {
   static void admit(mechanics::Operator::Input&) {}
 };
 
-using Plants = ::testing::Types<mechanics::CableChain, mechanics::Environment, mechanics::CableDrivenMaster,
-                                mechanics::ElectricSlave, mechanics::Operator>;
+/// The stiff oil asks for finer substeps.
+struct OnFineSubsteps {
+  static constexpr double dt_s = 10e-6;
+};
+
+template <>
+struct Subject<mechanics::ServoValve> : OnFineSubsteps {
+  static std::vector<mechanics::ServoValve::Params> parameters() { return {{}}; }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<mechanics::ServoHydraulicSlave> : OnFineSubsteps {
+  static std::vector<mechanics::ServoHydraulicSlave::Params> parameters() { return {{}}; }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<mechanics::PressureSensor> : OnSubsteps {
+  static std::vector<mechanics::PressureSensor::Params> parameters() { return {{}}; }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<mechanics::PositionTransducer> : OnSubsteps {
+  static std::vector<mechanics::PositionTransducer::Params> parameters() { return {{}}; }
+  static void admit(double&) {}
+};
+
+using Plants =
+    ::testing::Types<mechanics::CableChain, mechanics::Environment, mechanics::CableDrivenMaster,
+                     mechanics::ElectricSlave, mechanics::Operator, mechanics::ServoValve,
+                     mechanics::ServoHydraulicSlave, mechanics::PressureSensor, mechanics::PositionTransducer>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Plants, ElementLaws, Plants);
 
 }  // namespace tactus::laws

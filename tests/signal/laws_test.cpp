@@ -3,7 +3,7 @@
 #include <tactus/signal/delay_line.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
 #include <tactus/signal/low_pass.hpp>
-#include <tactus/signal/prediction_block.hpp>
+#include <tactus/signal/predictor.hpp>
 #include <tactus/signal/rational_filter.hpp>
 #include <tactus/signal/second_order_filter.hpp>
 
@@ -32,9 +32,37 @@ struct Subject<signal::DelayLine<double, Capacity>> {
   static void admit(double&) {}
 };
 
-using SignalElements = ::testing::Types<signal::LowPass, SecondOrderFilter, signal::FilteredDerivative,
-                                        signal::PredictionBlock, signal::PredictionCascade, signal::RationalFilter,
-                                        signal::DelayLine<double, 1>, signal::DelayLine<double, 64>>;
+template <>
+struct Subject<signal::PolynomialPredictor> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<signal::PolynomialPredictor::Params> parameters() {
+    return {{}, {.samples = 1, .degree = 0}, {.samples = 128, .degree = 3}};
+  }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<signal::KalmanPredictor> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<signal::KalmanPredictor::Params> parameters() {
+    return {{}, {.kinematics = signal::Kinematics::constant_velocity}};
+  }
+  static void admit(double&) {}
+};
+
+template <>
+struct Subject<signal::Predictor> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<signal::Predictor::Params> parameters() {
+    return {{}, {.kind = signal::PredictionKind::polynomial}, {.kind = signal::PredictionKind::kalman}};
+  }
+  static void admit(double&) {}
+};
+
+using SignalElements =
+    ::testing::Types<signal::LowPass, SecondOrderFilter, signal::FilteredDerivative, signal::PredictionBlock,
+                     signal::PredictionCascade, signal::PolynomialPredictor, signal::KalmanPredictor, signal::Predictor,
+                     signal::RationalFilter, signal::DelayLine<double, 1>, signal::DelayLine<double, 64>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Signal, ElementLaws, SignalElements);
 
 namespace {

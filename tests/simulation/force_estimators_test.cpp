@@ -19,6 +19,11 @@ std::size_t tick_at(const SlaveRun& run, double time_s) {
   return static_cast<std::size_t>(std::lround(time_s / run.tick_s));
 }
 
+EstimatorScore score(const ForceEstimatorsResult& result, const std::string& name) {
+  return *std::find_if(result.scores.begin(), result.scores.end(),
+                       [&name](const EstimatorScore& s) { return s.name == name; });
+}
+
 TEST(ForceEstimators, TheSlaveTouchesNothingBeforeThePressAndIsHeldByTheServosForceInIt) {
   const ForceEstimatorsParams params = file();
   const SlaveRun run = drive_slave(params).value();
@@ -75,15 +80,32 @@ TEST(ForceEstimators, TheSensorsNoiseAtRestIsTheNoiseThatItHas) {
 
 TEST(ForceEstimators, PredictionLeadsAndAmplifiesWhatTheEncoderAdds) {
   const ForceEstimatorsResult result = compare_force_estimators(file()).value();
-  const auto score = [&result](const std::string& name) {
-    return *std::find_if(result.scores.begin(), result.scores.end(),
-                         [&name](const EstimatorScore& s) { return s.name == name; });
-  };
-  const EstimatorScore without = score("inverse model, no prediction");
-  const EstimatorScore with = score("inverse model, prediction");
+  const EstimatorScore without = score(result, "inverse model, no prediction");
+  const EstimatorScore with = score(result, "inverse model, prediction blocks");
   EXPECT_GT(with.lead_s, without.lead_s);
   EXPECT_GT(with.free_residual_N, 2.0 * without.free_residual_N);
   EXPECT_LT(with.free_residual_N, 4.0 * without.free_residual_N);  // two blocks: 2² at most
+}
+
+TEST(ForceEstimators, PolynomialAndKalmanPredictorsLeadMoreThanTheBlocksAndAmplifyTheEncodersStepsLess) {
+  const ForceEstimatorsResult result = compare_force_estimators(file()).value();
+  const EstimatorScore blocks = score(result, "inverse model, prediction blocks");
+  for (const char* rival : {"inverse model, polynomial", "inverse model, Kalman predictor"}) {
+    EXPECT_GT(score(result, rival).lead_s, blocks.lead_s) << rival;
+    EXPECT_LT(score(result, rival).free_residual_N, 0.6 * blocks.free_residual_N) << rival;
+  }
+}
+
+TEST(ForceEstimators, TheNarxModelLearnsFrictionFromAnotherFreeMotion) {
+  const ForceEstimatorsParams params = file();
+  const SlaveRun training = drive_for_narx(params).value();
+  for (const double force_N : training.true_N) ASSERT_EQ(force_N, 0.0);
+  const ForceEstimatorsResult result = compare_force_estimators(params).value();
+  for (const EstimatorScore& other : result.scores) {
+    if (other.name == "force sensor" || other.name == "NARX model") continue;
+    EXPECT_LT(score(result, "NARX model").free_residual_N, other.free_residual_N) << other.name;
+  }
+  EXPECT_LT(result.narx.simulated_rms_N, 0.5 * result.narx.command_rms_N);
 }
 
 TEST(ForceEstimators, TheExperimentListsEveryEstimatorAndNamesWhatItRefuses) {
@@ -92,10 +114,11 @@ TEST(ForceEstimators, TheExperimentListsEveryEstimatorAndNamesWhatItRefuses) {
   Request request{.document = *document, .variations = {}, .name = "force-estimators", .command = "tactus run"};
   const auto outcome = experiment.run(request, [](double) {});
   ASSERT_TRUE(outcome) << describe(outcome.error());
-  EXPECT_EQ(nlohmann::json::parse(outcome->json)["runs"][0]["estimators"].size(), 6U);
+  EXPECT_EQ(nlohmann::json::parse(outcome->json)["runs"][0]["estimators"].size(), 9U);
 
   for (const char* setting : {"inverse_model.actuator_gain=0", "kalman.position_noise_m=-1", "slave.encoder.bits=3",
-                              "momentum_observer.cutoff_Hz=5000", "servo.computation_delay_s=0.001"}) {
+                              "momentum_observer.cutoff_Hz=5000", "narx.lag_s=1",
+                              "inverse_model.prediction.polynomial.samples=2", "servo.computation_delay_s=0.001"}) {
     request.document = *document;
     ASSERT_FALSE(request.document.set(setting));
     const auto refused = experiment.run(request, [](double) {});

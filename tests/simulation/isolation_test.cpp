@@ -48,7 +48,7 @@ TEST(Isolation, AShortIsolationFindsADrawnRig) {
   }
   EXPECT_GE(known, 15);
   EXPECT_GE(inside, known - 3);
-  EXPECT_EQ(isolation->stages.size(), figures(*isolation).size());
+  EXPECT_GE(figures(*isolation).size(), isolation->stages.size());
 }
 
 TEST(Isolation, TheLinkagesTinyDampingIsNotClaimed) {
@@ -58,6 +58,19 @@ TEST(Isolation, TheLinkagesTinyDampingIsNotClaimed) {
   const auto isolation = identification::isolate(rig, in_short(), {});
   ASSERT_TRUE(isolation) << describe(isolation.error());
   EXPECT_FALSE(named(*isolation, "linkage.damping_N_s_per_m").determined);
+}
+
+TEST(Isolation, ALinkageWithoutHysteresisIsFoundLinearAndItsLoopIsNotClaimed) {
+  auto params = draw_rig(1005);
+  params.benched.master.mechanism.linkage.hysteretic_fraction = 0.0;
+  auto rig = SimulatedRig::make(params).value();
+  const auto isolation = identification::isolate(rig, in_short(), {});
+  ASSERT_TRUE(isolation) << describe(isolation.error());
+  EXPECT_FALSE(named(*isolation, "linkage.loop_area_J").determined);
+  const double stiffness = named(*isolation, "linkage.stiffness_N_per_m").value;
+  const double truth = rig.truth("linkage.stiffness_N_per_m").value();
+  EXPECT_NEAR(stiffness, truth, 0.03 * truth);
+  EXPECT_LT(isolation->found.master.linkage.hysteretic_fraction, 0.02);
 }
 
 /// A rig that stops after some runs.

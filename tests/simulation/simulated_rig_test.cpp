@@ -39,7 +39,7 @@ RigRun step_of_force(const SimulatedRigParams& params, Assembly assembly, double
   return run(params, assembly, program);
 }
 
-constexpr double delay_s = 20e-6;  // of the computation
+constexpr double delay_s = 20e-6 + 0.5e-6 / std::numbers::pi;  // of computation and amplifier
 
 TEST(SimulatedRig, AMotorAloneAcceleratesByForceOverItsMass) {
   const auto record = step_of_force(ideal(), Assembly::motor, 0.1, 0.02);
