@@ -1,5 +1,6 @@
 #include <tactus/identification/bench_knowledge.hpp>
 #include <tactus/identification/nonlinear_fit.hpp>
+#include <tactus/identification/zero_phase.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -110,6 +111,21 @@ void append_difference(std::vector<double>& to, const std::vector<double>& measu
   for (std::size_t i = 0; i < modelled.size(); ++i) to.push_back(weight * (measured[i] - modelled[i]));
 }
 
+/// Measured less modelled positions, in m, without what is slower than the experiment counts.
+std::vector<double> difference_m(const BenchParams& params, const BenchExperiment& experiment) {
+  std::vector<double> all;
+  append_difference(
+      all, experiment.run.position_m,
+      simulate_position(params, experiment.assembly, experiment.program, experiment.run, experiment.steps_per_tick),
+      1.0);
+  if (experiment.high_pass_Hz == 0.0) return all;
+  const auto slow = zero_phase_low_pass(all, experiment.high_pass_Hz, Seconds{experiment.run.tick_s});
+  // The filter refuses a cutoff beyond the tick and too short runs: neither is an experiment.
+  if (!slow) return std::vector<double>(all.size(), std::nan(""));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] -= (*slow)[i];
+  return all;
+}
+
 double loop_area_J(const mechanics::BoucWenSpring::Params& spring) {
   // One closed loop in steps, after another that brings the spring onto it: the law is exact for every step.
   auto made = mechanics::BoucWenSpring::make(spring, Seconds{1.0});
@@ -141,6 +157,15 @@ double BenchKnowledge::covariance(BenchVariable a, BenchVariable b) const {
   return covariance_[static_cast<std::size_t>(a) * bench_variables + static_cast<std::size_t>(b)];
 }
 
+void BenchKnowledge::suppose(BenchVariable variable, double share) {
+  const auto i = static_cast<std::size_t>(variable);
+  prior_[i] = {.middle = to_variable(descriptions[i], get(params_, descriptions[i])), .deviation = share};
+}
+
+std::vector<double> BenchKnowledge::left_m(const BenchExperiment& experiment) const {
+  return difference_m(params_, experiment);
+}
+
 Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted, std::span<const BenchExperiment> experiments,
                                    const MeasurementWeights& weights) {
   // The variables of the fit: those wanted, a constant force in each experiment, those known.
@@ -157,6 +182,10 @@ Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted, std::s
   for (const std::size_t i : fitted) {
     problem.start.push_back(to_variable(descriptions[i], get(params_, descriptions[i])));
   }
+  for (const std::size_t i : fitted) {
+    problem.prior_middle.push_back(prior_[i].middle);
+    problem.prior_deviation.push_back(prior_[i].deviation);
+  }
   problem.start.insert(problem.start.end(), biases, 0.0);
   for (const std::size_t i : given) {
     problem.start.push_back(to_variable(descriptions[i], get(params_, descriptions[i])));
@@ -172,12 +201,13 @@ Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted, std::s
     std::vector<double> all;
     for (std::size_t e = 0; e < experiments.size(); ++e) {
       trial.bias_N = biases > 0 ? bias_scale_N * variables[first_bias + e] : 0.0;
-      const auto& [title, assembly, program, run, steps_per_tick, lower_Hz, upper_Hz] = experiments[e];
       if (weights.position_per_m > 0.0) {
-        append_difference(all, run.position_m, simulate_position(trial, assembly, program, run, steps_per_tick),
-                          weights.position_per_m);
+        for (const double left_m : difference_m(trial, experiments[e])) {
+          all.push_back(weights.position_per_m / experiments[e].deviation_m * left_m);
+        }
       }
       if (weights.current_per_N > 0.0) {
+        const RigRun& run = experiments[e].run;
         append_difference(all, run.current_force_N, simulate_current(trial, run), weights.current_per_N);
       }
     }
