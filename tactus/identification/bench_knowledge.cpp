@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,9 @@ constexpr double told_within = 0.1;
 /// What the model's laws and steps are off themselves, as a standard deviation in proportion: the integrator places a
 /// resonance to about this.
 constexpr double model_error = 5e-4;
+/// How far the area of a loop by one law of hysteresis is from that by another which fits the same data, as a standard
+/// deviation in proportion: loops of `BoucWenSpring` and `ElastoSlipSpring` lie within 1 % of the peak force.
+constexpr double law_error = 5e-3;
 
 /// How a parameter becomes a variable of about unit scale: its logarithm, the logarithm of its odds, or a multiple.
 enum class Scale { logarithm, odds, linear };
@@ -144,6 +148,15 @@ double loop_area_J(const mechanics::BoucWenSpring::Params& spring) {
   return area_J;
 }
 
+/// The viscous damping that at the linkage's resonance loses as much a cycle as the law of hysteresis may be off,
+/// π b ω A².
+double damping_like_law_error(const control::MasterModel& master) {
+  const auto& spring = master.linkage;
+  const double natural = std::sqrt(spring.stiffness_N_per_m / (master.motor.mass_kg + master.drum.mass_kg));
+  return law_error * loop_area_J(spring) /
+         (std::numbers::pi * natural * spring.reference_deflection_m * spring.reference_deflection_m);
+}
+
 }  // namespace
 
 BenchKnowledge::BenchKnowledge(const BenchParams& start)
@@ -250,7 +263,8 @@ FoundParameter BenchKnowledge::found(BenchVariable variable) const {
     return parameter;
   }
   const double middle = to_variable(description, parameter.value);
-  const double own = description.scale == Scale::linear ? 0.0 : model_error;
+  double own = description.scale == Scale::linear ? 0.0 : model_error;
+  if (variable == BenchVariable::linkage_damping) own = damping_like_law_error(params_.master) / description.unit_scale;
   const double reach = normal_95 * std::hypot(std::sqrt(covariance(variable, variable)), own);
   parameter.interval_95 = {to_value(description, middle - reach), to_value(description, middle + reach)};
   if (variable == BenchVariable::amplifier_offset) {
@@ -284,7 +298,7 @@ FoundParameter BenchKnowledge::loop_area() const {
   for (std::size_t i = 0; i < shape.size(); ++i) {
     for (std::size_t j = 0; j < shape.size(); ++j) variance += slope[i] * slope[j] * covariance(shape[i], shape[j]);
   }
-  const double factor = std::exp(normal_95 * std::sqrt(variance));
+  const double factor = std::exp(normal_95 * std::hypot(std::sqrt(variance), law_error));
   parameter.interval_95 = {parameter.value / factor, parameter.value * factor};
   parameter.determined = factor <= 1.0 + told_within;
   return parameter;
