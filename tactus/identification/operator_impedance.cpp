@@ -257,8 +257,8 @@ Check check_plausible(const AxisSignals& signals, const OperatorImpedances& foun
                 " Hz the hand takes energy from the device (correlation of force and velocity " +
                 report::number(work, 2) +
                 "), but a person who moves a device gives it: the force of the hand on the device counts toward "
-                "+position, so turn it with --force-sign -1; if the device really moved a resting hand, say "
-                "--force-sign 1");
+                "+position, so turn it with --force-sign -1, or exchange --position and --force if they are "
+                "swapped; if the device really moved a resting hand, say --force-sign 1");
 }
 
 Result<Band> band_of(const AxisSignals& signals, const OperatorImpedanceOptions& options) {

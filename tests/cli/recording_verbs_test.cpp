@@ -115,8 +115,8 @@ TEST_F(Recordings, a_bad_recording_gives_a_message_and_no_model) {
 
 /// A hand of 200 N/m, 10 N s/m and 50 g on a handle of 100 g that the motor jolts, while the person moves it slowly;
 /// explicit integration at 10 kHz, recorded at 1 kHz.
-std::string teleoperation(const std::string& header, int samples = 5000) {
-  std::string text = header + "\n";
+std::string teleoperation(const std::string& columns, int samples = 5000) {
+  std::string text = columns + "\n";
   double x = 0.0;
   double v = 0.0;
   for (int i = 0; i < 10 * samples; ++i) {
