@@ -102,7 +102,7 @@ std::vector<Architecture>& registry() {
   static std::vector<Architecture> all{
       {"position-force", "the slave follows the master's position, the master displays the slave's tip force",
        make_position_force},
-      {"position-position", "each device is pulled toward the other; no force sensor", make_position_position},
+      {"position-position", "each device is pulled toward the other; no force sensor", make_position_position, false},
       {"projection", "position-force that displays at once only what the hand holds", make_projection},
       {"shared-compliant", "position-force whose slave yields to the tip force by itself", make_shared_compliant},
       {"four-channel", "both sites tell the other position and force (Lawrence), with local force loops",
@@ -110,7 +110,7 @@ std::vector<Architecture>& registry() {
       {"four-channel-cancellation",
        "position-force with cancellation as the slave's local force loop (paper A, appendix)",
        make_four_channel_cancellation},
-      {"wave-variables", "the sites exchange wave variables: passive for every delay", make_wave_variables},
+      {"wave-variables", "the sites exchange wave variables: passive for every delay", make_wave_variables, false},
       {"time-domain-passivity", "position-force between two passivity observers and controllers",
        make_time_domain_passivity},
       {"energy-tank", "position-force, its forces paid from a tank of energy at each site", make_energy_tank},
@@ -130,6 +130,23 @@ Error unknown_architecture(const std::string& name) {
   message += name + "' is no architecture: write one of " + list;
   if (!meant.empty()) message += "; did you mean '" + std::string(meant) + "'?";
   return {.code = ErrorCode::out_of_bounds, .parameter = "architecture", .message = message, .place = {}};
+}
+
+/// Puts the estimator that `params` ask for, if any, in place of the slave's force sensor.
+Check estimate_slave_force(const ControlParams& params, const Architecture& architecture, Seconds dt,
+                           Controllers& controllers) {
+  if (params.slave_force.source == SlaveForceSource::sensor) return {};
+  if (!architecture.uses_tip_force) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "slave_force.source",
+                 .message = "the architecture " + std::string(architecture.name) +
+                            " does not use the slave's tip force: leave the source at sensor, or choose another one",
+                 .place = {}};
+  }
+  const auto force = SlaveForce::make(params.slave_force, dt);
+  if (!force) return under("slave_force", force.error());
+  controllers.slave = std::make_unique<EstimatingSlave>(*force, std::move(controllers.slave));
+  return {};
 }
 
 }  // namespace
@@ -155,6 +172,7 @@ Result<Sites> make_sites(const ControlParams& params, Seconds dt) {
   if (chosen == all.end()) return unknown_architecture(params.architecture);
   auto controllers = chosen->make(params, dt);
   if (!controllers) return controllers.error();
+  if (auto error = estimate_slave_force(params, *chosen, dt, *controllers)) return *std::move(error);
   const auto gate = SafetyGate::make(params.gate, dt);
   if (!gate) return under("gate", gate.error());
   const auto handle_gate = SafetyGate::make(params.handle_gate, dt);

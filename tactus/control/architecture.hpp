@@ -6,6 +6,7 @@
 #include <tactus/control/projection.hpp>
 #include <tactus/control/shared_compliant.hpp>
 #include <tactus/control/site.hpp>
+#include <tactus/control/slave_force.hpp>
 #include <tactus/control/time_domain_passivity.hpp>
 #include <tactus/control/wave_variables.hpp>
 #include <tactus/core/parameters.hpp>
@@ -22,6 +23,7 @@ namespace tactus::control {
 struct ControlParams : PositionForceMaster::Params {
   std::string architecture = "position-force";
   ServoPd::Params slave;
+  SlaveForce::Params slave_force;
   SafetyGate::Params gate;
   SafetyGate::Params handle_gate;
   SafetyGate::Params slave_gate;
@@ -39,6 +41,7 @@ struct ControlParams : PositionForceMaster::Params {
         PositionForceMaster::Params::fields(),
         std::tuple{
             field("slave", &ControlParams::slave, "The slave's position controller."),
+            field("slave_force", &ControlParams::slave_force, "Where the slave's tip force comes from."),
             field("gate", &ControlParams::gate, "Last limits before the master's motor."),
             field("handle_gate", &ControlParams::handle_gate,
                   "Last limits before the actuator on the master's handle."),
@@ -66,6 +69,8 @@ struct Architecture {
   std::string_view name;
   std::string_view summary;
   Result<Controllers> (*make)(const ControlParams& params, Seconds dt);
+  /// Whether anything listens to the slave's tip force, so that it makes a difference where it comes from.
+  bool uses_tip_force = true;
 };
 
 /// Every architecture there is, those of this library first.
@@ -82,7 +87,8 @@ struct Sites {
 };
 
 /// Makes the sites that `params` describe. Errors: an unknown architecture, naming the nearest; what its `make`
-/// refuses; a gate's parameters.
+/// refuses; an estimator of the slave's force that cannot be, or that the architecture has no use for; a gate's
+/// parameters.
 Result<Sites> make_sites(const ControlParams& params, Seconds dt);
 
 }  // namespace tactus::control

@@ -1,10 +1,12 @@
 #include <tactus/identification/bench_knowledge.hpp>
 #include <tactus/identification/nonlinear_fit.hpp>
+#include <tactus/identification/zero_phase.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -18,6 +20,9 @@ constexpr double told_within = 0.1;
 /// What the model's laws and steps are off themselves, as a standard deviation in proportion: the integrator places a
 /// resonance to about this.
 constexpr double model_error = 5e-4;
+/// How far the area of a loop by one law of hysteresis is from that by another which fits the same data, as a standard
+/// deviation in proportion: loops of `BoucWenSpring` and `ElastoSlipSpring` lie within 1 % of the peak force.
+constexpr double law_error = 5e-3;
 
 /// How a parameter becomes a variable of about unit scale: its logarithm, the logarithm of its odds, or a multiple.
 enum class Scale { logarithm, odds, linear };
@@ -110,6 +115,21 @@ void append_difference(std::vector<double>& to, const std::vector<double>& measu
   for (std::size_t i = 0; i < modelled.size(); ++i) to.push_back(weight * (measured[i] - modelled[i]));
 }
 
+/// Measured less modelled positions, in m, without what is slower than the experiment counts.
+std::vector<double> difference_m(const BenchParams& params, const BenchExperiment& experiment) {
+  std::vector<double> all;
+  append_difference(
+      all, experiment.run.position_m,
+      simulate_position(params, experiment.assembly, experiment.program, experiment.run, experiment.steps_per_tick),
+      1.0);
+  if (experiment.high_pass_Hz == 0.0) return all;
+  const auto slow = zero_phase_low_pass(all, experiment.high_pass_Hz, Seconds{experiment.run.tick_s});
+  // The filter refuses a cutoff beyond the tick and too short runs: neither is an experiment.
+  if (!slow) return std::vector<double>(all.size(), std::nan(""));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] -= (*slow)[i];
+  return all;
+}
+
 double loop_area_J(const mechanics::BoucWenSpring::Params& spring) {
   // One closed loop in steps, after another that brings the spring onto it: the law is exact for every step.
   auto made = mechanics::BoucWenSpring::make(spring, Seconds{1.0});
@@ -128,6 +148,15 @@ double loop_area_J(const mechanics::BoucWenSpring::Params& spring) {
   return area_J;
 }
 
+/// The viscous damping that at the linkage's resonance loses as much a cycle as the law of hysteresis may be off,
+/// π b ω A².
+double damping_like_law_error(const control::MasterModel& master) {
+  const auto& spring = master.linkage;
+  const double natural = std::sqrt(spring.stiffness_N_per_m / (master.motor.mass_kg + master.drum.mass_kg));
+  return law_error * loop_area_J(spring) /
+         (std::numbers::pi * natural * spring.reference_deflection_m * spring.reference_deflection_m);
+}
+
 }  // namespace
 
 BenchKnowledge::BenchKnowledge(const BenchParams& start)
@@ -139,6 +168,15 @@ bool BenchKnowledge::knows(BenchVariable variable) const { return known_[static_
 
 double BenchKnowledge::covariance(BenchVariable a, BenchVariable b) const {
   return covariance_[static_cast<std::size_t>(a) * bench_variables + static_cast<std::size_t>(b)];
+}
+
+void BenchKnowledge::suppose(BenchVariable variable, double share) {
+  const auto i = static_cast<std::size_t>(variable);
+  prior_[i] = {.middle = to_variable(descriptions[i], get(params_, descriptions[i])), .deviation = share};
+}
+
+std::vector<double> BenchKnowledge::left_m(const BenchExperiment& experiment) const {
+  return difference_m(params_, experiment);
 }
 
 Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted, std::span<const BenchExperiment> experiments,
@@ -157,6 +195,10 @@ Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted, std::s
   for (const std::size_t i : fitted) {
     problem.start.push_back(to_variable(descriptions[i], get(params_, descriptions[i])));
   }
+  for (const std::size_t i : fitted) {
+    problem.prior_middle.push_back(prior_[i].middle);
+    problem.prior_deviation.push_back(prior_[i].deviation);
+  }
   problem.start.insert(problem.start.end(), biases, 0.0);
   for (const std::size_t i : given) {
     problem.start.push_back(to_variable(descriptions[i], get(params_, descriptions[i])));
@@ -172,12 +214,13 @@ Result<double> BenchKnowledge::fit(std::span<const BenchVariable> wanted, std::s
     std::vector<double> all;
     for (std::size_t e = 0; e < experiments.size(); ++e) {
       trial.bias_N = biases > 0 ? bias_scale_N * variables[first_bias + e] : 0.0;
-      const auto& [title, assembly, program, run, steps_per_tick, lower_Hz, upper_Hz] = experiments[e];
       if (weights.position_per_m > 0.0) {
-        append_difference(all, run.position_m, simulate_position(trial, assembly, program, run, steps_per_tick),
-                          weights.position_per_m);
+        for (const double left_m : difference_m(trial, experiments[e])) {
+          all.push_back(weights.position_per_m / experiments[e].deviation_m * left_m);
+        }
       }
       if (weights.current_per_N > 0.0) {
+        const RigRun& run = experiments[e].run;
         append_difference(all, run.current_force_N, simulate_current(trial, run), weights.current_per_N);
       }
     }
@@ -220,7 +263,8 @@ FoundParameter BenchKnowledge::found(BenchVariable variable) const {
     return parameter;
   }
   const double middle = to_variable(description, parameter.value);
-  const double own = description.scale == Scale::linear ? 0.0 : model_error;
+  double own = description.scale == Scale::linear ? 0.0 : model_error;
+  if (variable == BenchVariable::linkage_damping) own = damping_like_law_error(params_.master) / description.unit_scale;
   const double reach = normal_95 * std::hypot(std::sqrt(covariance(variable, variable)), own);
   parameter.interval_95 = {to_value(description, middle - reach), to_value(description, middle + reach)};
   if (variable == BenchVariable::amplifier_offset) {
@@ -254,7 +298,7 @@ FoundParameter BenchKnowledge::loop_area() const {
   for (std::size_t i = 0; i < shape.size(); ++i) {
     for (std::size_t j = 0; j < shape.size(); ++j) variance += slope[i] * slope[j] * covariance(shape[i], shape[j]);
   }
-  const double factor = std::exp(normal_95 * std::sqrt(variance));
+  const double factor = std::exp(normal_95 * std::hypot(std::sqrt(variance), law_error));
   parameter.interval_95 = {parameter.value / factor, parameter.value * factor};
   parameter.determined = factor <= 1.0 + told_within;
   return parameter;

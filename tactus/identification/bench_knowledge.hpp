@@ -56,6 +56,8 @@ struct BenchExperiment {
   int steps_per_tick = 1;
   double lower_Hz = 0.0;  ///< of what it excites, for figures; 0 for what is no sweep
   double upper_Hz = 0.0;
+  double deviation_m = 1.0;   ///< what a position is expected to be off, divides the weight of a fit
+  double high_pass_Hz = 0.0;  ///< only what is faster counts in a fit; 0 counts all
 };
 
 /// What a measurement counts for in a fit: the reciprocal of what it is expected to be off. 0 leaves it out.
@@ -77,6 +79,10 @@ class BenchKnowledge {
   [[nodiscard]] bool knows(BenchVariable variable) const;
   /// Covariance of the variables `a` and `b` of fits: logarithms of what is greater than 0.
   [[nodiscard]] double covariance(BenchVariable a, BenchVariable b) const;
+  /// From now on a fit draws this variable to its present value, which is known to `share` of it as a standard
+  /// deviation (a linear variable: to `share` of its unit scale). Positions must then be weighed by what they are
+  /// really off.
+  void suppose(BenchVariable variable, double share);
   /// Takes the linkage for a linear spring from now on, without knowing it.
   void assume_no_hysteresis() { params_.master.linkage.hysteretic_fraction = 0.0; }
 
@@ -86,6 +92,10 @@ class BenchKnowledge {
   Result<double> fit(std::span<const BenchVariable> wanted, std::span<const BenchExperiment> experiments,
                      const MeasurementWeights& weights);
 
+  /// What this knowledge leaves of the measured positions of an experiment, in m, a constant force fitted and the slow
+  /// part left out where the experiment says so.
+  [[nodiscard]] std::vector<double> left_m(const BenchExperiment& experiment) const;
+
   /// What is not known reaches from 0 to the largest number there is.
   [[nodiscard]] FoundParameter found(BenchVariable variable) const;
   /// Energy that the linkage loses in a closed loop of its reference deflection, in J.
@@ -93,7 +103,12 @@ class BenchKnowledge {
 
  private:
   BenchParams params_;
+  struct Prior {
+    double middle = 0.0;     ///< variable of a fit
+    double deviation = 0.0;  ///< 0: none
+  };
   std::array<bool, bench_variables> known_{};
+  std::array<Prior, bench_variables> prior_{};
   std::vector<double> covariance_;  ///< of all variables, row by row; zero for what is not known
 };
 

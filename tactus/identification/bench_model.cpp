@@ -85,12 +85,11 @@ class Amplifier {
 class Correction {
  public:
   Correction(const BenchParams& params, double tick_s)
-      : gain_per_s_(params.correction_gain_per_s),
-        hand_(params.master.hand),
-        tick_s_(tick_s),
-        sight_(-std::expm1(-2.0 * std::numbers::pi * params.sight_bandwidth_Hz * tick_s)) {
-    const double sight_s = 1.0 / (2.0 * std::numbers::pi * params.sight_bandwidth_Hz);
-    const double ticks = std::clamp((params.reaction_time_s - sight_s) / tick_s, 0.0, 1e6);
+      : gain_per_s_(params.correction_gain_per_s), hand_(params.master.hand), tick_s_(tick_s) {
+    const double rate_per_s =
+        std::max(2.0 * std::numbers::pi * params.sight_bandwidth_Hz, 1.0 / params.reaction_time_s);
+    sight_ = -std::expm1(-rate_per_s * tick_s);
+    const double ticks = std::clamp((params.reaction_time_s - 1.0 / rate_per_s) / tick_s, 0.0, 1e6);
     whole_ticks_ = static_cast<std::size_t>(ticks);
     rest_ = ticks - static_cast<double>(whole_ticks_);
     seen_m_.assign(whole_ticks_ + 2, 0.0);
@@ -109,7 +108,8 @@ class Correction {
  private:
   double gain_per_s_;
   mechanics::QuinticSpring::Params hand_;
-  double tick_s_, sight_;
+  double tick_s_;
+  double sight_ = 1.0;
   std::size_t whole_ticks_ = 0;
   double rest_ = 0.0;
   std::vector<double> seen_m_;

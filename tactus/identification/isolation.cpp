@@ -275,6 +275,8 @@ class Isolator {
     programs.front().run = thinned(programs.front().run, 4);
     constexpr std::array hand{operator_stiffness, operator_damping, operator_correction, operator_reaction,
                               operator_sight};
+    // The sight alone last: far from the rest of the hand it would run off.
+    if (auto error = fit(std::span(hand).first(4), programs)) return error;
     if (auto error = fit(hand, programs)) return error;
     keep(title, std::move(programs), 1.0);
     return {};

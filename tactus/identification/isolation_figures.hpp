@@ -8,8 +8,9 @@
 
 namespace tactus::identification {
 
-/// A figure or two for each stage: of a sweep, frequency responses from commanded force to position, measured and modelled,
-/// and the coherence of the measured one; of slow loops, position over force; of a crossing, the force that it took.
+/// A figure or two for each stage: of a sweep, frequency responses from commanded force to position, measured and
+/// modelled, and the coherence of the measured one; of slow loops, position over force; of a crossing, the force that
+/// it took.
 std::vector<report::Figure> figures(const Isolation& isolation);
 
 /// What impacts induce, measured and modelled.

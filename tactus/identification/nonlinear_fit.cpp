@@ -1,5 +1,6 @@
 #include <tactus/identification/nonlinear_fit.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -20,11 +21,16 @@ constexpr Index blocks = 20;
 /// A variable whose column, less what the others explain, is shorter than this part of the longest tells nothing.
 constexpr double smallest_column = 1e-7;
 
-/// Residuals and Jacobian of the first `free` variables, as Eigen's solver asks for them.
+/// Residuals and Jacobian of the first `free` variables, as Eigen's solver asks for them: those of the problem, then
+/// one for each variable with a prior.
 class Functor {
  public:
   Functor(const NonlinearProblem& problem, Index free, Index rows)
-      : problem_(problem), variables_(problem.start), free_(free), rows_(rows) {}
+      : problem_(problem), variables_(problem.start), free_(free), rows_(rows + priors(problem)) {}
+  static Index priors(const NonlinearProblem& problem) {
+    return std::count_if(problem.prior_deviation.begin(), problem.prior_deviation.end(),
+                         [](double deviation) { return deviation > 0.0; });
+  }
   [[nodiscard]] Index values() const { return rows_; }
   [[nodiscard]] Index inputs() const { return free_; }
 
@@ -61,7 +67,11 @@ class Functor {
   }
   VectorXd evaluate() {
     ++evaluations_;
-    const std::vector<double> residuals = problem_.residuals(variables_);
+    std::vector<double> residuals = problem_.residuals(variables_);
+    for (std::size_t i = 0; i < problem_.prior_deviation.size(); ++i) {
+      const double deviation = problem_.prior_deviation[i];
+      if (deviation > 0.0) residuals.push_back((variables_[i] - problem_.prior_middle[i]) / deviation);
+    }
     return Eigen::Map<const VectorXd>(residuals.data(), static_cast<Index>(residuals.size()));
   }
 
@@ -99,7 +109,7 @@ Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem) {
   }
   Functor functor(problem, free, rows);
   VectorXd x = Eigen::Map<const VectorXd>(problem.start.data(), free);
-  if (VectorXd residuals(rows); functor(x, residuals) != 0) {
+  if (VectorXd residuals(functor.values()); functor(x, residuals) != 0) {
     return inconsistent("the model is no model where the fit starts: start nearer to the device");
   }
   Eigen::LevenbergMarquardt<Functor> solver(functor);
@@ -124,7 +134,10 @@ Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem) {
                  {}};
   }
   const MatrixXd inverse = (jacobian.transpose() * jacobian).inverse();
-  const MatrixXd own = inverse * scatter(jacobian, residuals) * inverse;
+  const Index priors = Functor::priors(problem);
+  MatrixXd open = scatter(jacobian.topRows(rows), residuals.head(rows));
+  open += jacobian.bottomRows(priors).transpose() * jacobian.bottomRows(priors);
+  const MatrixXd own = inverse * open * inverse;
 
   RowMajor covariance = RowMajor::Zero(all, all);
   covariance.topLeftCorner(free, free) = own;
@@ -142,7 +155,7 @@ Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem) {
   fit.found.assign(x.begin(), x.end());
   fit.covariance.assign(covariance.data(), covariance.data() + covariance.size());
   for (Index i = 0; i < free; ++i) fit.own_deviation.push_back(std::sqrt(own(i, i)));
-  fit.residual_rms = std::sqrt(residuals.squaredNorm() / static_cast<double>(rows));
+  fit.residual_rms = std::sqrt(residuals.head(rows).squaredNorm() / static_cast<double>(rows));
   fit.evaluations = functor.evaluations();
   return fit;
 }

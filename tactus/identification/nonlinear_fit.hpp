@@ -16,6 +16,9 @@ struct NonlinearProblem {
   std::vector<double> start;
   std::size_t given = 0;
   std::vector<double> given_covariance;  ///< `given` rows of as many
+  /// What is known before of the first variables to be found: a fit is drawn there. Empty, or 0 where nothing is. The
+  /// residuals must then be in units of their own standard deviation.
+  std::vector<double> prior_middle, prior_deviation;
   /// Residuals for a vector like `start`, always as many, in an order in which neighbours belong together.
   std::function<std::vector<double>(std::span<const double>)> residuals;
 };
@@ -34,7 +37,9 @@ struct NonlinearFit {
 ///
 /// The covariance has two parts. Residuals of a simulation are not white, so their part is that of a regression with
 /// clusters: (JᵀJ)⁻¹ Σ_b (J_bᵀ r_b)(J_bᵀ r_b)ᵀ (JᵀJ)⁻¹ over twenty blocks b of neighbouring residuals, times n_b/(n_b −
-/// p). To it comes what the given variables do not know: S C Sᵀ with S = −(JᵀJ)⁻¹ Jᵀ J_given.
+/// p). To it comes what the given variables do not know: S C Sᵀ with S = −(JᵀJ)⁻¹ Jᵀ J_given. With a prior of precision
+/// P the fit minimises ‖r‖² + (x − m)ᵀ P (x − m); JᵀJ + P stands for JᵀJ, and P is added to the clusters' sum, so that
+/// a variable of which the data tell nothing stays as uncertain as it was.
 ///
 /// Errors: `inconsistent` for residuals that are not finite at the start, or that do not tell the variables apart, with
 /// the index of one that cannot be told as the parameter. Not real-time safe.

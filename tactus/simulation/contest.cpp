@@ -18,37 +18,10 @@ double round_trip_s(const Teleoperator::Params& params) {
   return params.channel.to_slave.delay_s + params.channel.to_master.delay_s;
 }
 
-TappingParams tapping_of(const ContestParams& contest) {
-  TappingParams params;
-  static_cast<Teleoperator::Params&>(params) = contest;
-  static_cast<TapSeries&>(params.task) = contest.task;
-  return params;
-}
-
-TappingParams with_display(TappingParams params, double force_limit_N) {
-  params.control.force_limit_N = force_limit_N;
-  return params;
-}
-
-/// Five round trips longer observed, for a contact over a delay takes that long to tell whether it calms down.
-TappingParams with_delay(TappingParams params, double each_way_s) {
-  params.channel.to_slave.delay_s = each_way_s;
-  params.channel.to_master.delay_s = each_way_s;
-  params.task.observation_s += 5.0 * round_trip_s(params);
-  return params;
-}
-
 /// From the start of the run on, so that a grip sensor tells it and an estimate has the approach to learn it.
 TappingParams with_grip(TappingParams params, double factor) {
   params.person.grip_change = {.factor = factor, .start_s = 0.0, .duration_s = 0.0};
   return params;
-}
-
-GainLimit limit_of(TappingParams params, const ContestTask& task) {
-  return find_gain_limit(task.lowest_gain, task.highest_gain, [&params](double gain) {
-    params.control.force_gain = gain;
-    return taps_settle(params);
-  });
 }
 
 /// What the hand should feel and what it feels, over the taps that touched.
@@ -65,7 +38,55 @@ std::optional<double> hand_error(const TappingParams& params, const std::vector<
   return spectral_error(wanted, felt, 1.0 / params.servo.rate_Hz, contest_band_lower_Hz, contest_band_upper_Hz);
 }
 
+/// Between what the slave told and the contact force at its sample, from first touch on.
+double told_force_error(const std::vector<Teleoperator::Record>& trace, double first_touch_s) {
+  double squares = 0.0;
+  std::size_t counted = 0;
+  for (std::size_t i = 1; i < trace.size(); ++i) {
+    if (trace[i].time_s < first_touch_s) continue;
+    const double error_N = trace[i].told_force_N - trace[i - 1].contact_force_N;
+    squares += error_N * error_N;
+    ++counted;
+  }
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(counted, 1)));
+}
+
 }  // namespace
+
+Check check(const GainSearch& search) {
+  if (search.lowest_gain < search.highest_gain) return {};
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "task.highest_gain",
+               .message = format_number(search.highest_gain) + " is not above lowest_gain, " +
+                          format_number(search.lowest_gain) + ": raise one or lower the other",
+               .place = {}};
+}
+
+TappingParams tapping_of(const Teleoperator::Params& teleoperator, const TapSeries& taps) {
+  TappingParams params;
+  static_cast<Teleoperator::Params&>(params) = teleoperator;
+  static_cast<TapSeries&>(params.task) = taps;
+  return params;
+}
+
+TappingParams with_display(TappingParams params, double force_limit_N) {
+  params.control.force_limit_N = force_limit_N;
+  return params;
+}
+
+TappingParams with_delay(TappingParams params, double each_way_s) {
+  params.channel.to_slave.delay_s = each_way_s;
+  params.channel.to_master.delay_s = each_way_s;
+  params.task.observation_s += 5.0 * round_trip_s(params);
+  return params;
+}
+
+GainLimit tapping_gain_limit(TappingParams params, const GainSearch& search) {
+  return find_gain_limit(search.lowest_gain, search.highest_gain, [&params](double gain) {
+    params.control.force_gain = gain;
+    return taps_settle(params);
+  });
+}
 
 bool taps_settle(const TappingParams& params) {
   const auto ensemble = TappingEnsemble::make(params);
@@ -84,17 +105,21 @@ GainScore score_taps(const TappingParams& params) {
   const auto ensemble = TappingEnsemble::make(params);
   std::vector<TapResult> taps;
   std::vector<double> errors;
+  std::vector<double> told_errors_N;
   for (std::size_t tap = 0; tap < ensemble->size(); ++tap) {
     std::vector<Teleoperator::Record> trace;
     taps.push_back(ensemble->run(tap, &trace));
     if (!taps.back().touched) continue;
     if (const auto error = hand_error(params, trace, taps.back().first_touch_s)) errors.push_back(*error);
+    told_errors_N.push_back(told_force_error(trace, taps.back().first_touch_s));
   }
   GainScore score{.force_gain = params.control.force_gain,
                   .force_limit_N = params.control.force_limit_N,
                   .metrics = summarise(taps),
-                  .spectral_error = {}};
+                  .spectral_error = {},
+                  .told_force_error_N = {}};
   if (!errors.empty()) score.spectral_error = quantile(errors, 0.5);
+  if (!told_errors_N.empty()) score.told_force_error_N = quantile(told_errors_N, 0.5);
   return score;
 }
 
@@ -109,6 +134,7 @@ FreeSpaceScore score_free_space(const Teleoperator::Params& params) {
   const double tick_s = teleoperator->tick_s();
 
   double squares = 0.0;
+  double displayed_squares = 0.0;
   std::size_t counted = 0;
   std::optional<double> master_half_way_s;
   std::optional<double> slave_half_way_s;
@@ -116,6 +142,7 @@ FreeSpaceScore score_free_space(const Teleoperator::Params& params) {
     const auto record = teleoperator->step(path.position_m(time_s), path.position_m(time_s + tick_s));
     if (time_s >= rest_s && time_s <= rest_s + reach_s) {
       squares += record.hand_force_N * record.hand_force_N;
+      displayed_squares += record.displayed_force_N * record.displayed_force_N;
       ++counted;
     }
     if (!master_half_way_s && record.master_position_m >= half_way_m) master_half_way_s = time_s;
@@ -123,7 +150,9 @@ FreeSpaceScore score_free_space(const Teleoperator::Params& params) {
       slave_half_way_s = time_s;
     }
   }
-  FreeSpaceScore score{.hand_force_rms_N = std::sqrt(squares / static_cast<double>(counted)), .lag_s = {}};
+  FreeSpaceScore score{.hand_force_rms_N = std::sqrt(squares / static_cast<double>(counted)),
+                       .displayed_force_rms_N = std::sqrt(displayed_squares / static_cast<double>(counted)),
+                       .lag_s = {}};
   if (master_half_way_s && slave_half_way_s) score.lag_s = *slave_half_way_s - *master_half_way_s;
   return score;
 }
@@ -131,21 +160,15 @@ FreeSpaceScore score_free_space(const Teleoperator::Params& params) {
 Result<std::vector<ContestJob>> contest_jobs(std::size_t method, const ContestParams& params) {
   if (auto error = validate(params)) return *std::move(error);
   const ContestTask task = params.task;
-  if (!(task.lowest_gain < task.highest_gain)) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = "task.highest_gain",
-                 .message = format_number(task.highest_gain) + " is not above lowest_gain, " +
-                            format_number(task.lowest_gain) + ": raise one or lower the other",
-                 .place = {}};
-  }
-  const TappingParams nominal = tapping_of(params);
+  if (auto error = check(task)) return *std::move(error);
+  const TappingParams nominal = tapping_of(params, params.task);
   const TappingParams strong = with_display(nominal, task.strong_display_N);
   std::vector<TappingParams> conditions;
   std::vector<ContestJob> jobs;
   const auto find_limit = [&](TappingParams condition, auto place) {
     conditions.push_back(condition);
     jobs.push_back({method, [condition = std::move(condition), task, place](MethodScore& score) {
-                      place(score) = limit_of(condition, task);
+                      place(score) = tapping_gain_limit(condition, task);
                     }});
   };
   const auto score_at = [&](TappingParams condition, double gain, auto place) {

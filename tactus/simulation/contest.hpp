@@ -17,21 +17,31 @@ namespace tactus::simulation {
 enum class ContestKind { contest };
 constexpr auto enumerators(ContestKind) { return std::array{Enumerator{ContestKind::contest, "contest"}}; }
 
-struct ContestTask : TapSeries {
-  ContestKind kind = ContestKind::contest;
+/// A search for the largest gain at which taps settle.
+struct GainSearch : TapSeries {
   double strong_display_N = 10.0;
   double lowest_gain = 0.25;
   double highest_gain = 32.0;
   static constexpr auto fields() {
     return std::tuple_cat(
         std::tuple{
-            field("kind", &ContestTask::kind, "Which experiment this is."),
-            field("strong_display_N", &ContestTask::strong_display_N, units::newton, positive_up_to(100.0),
+            field("strong_display_N", &GainSearch::strong_display_N, units::newton, positive_up_to(100.0),
                   "A second force limit, for a display that saturates less than `control.force_limit_N`."),
-            field("lowest_gain", &ContestTask::lowest_gain, units::none, between(0.01, 1000.0),
+            field("lowest_gain", &GainSearch::lowest_gain, units::none, between(0.01, 1000.0),
                   "Where the search for the largest gain begins."),
-            field("highest_gain", &ContestTask::highest_gain, units::none, between(0.01, 1000.0), "Where it ends.")},
+            field("highest_gain", &GainSearch::highest_gain, units::none, between(0.01, 1000.0), "Where it ends.")},
         TapSeries::fields());
+  }
+};
+
+/// An error unless the search ends above where it begins.
+Check check(const GainSearch& search);
+
+struct ContestTask : GainSearch {
+  ContestKind kind = ContestKind::contest;
+  static constexpr auto fields() {
+    return std::tuple_cat(std::tuple{field("kind", &ContestTask::kind, "Which experiment this is.")},
+                          GainSearch::fields());
   }
 };
 
@@ -68,11 +78,15 @@ struct GainScore {
   /// and saturated at the force limit, and the force that the hand feels, from 5 ms before first touch to the end of
   /// the observation. None where no tap touched.
   std::optional<double> spectral_error;
+  /// Median over the taps that touched of the RMS difference between the force that the slave told and the contact
+  /// force of the tick before, from first touch to the end of the observation. None where no tap touched.
+  std::optional<double> told_force_error_N;
 };
 
 /// A reach of 60 mm in 0.5 s that meets nothing, at force gain 1.
 struct FreeSpaceScore {
-  double hand_force_rms_N = 0.0;  ///< over the reach: the effort
+  double hand_force_rms_N = 0.0;       ///< over the reach: the effort
+  double displayed_force_rms_N = 0.0;  ///< by the master's motor, over the reach: false, for there is nothing to feel
   /// How much later than the master's motor the slave's tip is half-way. None where it never gets there.
   std::optional<double> lag_s;
 };
@@ -87,9 +101,20 @@ struct MethodScore {
   FreeSpaceScore free_space;
 };
 
+/// The taps of a file for a teleoperator.
+TappingParams tapping_of(const Teleoperator::Params& teleoperator, const TapSeries& taps);
+/// With a display that saturates at `force_limit_N`.
+TappingParams with_display(TappingParams params, double force_limit_N);
+/// With this delay in both directions, and five round trips longer observed, for a contact over a delay takes that long
+/// to tell whether it calms down.
+TappingParams with_delay(TappingParams params, double each_way_s);
+
 /// Whether a gain settles: at least 95 % of the taps settle, and the median within 100 ms plus two round trips of
 /// delay. Ends at the first tap that decides. `params` must be valid.
 bool taps_settle(const TappingParams& params);
+
+/// The largest force gain that settles, searched within the bounds of `search`. Both must be valid.
+GainLimit tapping_gain_limit(TappingParams params, const GainSearch& search);
 
 /// The taps of an ensemble and what reached the hand. `params` must be valid.
 GainScore score_taps(const TappingParams& params);

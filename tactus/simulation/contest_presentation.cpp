@@ -1,5 +1,6 @@
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/contest_presentation.hpp>
+#include <tactus/simulation/presentation.hpp>
 
 #include <cmath>
 #include <limits>
@@ -16,8 +17,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t shown_gain = 1;  // of `contest_gains`: where plain position-force has failed and others have not
 
 std::string text_of(const GainLimit& limit, const ContestParams& params) {
-  if (limit.gain == 0.0) return "< " + report::number(params.task.lowest_gain, 3);
-  return (limit.beyond_search ? "≥ " : "") + report::number(limit.gain, 3);
+  return gain_limit_text(limit, params.task.lowest_gain);
 }
 
 bool settles(const GainScore& score) { return score.metrics.verdict == Verdict::settled; }

@@ -6,6 +6,7 @@
 #include <tactus/simulation/hydraulic_rigid_contact_experiment.hpp>
 #include <tactus/simulation/inverse_model_chirp_experiment.hpp>
 #include <tactus/simulation/prediction_block_experiment.hpp>
+#include <tactus/simulation/sensorless_experiment.hpp>
 #include <tactus/simulation/tapping_experiment.hpp>
 
 #include <algorithm>
@@ -91,9 +92,10 @@ std::span<const Experiment* const> experiments() {
   static const ForceEstimatorsExperiment force_estimators;
   static const HydraulicChirpExperiment hydraulic_chirp;
   static const HydraulicRigidContactExperiment hydraulic_rigid_contact;
+  static const SensorlessExperiment sensorless;
   static constexpr auto all =
       std::to_array<const Experiment*>({&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block,
-                                        &force_estimators, &hydraulic_chirp, &hydraulic_rigid_contact});
+                                        &force_estimators, &hydraulic_chirp, &hydraulic_rigid_contact, &sensorless});
   return all;
 }
 

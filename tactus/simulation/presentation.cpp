@@ -59,6 +59,11 @@ std::string settings_caption(const Settings& settings) {
   return caption;
 }
 
+std::string gain_limit_text(const GainLimit& limit, double lowest_gain) {
+  if (limit.gain == 0.0) return "< " + report::number(lowest_gain, 3);
+  return (limit.beyond_search ? "≥ " : "") + report::number(limit.gain, 3);
+}
+
 void add_provenance(report::Page& page, const Request& request, std::string_view configuration) {
   page.heading("How to repeat this");
   page.code(request.command, "Command");

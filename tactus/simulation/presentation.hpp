@@ -4,6 +4,7 @@
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/experiment.hpp>
+#include <tactus/simulation/gain_limit.hpp>
 
 #include <optional>
 #include <string>
@@ -24,6 +25,9 @@ std::string settings_json(const Settings& settings);
 std::string settings_caption(const Settings& settings);
 /// The value of a setting if it is a finite number.
 std::optional<double> as_number(std::string_view text);
+
+/// A limit with `≥` where the search ended there, and `<` where not even its `lowest_gain` settled.
+std::string gain_limit_text(const GainLimit& limit, double lowest_gain);
 
 /// Ends a page with what is needed to repeat the run: the command, the configuration of its first combination, the
 /// version.

@@ -73,7 +73,8 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
                 .tip_position_m = parts_.slave.mechanism().tip_position_m(),
                 .displayed_force_N = -master.motor_force_N,
                 .handle_force_N = master.handle_force_N,
-                .hand_force_N = master_reading.hand_force_N};
+                .hand_force_N = master_reading.hand_force_N,
+                .told_force_N = slave.message.force_N};
 
   const auto aim = parts_.person.step({.path_m = path_m,
                                        .path_at_next_tick_m = path_at_next_tick_m,

@@ -65,6 +65,7 @@ class Teleoperator {
     double displayed_force_N = 0.0;     ///< at the motor, positive when it pushes the hand back
     double handle_force_N = 0.0;        ///< to the handle's actuator, positive toward the environment
     double hand_force_N = 0.0;          ///< measured, positive when the hand pushes toward the environment
+    double told_force_N = 0.0;          ///< tip force that the slave sent, positive when the slave is pushed back
     double contact_force_N = 0.0;       ///< true, mean until the next tick
     double peak_contact_force_N = 0.0;  ///< true, largest substep until the next tick
     bool touched = false;               ///< the tip met the wall before the next tick

@@ -20,6 +20,7 @@
 #include <tactus/control/servo_pd.hpp>
 #include <tactus/control/shaping_filter.hpp>
 #include <tactus/control/shared_compliant.hpp>
+#include <tactus/control/slave_force.hpp>
 #include <tactus/control/time_domain_passivity.hpp>
 #include <tactus/control/wave_variables.hpp>
 
@@ -172,6 +173,21 @@ struct Subject<control::NarxForceEstimator> {
 };
 
 template <>
+struct Subject<control::SlaveForce> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::SlaveForce::Params> parameters() {
+    std::vector<control::SlaveForce::Params> all;
+    for (const auto& word : enumerators(control::SlaveForceSource{})) {
+      control::SlaveForce::Params params;
+      params.source = word.value;
+      all.push_back(params);
+    }
+    return all;
+  }
+  static void admit(control::SlaveForce::Input&) {}
+};
+
+template <>
 struct Subject<control::HandForceCompensation> {
   static constexpr double dt_s = 200e-6;
   static std::vector<control::HandForceCompensation::Params> parameters() {
@@ -243,9 +259,9 @@ using ControlElements = ::testing::Types<
     control::GripCancellation, control::PositionForceMaster, control::PositionForceSlave, control::SafetyGate,
     control::ServoPd, control::LocalDamping, control::ShapingFilter, control::Crossover, control::HandForceCompensation,
     control::HandForceObserver, control::PositionPositionMaster, control::PositionPositionSlave,
-    control::ProjectionMaster, control::SharedCompliantSlave, control::FourChannelMaster, control::FourChannelSlave,
-    control::CancellingSlave, control::WaveMaster, control::WaveSlave, control::PassivityMaster,
-    control::PassivitySlave, control::TankMaster, control::TankSlave, SoftLimitMaster>;
+    control::ProjectionMaster, control::SharedCompliantSlave, control::SlaveForce, control::FourChannelMaster,
+    control::FourChannelSlave, control::CancellingSlave, control::WaveMaster, control::WaveSlave,
+    control::PassivityMaster, control::PassivitySlave, control::TankMaster, control::TankSlave, SoftLimitMaster>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Control, ElementLaws, ControlElements);
 
 }  // namespace tactus::laws

@@ -15,10 +15,10 @@ namespace {
 using identification::FoundParameter;
 using identification::Isolation;
 
-identification::IsolationParams in_short() {
+identification::IsolationParams in_short(double held_sweep_s) {
   identification::IsolationParams params;
   params.sweep_s = 1.0;
-  params.held_sweep_s = 30.0;
+  params.held_sweep_s = held_sweep_s;
   return params;
 }
 
@@ -30,7 +30,7 @@ const FoundParameter& named(const Isolation& isolation, const std::string& name)
 TEST(Isolation, AShortIsolationFindsADrawnRig) {
   auto rig = SimulatedRig::make(draw_rig(1001)).value();
   double last = -1.0;
-  const auto isolation = identification::isolate(rig, in_short(), [&last](const std::string&, double done) {
+  const auto isolation = identification::isolate(rig, in_short(25.0), [&last](const std::string&, double done) {
     EXPECT_GE(done, last);
     last = done;
   });
@@ -55,7 +55,7 @@ TEST(Isolation, TheLinkagesTinyDampingIsNotClaimed) {
   auto params = draw_rig(1002);
   params.benched.master.mechanism.linkage.damping_N_s_per_m = 0.002;
   auto rig = SimulatedRig::make(params).value();
-  const auto isolation = identification::isolate(rig, in_short(), {});
+  const auto isolation = identification::isolate(rig, in_short(2.0), {});
   ASSERT_TRUE(isolation) << describe(isolation.error());
   EXPECT_FALSE(named(*isolation, "linkage.damping_N_s_per_m").determined);
 }
@@ -64,7 +64,7 @@ TEST(Isolation, ALinkageWithoutHysteresisIsFoundLinearAndItsLoopIsNotClaimed) {
   auto params = draw_rig(1005);
   params.benched.master.mechanism.linkage.hysteretic_fraction = 0.0;
   auto rig = SimulatedRig::make(params).value();
-  const auto isolation = identification::isolate(rig, in_short(), {});
+  const auto isolation = identification::isolate(rig, in_short(2.0), {});
   ASSERT_TRUE(isolation) << describe(isolation.error());
   EXPECT_FALSE(named(*isolation, "linkage.loop_area_J").determined);
   const double stiffness = named(*isolation, "linkage.stiffness_N_per_m").value;
@@ -94,7 +94,7 @@ class StoppingRig final : public identification::Rig {
 TEST(Isolation, WhatTheRigRefusesEndsIt) {
   auto rig = SimulatedRig::make(draw_rig(1003)).value();
   StoppingRig stopping(rig, 3);
-  const auto isolation = identification::isolate(stopping, in_short(), {});
+  const auto isolation = identification::isolate(stopping, in_short(2.0), {});
   ASSERT_FALSE(isolation);
   EXPECT_EQ(isolation.error().message, "somebody pressed the button");
 }

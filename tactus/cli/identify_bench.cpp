@@ -6,6 +6,7 @@
 #include <tactus/identification/cancellation_model.hpp>
 #include <tactus/identification/isolation.hpp>
 #include <tactus/identification/isolation_figures.hpp>
+#include <tactus/identification/quick.hpp>
 #include <tactus/identification/session.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/report/page.hpp>
@@ -33,7 +34,34 @@ using identification::Isolation;
 using identification::SessionRig;
 using simulation::SimulatedRig;
 
-struct IsolateOptions {
+/// The verbs that put a master on a bench, apart by how they identify it.
+struct Recipe {
+  const char* verb;
+  const char* description;
+  const char* title;
+  const char* explanation;
+  Result<Isolation> (*identify)(identification::Rig& rig, const identification::IsolationProgress& progress);
+};
+
+constexpr Recipe by_isolation{
+    "isolate", "A master from the motor outward, by successive isolation", "Successive isolation",
+    "Found from the motor outward, each stage with what the earlier ones found. The intervals hold what the residuals "
+    "of a stage leave open and what the earlier stages did not know.",
+    [](identification::Rig& rig, const identification::IsolationProgress& progress) {
+      return identification::isolate(rig, {}, progress);
+    }};
+constexpr Recipe in_the_hand{
+    "quick", "A master in the operator's hand within a minute, nothing taken apart", "Quick identification",
+    "Found from sweeps and bursts on the held master, the whole chain at once, each value drawn to its data sheet as "
+    "much as that is trusted. What the data cannot tell stands where the data sheet left it.",
+    [](identification::Rig& rig, const identification::IsolationProgress& progress) {
+      return identification::identify_quickly(rig, {}, progress);
+    }};
+
+/// The largest force that teleoperation will display, and how far the model lets it move the hand.
+constexpr double full_force_N = 1.0, full_deflection_m = 2e-3;
+
+struct BenchOptions {
   std::string rig;
   std::int64_t seed = 1;
   std::optional<std::string> session;
@@ -111,17 +139,14 @@ report::Table table_of(const Isolation& isolation, const SimulatedRig& rig) {
   return table;
 }
 
-Check write_results(const IsolateOptions& options, const Isolation& isolation, const ImpactCheck& check,
-                    const ModelFile& model, const SimulatedRig& rig, const std::string& json,
+Check write_results(const Recipe& recipe, const BenchOptions& options, const Isolation& isolation,
+                    const ImpactCheck& check, const ModelFile& model, const SimulatedRig& rig, const std::string& json,
                     const report::Table& table, const std::string& command) {
   const std::filesystem::path folder = *options.out;
   const std::string origin = "# " + command + "\n";
-  report::Page page("Successive isolation of " + rig.name());
+  report::Page page(std::string(recipe.title) + " of " + rig.name());
   page.table(table);
-  page.paragraph(
-      "Found from the motor outward, each stage with what the earlier ones found. The intervals hold what the "
-      "residuals "
-      "of a stage leave open and what the earlier stages did not know.");
+  page.paragraph(recipe.explanation);
   for (const report::Figure& figure : figures(isolation)) page.figure(figure);
   page.figure(figure(check));
   const std::string model_text = origin + configuration::to_toml(model);
@@ -136,7 +161,7 @@ Check write_results(const IsolateOptions& options, const Isolation& isolation, c
   return report::write_file(folder / "report.html", page.to_html());
 }
 
-Check identify(const IsolateOptions& options, const std::string& command) {
+Check identify(const Recipe& recipe, const BenchOptions& options, const std::string& command) {
   if (options.rig != "simulated") {
     return Error{ErrorCode::out_of_bounds, {}, "'" + options.rig + "' is no rig: there is simulated", "--rig"};
   }
@@ -154,15 +179,12 @@ Check identify(const IsolateOptions& options, const std::string& command) {
     bench = &session.emplace(*std::move(opened));
   }
 
-  const identification::IsolationParams params;
-  ProgressLine line("isolate");
-  const auto isolation =
-      identification::isolate(*bench, params, [&line](const std::string&, double done) { line.update(done); });
+  ProgressLine line(recipe.verb);
+  const auto isolation = recipe.identify(*bench, [&line](const std::string&, double done) { line.update(done); });
   if (!isolation) return isolation.error();
   ModelFile model;
-  model.control.model =
-      identification::model_for_cancellation(isolation->found, params.full_force_N, params.full_deflection_m);
-  const auto check = identification::check_on_impacts(*bench, model.control.model, params.full_force_N);
+  model.control.model = identification::model_for_cancellation(isolation->found, full_force_N, full_deflection_m);
+  const auto check = identification::check_on_impacts(*bench, model.control.model, full_force_N);
   if (!check) return check.error();
 
   const std::string json = json_of(*isolation, *check, *rig);
@@ -175,17 +197,16 @@ Check identify(const IsolateOptions& options, const std::string& command) {
   }
   if (auto error = flush_standard_output()) return error;
   if (!options.out) return {};
-  if (auto error = write_results(options, *isolation, *check, model, *rig, json, table, command)) return error;
+  if (auto error = write_results(recipe, options, *isolation, *check, model, *rig, json, table, command)) return error;
   (options.json ? std::cerr : std::cout) << "Report: " << (std::filesystem::path(*options.out) / "report.html").string()
                                          << "\n";
   return {};
 }
 
-}  // namespace
-
-void add_identify_isolate(CLI::App& identify_verb, const std::string& name, const std::string& command, int& status) {
-  auto options = std::make_shared<IsolateOptions>();
-  CLI::App* verb = identify_verb.add_subcommand("isolate", "A master from the motor outward, by successive isolation");
+void add_bench_verb(CLI::App& identify_verb, const Recipe& recipe, const std::string& name, const std::string& command,
+                    int& status) {
+  auto options = std::make_shared<BenchOptions>();
+  CLI::App* verb = identify_verb.add_subcommand(recipe.verb, recipe.description);
   verb->add_option("--rig", options->rig, "What stands on the bench: simulated")->required()->type_name("RIG");
   verb->add_option("--seed", options->seed, "Which of the simulated rigs")->check(CLI::NonNegativeNumber);
   verb->add_option("--session", options->session, "Folder that keeps every run, to stop and go on later")
@@ -193,12 +214,19 @@ void add_identify_isolate(CLI::App& identify_verb, const std::string& name, cons
   verb->add_option("--out", options->out, "Folder for report.html, results.json, model.toml and rig.toml")
       ->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
-  verb->callback([options, name, &command, &status] {
-    if (const auto error = identify(*options, command)) {
+  verb->callback([&recipe, options, name, &command, &status] {
+    if (const auto error = identify(recipe, *options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";
       status = exit_status(*error);
     }
   });
+}
+
+}  // namespace
+
+void add_identify_bench(CLI::App& identify_verb, const std::string& name, const std::string& command, int& status) {
+  add_bench_verb(identify_verb, by_isolation, name, command, status);
+  add_bench_verb(identify_verb, in_the_hand, name, command, status);
 }
 
 }  // namespace tactus::cli
