@@ -50,6 +50,10 @@ constexpr std::array<std::string_view, 8> actuator_words{"motor", "actuator", "c
 constexpr std::array<std::string_view, 8> contact_words{"env",    "measured", "contact", "interaction",
                                                         "sensor", "external", "f_e",     "load"};
 
+constexpr std::array<std::string_view, 7> hand_words{"hand", "operator", "human", "user", "person", "grip", "f_h"};
+constexpr std::array<std::string_view, 3> master_words{"master", "handle", "hand"};
+constexpr std::array<std::string_view, 3> slave_words{"slave", "env", "remote"};
+
 std::string lower(std::string_view text) {
   std::string result(text);
   std::transform(result.begin(), result.end(), result.begin(),
@@ -122,6 +126,8 @@ bool is_teleoperator_scope(const std::vector<Entry>& entries) {
 
 Check find_columns(AxisRoles& roles, const std::vector<Entry>& entries, bool needs_measured) {
   if (is_teleoperator_scope(entries)) {
+    if (roles.of_the_hand && roles.position.empty()) roles.position = "scope.signals(1).values:1";
+    if (roles.of_the_hand && roles.force.empty()) roles.force = "scope.signals(2).values:1";
     if (roles.position.empty()) roles.position = "scope.signals(1).values:2";
     if (roles.force.empty()) roles.force = "scope.signals(3).values:2";
     if (roles.measured.empty() && needs_measured) {
@@ -131,7 +137,8 @@ Check find_columns(AxisRoles& roles, const std::vector<Entry>& entries, bool nee
     return std::nullopt;
   }
   if (roles.position.empty()) {
-    const auto found = candidates(entries, position_units, position_names);
+    auto found = candidates(entries, position_units, position_names);
+    if (roles.of_the_hand) found = told_by_name(found, master_words, slave_words);
     if (found.size() != 1) return cannot_choose(roles, entries, "position", found);
     roles.position = found.front()->name;
   }
@@ -140,7 +147,8 @@ Check find_columns(AxisRoles& roles, const std::vector<Entry>& entries, bool nee
   if (roles.force.empty()) {
     auto left = forces;
     std::erase_if(left, [&](const Entry* e) { return e->name == roles.measured; });
-    left = told_by_name(left, actuator_words, contact_words);
+    left = roles.of_the_hand ? told_by_name(left, hand_words, actuator_words)
+                             : told_by_name(left, actuator_words, contact_words);
     if (left.size() != 1) return cannot_choose(roles, entries, "force", left);
     roles.force = left.front()->name;
   }

@@ -17,11 +17,13 @@ namespace tactus::identification {
 /// rad, deg; `position`, `x`, `q`, `theta`, …) and one force (N, mN, kN, N m, mN m; `force`, `torque`, `tau`, …); of
 /// several forces, the one of the actuator drives and the one of the environment is measured. A struct `scope` as an
 /// xPC or Simulink scope writes it for a teleoperator, `signals(1..3).values` with the columns [master, slave] being
-/// positions, interaction forces (on the environment) and actuator forces, is known too; its second column is taken.
+/// positions, interaction forces (of the hand on the master, on the environment) and actuator forces, is known too; its
+/// second column is taken, for the force of the hand its first.
 struct AxisRoles {
   std::filesystem::path file = {};
+  bool of_the_hand = false;  ///< the axis is a master and its force that of the hand, of several positions the master's
   std::string position = {};
-  std::string force = {};     ///< of the actuator
+  std::string force = {};     ///< of the actuator, or of the hand
   std::string external = {};  ///< another force that drives the axis, such as a hand's; none unless named
   std::string measured = {};  ///< of the environment, to compare with
   std::string time = {};
@@ -40,7 +42,7 @@ struct AxisColumn {
 
 struct AxisRecording {
   AxisColumn position;
-  AxisColumn force;                    ///< of the actuator, the external one added
+  AxisColumn force;                    ///< of the actuator, the external one added; or of the hand
   std::optional<AxisColumn> measured;  ///< force of the environment on the axis
   Seconds sample_time{0.0};
   bool rotary = false;  ///< N m and rad instead of N and m

@@ -1,27 +1,13 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
-#include <tactus/core/units.hpp>
+#include <tactus/identification/axis_signals.hpp>
 
 #include <array>
 #include <optional>
 #include <vector>
 
 namespace tactus::identification {
-
-/// One axis in free motion, sample by sample, in N and m or, for a rotary axis, in N m and rad.
-struct AxisSignals {
-  std::vector<double> position = {};
-  std::vector<double> force = {};  ///< all that drives the axis toward +position, friction and inertia excepted
-  Seconds sample_time{0.0};
-};
-
-/// A value with the ends of its 95 % interval.
-struct Estimate {
-  double value = 0;
-  double lower = 0;
-  double upper = 0;
-};
 
 /// An inverse dynamic model, force = inertia·a + viscous·v + coulomb·tanh(v/friction_speed) + offset. Units: kg, N s/m,
 /// N, m/s; of a rotary axis kg m², N m s/rad, N m, rad/s.
@@ -37,7 +23,7 @@ struct InverseDynamics {
   std::vector<double> time_s, velocity, measured, modelled;
 };
 
-/// Fits the model to a recording of free motion.
+/// Fits the model to a recording of free motion. The force is all that drives the axis, friction and inertia excepted.
 ///
 /// Position and force pass the same zero-phase low-pass, then the position is differentiated, so the filter biases
 /// nothing linear. Parameters come from instrumental variables: the regressors from the even samples of the position,
@@ -50,14 +36,13 @@ struct InverseDynamics {
 ///
 /// `cutoff_Hz`: of the filter; none: 30 Hz or a tenth of the sample rate, whichever is lower.
 ///
-/// Errors, in place of a model that nobody should trust: `out_of_bounds` for a sample time outside 10 us to 50 ms, a
-/// value that is not finite; `inconsistent` for signals of different length, too short (fewer than 200 samples or half
-/// a second), constant, with a jump that looks like lost samples, motion in one direction only, position and force
-/// swapped, force of the wrong sign, friction that gives energy, a residual that follows the position (a contact or a
-/// spring), a model that explains less than half of the force, or an inertia whose interval includes zero. Not
-/// real-time safe. Sources: Gautier, Janot and Vandanjon, A new closed-loop output error method for parameter
-/// identification of robot dynamics, IEEE Trans. Control Systems Technology 21(2), 2013 (the inverse dynamic model and
-/// its filters); Söderström and Stoica, Instrumental variable methods for system identification, 1983.
+/// Errors, in place of a model that nobody should trust: those of `check_axis`; `inconsistent` for motion in one
+/// direction only, position and force swapped, force of the wrong sign, friction that gives energy, a residual that
+/// follows the position (a contact or a spring), a model that explains less than half of the force, or an inertia whose
+/// interval includes zero. Not real-time safe. Sources: Gautier, Janot and Vandanjon, A new closed-loop output error
+/// method for parameter identification of robot dynamics, IEEE Trans. Control Systems Technology 21(2), 2013 (the
+/// inverse dynamic model and its filters); Söderström and Stoica, Instrumental variable methods for system
+/// identification, 1983.
 Result<InverseDynamics> fit_inverse_dynamics(const AxisSignals& signals, std::optional<double> cutoff_Hz = {});
 
 }  // namespace tactus::identification

@@ -113,5 +113,72 @@ TEST_F(Recordings, a_bad_recording_gives_a_message_and_no_model) {
   for (const std::string& file : files()) EXPECT_EQ(file.find("results"), std::string::npos) << file;
 }
 
+/// A hand of 200 N/m, 10 N s/m and 50 g on a handle of 100 g that the motor jolts, while the person moves it slowly;
+/// explicit integration at 10 kHz, recorded at 1 kHz.
+std::string teleoperation(const std::string& columns, int samples = 5000) {
+  std::string text = columns + "\n";
+  double x = 0.0;
+  double v = 0.0;
+  for (int i = 0; i < 10 * samples; ++i) {
+    const double t = 1e-4 * i;
+    const double aim = 0.02 * std::sin(4.0 * t);
+    const double motor = 3.0 * std::pow(std::sin(17.0 * t) * std::sin(29.0 * t + t * t), 9.0);
+    const double spring = 200.0 * (aim - x) + 10.0 * (0.08 * std::cos(4.0 * t) - v);
+    const double acceleration = (motor + spring - 0.5 * v) / 0.15;
+    if (i % 10 == 0) {
+      char line[128];
+      std::snprintf(line, sizeof line, "%.4f,%.9g,%.9g,%.9g,%.9g\n", t, x, 0.9 * x, motor,
+                    spring - 0.05 * acceleration);
+      text += line;
+    }
+    v += 1e-4 * acceleration;
+    x += 1e-4 * v;
+  }
+  return text;
+}
+
+TEST_F(Recordings, the_impedance_of_the_hand_is_found_in_a_recording_of_master_and_slave) {
+  write("work.csv", teleoperation("time_s,master_position_m,slave_position_m,motor_force_N,hand_force_N"));
+  const Outcome outcome = tactus({"identify", "operator", "work.csv", "--json", "--out", "results"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json found = Json::parse(outcome.out);
+  EXPECT_EQ(found["position"], "master_position");
+  EXPECT_EQ(found["force"], "hand_force");
+  EXPECT_EQ(found["verdict"], "told");
+  const double truth[] = {200.0, 10.0, 0.05};
+  const char* const names[] = {"stiffness", "damping", "mass"};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(found["parameters"][i]["name"], names[i]);
+    EXPECT_EQ(found["parameters"][i]["determined"], true);
+    EXPECT_NEAR(found["parameters"][i]["value"].get<double>(), truth[i], 0.05 * truth[i]);
+  }
+  EXPECT_EQ(found["windows"].size(), 6);
+  EXPECT_NE(content("results/report.html").find("<svg"), std::string::npos);
+}
+
+TEST_F(Recordings, a_bad_recording_of_the_hand_gives_a_message_and_no_impedance) {
+  const std::string good = teleoperation("time_s,x_m,other_m,motor_force_N,hand_force_N");
+  std::string gap = good;
+  gap.erase(gap.find("2.0000,"), gap.find("2.1000,") - gap.find("2.0000,"));
+  write("gap.csv", gap);
+  write("short.csv", teleoperation("time_s,x_m,other_m,motor_force_N,hand_force_N", 1500));
+  write("good.csv", good);
+  for (const std::vector<std::string>& bad : {std::vector<std::string>{"good.csv"},
+                                              {"gap.csv", "--position", "x_m"},
+                                              {"short.csv", "--position", "x_m"},
+                                              {"good.csv", "--position", "x_m", "--force-sign", "-1"},
+                                              {"good.csv", "--position", "hand_force_N", "--force", "x_m"},
+                                              {"good.csv", "--position", "x_m", "--sample-time-s", "0.002"},
+                                              {"good.csv", "--position", "x_m", "--window-s", "0.1"}}) {
+    std::vector<std::string> arguments{"identify", "operator", "--out", "results"};
+    arguments.insert(arguments.end(), bad.begin(), bad.end());
+    const Outcome outcome = tactus(arguments);
+    EXPECT_EQ(outcome.status, 2) << bad.front() << outcome.out;
+    EXPECT_FALSE(outcome.err.empty());
+    EXPECT_TRUE(outcome.out.empty());
+  }
+  for (const std::string& file : files()) EXPECT_EQ(file.find("results"), std::string::npos) << file;
+}
+
 }  // namespace
 }  // namespace tactus::cli
