@@ -54,6 +54,34 @@ TEST(NonlinearFit, TheStatedDeviationIsTheScatterOfRepeatedMeasurements) {
   EXPECT_NEAR(std::sqrt(stated / squares), 1.0, 0.15);
 }
 
+TEST(NonlinearFit, APriorAndDataMeetWhereTheirPrecisionsSay) {
+  // One variable, measured four times with deviation 1 about 3, known before to be 1 ± 0.5: precisions 4 and 4.
+  NonlinearProblem problem;
+  problem.start = {0.0};
+  problem.prior_middle = {1.0};
+  problem.prior_deviation = {0.5};
+  problem.residuals = [](std::span<const double> v) {
+    return std::vector<double>{2.0 - v[0], 4.0 - v[0], 2.0 - v[0], 4.0 - v[0]};
+  };
+  const auto fit = fit_nonlinear(problem);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->found[0], 2.0, 1e-6);
+}
+
+TEST(NonlinearFit, AVariableOfWhichTheDataTellNothingStaysAsUncertainAsItWas) {
+  NonlinearProblem problem = decay(noisy_decay(0.05, 3));
+  problem.start.push_back(0.7);
+  problem.prior_middle = {0.0, 0.0, 0.7};
+  problem.prior_deviation = {0.0, 0.0, 0.3};
+  const auto fit = fit_nonlinear(problem);
+  ASSERT_TRUE(fit);
+  EXPECT_NEAR(fit->found[2], 0.7, 1e-9);
+  EXPECT_NEAR(fit->own_deviation[2], 0.3, 1e-9);
+  const auto alone = fit_nonlinear(decay(noisy_decay(0.05, 3)));
+  // The search ends where steps get smaller than a millionth.
+  EXPECT_NEAR(fit->found[1], alone->found[1], 1e-5);
+}
+
 /// A straight line y = p + q x whose slope is given.
 NonlinearProblem line_of_given_slope() {
   NonlinearProblem problem;
