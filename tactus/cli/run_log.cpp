@@ -3,7 +3,9 @@
 #include <tactus/report/files.hpp>
 #include <tactus/telemetry/log_writer.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <string>
 
@@ -12,6 +14,9 @@
 namespace tactus::cli {
 
 namespace {
+
+/// A sweep may have many thousands of runs; a log of all would be larger than anyone wants.
+constexpr std::size_t most_runs = 64;
 
 /// System and processor family. No name of the machine: logs are passed on.
 std::string machine() {
@@ -34,8 +39,11 @@ Check write_run_log(const std::filesystem::path& folder, const simulation::Reque
                                {"experiment", request.name},
                                {"machine", machine()},
                                {"configuration", outcome.configuration}});
-  const bool several = outcome.traces.size() > 1;
-  for (std::size_t i = 0; i < outcome.traces.size(); ++i) {
+  const std::size_t runs = outcome.traces.size();
+  const std::size_t logged = std::min(runs, most_runs);
+  const bool several = runs > 1;
+  for (std::size_t one = 0; one < logged; ++one) {
+    const std::size_t i = several ? one * (runs - 1) / (logged - 1) : 0;
     const simulation::Trace& trace = outcome.traces[i];
     const std::string name = "run_" + std::to_string(i + 1);
     if (!trace.settings.empty()) log->add_metadata(name, {trace.settings.begin(), trace.settings.end()});

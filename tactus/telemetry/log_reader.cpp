@@ -7,22 +7,17 @@
 #include <string_view>
 #include <system_error>
 
-#include <zlib.h>
 #include <zstd.h>
 
 namespace tactus::telemetry {
 
 namespace {
 
+using mcap::crc32_of;
 using mcap::Cursor;
 using mcap::Opcode;
 
 constexpr std::uint64_t largest_record_bytes = std::uint64_t{64} * 1024 * 1024;
-
-std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before = 0) {
-  return static_cast<std::uint32_t>(
-      crc32_z(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));  // NOLINT: bytes
-}
 
 struct Closer {
   void operator()(std::FILE* file) const { (void)std::fclose(file); }

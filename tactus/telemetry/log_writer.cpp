@@ -12,7 +12,6 @@
 
 #include <fcntl.h>
 #include <unistd.h>
-#include <zlib.h>
 #include <zstd.h>
 
 namespace tactus::telemetry {
@@ -23,14 +22,10 @@ using mcap::append;
 using mcap::append_map;
 using mcap::append_record;
 using mcap::append_text;
+using mcap::crc32_of;
 using mcap::Opcode;
 
 constexpr int fastest_compression = 1;
-
-std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before = 0) {
-  return static_cast<std::uint32_t>(
-      crc32_z(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));  // NOLINT: bytes
-}
 
 struct ContextDeleter {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }

@@ -34,6 +34,9 @@ inline constexpr std::size_t record_head_bytes = 9;
 
 using TextMap = std::map<std::string, std::string>;
 
+/// CRC-32 of zlib, of `bytes` after bytes whose checksum is `before`.
+std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before = 0);
+
 template <class Number>
 void append(std::string& bytes, Number value) {
   static_assert(std::is_unsigned_v<Number>);
