@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
@@ -26,6 +26,8 @@ using mcap::crc32_of;
 using mcap::Opcode;
 
 constexpr int fastest_compression = 1;
+
+std::string reason_of(int error_number) { return std::generic_category().message(error_number); }
 
 struct ContextDeleter {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
@@ -99,7 +101,7 @@ Check LogWriter::State::put(std::string_view bytes) {
         ::pwrite(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) {
-      const std::string reason = written < 0 ? std::strerror(errno) : "nothing was written";
+      const std::string reason = written < 0 ? reason_of(errno) : "nothing was written";
       // A device cannot be cut; then there is nothing to keep readable either.
       const bool cut = ::ftruncate(descriptor, static_cast<off_t>(offset)) == 0;
       return Error{.code = ErrorCode::unwritable,
@@ -250,8 +252,7 @@ Check LogWriter::State::close() {
   if (::close(std::exchange(descriptor, -1)) != 0 && !error) {
     error = Error{.code = ErrorCode::unwritable,
                   .parameter = {},
-                  .message = std::string("the log could not be closed (") + std::strerror(errno) +
-                             "): look whether its disk is full",
+                  .message = "the log could not be closed (" + reason_of(errno) + "): look whether its disk is full",
                   .place = path};
   }
   if (error && !first_error) first_error = error;
@@ -270,11 +271,11 @@ Result<LogWriter> LogWriter::create(const std::filesystem::path& file) {
   state->path = file.string();
   state->descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (state->descriptor < 0) {
-    return Error{.code = ErrorCode::unwritable,
-                 .parameter = {},
-                 .message = std::string("the log could not be made (") + std::strerror(errno) +
-                            "): name a place where files can be written",
-                 .place = file.string()};
+    return Error{
+        .code = ErrorCode::unwritable,
+        .parameter = {},
+        .message = "the log could not be made (" + reason_of(errno) + "): name a place where files can be written",
+        .place = file.string()};
   }
   state->pending = mcap::magic;
   std::string header;
