@@ -1,4 +1,5 @@
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/run_log.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/report/figure.hpp>
@@ -95,8 +96,12 @@ Check run(const RunOptions& options, const std::string& command) {
   if (auto error = flush_standard_output()) return error;
   if (!options.out) return std::nullopt;
   if (auto error = write_results(*options.out, *outcome)) return error;
-  (options.json ? std::cerr : std::cout) << "Report: " << (std::filesystem::path(*options.out) / "report.html").string()
-                                         << "\n";
+  const std::filesystem::path folder = *options.out;
+  std::ostream& notes = options.json ? std::cerr : std::cout;
+  notes << "Report: " << (folder / "report.html").string() << "\n";
+  if (outcome->traces.empty()) return std::nullopt;
+  if (auto error = write_run_log(folder / "log", *request, *outcome)) return error;
+  notes << "Log: " << (folder / "log").string() << "\n";
   return std::nullopt;
 }
 
@@ -116,7 +121,8 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations: key=a,b,c")
       ->type_name("KEY=A,B,C")
       ->allow_extra_args(false);
-  verb->add_option("--out", options->out, "Folder for report.html, results.json and the figures")->type_name("DIR");
+  verb->add_option("--out", options->out, "Folder for report.html, results.json, the figures and the log")
+      ->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
   verb->callback([options, &app, &command, &status] {
     if (const auto error = run(*options, command)) {

@@ -4,6 +4,7 @@
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/report/figure.hpp>
+#include <tactus/simulation/teleoperator.hpp>
 
 #include <functional>
 #include <span>
@@ -38,12 +39,20 @@ struct Request {
   std::string command;  ///< that repeats the run, for the report
 };
 
+/// One run that the figures show, every tick of it, for the log.
+struct Trace {
+  Settings settings;
+  std::vector<Teleoperator::Record> records;
+};
+
 /// What came out, for every reader.
 struct Outcome {
   std::string text;                     ///< tables for a terminal
   std::string json;                     ///< one document
   std::string html;                     ///< a self-contained report
   std::vector<report::Figure> figures;  ///< those of the report
+  std::vector<Trace> traces = {};       ///< in the order of the table; none where an experiment has no teleoperator
+  std::string configuration = {};       ///< of the traces, the varied keys apart, as TOML
 };
 
 /// Called now and then with the share of the work that is done, from 0 to 1.

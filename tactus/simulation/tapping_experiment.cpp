@@ -142,8 +142,14 @@ Result<Outcome> TappingExperiment::run(const Request& request, const Progress& p
   const report::Table table = table_of(runs);
   std::vector<report::Figure> figures = tapping_figures(runs);
   std::string html = page_of(request, table, figures, cases->first_configuration);
-  return Outcome{
-      .text = table.to_text(), .json = json_of(request, runs), .html = std::move(html), .figures = std::move(figures)};
+  Outcome outcome{.text = table.to_text(),
+                  .json = json_of(request, runs),
+                  .html = std::move(html),
+                  .figures = std::move(figures),
+                  .traces = {},
+                  .configuration = cases->first_configuration};
+  for (TappingRun& run : runs) outcome.traces.push_back({std::move(run.settings), std::move(run.trace)});
+  return outcome;
 }
 
 }  // namespace tactus::simulation

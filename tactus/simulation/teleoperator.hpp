@@ -2,6 +2,7 @@
 
 #include <tactus/control/architecture.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/core/signals.hpp>
 #include <tactus/mechanics/cable_driven_master.hpp>
 #include <tactus/mechanics/electric_slave.hpp>
 #include <tactus/mechanics/operator.hpp>
@@ -70,6 +71,37 @@ class Teleoperator {
     double peak_contact_force_N = 0.0;  ///< true, largest substep until the next tick
     bool touched = false;               ///< the tip met the wall before the next tick
     double touched_at_s = 0.0;          ///< when, if so
+    /// For logs and exports. All is translated to the operator's hand.
+    static constexpr auto signals() {
+      constexpr const char* onward = "toward the environment";
+      constexpr const char* back = "pushes the hand back";
+      return std::tuple{
+          observed("time_s", &Record::time_s, units::second, "", "", "", "Virtual time of the tick."),
+          observed("master_position_m", &Record::master_position_m, units::metre, "master", "hand", onward,
+                   "Measured, at the motor."),
+          observed("induced_position_m", &Record::induced_position_m, units::metre, "master", "hand", onward,
+                   "The model's estimate of what the displayed force did to the master's position."),
+          observed("command_m", &Record::command_m, units::metre, "master", "slave", onward,
+                   "Position command that left the master."),
+          observed("slave_position_m", &Record::slave_position_m, units::metre, "slave", "slave", onward,
+                   "Measured, at the motor."),
+          observed("tip_position_m", &Record::tip_position_m, units::metre, "slave", "slave", onward,
+                   "Of the slave's tip, true."),
+          observed("displayed_force_N", &Record::displayed_force_N, units::newton, "master", "hand", back,
+                   "Force that the gate let through to the master's motor."),
+          observed("handle_force_N", &Record::handle_force_N, units::newton, "master", "hand", onward,
+                   "Force of the actuator on the handle."),
+          observed("hand_force_N", &Record::hand_force_N, units::newton, "master", "hand", onward,
+                   "Measured force of the hand on the handle."),
+          observed("contact_force_N", &Record::contact_force_N, units::newton, "environment", "slave",
+                   "the wall is pressed", "True, mean until the next tick."),
+          observed("peak_contact_force_N", &Record::peak_contact_force_N, units::newton, "environment", "slave",
+                   "the wall is pressed", "True, largest substep until the next tick."),
+          observed("touched", &Record::touched, units::none, "environment", "", "",
+                   "The tip met the wall before the next tick."),
+          observed("touched_at_s", &Record::touched_at_s, units::second, "environment", "", "",
+                   "When the tip met the wall, where it did; else 0.")};
+    }
   };
 
   /// At rest with both devices at `start_m` of the master; the slave at `start_m` times the position scale.

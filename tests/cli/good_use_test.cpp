@@ -52,7 +52,7 @@ TEST_F(GoodUse, JsonIsOneDocumentAndNothingElse) {
   ASSERT_EQ(json["runs"].size(), 4U);
   EXPECT_EQ(json["runs"][3]["set"], Json({{"control.force_gain", 3}, {"control.cancellation", "on"}}));
   EXPECT_EQ(content("results/results.json"), outcome.out);
-  EXPECT_EQ(outcome.err, "Report: results/report.html\n");
+  EXPECT_EQ(outcome.err, "Report: results/report.html\nLog: results/log\n");
 }
 
 TEST_F(GoodUse, SetOverridesTheFileAndTheLastSetWins) {
@@ -67,7 +67,7 @@ TEST_F(GoodUse, OutLeavesReportResultsAndEveryFigureInANewFolder) {
   const Outcome outcome =
       tactus({"run", file, "--vary", "control.force_gain=1,3", "--out", "new/results", "--set", "task.taps=2"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(outcome.out.ends_with("Report: new/results/report.html\n")) << outcome.out;
+  EXPECT_TRUE(outcome.out.ends_with("Report: new/results/report.html\nLog: new/results/log\n")) << outcome.out;
   Words expected{"new", "new/results"};
   Words left = files();
   EXPECT_EQ(std::count_if(left.begin(), left.end(), [](const std::string& name) { return name.ends_with(".toml"); }),
@@ -81,7 +81,8 @@ TEST_F(GoodUse, OutLeavesReportResultsAndEveryFigureInANewFolder) {
     expected.push_back("new/results/figure-" + std::to_string(figures) + ".svg");
   }
   EXPECT_GE(figures, 1U);
-  expected.insert(expected.end(), {"new/results/report.html", "new/results/results.json"});
+  expected.insert(expected.end(), {"new/results/log", "new/results/log/log.mcap", "new/results/log/metadata.yaml",
+                                   "new/results/report.html", "new/results/results.json"});
   EXPECT_EQ(left, expected);
 
   const std::string report = content("new/results/report.html");

@@ -1,0 +1,63 @@
+#include <tactus/cli/run_log.hpp>
+#include <tactus/core/version.hpp>
+#include <tactus/report/files.hpp>
+#include <tactus/telemetry/log_writer.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include <sys/utsname.h>
+
+namespace tactus::cli {
+
+namespace {
+
+/// A sweep may have many thousands of runs; a log of all would be larger than anyone wants.
+constexpr std::size_t most_runs = 64;
+
+/// System and processor family. No name of the machine: logs are passed on.
+std::string machine() {
+  utsname system{};
+  if (uname(&system) != 0) return "unknown";
+  return std::string(system.sysname) + " " + system.release + " " + system.machine;
+}
+
+}  // namespace
+
+Check write_run_log(const std::filesystem::path& folder, const simulation::Request& request,
+                    const simulation::Outcome& outcome) {
+  using Record = simulation::Teleoperator::Record;
+  if (auto error = report::prepare_directory(folder)) return error;
+  const std::filesystem::path file = folder / "log.mcap";
+  auto log = telemetry::LogWriter::create(file);
+  if (!log) return log.error();
+
+  log->add_metadata("tactus", {{"version", std::string(version())},
+                               {"experiment", request.name},
+                               {"machine", machine()},
+                               {"configuration", outcome.configuration}});
+  const std::size_t runs = outcome.traces.size();
+  const std::size_t logged = std::min(runs, most_runs);
+  const bool several = runs > 1;
+  for (std::size_t one = 0; one < logged; ++one) {
+    const std::size_t i = several ? one * (runs - 1) / (logged - 1) : 0;
+    const simulation::Trace& trace = outcome.traces[i];
+    const std::string name = "run_" + std::to_string(i + 1);
+    if (!trace.settings.empty()) log->add_metadata(name, {trace.settings.begin(), trace.settings.end()});
+    const auto channel = log->add_channel({.topic = several ? "/" + name + "/teleoperator" : "/teleoperator",
+                                           .type_name = "tactus_msgs/msg/TeleoperatorRecord",
+                                           .columns = telemetry::columns_of<Record>()});
+    std::uint32_t sequence = 0;
+    for (const Record& record : trace.records) {
+      const auto time_ns = static_cast<std::uint64_t>(std::llround(1e9 * record.time_s));
+      log->write(channel, sequence++, time_ns, telemetry::to_cdr(record));
+    }
+  }
+  if (auto error = log->close()) return error;
+  return telemetry::write_bag_metadata(file, *log);
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/simulation/experiment.hpp>
+
+#include <filesystem>
+
+namespace tactus::cli {
+
+/// Writes the traces of an outcome as a log: `folder/log.mcap`, with `metadata.yaml` for ROS 2 bag tools. One trace is
+/// the topic `/teleoperator`, several are `/run_1/teleoperator` and so on, by the row of the table; of more than 64,
+/// 64 evenly chosen ones. Times are virtual and nothing of the moment is written, so equal runs leave equal bytes.
+Check write_run_log(const std::filesystem::path& folder, const simulation::Request& request,
+                    const simulation::Outcome& outcome);
+
+}  // namespace tactus::cli

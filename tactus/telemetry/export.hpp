@@ -1,0 +1,31 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/telemetry/log_reader.hpp>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace tactus::telemetry {
+
+/// Columns of a log for other programs. Each writes beside the file first and then takes its name, so a reader sees all
+/// or nothing. After the run only. Errors: `unwritable`, `missing` for a log without messages.
+///
+/// A table whose record has no `time_s` gets one, from the times of its messages.
+
+/// One table as text: `name [unit]` heads, numbers that read back equal. What `recording::read` reads.
+Check export_csv(const LogTable& table, const std::filesystem::path& file);
+
+/// MATLAB file of version 5: a struct for each topic with a column vector for each signal, named with its unit, and a
+/// struct `units` of texts; the metadata of the run as the struct `about`.
+Check export_mat(const LogContent& content, const std::filesystem::path& file);
+
+/// HDF5: a group for each topic with a data set for each signal, whose attributes are `unit`, `site`, `frame` and
+/// `sign`; the metadata of the run as texts in the group `about`.
+Check export_hdf5(const LogContent& content, const std::filesystem::path& file);
+
+/// What a topic is called in a file whose names have no slash: `/run_1/teleoperator` is `run_1_teleoperator`.
+std::string identifier_of(std::string_view topic);
+
+}  // namespace tactus::telemetry

@@ -1,0 +1,92 @@
+#include <tactus/telemetry/export.hpp>
+#include <tactus/telemetry/export_parts.hpp>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <matio.h>
+
+namespace tactus::telemetry {
+
+namespace {
+
+struct FreeVariable {
+  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+};
+struct CloseFile {
+  void operator()(mat_t* file) const { Mat_Close(file); }
+};
+using Variable = std::unique_ptr<matvar_t, FreeVariable>;
+
+// matio copies the data and takes it as not const all the same.
+Variable column_vector(std::vector<double> values) {
+  std::array<std::size_t, 2> sizes{values.size(), 1};
+  return Variable(Mat_VarCreate(nullptr, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, sizes.data(), values.data(), 0));
+}
+
+Variable text(std::string content) {
+  std::array<std::size_t, 2> sizes{content.empty() ? std::size_t{0} : std::size_t{1}, content.size()};
+  return Variable(Mat_VarCreate(nullptr, MAT_C_CHAR, MAT_T_UTF8, 2, sizes.data(), content.data(), 0));
+}
+
+/// Members go into the struct, which owns them then.
+class Struct {
+ public:
+  explicit Struct(const std::string& name) {
+    std::array<std::size_t, 2> sizes{1, 1};
+    variable_.reset(Mat_VarCreateStruct(name.empty() ? nullptr : name.c_str(), 2, sizes.data(), nullptr, 0));
+  }
+
+  void add(const std::string& name, Variable member) {
+    if (!variable_ || !member || Mat_VarAddStructField(variable_.get(), name.c_str()) != 0) {
+      sound_ = false;
+      return;
+    }
+    Mat_VarSetStructFieldByName(variable_.get(), name.c_str(), 0, member.release());
+  }
+
+  [[nodiscard]] bool sound() const { return sound_ && variable_ != nullptr; }
+  Variable take() && { return std::move(variable_); }
+  [[nodiscard]] matvar_t* get() const { return variable_.get(); }
+
+ private:
+  Variable variable_;
+  bool sound_ = true;
+};
+
+bool write(mat_t* file, const Struct& content) {
+  return content.sound() && Mat_VarWrite(file, content.get(), MAT_COMPRESSION_ZLIB) == 0;
+}
+
+}  // namespace
+
+Check export_mat(const LogContent& content, const std::filesystem::path& file) {
+  if (auto error = refuse_empty(content, file)) return error;
+  return write_beside(file, [&content](const std::string& temporary) {
+    const std::unique_ptr<mat_t, CloseFile> mat(Mat_CreateVer(temporary.c_str(), nullptr, MAT_FT_MAT5));
+    if (!mat) return false;
+    bool done = true;
+    for (const LogTable& original : content.tables) {
+      const LogTable table = with_time(original);
+      Struct topic(identifier_of(table.topic));
+      Struct units("");
+      for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        topic.add(table.columns[i].name, column_vector(table.values[i]));
+        units.add(table.columns[i].name, text(table.columns[i].unit));
+      }
+      done = done && units.sound();
+      topic.add("units", std::move(units).take());
+      done = done && write(mat.get(), topic);
+    }
+    if (const auto run = about(content.summary); !run.empty()) {
+      Struct about_run("about");
+      for (const auto& [key, value] : run) about_run.add(key, text(value));
+      done = done && write(mat.get(), about_run);
+    }
+    return done;
+  });
+}
+
+}  // namespace tactus::telemetry

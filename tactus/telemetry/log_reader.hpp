@@ -1,0 +1,75 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/telemetry/description.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tactus::telemetry {
+
+/// A channel as a file declares it.
+struct LogChannel {
+  std::string topic;
+  std::string encoding;         ///< of its messages: `cdr`
+  std::string type_name;        ///< of its schema
+  std::string schema_encoding;  ///< `ros2msg`
+  std::string definition;
+  std::map<std::string, std::string> metadata;
+};
+
+/// A message while it is being read; the bytes are gone after the call.
+struct LogMessage {
+  std::uint16_t channel = 0;
+  std::uint32_t sequence = 0;
+  std::uint64_t time_ns = 0;
+  std::span<const unsigned char> bytes;
+};
+
+/// What a file turned out to be.
+struct LogSummary {
+  bool complete = false;             ///< has its end; else the process that wrote it was stopped, or bytes are missing
+  std::uint64_t messages = 0;        ///< read
+  std::uint64_t damaged_chunks = 0;  ///< complete, but their bytes or their CRC are wrong; skipped
+  bool damaged_elsewhere = false;    ///< a CRC of the data section or of the summary is wrong, or a record is senseless
+  std::map<std::string, std::map<std::string, std::string>> metadata;  ///< by name
+};
+
+/// Reads an MCAP file from front to back, the messages of every complete chunk in the order in which they were written,
+/// those of a file that was cut at any byte included. No index is needed or believed.
+///
+/// Memory is bounded whatever the file says: a record beyond 64 MiB, before or after decompression, is skipped as
+/// damaged. Compression: zstd or none. `visit` may end the reading by returning an error.
+///
+/// Errors: `missing` for a file that is not there, `syntax` for one that does not begin as an MCAP file; any of
+/// `visit`.
+Result<LogSummary> scan_log(const std::filesystem::path& file,
+                            const std::function<Check(const LogChannel&, const LogMessage&)>& visit);
+
+/// One channel as columns of numbers.
+struct LogTable {
+  std::string topic;
+  std::string type_name;
+  std::vector<Column> columns;
+  std::vector<std::vector<double>> values;  ///< one for each column, all of one length
+  std::vector<std::uint64_t> times_ns;      ///< of the messages
+  std::uint64_t missing = 0;                ///< messages that the sequence numbers show to be missing
+};
+
+struct LogContent {
+  LogSummary summary;
+  std::vector<LogTable> tables;  ///< channels with at least one message
+};
+
+/// Reads all channels into memory. A channel whose messages are not CDR of a `ros2msg` definition with plain numbers is
+/// an error (`wrong_type`) that names it; so is content beyond 2^27 numbers (`out_of_bounds`). With `topic`, only that
+/// one. A folder stands for its one `.mcap` file.
+Result<LogContent> read_log(const std::filesystem::path& file_or_folder, const std::optional<std::string>& topic = {});
+
+}  // namespace tactus::telemetry

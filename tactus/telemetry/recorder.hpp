@@ -1,0 +1,122 @@
+#pragma once
+
+#include <tactus/telemetry/cdr.hpp>
+#include <tactus/telemetry/log_writer.hpp>
+#include <tactus/telemetry/ring.hpp>
+
+#include <atomic>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace tactus::telemetry {
+
+/// What a log says about its own gaps, on the topic `/tactus/gaps`: written whenever one of the counts has grown.
+struct Gap {
+  std::int64_t channel = 0;  ///< in the order in which the channels were added
+  std::int64_t dropped = 0;
+  std::int64_t lost = 0;
+  static constexpr auto signals() {
+    return std::tuple{
+        observed("channel", &Gap::channel, units::none, "", "", "", "Number of the channel that has the gap."),
+        observed("dropped", &Gap::dropped, units::none, "", "", "",
+                 "Records of it that found the ring full, since the start."),
+        observed("lost", &Gap::lost, units::none, "", "", "",
+                 "Records of it in chunks that could not be written, since the start.")};
+  }
+};
+
+/// One channel as the writer thread sees it.
+class Stream {
+ public:
+  Stream() = default;
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  virtual ~Stream() = default;
+  /// Moves what is waiting into the log. Writer thread only.
+  virtual void drain(LogWriter& log) = 0;
+  /// Records that found the ring full. Any thread.
+  [[nodiscard]] virtual std::uint64_t dropped() const noexcept = 0;
+};
+
+/// One channel as the servo thread sees it. By default the ring holds 0.8 s at 5 kHz.
+template <Recordable Record, std::size_t Capacity = 4096>
+class RecordStream final : public Stream {
+ public:
+  explicit RecordStream(std::uint16_t channel) : channel_(channel) {}
+
+  /// One copy into the ring; where that is full, the record is dropped and counted, and its place in the sequence stays
+  /// empty. One thread only. Real-time safe: wait-free, no allocation, no system call.
+  bool push(std::uint64_t time_ns, const Record& record) noexcept {
+    return ring_.try_push({time_ns, sequence_++, record});
+  }
+
+  void drain(LogWriter& log) override {
+    Entry entry;
+    // No more than was there at the start or so: the other channels want their turn.
+    for (std::size_t i = 0; i < Capacity && ring_.try_pop(entry); ++i) {
+      log.write(channel_, entry.sequence, entry.time_ns, to_cdr(entry.record));
+    }
+  }
+
+  [[nodiscard]] std::uint64_t dropped() const noexcept override { return ring_.dropped(); }
+
+ private:
+  struct Entry {
+    std::uint64_t time_ns = 0;
+    std::uint32_t sequence = 0;
+    Record record;
+  };
+  Ring<Entry, Capacity> ring_;
+  std::uint32_t sequence_ = 0;
+  std::uint16_t channel_;
+};
+
+/// Records at full rate beside a servo thread: rings on one side, a thread of its own that writes the log on the other.
+///
+/// Order of use: `create`, `add` for each channel, `start`, pushes, `stop`. What goes wrong on the disk reaches the
+/// counts and the result of `stop`, and never the thread that pushes.
+class Recorder {
+ public:
+  static Result<Recorder> create(const std::filesystem::path& file);
+  Recorder(Recorder&&) noexcept;
+  Recorder& operator=(Recorder&&) = delete;
+  ~Recorder();  ///< stops
+
+  /// Before `start` only. The stream lives as long as the recorder.
+  template <Recordable Record, std::size_t Capacity = 4096>
+  RecordStream<Record, Capacity>& add(const std::string& topic, const std::string& type_name) {
+    auto stream = std::make_unique<RecordStream<Record, Capacity>>(
+        add_channel({.topic = topic, .type_name = type_name, .columns = columns_of<Record>()}));
+    auto& added = *stream;
+    add_stream(std::move(stream));
+    return added;
+  }
+  void add_metadata(const std::string& name, const std::map<std::string, std::string>& content);
+
+  /// A chunk is written at least every `flush_every_s`, so a killed process loses no more than that.
+  void start(Seconds flush_every = Seconds{0.1});
+  /// Ends the thread, writes what is waiting, closes the file. Errors: `unwritable` where anything was lost on the
+  /// disk.
+  Check stop();
+
+  /// For each channel in the order of adding, what found its ring full. Any thread.
+  [[nodiscard]] std::vector<std::uint64_t> dropped() const;
+  /// The log itself; while the thread runs it belongs to that.
+  [[nodiscard]] const LogWriter& log() const;
+
+ private:
+  struct State;
+  explicit Recorder(std::unique_ptr<State> state);
+  std::uint16_t add_channel(const ChannelDescription& channel);
+  void add_stream(std::unique_ptr<Stream> stream);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tactus::telemetry

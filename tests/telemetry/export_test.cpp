@@ -1,0 +1,92 @@
+#include <tactus/recording/recording.hpp>
+#include <tactus/telemetry/export.hpp>
+#include <tactus/telemetry/recorder.hpp>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/scratch_path.hpp"
+#include "tests/telemetry/sample.hpp"
+#include <gtest/gtest.h>
+
+namespace tactus::telemetry {
+namespace {
+
+class Export : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    auto log = LogWriter::create(folder_ / "log.mcap");
+    const auto channel = log->add_channel(sample_channel("/run_1/sample"));
+    for (std::int64_t k = 0; k < rows; ++k) write_sample(*log, channel, k);
+    ASSERT_FALSE(log->close());
+    auto read = read_log(folder_);
+    ASSERT_TRUE(read);
+    content_ = *std::move(read);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// Reads a signal with the reader of recordings, which knows nothing of logs, and compares every value.
+  void expect_forces(const recording::Source& source, const std::string& unit) const {
+    const auto force = recording::read(source);
+    ASSERT_TRUE(force) << describe(force.error());
+    EXPECT_EQ(force->unit, unit);
+    EXPECT_NEAR(force->sample_time_s.value_or(0.0), 0.001, 1e-12);
+    ASSERT_EQ(force->values.size(), static_cast<std::size_t>(rows));
+    for (std::int64_t k = 0; k < rows; ++k) {
+      EXPECT_EQ(force->values[static_cast<std::size_t>(k)], sample(k).force_N);
+    }
+  }
+
+  static constexpr std::int64_t rows = 1000;
+  std::filesystem::path folder_ = scratch_path();
+  LogContent content_;
+};
+
+TEST_F(Export, CsvIsARecordingWithNamesUnitsAndEqualValues) {
+  const auto file = folder_ / "log.csv";
+  ASSERT_FALSE(export_csv(content_.tables[0], file));
+  expect_forces({.file = file, .variable = "force"}, "N");
+}
+
+TEST_F(Export, MatlabFileIsARecordingWithEqualValues) {
+  const auto file = folder_ / "log.mat";
+  ASSERT_FALSE(export_mat(content_, file));
+  expect_forces({.file = file, .variable = "run_1_sample.force_N", .time = "run_1_sample.time_s"}, "");
+}
+
+TEST_F(Export, APlaceThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
+  for (const char* name : {"absent/log.csv", "absent/log.mat", "absent/log.h5"}) {
+    const auto file = folder_ / name;
+    const std::string ending = file.extension();
+    const Check error = ending == ".csv"   ? export_csv(content_.tables[0], file)
+                        : ending == ".mat" ? export_mat(content_, file)
+                                           : export_hdf5(content_, file);
+    ASSERT_TRUE(error) << name;
+    EXPECT_EQ(error->code, ErrorCode::unwritable);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Export, ARecordWithoutATimeGetsThatOfItsMessages) {
+  auto log = LogWriter::create(folder_ / "log.mcap");
+  const auto channel = log->add_channel({.topic = "/gaps", .type_name = "t/msg/Gap", .columns = columns_of<Gap>()});
+  for (std::uint32_t k = 0; k < 5; ++k) {
+    log->write(channel, k, 2'000'000 * std::uint64_t{k}, to_cdr(Gap{.channel = 1, .dropped = k, .lost = 0}));
+  }
+  ASSERT_FALSE(log->close());
+  ASSERT_FALSE(export_csv(read_log(folder_)->tables[0], folder_ / "gaps.csv"));
+  const auto dropped = recording::read({.file = folder_ / "gaps.csv", .variable = "dropped"});
+  ASSERT_TRUE(dropped) << describe(dropped.error());
+  EXPECT_EQ(dropped->values, (std::vector<double>{0, 1, 2, 3, 4}));
+  EXPECT_NEAR(dropped->sample_time_s.value_or(0.0), 0.002, 1e-12);
+}
+
+TEST(ExportNames, ATopicBecomesAnIdentifier) {
+  EXPECT_EQ(identifier_of("/run_1/teleoperator"), "run_1_teleoperator");
+  EXPECT_EQ(identifier_of("/7th-axis"), "topic_7th_axis");
+  EXPECT_EQ(identifier_of("/"), "topic_");
+}
+
+}  // namespace
+}  // namespace tactus::telemetry
