@@ -50,22 +50,18 @@ Result<StateSpace> probe_element(int order, const typename Element::Params& para
   return probe(order, [&element](double input) { return element->step(input); });
 }
 
-/// One input and one output of a device.
-StateSpace channel_of(const StateSpace& device, Eigen::Index input, Eigen::Index output) {
-  return {.a = device.a, .b = device.b.col(input), .c = device.c.row(output), .d = device.d.block(output, input, 1, 1)};
-}
-
 }  // namespace
 
-Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Linearisation& linearisation) {
+Eigen::Index ticks_of(const simulation::Channel::Params& channel, double tick_s) {
+  return static_cast<Eigen::Index>(std::lround(channel.delay_s / tick_s));
+}
+
+Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params) {
   // What cannot be simulated is not analysed either, so that both refuse alike.
   if (const auto teleoperator = simulation::Teleoperator::make(params, 0.0); !teleoperator) return teleoperator.error();
-  if (auto error = check_supported(params.control)) return *std::move(error);
-  if (auto error = validate(linearisation)) return *std::move(error);
-  const auto clock = simulation::Clock::make(params.servo, params.plant);
-  const Seconds tick{clock->tick_s};
-  const double late_s = clock->late_substeps * clock->substep_s;
   const control::ControlParams& control = params.control;
+  if (auto error = check_supported(control)) return *std::move(error);
+  const Seconds tick{simulation::Clock::make(params.servo, params.plant)->tick_s};
 
   const auto model = probe_model({.master = control.model,
                                   .fidelity = control.cancellation_model,
@@ -79,64 +75,80 @@ Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Lin
   if (!command_filter) return command_filter.error();
   const auto damping = probe_element<control::LocalDamping>(1, control.damping, tick);
   if (!damping) return damping.error();
-  const auto servo = probe_element<control::ServoPd>(1, control.slave, tick);
+  auto servo = probe_element<control::ServoPd>(1, control.slave, tick);
   if (!servo) return servo.error();
-
-  const StateSpace master_plant =
-      sampled(channel_of(linear_device(params.master.mechanism, params.master.amplifier,
-                                       params.master.force_sensor.bandwidth_Hz, params.person.grip, linearisation),
-                         command_in, motor_out),
-              tick.value, late_s);
-  StateSpace slave_device =
-      linear_device(params.slave.mechanism, params.slave.amplifier, params.slave.force_sensor.bandwidth_Hz,
-                    wall_load(params.environment, linearisation.preload_N), linearisation);
-  const StateSpace slave_plant = sampled({.a = slave_device.a,
-                                          .b = slave_device.b.col(command_in),
-                                          .c = slave_device.c,
-                                          .d = slave_device.d.col(command_in)},
-                                         tick.value, late_s);
-
-  Loop loop;
-  loop.tick_s = tick.value;
-  loop.force_gain = control.force_gain;
-  loop.position_scale = control.position_scale;
-  const auto ticks = [&tick](const simulation::Channel::Params& channel) {
-    return static_cast<Eigen::Index>(std::lround(channel.delay_s / tick.value));
-  };
-  loop.delay_ticks = ticks(params.channel.to_slave) + ticks(params.channel.to_master) + 1;
 
   const bool cancels = control.cancellation == control::CancellationMode::on;
   const Part force{*force_filter, 0};
   const Part rate{*damping, force.at + force.system.states()};
   const Part command{*command_filter, rate.at + rate.system.states()};
-  const Part plant{master_plant, command.at + command.system.states()};
-  const Part belief{*model, plant.at + plant.system.states()};
+  const Part belief{*model, command.at + command.system.states()};
   const Eigen::Index states = belief.at + (cancels ? belief.system.states() : 0);
-  loop.master = assemble(states, 1, 1, [&](const auto& state, const auto& input, auto& next, auto& output) {
-    const double measured_m = plant.output(state, 0.0);
-    // Damping's force counts against the displayed one.
-    const double motor_N = rate.output(state, measured_m) - force.output(state, input[0]);
-    const double intended_m = cancels ? measured_m - belief.output(state, 0.0) : measured_m;
-    output[0] = loop.position_scale * command.output(state, intended_m);
-    force.advance(state, input[0], next);
-    rate.advance(state, measured_m, next);
-    command.advance(state, intended_m, next);
-    plant.advance(state, motor_N, next);
-    if (cancels) belief.advance(state, motor_N, next);
-  });
+  LinearSites sites;
+  sites.master =
+      assemble(states, site_inputs, site_outputs, [&](const auto& state, const auto& input, auto& next, auto& output) {
+        // Damping's force counts as displayed, so it drives the model too.
+        const double motor_N = rate.output(state, input[measured_in]) - force.output(state, input[arrived_force_in]);
+        const double induced_m = cancels ? belief.output(state, 0.0) : 0.0;
+        const double intended_m = input[measured_in] - induced_m;
+        output[motor_force_out] = motor_N;
+        output[message_out] = control.position_scale * command.output(state, intended_m);
+        force.advance(state, input[arrived_force_in], next);
+        rate.advance(state, input[measured_in], next);
+        command.advance(state, intended_m, next);
+        if (cancels) belief.advance(state, motor_N, next);
+      });
+  sites.slave = *std::move(servo);
+  sites.modelled = *model;
+  return sites;
+}
 
-  const Part feedback{*servo, slave_plant.states()};
-  loop.slave = assemble(slave_plant.states() + servo->states(), 1, 1,
+Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Linearisation& linearisation) {
+  if (auto error = validate(linearisation)) return *std::move(error);
+  const auto sites = linear_sites(params);
+  if (!sites) return sites.error();
+  const auto clock = simulation::Clock::make(params.servo, params.plant);
+  const double late_s = clock->late_substeps * clock->substep_s;
+
+  const StateSpace master = linear_device(params.master.mechanism, params.master.amplifier,
+                                          params.master.force_sensor.bandwidth_Hz, params.person.grip, linearisation);
+  const StateSpace slave =
+      linear_device(params.slave.mechanism, params.slave.amplifier, params.slave.force_sensor.bandwidth_Hz,
+                    wall_load(params.environment, linearisation.preload_N), linearisation);
+  const StateSpace master_plant = sampled(one_channel(master, command_in, motor_out), clock->tick_s, late_s);
+  const StateSpace slave_plant = sampled(
+      {.a = slave.a, .b = slave.b.col(command_in), .c = slave.c, .d = slave.d.col(command_in)}, clock->tick_s, late_s);
+
+  Loop loop;
+  loop.tick_s = clock->tick_s;
+  loop.force_gain = params.control.force_gain;
+  loop.position_scale = params.control.position_scale;
+  loop.delay_ticks =
+      ticks_of(params.channel.to_slave, loop.tick_s) + ticks_of(params.channel.to_master, loop.tick_s) + 1;
+
+  // No plant answers within its tick, so each is read first.
+  const Eigen::Index motors = master_plant.states(), sited = sites->master.states();
+  loop.master = assemble(motors + sited, 1, 1, [&](const auto& state, const auto& input, auto& next, auto& output) {
+    const Eigen::VectorXd plant = state.head(motors), site = state.tail(sited);
+    const Eigen::Vector2d seen{(master_plant.c * plant)(0), input[0]};
+    const Eigen::VectorXd said = sites->master.c * site + sites->master.d * seen;
+    output[0] = said[message_out];
+    next.head(motors) = master_plant.a * plant + master_plant.b.col(0) * said[motor_force_out];
+    next.tail(sited) = sites->master.a * site + sites->master.b * seen;
+  });
+  const Part feedback{sites->slave, slave_plant.states()};
+  loop.slave = assemble(slave_plant.states() + feedback.system.states(), 1, 1,
                         [&](const auto& state, const auto& input, auto& next, auto& output) {
-                          const Eigen::VectorXd measured = slave_plant.c * state.head(slave_plant.states());
+                          const Eigen::VectorXd plant = state.head(slave_plant.states());
+                          const Eigen::VectorXd measured = slave_plant.c * plant;
                           const double error_m = input[0] - measured[motor_out];
                           output[0] = measured[sensor_out];
-                          next.head(slave_plant.states()) = slave_plant.a * state.head(slave_plant.states()) +
-                                                            slave_plant.b.col(0) * feedback.output(state, error_m);
+                          next.head(slave_plant.states()) =
+                              slave_plant.a * plant + slave_plant.b.col(0) * feedback.output(state, error_m);
                           feedback.advance(state, error_m, next);
                         });
   loop.induced = master_plant;
-  loop.modelled = *model;
+  loop.modelled = sites->modelled;
   return loop;
 }
 

@@ -40,6 +40,24 @@ struct Loop {
 /// estimate of the grip); `failed` as in `probe`. Not real-time safe.
 Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Linearisation& linearisation = {});
 
+/// Inputs and outputs of the master's site alone: the measured motor position in m and the arriving force times μ in N
+/// make the motor force in N, positive toward the environment, and the command times λ in m.
+enum SiteInput : Eigen::Index { measured_in, arrived_force_in, site_inputs };
+enum SiteOutput : Eigen::Index { motor_force_out, message_out, site_outputs };
+
+/// The controllers of both sites, without plants and delays.
+struct LinearSites {
+  StateSpace master;    ///< as `SiteInput` and `SiteOutput` say
+  StateSpace slave;     ///< from the error of the position, in m, to the motor force, in N
+  StateSpace modelled;  ///< Ĝ_i, from the motor force in N to the motor position in m
+};
+
+/// The sites that `params` describe. Errors: those of `make_loop`.
+Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params);
+
+/// Whole ticks that a message takes, jitter left out.
+Eigen::Index ticks_of(const simulation::Channel::Params& channel, double tick_s);
+
 /// Daniel and McAree's bound on λ μ: moving mass of the master over that of the slave (Int. J. Robotics Research 17(8),
 /// 1998, as paper A quotes it).
 double mass_ratio(const simulation::Teleoperator::Params& params);

@@ -87,6 +87,10 @@ StateSpace sampled(const StateSpace& continuous, double tick_s, double late_s) {
   return system;
 }
 
+StateSpace one_channel(const StateSpace& system, Eigen::Index input, Eigen::Index output) {
+  return {.a = system.a, .b = system.b.col(input), .c = system.c.row(output), .d = system.d.block(output, input, 1, 1)};
+}
+
 Eigen::VectorXcd poles(const StateSpace& system) {
   Eigen::MatrixXd a = system.a;
   balance(a);
