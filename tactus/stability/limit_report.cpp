@@ -77,19 +77,18 @@ Result<simulation::Outcome> report_limit(const simulation::Request& request, con
                    "linear loop, sampled",
                    "",
                    {.gain = endless ? highest_gain : linear.force_gain, .beyond_search = endless}});
-  rungs.push_back({"bonded", "linear rig in time, tip glued to the wall", "plants stepped, not solved",
+  rungs.push_back({"bonded", "the same in time, tip glued on", "plants stepped, not solved",
                    bisect_linear_limit(bonded, lowest_gain, highest_gain)});
   rungs.push_back(
       {"wrong_models",
-       "linear loop, worst of 27 models wrong by task.model_error",
+       "linear loop, worst model",
        "a model that does not fit",
        {.gain = std::min(wrong->smallest_limit, highest_gain), .beyond_search = wrong->smallest_limit > highest_gain}});
   if (progress) progress(0.1);
-  rungs.push_back({"taps_without_friction", "taps, no friction or hysteresis, ideal sensors",
-                   "contact that breaks, saturated force, the person, the judge: settled within 100 ms",
-                   tapped(ideal)});
+  rungs.push_back(
+      {"taps_without_friction", "taps without friction", "contact that breaks, saturation, the judge", tapped(ideal)});
   if (progress) progress(0.5);
-  rungs.push_back({"taps", "taps as the file has them", "friction, hysteresis, noise, quantisation", tapped(*params)});
+  rungs.push_back({"taps", "taps as in the file", "friction, hysteresis, noise, quantisation", tapped(*params)});
   if (progress) progress(1.0);
 
   report::Table table({{"gain limit of", "", report::Column::Align::left},
@@ -102,8 +101,10 @@ Result<simulation::Outcome> report_limit(const simulation::Request& request, con
                                   {"limits", nlohmann::ordered_json::array()}};
   for (std::size_t i = 0; i < rungs.size(); ++i) {
     const double ratio = i > 0 ? rungs[i].limit.gain / rungs[i - 1].limit.gain : 1.0;
-    table.add_row({rungs[i].words, shown(rungs[i].limit), i > 0 && std::isfinite(ratio) ? report::number(ratio, 4) : "",
-                   rungs[i].adds});
+    table.add_row(
+        {rungs[i].words, shown(rungs[i].limit),
+         i > 0 && std::isfinite(ratio) ? (rungs[i].limit.beyond_search ? "> " : "") + report::number(ratio, 4) : "",
+         rungs[i].adds});
     document["limits"].push_back(
         {{"of", rungs[i].key}, {"force_gain", rungs[i].limit.gain}, {"beyond_search", rungs[i].limit.beyond_search}});
   }
@@ -114,7 +115,10 @@ Result<simulation::Outcome> report_limit(const simulation::Request& request, con
     };
     return gap(a) < gap(b);
   });
-  const std::string reason = "Most of the gap comes in with: " + farthest->adds + ".\n";
+  const std::string reason =
+      "Most of the gap comes in with: " + farthest->adds +
+      ".\nWorst model: of 27 wrong by task.model_error. Taps without friction: nor hysteresis, with "
+      "ideal sensors. The judge: settled within 100 ms.\n";
   document["largest_gap"] = farthest->key;
 
   report::Page page(request.name + ": gain limit");
