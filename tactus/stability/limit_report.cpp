@@ -108,8 +108,8 @@ Result<simulation::Outcome> report_limit(const simulation::Request& request, con
     document["limits"].push_back(
         {{"of", rungs[i].key}, {"force_gain", rungs[i].limit.gain}, {"beyond_search", rungs[i].limit.beyond_search}});
   }
-  const auto farthest = std::max_element(rungs.begin() + 1, rungs.end(), [&rungs](const Rung& a, const Rung& b) {
-    const auto gap = [&rungs](const Rung& rung) {
+  const auto farthest = std::max_element(rungs.begin() + 1, rungs.end(), [](const Rung& a, const Rung& b) {
+    const auto gap = [](const Rung& rung) {
       const double before = (&rung - 1)->limit.gain;
       return before > 0.0 && rung.limit.gain > 0.0 ? std::fabs(std::log(rung.limit.gain / before)) : 1e9;
     };
