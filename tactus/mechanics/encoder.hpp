@@ -2,11 +2,19 @@
 
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/core/scalar.hpp>
 #include <tactus/signal/checks.hpp>
 
 #include <cmath>
 
 namespace tactus::mechanics {
+
+/// The multiple of `resolution_m` nearest to the position, halves up; the position itself where the resolution is 0.
+template <class Scalar>
+Scalar quantised(const Scalar& position_m, const Scalar& resolution_m) noexcept {
+  using std::floor;
+  return select<Scalar>(resolution_m > 0.0, floor(position_m / resolution_m + 0.5) * resolution_m, position_m);
+}
 
 /// Quantised position, as an encoder reports it at the servo tick: the nearest multiple of the resolution, halves up.
 ///
@@ -31,9 +39,7 @@ class Encoder {
   }
 
   /// Position in m as reported, from the true position in m. Real-time safe.
-  double step(double position_m) noexcept {
-    return resolution_m_ > 0.0 ? std::floor(position_m / resolution_m_ + 0.5) * resolution_m_ : position_m;
-  }
+  double step(double position_m) noexcept { return quantised(position_m, resolution_m_); }
 
   void reset() noexcept {}
 

@@ -52,6 +52,9 @@ class Environment {
     const Penetration depth{.penetration_m = tip.position_m - position_m_, .rate_m_per_s = tip.velocity_m_per_s};
     return law_ == ContactLaw::kelvin_voigt ? kelvin_voigt_.step(depth) : hunt_crossley_.step(depth);
   }
+  double force_N(double position_m, double velocity_m_per_s) noexcept {
+    return step({.position_m = position_m, .velocity_m_per_s = velocity_m_per_s});
+  }
   void reset() noexcept {}
 
   [[nodiscard]] double position_m() const noexcept { return position_m_; }

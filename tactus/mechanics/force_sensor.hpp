@@ -66,6 +66,9 @@ class ForceSensor {
     noise_ = signal::Random(static_cast<std::uint64_t>(params_.seed));
   }
 
+  /// The analogue part as it stands.
+  [[nodiscard]] const signal::SecondOrderSection<double>& analogue() const noexcept { return filter_.section(); }
+
  private:
   ForceSensor(const Params& params, const signal::SecondOrderFilter& filter) : params_(params), filter_(filter) {}
   Params params_;
