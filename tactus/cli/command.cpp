@@ -53,6 +53,7 @@ int run_command(int argc, char** argv) {
   add_run(app, command, status);
   add_estimate(app, command, status);
   add_identify(app, command, status);
+  add_stability(app, command, status);
   add_schema(app, status);
   try {
     app.parse(argc, argv);
