@@ -23,7 +23,7 @@ constexpr Scalar kelvin_voigt_force_N(const Scalar& stiffness_N_per_m, const Sca
                                       const Scalar& penetration_m, const Scalar& rate_m_per_s) noexcept {
   using std::max;
   const Scalar force_N = stiffness_N_per_m * penetration_m + damping_N_s_per_m * rate_m_per_s;
-  return select<Scalar>(penetration_m > 0.0, max(Scalar(0.0), force_N), Scalar(0.0));
+  return select(penetration_m > 0.0, max(Scalar(0.0), force_N), Scalar(0.0));
 }
 
 /// Spring and damper that cannot pull: F = max(0, k δ + b δ̇) for δ > 0, else 0. No state.

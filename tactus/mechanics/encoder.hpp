@@ -13,7 +13,7 @@ namespace tactus::mechanics {
 template <class Scalar>
 Scalar quantised(const Scalar& position_m, const Scalar& resolution_m) noexcept {
   using std::floor;
-  return select<Scalar>(resolution_m > 0.0, floor(position_m / resolution_m + 0.5) * resolution_m, position_m);
+  return select(resolution_m > 0.0, floor(position_m / resolution_m + 0.5) * resolution_m, position_m);
 }
 
 /// Quantised position, as an encoder reports it at the servo tick: the nearest multiple of the resolution, halves up.

@@ -68,10 +68,10 @@ class TipAtWall {
     const Scalar rest = dt_s_ - until;
     const Scalar after_force_N = advance(motor_force_N, rest);
     const Scalar mean_force_N = (before_force_N * until + after_force_N * rest) / dt_s_;
-    contact = {.contact_force_N = select<Scalar>(crossed, mean_force_N, contact.contact_force_N),
-               .touched = select<Scalar>(
-                   crossed, select<Scalar>(is_outside(before.position_m[2]), Scalar(1.0), Scalar(0.0)), Scalar(0.0)),
-               .touched_after_s = select<Scalar>(crossed, until, Scalar(0.0))};
+    contact = {
+        .contact_force_N = select(crossed, mean_force_N, contact.contact_force_N),
+        .touched = select(crossed, select(is_outside(before.position_m[2]), Scalar(1.0), Scalar(0.0)), Scalar(0.0)),
+        .touched_after_s = select(crossed, until, Scalar(0.0))};
     chain_.state = select_state<Condition, Scalar>(crossed, chain_.state, whole);
   }
 
@@ -89,10 +89,10 @@ class TipAtWall {
       advance(motor_force_N, time);
       const Scalar gap = gap_m();
       const auto same_side = (gap > 0.0) == (gap_late > 0.0);
-      late = select<Scalar>(same_side, time, late);
-      early = select<Scalar>(same_side, early, time);
-      const Scalar next_late = select<Scalar>(same_side, gap, gap_late * 0.5);
-      gap_early = select<Scalar>(same_side, gap_early * 0.5, gap);
+      late = select(same_side, time, late);
+      early = select(same_side, early, time);
+      const Scalar next_late = select(same_side, gap, gap_late * 0.5);
+      gap_early = select(same_side, gap_early * 0.5, gap);
       gap_late = next_late;
     }
     return time;
