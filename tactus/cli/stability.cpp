@@ -7,9 +7,10 @@
 
 namespace tactus::cli {
 
-void add_stability(CLI::App& app, const std::string& /*command*/, int& /*status*/) {
+void add_stability(CLI::App& app, const std::string& command, int& status) {
   CLI::App* verb = app.add_subcommand("stability", "How much force gain is safe, and what limits it");
   verb->require_subcommand(1);
+  add_stability_map(*verb, app.get_name(), command, status);
 }
 
 }  // namespace tactus::cli
