@@ -7,6 +7,7 @@
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/stability/map.hpp>
+#include <tactus/stability/map_hdf5.hpp>
 
 #include <algorithm>
 #include <array>
@@ -178,6 +179,7 @@ Check present(const MapOptions& options, const stability::MapResult& map, double
   const std::filesystem::path folder = *options.out;
   if (auto error = report::write_file(folder / "results.json", document)) return error;
   if (auto error = report::write_file(folder / "map.csv", stability::to_csv(map))) return error;
+  if (auto error = stability::write_hdf5(folder / "map.h5", map)) return error;
   if (!plane) return {};
   if (auto error = report::write_file(folder / "map.svg", report::to_svg(draw(map, planes)))) return error;
   (options.json ? std::cerr : std::cout) << "Map: " << (folder / "map.svg").string() << "\n";
@@ -218,7 +220,8 @@ void add_stability_map(CLI::App& stability, const std::string& name, const std::
       ->allow_extra_args(false);
   verb->add_option("--precision", options->precision, "double, or float with the boundary again in double")
       ->check(CLI::IsMember({"double", "float"}));
-  verb->add_option("--out", options->out, "Folder for map.csv, map.svg, results.json; a killed run goes on from there")
+  verb->add_option("--out", options->out,
+                   "Folder for map.csv, map.h5, map.svg and results.json; a killed run goes on from there")
       ->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
   verb->callback([options, name, &command, &status] {

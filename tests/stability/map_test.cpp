@@ -1,5 +1,6 @@
 #include <tactus/stability/map.hpp>
 #include <tactus/stability/map_file.hpp>
+#include <tactus/stability/map_hdf5.hpp>
 
 #include <cstring>
 #include <filesystem>
@@ -129,6 +130,21 @@ TEST(Maps, AFloatMapHasTheVerdictsOfTheDoubleMapButForFew) {
     different += exact->points[i].verdict != fast->points[i].verdict ? 1 : 0;
   }
   EXPECT_LE(different, exact->points.size() / 50);
+}
+
+TEST(Maps, AMapIsWrittenAsHdf5AllOrNothing) {
+  const auto map = run_map(small_map(), [](double) {});
+  ASSERT_TRUE(map);
+  const auto path = scratch_path();
+  const auto error = write_hdf5(path, *map);
+  EXPECT_FALSE(error) << describe(*error);
+  EXPECT_GT(std::filesystem::file_size(path), map->points.size() * 5 * sizeof(double));
+  std::ifstream file(path, std::ios::binary);
+  std::string start(4, ' ');
+  file.read(start.data(), 4);
+  EXPECT_EQ(start, "\x89HDF");
+  std::filesystem::remove(path);
+  EXPECT_EQ(write_hdf5("/nowhere/map.h5", *map)->code, ErrorCode::unwritable);
 }
 
 TEST(Maps, ARequestThatCannotRunIsRefusedBeforeAnythingRuns) {
