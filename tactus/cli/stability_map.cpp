@@ -123,8 +123,12 @@ report::HeatMap draw(const stability::MapResult& map, const std::vector<Plane>& 
     }
     picture.panels.push_back(std::move(panel));
     const auto from = limits.begin() + static_cast<std::ptrdiff_t>(i * x.values.size());
-    picture.lines.push_back({"limit, " + planes[i].title,
-                             std::vector<double>(from, from + static_cast<std::ptrdiff_t>(x.values.size())), i > 0});
+    // Two boundaries can be told apart in one picture; more stand each in its own panel.
+    const bool compared = planes.size() <= 2;
+    picture.lines.push_back({.name = "limit, " + planes[i].title,
+                             .y = std::vector<double>(from, from + static_cast<std::ptrdiff_t>(x.values.size())),
+                             .dashed = compared && i > 0,
+                             .panel = compared ? std::nullopt : std::optional(i)});
   }
   return picture;
 }

@@ -67,9 +67,9 @@ std::string cells_of(const HeatMap& map, const HeatMap::Panel& panel, std::size_
         ++column;
         continue;
       }
-      path += "M" + px(from + panel_width * x.edges[column]) + " " + px(high) + "H" +
-              px(from + panel_width * x.edges[end]) + "V" + px(low) + "H" + px(from + panel_width * x.edges[column]) +
-              "z";
+      path += "M";
+      path += px(from + panel_width * x.edges[column]) + " " + px(high) + "H" + px(from + panel_width * x.edges[end]) +
+              "V" + px(low) + "H" + px(from + panel_width * x.edges[column]) + "z";
       column = end;
     }
   }
@@ -85,7 +85,8 @@ std::string line_of(const HeatMap& map, const HeatMap::Line& line, const Scale& 
       drawing = false;
       continue;
     }
-    path += (drawing ? "L" : "M") + px(from + panel_width * x.share(map.x.values[i])) + " " +
+    path += drawing ? "L" : "M";
+    path += px(from + panel_width * x.share(map.x.values[i])) + " " +
             px(top + panel_height * (1.0 - std::clamp(share, 0.0, 1.0)));
     drawing = true;
   }
@@ -116,6 +117,7 @@ std::string to_svg(const HeatMap& map) {
   }
   at = left;
   for (const HeatMap::Line& line : map.lines) {
+    if (line.panel) continue;
     svg += "<path stroke=\"#111\" stroke-width=\"1.6\"" + std::string(line.dashed ? " stroke-dasharray=\"6 3\"" : "") +
            " d=\"M" + px(at) + " 34h24\"/>\n" + text(at + 30.0, 38.0, "start", line.name);
     at += 50.0 + 6.5 * static_cast<double>(display_width(line.name));
@@ -124,7 +126,9 @@ std::string to_svg(const HeatMap& map) {
     const double from = left + static_cast<double>(i) * (panel_width + gap);
     svg += text(from + 0.5 * panel_width, top - 7.0, "middle", map.panels[i].title, " font-weight=\"bold\"");
     for (std::size_t kind = 0; kind < map.classes.size(); ++kind) svg += cells_of(map, map.panels[i], kind, x, y, from);
-    for (const HeatMap::Line& line : map.lines) svg += line_of(map, line, x, y, from);
+    for (const HeatMap::Line& line : map.lines) {
+      if (line.panel.value_or(i) == i) svg += line_of(map, line, x, y, from);
+    }
     svg += "<rect x=\"" + px(from) + "\" y=\"" + px(top) + "\" width=\"" + px(panel_width) + "\" height=\"" +
            px(panel_height) + "\" fill=\"none\" stroke=\"#8a929b\"/>\n";
     for (std::size_t t = 0; t < x_ticks.major.size(); ++t) {

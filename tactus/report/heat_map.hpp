@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct HeatMap {
     std::string name;
     std::vector<double> y;  ///< one for each value of x; not finite breaks the line
     bool dashed = false;
+    std::optional<std::size_t> panel = {};  ///< the only one that it is drawn in; else in all, and named in the legend
   };
   std::string title;  ///< the accessible name
   Axis x, y;

@@ -127,7 +127,7 @@ TEST(Maps, AFloatMapHasTheVerdictsOfTheDoubleMapButForFew) {
   EXPECT_GT(fast->redone, 0U);
   std::size_t different = 0;
   for (std::size_t i = 0; i < exact->points.size(); ++i) {
-    different += exact->points[i].verdict != fast->points[i].verdict ? 1 : 0;
+    different += exact->points[i].verdict != fast->points[i].verdict ? 1U : 0U;
   }
   EXPECT_LE(different, exact->points.size() / 50);
 }
