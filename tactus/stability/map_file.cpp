@@ -59,8 +59,8 @@ std::string slurp(const std::filesystem::path& path) {
 Error unwritable(const std::filesystem::path& path) {
   return {.code = ErrorCode::unwritable,
           .parameter = {},
-          .message = std::string("the finished blocks could not be written (") + std::strerror(errno) +
-                     "): give --out a place with room",
+          .message = std::string("the finished blocks could not be written (") +
+                     std::error_code(errno, std::generic_category()).message() + "): give --out a place with room",
           .place = path.string()};
 }
 
