@@ -10,7 +10,11 @@ namespace tactus::cli {
 void add_stability(CLI::App& app, const std::string& command, int& status) {
   CLI::App* verb = app.add_subcommand("stability", "How much force gain is safe, and what limits it");
   verb->require_subcommand(1);
-  add_stability_map(*verb, app.get_name(), command, status);
+  const std::string name = app.get_name();
+  add_stability_limit(*verb, name, command, status);
+  add_stability_map(*verb, name, command, status);
+  add_stability_margins(*verb, name, command, status);
+  add_stability_scorecard(*verb, name, command, status);
 }
 
 }  // namespace tactus::cli

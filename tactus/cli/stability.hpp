@@ -11,6 +11,9 @@ class App;
 /// `name`, which is what the program calls itself; `command` is the whole command line, for the report.
 namespace tactus::cli {
 
+void add_stability_limit(CLI::App& stability, const std::string& name, const std::string& command, int& status);
 void add_stability_map(CLI::App& stability, const std::string& name, const std::string& command, int& status);
+void add_stability_margins(CLI::App& stability, const std::string& name, const std::string& command, int& status);
+void add_stability_scorecard(CLI::App& stability, const std::string& name, const std::string& command, int& status);
 
 }  // namespace tactus::cli

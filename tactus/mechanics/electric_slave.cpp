@@ -8,7 +8,7 @@ namespace {
 
 /// The wall's force is held over a substep, so its damping b limits the step like a further stiffness of 2 b / h.
 Check check_wall(const CableChain::Params& mechanism, const Environment::Params& wall, Seconds dt) {
-  const bool viscous = wall.law == ContactLaw::kelvin_voigt;
+  const bool viscous = wall.law != ContactLaw::hunt_crossley;
   const double from_damping = viscous ? 2.0 * wall.damping_N_s_per_m / dt.value : 0.0;
   const char* const stiffer =
       from_damping > wall.stiffness_N_per_m ? "environment.damping_N_s_per_m" : "environment.stiffness_N_per_m";

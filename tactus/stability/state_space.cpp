@@ -1,5 +1,7 @@
 #include <tactus/stability/state_space.hpp>
 
+#include <cmath>
+
 #include <Eigen/Dense>
 #include <unsupported/Eigen/MatrixFunctions>
 
@@ -34,13 +36,36 @@ StateSpace assemble(Eigen::Index states, Eigen::Index inputs, Eigen::Index outpu
 
 namespace {
 
+/// Positions, velocities and forces differ by many orders of magnitude, which costs exponentials and eigenvalues their
+/// digits. Scales each state by a power of two until rows and columns weigh alike (Parlett and Reinsch 1969): `a`
+/// becomes D⁻¹ A D, with D, a diagonal, returned.
+Eigen::VectorXd balance(Eigen::MatrixXd& a) {
+  Eigen::VectorXd scale = Eigen::VectorXd::Ones(a.rows());
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      const double own = std::fabs(a(i, i));
+      const double column = a.col(i).lpNorm<1>() - own, row = a.row(i).lpNorm<1>() - own;
+      if (!(column > 0.0) || !(row > 0.0)) continue;
+      const double factor = std::exp2(std::round(0.5 * std::log2(row / column)));
+      if (column * factor + row / factor >= 0.95 * (column + row)) continue;
+      a.col(i) *= factor;
+      a.row(i) /= factor;
+      scale[i] *= factor;
+      changed = true;
+    }
+  }
+  return scale;
+}
+
 /// What the state of `continuous` becomes after `time_s` under a held input: Φ and Γ side by side (Van Loan 1978).
 Eigen::MatrixXd held(const StateSpace& continuous, double time_s) {
   const Eigen::Index n = continuous.states(), m = continuous.inputs();
   Eigen::MatrixXd augmented = Eigen::MatrixXd::Zero(n + m, n + m);
   augmented.topLeftCorner(n, n) = continuous.a * time_s;
   augmented.topRightCorner(n, m) = continuous.b * time_s;
-  return augmented.exp().topRows(n);
+  const Eigen::VectorXd scale = balance(augmented);
+  return (scale.asDiagonal() * augmented.exp() * scale.cwiseInverse().asDiagonal()).topRows(n);
 }
 
 }  // namespace
@@ -62,6 +87,14 @@ StateSpace sampled(const StateSpace& continuous, double tick_s, double late_s) {
   return system;
 }
 
-Eigen::VectorXcd poles(const StateSpace& system) { return system.a.eigenvalues(); }
+StateSpace one_channel(const StateSpace& system, Eigen::Index input, Eigen::Index output) {
+  return {.a = system.a, .b = system.b.col(input), .c = system.c.row(output), .d = system.d.block(output, input, 1, 1)};
+}
+
+Eigen::VectorXcd poles(const StateSpace& system) {
+  Eigen::MatrixXd a = system.a;
+  balance(a);
+  return a.eigenvalues();
+}
 
 }  // namespace tactus::stability

@@ -35,6 +35,9 @@ StateSpace assemble(Eigen::Index states, Eigen::Index inputs, Eigen::Index outpu
 /// Source: Franklin, Powell, Workman, Digital Control of Dynamic Systems, section 4.3.4 (hold with delay).
 StateSpace sampled(const StateSpace& continuous, double tick_s, double late_s);
 
+/// One input and one output of a system.
+StateSpace one_channel(const StateSpace& system, Eigen::Index input, Eigen::Index output);
+
 /// Eigenvalues of A. Not real-time safe; the time it takes grows with the cube of the states.
 Eigen::VectorXcd poles(const StateSpace& system);
 
