@@ -12,7 +12,7 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr std::string_view title = "Tapping a wall through the teleoperator";
+constexpr std::string_view tapping_title = "Tapping a wall through the teleoperator";
 
 report::Table table_of(const std::vector<TappingRun>& runs) {
   std::vector<report::Column> columns = settings_columns(runs.front().settings);
@@ -24,7 +24,7 @@ report::Table table_of(const std::vector<TappingRun>& runs) {
                                  {"peak force", "N"},
                                  {"residual", "mN RMS"},
                                  {"verdict", "", report::Column::Align::left}});
-  report::Table table(columns, std::string(title));
+  report::Table table(columns, std::string(tapping_title));
   for (const TappingRun& run : runs) {
     const TappingMetrics& m = run.metrics;
     // A quantile that falls on a tap that never settled is only a lower bound.
@@ -61,7 +61,7 @@ std::string json_of(const Request& request, const std::vector<TappingRun>& runs)
 
 std::string page_of(const Request& request, const report::Table& table, const std::vector<report::Figure>& figures,
                     std::string_view configuration) {
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(tapping_title));
   page.paragraph(
       "A person reaches through the teleoperator onto a wall and presses. The force measured at the slave's tip, times "
       "the force gain, is displayed to the hand, saturated. Each row of the table is an ensemble of taps that differ "
