@@ -40,8 +40,7 @@ struct MapOptions {
 stability::MapShare share_of_this_process() {
   const auto number = [](const char* name, long otherwise) {
     const char* text = std::getenv(name);
-    const long value = text != nullptr ? std::strtol(text, nullptr, 10) : otherwise;
-    return value;
+    return text != nullptr ? std::strtol(text, nullptr, 10) : otherwise;
   };
   const long ranks = number("OMPI_COMM_WORLD_SIZE", 1), rank = number("OMPI_COMM_WORLD_RANK", 0);
   if (ranks < 1 || rank < 0 || rank >= ranks) return {};
@@ -184,9 +183,11 @@ Check present(const MapOptions& options, const stability::MapResult& map, double
   if (auto error = report::write_file(folder / "results.json", document)) return error;
   if (auto error = report::write_file(folder / "map.csv", stability::to_csv(map))) return error;
   if (auto error = stability::write_hdf5(folder / "map.h5", map)) return error;
-  if (!plane) return {};
-  if (auto error = report::write_file(folder / "map.svg", report::to_svg(draw(map, planes)))) return error;
-  (options.json ? std::cerr : std::cout) << "Map: " << (folder / "map.svg").string() << "\n";
+  if (plane) {
+    if (auto error = report::write_file(folder / "map.svg", report::to_svg(draw(map, planes)))) return error;
+    (options.json ? std::cerr : std::cout) << "Map: " << (folder / "map.svg").string() << "\n";
+  }
+  stability::remove_partial(folder);
   return {};
 }
 

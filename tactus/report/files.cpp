@@ -64,6 +64,7 @@ class TemporaryFile {
   }
 
   [[nodiscard]] bool open() const { return stream_ != nullptr; }
+  [[nodiscard]] std::string name() const { return path_.string(); }
 
   /// True when every byte has been handed to the system. Otherwise errno tells why not.
   bool write(std::string_view content) {
@@ -88,7 +89,9 @@ class TemporaryFile {
   bool pending_ = false;
 };
 
-Check write_unguarded(const fs::path& path, std::string_view content) {
+/// `fill` writes the content and leaves errno where it could not.
+template <class Fill>
+Check replace_unguarded(const fs::path& path, Fill&& fill) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
   if (fs::is_directory(status)) {
@@ -99,7 +102,7 @@ Check write_unguarded(const fs::path& path, std::string_view content) {
   }
   TemporaryFile file(path);
   if (!file.open()) return unwritable(path, "write", last_error());
-  if (!file.write(content)) return unwritable(path, "write", last_error());
+  if (!fill(file)) return unwritable(path, "write", last_error());
   if (const std::error_code renamed = file.rename_to(path)) return unwritable(path, "write", renamed);
   return std::nullopt;
 }
@@ -130,7 +133,15 @@ Check guarded(const fs::path& path, Job&& job) {
 }  // namespace
 
 Check write_file(const fs::path& path, std::string_view content) {
-  return guarded(path, [&] { return write_unguarded(path, content); });
+  return guarded(path, [&] {
+    return replace_unguarded(path, [content](TemporaryFile& file) { return file.write(content); });
+  });
+}
+
+Check replace_file(const fs::path& path, const std::function<bool(const std::string& temporary)>& write) {
+  return guarded(path, [&] {
+    return replace_unguarded(path, [&write](TemporaryFile& file) { return file.write({}) && write(file.name()); });
+  });
 }
 
 Check prepare_directory(const fs::path& path) {

@@ -3,6 +3,8 @@
 #include <tactus/core/result.hpp>
 
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <string_view>
 
 namespace tactus::report {
@@ -13,6 +15,10 @@ namespace tactus::report {
 /// Blocks on the disk: never on the servo path.
 /// Errors: `unwritable`, with path, reason and remedy in the message.
 Check write_file(const std::filesystem::path& path, std::string_view content);
+
+/// The same for a library that writes files by their name: `write` is given that of the temporary file, which is there
+/// and empty, and returns whether it could.
+Check replace_file(const std::filesystem::path& path, const std::function<bool(const std::string& temporary)>& write);
 
 /// Makes the folder `path` and its parents where they are missing, and proves by a probe file, removed again, that
 /// files can be written there. Called before long work, so that a wrong place is known at the start and not at the end.

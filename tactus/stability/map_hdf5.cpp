@@ -1,7 +1,7 @@
+#include <tactus/report/files.hpp>
 #include <tactus/stability/map_hdf5.hpp>
 
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -93,17 +93,7 @@ bool write_all(const std::string& path, const MapResult& map) {
 }  // namespace
 
 Check write_hdf5(const std::filesystem::path& path, const MapResult& map) {
-  const std::filesystem::path beside = path.string() + ".part";
-  const bool written = write_all(beside.string(), map);
-  std::error_code error;
-  if (written) std::filesystem::rename(beside, path, error);
-  if (written && !error) return {};
-  std::error_code ignored;
-  std::filesystem::remove(beside, ignored);
-  return Error{.code = ErrorCode::unwritable,
-               .parameter = {},
-               .message = "the map could not be written as HDF5: give --out a place with room",
-               .place = path.string()};
+  return report::replace_file(path, [&map](const std::string& temporary) { return write_all(temporary, map); });
 }
 
 }  // namespace tactus::stability

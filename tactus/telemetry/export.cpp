@@ -2,9 +2,6 @@
 #include <tactus/telemetry/export_parts.hpp>
 
 #include <algorithm>
-#include <system_error>
-
-#include <unistd.h>
 
 namespace tactus::telemetry {
 
@@ -36,24 +33,6 @@ LogTable with_time(LogTable table) {
 std::map<std::string, std::string> about(const LogSummary& summary) {
   const auto found = summary.metadata.find("tactus");
   return found == summary.metadata.end() ? std::map<std::string, std::string>{} : found->second;
-}
-
-Check write_beside(const std::filesystem::path& file, const std::function<bool(const std::string&)>& write) {
-  const std::string temporary = file.string() + "." + std::to_string(getpid()) + ".part";
-  std::error_code failed;
-  if (write(temporary)) {
-    std::filesystem::rename(temporary, file, failed);
-  } else {
-    failed = std::make_error_code(std::errc::io_error);
-  }
-  if (!failed) return std::nullopt;
-  std::error_code ignored;
-  std::filesystem::remove(temporary, ignored);
-  return Error{.code = ErrorCode::unwritable,
-               .parameter = {},
-               .message = "the file could not be written (" + failed.message() +
-                          "): name a file in a folder that exists and has room",
-               .place = file.string()};
 }
 
 Check refuse_empty(const LogContent& content, const std::filesystem::path& file) {

@@ -1,3 +1,4 @@
+#include <tactus/report/files.hpp>
 #include <tactus/telemetry/export.hpp>
 #include <tactus/telemetry/export_parts.hpp>
 
@@ -79,7 +80,7 @@ Handle make_group(hid_t file, const std::string& name) {
 Check export_hdf5(const LogContent& content, const std::filesystem::path& file) {
   if (auto error = refuse_empty(content, file)) return error;
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are told by us
-  return write_beside(file, [&content](const std::string& temporary) {
+  return report::replace_file(file, [&content](const std::string& temporary) {
     Handle hdf(H5Fcreate(temporary.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
     bool done = hdf.ok();
     for (const LogTable& original : content.tables) {

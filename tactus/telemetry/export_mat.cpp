@@ -1,3 +1,4 @@
+#include <tactus/report/files.hpp>
 #include <tactus/telemetry/export.hpp>
 #include <tactus/telemetry/export_parts.hpp>
 
@@ -64,8 +65,8 @@ bool write(mat_t* file, const Struct& content) {
 
 Check export_mat(const LogContent& content, const std::filesystem::path& file) {
   if (auto error = refuse_empty(content, file)) return error;
-  return write_beside(file, [&content](const std::string& temporary) {
-    const std::unique_ptr<mat_t, CloseFile> mat(Mat_CreateVer(temporary.c_str(), nullptr, MAT_FT_MAT5));
+  return report::replace_file(file, [&content](const std::string& temporary) {
+    std::unique_ptr<mat_t, CloseFile> mat(Mat_CreateVer(temporary.c_str(), nullptr, MAT_FT_MAT5));
     if (!mat) return false;
     bool done = true;
     for (const LogTable& original : content.tables) {
@@ -85,7 +86,7 @@ Check export_mat(const LogContent& content, const std::filesystem::path& file) {
       for (const auto& [key, value] : run) about_run.add(key, text(value));
       done = done && write(mat.get(), about_run);
     }
-    return done;
+    return Mat_Close(mat.release()) == 0 && done;  // a full disk may show only now
   });
 }
 

@@ -4,7 +4,6 @@
 #include <tactus/telemetry/log_reader.hpp>
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 
@@ -15,9 +14,6 @@ LogTable with_time(LogTable table);
 
 /// What the log says about the run that it comes from; empty where it says nothing.
 std::map<std::string, std::string> about(const LogSummary& summary);
-
-/// Lets `write` make a temporary file beside `file`, which then takes its name. `write` returns whether it could.
-Check write_beside(const std::filesystem::path& file, const std::function<bool(const std::string&)>& write);
 
 /// The error for a log that has nothing to export.
 Check refuse_empty(const LogContent& content, const std::filesystem::path& file);
