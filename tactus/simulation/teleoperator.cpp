@@ -59,9 +59,8 @@ void Teleoperator::add_contact(Record& record, const SlavePlant::Contact& contac
   record.contact_force_N = contact.sum_N / clock.substeps;
   record.peak_contact_force_N = contact.peak_N;
   record.touched = contact.touched;
-  if (contact.touched) {
-    record.touched_at_s = record.time_s + contact.touched_substep * clock.substep_s + contact.touched_after_s;
-  }
+  record.touched_at_s =
+      contact.touched ? record.time_s + contact.touched_substep * clock.substep_s + contact.touched_after_s : 0.0;
 }
 
 }  // namespace tactus::simulation
