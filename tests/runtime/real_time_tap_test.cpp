@@ -2,6 +2,7 @@
 #include <tactus/simulation/tapping.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <filesystem>
 #include <vector>
@@ -128,6 +129,15 @@ TEST(RealTimeTap, OnAServoThreadItRunsToItsEndAndIsLoggedToTheLastTick) {
   EXPECT_EQ(log->tables[0].times_ns.size(), trace.size());
   // The last step of the thread finds the tap over and has no record.
   EXPECT_EQ(log->tables[1].times_ns.size(), static_cast<std::size_t>(report.ticks - 1));
+  std::vector<Record> virtual_time;
+  (void)ensemble->run(0, &virtual_time);
+  const std::vector<double>& missed = log->tables[1].values[1];
+  const auto agreed = static_cast<std::size_t>(
+      std::find_if(missed.begin() + 1, missed.end(), [](double n) { return n > 0.0; }) - missed.begin());
+  ASSERT_LE(agreed, std::min(trace.size(), virtual_time.size()));
+  for (std::size_t i = 0; i + 1 < agreed; ++i) {
+    ASSERT_EQ(bits(trace[i]), bits(virtual_time[i])) << "tick " << i << ", denormals flushed and none missed";
+  }
   for (std::size_t i = 1; i < log->tables[0].times_ns.size(); ++i) {
     ASSERT_NEAR(static_cast<double>(log->tables[0].times_ns[i] - log->tables[0].times_ns[i - 1]), 200'000.0, 1.0);
   }
