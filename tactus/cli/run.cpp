@@ -1,7 +1,9 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/run_log.hpp>
+#include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
+#include <tactus/runtime/real_time_tapping.hpp>
 #include <tactus/simulation/experiment.hpp>
 
 #include <filesystem>
@@ -24,6 +26,8 @@ struct RunOptions {
   std::vector<std::string> vary;
   std::optional<std::string> out;
   bool json = false;
+  bool real_time = false;
+  runtime::ServoThreadParams servo;
 };
 
 Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
@@ -49,6 +53,24 @@ Result<simulation::Request> make_request(const RunOptions& options, const std::s
                              .command = command};
 }
 
+void say_log(const RunOptions& options, const std::filesystem::path& folder) {
+  (options.json ? std::cerr : std::cout) << "Log: " << folder.string() << "\n";
+}
+
+Check run_in_real_time(const RunOptions& options, const simulation::Request& request) {
+  runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin()};
+  const std::filesystem::path folder = std::filesystem::path(options.out.value_or("")) / "log";
+  if (options.out) real_time.log = folder / "log.mcap";
+  const auto done = [&] {
+    ProgressLine line(request.name);
+    return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
+  }();
+  if (!done) return done.error();
+  if (auto error = write_outcome(options.out, done->outcome, options.json)) return error;
+  if (options.out && !done->log) say_log(options, folder);
+  return done->log;
+}
+
 Check run(const RunOptions& options, const std::string& command) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
@@ -57,6 +79,8 @@ Check run(const RunOptions& options, const std::string& command) {
   if (options.out) {
     if (auto error = check_writable(*options.out)) return error;
   }
+
+  if (options.real_time) return run_in_real_time(options, *request);
 
   Result<simulation::Outcome> outcome = [&] {
     ProgressLine line(request->name);
@@ -68,7 +92,7 @@ Check run(const RunOptions& options, const std::string& command) {
   if (!options.out || outcome->traces.empty()) return std::nullopt;
   const std::filesystem::path folder = std::filesystem::path(*options.out) / "log";
   if (auto error = write_run_log(folder, *request, *outcome)) return error;
-  (options.json ? std::cerr : std::cout) << "Log: " << folder.string() << "\n";
+  say_log(options, folder);
   return std::nullopt;
 }
 
@@ -76,7 +100,7 @@ Check run(const RunOptions& options, const std::string& command) {
 
 void add_run(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* verb = app.add_subcommand("run", "Run an experiment in virtual time");
+  CLI::App* verb = app.add_subcommand("run", "Run an experiment, in virtual or in real time");
   verb->add_option("EXPERIMENT", options->file, "Experiment file (TOML)")->required();
   verb->add_option("--with", options->with,
                    "File whose keys take the place of the experiment's, as an identified model")
@@ -91,6 +115,10 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--out", options->out, "Folder for report.html, results.json, the figures and the log")
       ->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  CLI::Option* real_time = verb->add_flag("--realtime", options->real_time,
+                                          "Run it at the real clock, on a servo thread, with simulated devices");
+  add_servo_options(*verb, options->servo);
+  for (const char* name : {"--priority", "--core", "--spin-s"}) verb->get_option(name)->needs(real_time);
   verb->callback([options, &app, &command, &status] {
     if (const auto error = run(*options, command)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";
