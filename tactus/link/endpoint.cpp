@@ -18,8 +18,9 @@ Result<Endpoint> Endpoint::make(const Settings& settings) {
   if (!settings.key && !socket->on_loopback()) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = {},
-                 .message = "plain text may not leave this host's loopback: give both sites the same key, made by "
-                            "`tactus key FILE`",
+                 .message =
+                     "plain text may not leave this host's loopback: give both sites the same key, made by "
+                     "`tactus key FILE`",
                  .place = settings.peer.text()};
   }
   std::uint64_t session = 0;

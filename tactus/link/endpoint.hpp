@@ -29,8 +29,8 @@ class Endpoint {
   /// The newest of the other site. `arrival.fresh` tells whether it came since the last call.
   struct Received {
     control::Arrival arrival;
-    bool heard = false;           ///< anything at all, ever
-    std::uint64_t session = 0;    ///< of the other site; a change is a restart
+    bool heard = false;         ///< anything at all, ever
+    std::uint64_t session = 0;  ///< of the other site; a change is a restart
     Standing standing = Standing::hold;
     std::uint32_t armings = 0;
     double age_s = 0.0;           ///< since it was sent; within half the shortest round trip of late
@@ -41,12 +41,12 @@ class Endpoint {
 
   struct Counters {
     Inbound::Counters inbound;
-    SecureChannel::Counters secure;   ///< zeros in plain text
+    SecureChannel::Counters secure;  ///< zeros in plain text
     std::uint64_t sent = 0;
-    std::uint64_t unsent = 0;         ///< not taken by the kernel, or no keys yet
-    std::uint64_t malformed = 0;      ///< plain text or authentic, but no datagram
-    std::uint64_t expected = 0;       ///< of the other's session so far
-    std::uint64_t arrived = 0;        ///< of those
+    std::uint64_t unsent = 0;     ///< not taken by the kernel, or no keys yet
+    std::uint64_t malformed = 0;  ///< plain text or authentic, but no datagram
+    std::uint64_t expected = 0;   ///< of the other's session so far
+    std::uint64_t arrived = 0;    ///< of those
   };
 
   /// Opens the socket and starts to shake hands. Errors: an address that cannot be used; `inconsistent` for plain text

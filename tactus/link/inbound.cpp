@@ -51,13 +51,27 @@ Inbound::Verdict Inbound::judge(const Datagram& datagram, std::int64_t now_ns) n
 Inbound::Verdict Inbound::take(const Datagram& datagram, std::int64_t now_ns) noexcept {
   const Verdict verdict = judge(datagram, now_ns);
   switch (verdict) {
-    case Verdict::applied: ++counters_.applied; break;
-    case Verdict::greeting: ++counters_.greeting; break;
-    case Verdict::late: ++counters_.late; break;
-    case Verdict::repeated: ++counters_.repeated; break;
-    case Verdict::stale: ++counters_.stale; break;
-    case Verdict::reflected: ++counters_.reflected; break;
-    case Verdict::foreign: ++counters_.foreign; break;
+    case Verdict::applied:
+      ++counters_.applied;
+      break;
+    case Verdict::greeting:
+      ++counters_.greeting;
+      break;
+    case Verdict::late:
+      ++counters_.late;
+      break;
+    case Verdict::repeated:
+      ++counters_.repeated;
+      break;
+    case Verdict::stale:
+      ++counters_.stale;
+      break;
+    case Verdict::reflected:
+      ++counters_.reflected;
+      break;
+    case Verdict::foreign:
+      ++counters_.foreign;
+      break;
   }
   return verdict;
 }

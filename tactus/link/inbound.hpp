@@ -36,7 +36,9 @@ class Inbound {
 
   /// `own_session` is not 0; `longest_age_s` is positive.
   Inbound(SiteName own_site, std::uint64_t own_session, double longest_age_s)
-      : own_site_(own_site), own_session_(own_session), longest_age_ns_(static_cast<std::int64_t>(longest_age_s * 1e9)) {}
+      : own_site_(own_site),
+        own_session_(own_session),
+        longest_age_ns_(static_cast<std::int64_t>(longest_age_s * 1e9)) {}
 
   Verdict take(const Datagram& datagram, std::int64_t now_ns) noexcept;
 

@@ -55,8 +55,9 @@ class PeerClock {
   [[nodiscard]] std::int64_t offset_error_ns() const noexcept { return known() ? shortest().round_trip_ns / 2 : 0; }
   /// How long before `now_ns` (own clock) the instant `sent_ns` of the other's clock was; never negative.
   [[nodiscard]] std::int64_t age_ns(std::int64_t sent_ns, std::int64_t now_ns) const noexcept {
-    const auto age = static_cast<std::int64_t>(static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(sent_ns) +
-                                               static_cast<std::uint64_t>(offset_ns()));
+    const auto age =
+        static_cast<std::int64_t>(static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(sent_ns) +
+                                  static_cast<std::uint64_t>(offset_ns()));
     return age > 0 ? age : 0;
   }
 

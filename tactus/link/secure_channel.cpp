@@ -69,10 +69,13 @@ int wire_read(BIO* bio, char* data, int size) {
 
 long wire_control(BIO*, int command, long, void*) {
   switch (command) {
-    case BIO_CTRL_FLUSH: return 1;
+    case BIO_CTRL_FLUSH:
+      return 1;
     case BIO_CTRL_DGRAM_QUERY_MTU:
-    case BIO_CTRL_DGRAM_GET_FALLBACK_MTU: return mtu_bytes;
-    default: return 0;
+    case BIO_CTRL_DGRAM_GET_FALLBACK_MTU:
+      return mtu_bytes;
+    default:
+      return 0;
   }
 }
 
@@ -153,8 +156,8 @@ class SecureChannel::Implementation {
   Method method_;
   Context context_;
 
-  Connection* current_ = nullptr;  ///< of the servo's thread
-  Counters counters_;              ///< of the servo's thread
+  Connection* current_ = nullptr;        ///< of the servo's thread
+  Counters counters_;                    ///< of the servo's thread
   std::unique_ptr<Connection> pending_;  ///< of the other one
   bool shaken_ = false;                  ///< the pending one has its keys; the server waits for proof of the other's
 
@@ -284,10 +287,9 @@ void SecureChannel::Implementation::shake_hands() {
     delete retired_.exchange(nullptr, std::memory_order_acq_rel);
     while (handshake_packets_.try_pop(packet)) take({packet.data.data(), packet.size});
     const std::int64_t now_ns = monotonic_ns();
-    const bool silent = static_cast<double>(now_ns - heard_ns_.load(std::memory_order_relaxed)) >
-                        silence_before_handshake_s * 1e9;
-    if (role_ == HandshakeRole::client && !pending_ && silent &&
-        ready_.load(std::memory_order_relaxed) == nullptr) {
+    const bool silent =
+        static_cast<double>(now_ns - heard_ns_.load(std::memory_order_relaxed)) > silence_before_handshake_s * 1e9;
+    if (role_ == HandshakeRole::client && !pending_ && silent && ready_.load(std::memory_order_relaxed) == nullptr) {
       pending_ = connect();
       if (pending_) SSL_set_connect_state(pending_->ssl.get());
     }
@@ -336,7 +338,6 @@ void SecureChannel::Implementation::take(std::span<const std::byte> packet) {
       ERR_clear_error();
       return;
     }
-    SSL_set_accept_state(listener->ssl.get());
     pending_ = std::move(listener);
   } else {
     pending_->feed(packet);

@@ -32,11 +32,11 @@ class SecureChannel {
   static constexpr std::size_t overhead_bytes = 29;
 
   struct Counters {
-    std::uint64_t opened = 0;              ///< authentic messages
-    std::uint64_t refused = 0;             ///< not authentic, replayed, truncated or of another kind
-    std::uint64_t handshake_packets = 0;   ///< passed on to the thread
-    std::uint64_t handshakes = 0;          ///< finished, and in use since
-    std::uint64_t overflowed = 0;          ///< hand-shake packets for which the queue had no room
+    std::uint64_t opened = 0;             ///< authentic messages
+    std::uint64_t refused = 0;            ///< not authentic, replayed, truncated or of another kind
+    std::uint64_t handshake_packets = 0;  ///< passed on to the thread
+    std::uint64_t handshakes = 0;         ///< finished, and in use since
+    std::uint64_t overflowed = 0;         ///< hand-shake packets for which the queue had no room
   };
 
   /// `socket` must outlive the channel. Errors: `failed` where OpenSSL lacks something.

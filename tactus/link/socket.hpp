@@ -55,8 +55,8 @@ class Socket {
   Socket& operator=(Socket&& other) noexcept;
   ~Socket();
 
-  /// Takes up to `packets_at_once` waiting datagrams. What is longer than a packet shows as one of size 0. Good until the next
-  /// call. Real-time safe: one system call.
+  /// Takes up to `packets_at_once` waiting datagrams. What is longer than a packet shows as one of size 0. Good until
+  /// the next call. Real-time safe: one system call.
   std::span<const Packet> receive() noexcept;
   /// Hands one datagram to the kernel. False where it did not take it; that is a loss like any other. Real-time safe.
   bool send(std::span<const std::byte> bytes) const noexcept;

@@ -76,7 +76,8 @@ TEST(Endpoint, AWrongKeyIsNeverHeard) {
   const Ports ports;
   Endpoint master = open(SiteName::master, ports, test_key(1));
   Endpoint slave = open(SiteName::slave, ports, test_key(2));
-  EXPECT_FALSE(tick_until(master, slave, [&] { return master.established() || slave.established(); }, 1.0));
+  EXPECT_FALSE(tick_until(
+      master, slave, [&] { return master.established() || slave.established(); }, 1.0));
   EXPECT_FALSE(master.receive(monotonic_ns()).heard);
   EXPECT_FALSE(slave.receive(monotonic_ns()).heard);
 }
@@ -85,17 +86,17 @@ TEST(Endpoint, ASiteWithAKeyAndOneInPlainTextDoNotMeet) {
   const Ports ports;
   Endpoint master = open(SiteName::master, ports, std::nullopt);
   Endpoint slave = open(SiteName::slave, ports, test_key());
-  EXPECT_FALSE(tick_until(master, slave, [&] {
-    return master.receive(monotonic_ns()).heard || slave.receive(monotonic_ns()).heard;
-  }, 0.5));
+  EXPECT_FALSE(tick_until(
+      master, slave, [&] { return master.receive(monotonic_ns()).heard || slave.receive(monotonic_ns()).heard; }, 0.5));
   EXPECT_GT(slave.counters().secure.refused, 0U);
 }
 
 TEST(Endpoint, PlainTextOffTheLoopbackIsRefused) {
-  const auto endpoint = Endpoint::make({.site = SiteName::master,
-                                        .peer = Address::parse("192.0.2.1:7400").value(),
-                                        .listen = Address::parse("0.0.0.0:" + std::to_string(testing::free_port())).value(),
-                                        .key = std::nullopt});
+  const auto endpoint =
+      Endpoint::make({.site = SiteName::master,
+                      .peer = Address::parse("192.0.2.1:7400").value(),
+                      .listen = Address::parse("0.0.0.0:" + std::to_string(testing::free_port())).value(),
+                      .key = std::nullopt});
   ASSERT_FALSE(endpoint);
   EXPECT_EQ(endpoint.error().code, ErrorCode::inconsistent);
   EXPECT_NE(endpoint.error().message.find("tactus key"), std::string::npos);

@@ -31,9 +31,7 @@ inline std::uint16_t free_port() {
   return ntohs(any.sin_port);
 }
 
-inline Address loopback(std::uint16_t port) {
-  return Address::parse("127.0.0.1:" + std::to_string(port)).value();
-}
+inline Address loopback(std::uint16_t port) { return Address::parse("127.0.0.1:" + std::to_string(port)).value(); }
 
 inline Key test_key(unsigned char first = 1) {
   Key key;
@@ -78,9 +76,8 @@ inline bool tick_until(Endpoint& master, Endpoint& slave, const std::function<bo
 }
 
 inline bool meet(Endpoint& master, Endpoint& slave) {
-  return tick_until(master, slave, [&] {
-    return master.counters().inbound.applied > 3 && slave.counters().inbound.applied > 3;
-  });
+  return tick_until(master, slave,
+                    [&] { return master.counters().inbound.applied > 3 && slave.counters().inbound.applied > 3; });
 }
 
 }  // namespace tactus::link::testing
