@@ -1,6 +1,7 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/run_log.hpp>
+#include <tactus/cli/run_site.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/simulation/experiment.hpp>
 
@@ -24,6 +25,7 @@ struct RunOptions {
   std::vector<std::string> vary;
   std::optional<std::string> out;
   bool json = false;
+  SiteOptions site;
 };
 
 Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
@@ -52,6 +54,15 @@ Result<simulation::Request> make_request(const RunOptions& options, const std::s
 Check run(const RunOptions& options, const std::string& command) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
+  if (!options.site.site.empty()) {
+    if (options.out || !options.vary.empty()) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = {},
+                   .message = "one site runs one combination and writes no folder: leave --vary and --out out",
+                   .place = "--site"};
+    }
+    return run_site(options.site, request->document, options.json);
+  }
   const auto experiment = simulation::choose_experiment(request->document);
   if (!experiment) return experiment.error();
   if (options.out) {
@@ -91,6 +102,7 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--out", options->out, "Folder for report.html, results.json, the figures and the log")
       ->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  add_site_options(*verb, options->site);
   verb->callback([options, &app, &command, &status] {
     if (const auto error = run(*options, command)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

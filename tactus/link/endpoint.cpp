@@ -65,6 +65,7 @@ Endpoint::Received Endpoint::receive(std::int64_t now_ns) noexcept {
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
   received.heard = true;
   received.session = newest.session;
+  received.sequence = newest.sequence;
   received.standing = newest.standing;
   received.armings = newest.armings;
   received.age_s = seconds(inbound_.clock().age_ns(newest.sent_ns, now_ns));

@@ -29,8 +29,9 @@ class Endpoint {
   /// The newest of the other site. `arrival.fresh` tells whether it came since the last call.
   struct Received {
     control::Arrival arrival;
-    bool heard = false;         ///< anything at all, ever
-    std::uint64_t session = 0;  ///< of the other site; a change is a restart
+    bool heard = false;          ///< anything at all, ever
+    std::uint64_t session = 0;   ///< of the other site; a change is a restart
+    std::uint64_t sequence = 0;  ///< of the message in its session
     Standing standing = Standing::hold;
     std::uint32_t armings = 0;
     double age_s = 0.0;           ///< since it was sent; within half the shortest round trip of late

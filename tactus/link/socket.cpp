@@ -43,8 +43,6 @@ Sockaddr read_as(const Address& address) noexcept {
   return value;
 }
 
-bool is_ipv4(const Address& address) noexcept { return read_as<sockaddr_storage>(address).ss_family == AF_INET; }
-
 }  // namespace
 
 Result<Address> Address::parse(std::string_view text) {
@@ -84,7 +82,7 @@ Address Address::any_host() const {
   Address any;
   any.size_ = size_;
   const auto fill = [&any](const auto& value) { std::memcpy(any.data_.data(), &value, sizeof(value)); };
-  if (is_ipv4(*this)) {
+  if (!is_ipv6()) {
     sockaddr_in v4{};
     v4.sin_family = AF_INET;
     v4.sin_port = htons(port());
@@ -98,14 +96,16 @@ Address Address::any_host() const {
   return any;
 }
 
+bool Address::is_ipv6() const noexcept { return read_as<sockaddr_storage>(*this).ss_family == AF_INET6; }
+
 bool Address::is_loopback() const noexcept {
-  if (is_ipv4(*this)) return ntohl(read_as<sockaddr_in>(*this).sin_addr.s_addr) >> 24 == 127;
+  if (!is_ipv6()) return ntohl(read_as<sockaddr_in>(*this).sin_addr.s_addr) >> 24 == 127;
   const in6_addr host = read_as<sockaddr_in6>(*this).sin6_addr;
   return std::memcmp(&host, &in6addr_loopback, sizeof(host)) == 0;
 }
 
 std::uint16_t Address::port() const noexcept {
-  return ntohs(is_ipv4(*this) ? read_as<sockaddr_in>(*this).sin_port : read_as<sockaddr_in6>(*this).sin6_port);
+  return ntohs(!is_ipv6() ? read_as<sockaddr_in>(*this).sin_port : read_as<sockaddr_in6>(*this).sin6_port);
 }
 
 std::string Address::text() const {
@@ -116,7 +116,7 @@ std::string Address::text() const {
     return "?";
   }
   const std::string name = host.data();
-  return (is_ipv4(*this) ? name : "[" + name + "]") + ":" + std::to_string(port());
+  return (!is_ipv6() ? name : "[" + name + "]") + ":" + std::to_string(port());
 }
 
 /// What `recvmmsg` writes into.

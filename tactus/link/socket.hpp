@@ -21,6 +21,7 @@ class Address {
   /// Every own address of the same family, at this address's port.
   [[nodiscard]] Address any_host() const;
 
+  [[nodiscard]] bool is_ipv6() const noexcept;
   [[nodiscard]] bool is_loopback() const noexcept;
   [[nodiscard]] std::uint16_t port() const noexcept;
   /// As `parse` reads it.

@@ -13,14 +13,15 @@ Result<Channel> Channel::make(const Params& params, Seconds dt, const control::M
 Channel::Channel(const Params& params, Seconds dt, const control::Message& initial)
     : delay_ticks_(static_cast<std::size_t>(std::lround(params.delay_s / dt.value))),
       jitter_ticks_(std::round(params.jitter_s / dt.value)),
-      passages_(params.loss_fraction, params.mean_burst, jitter_ticks_ > 0.0, params.seed),
+      loss_fraction_(params.loss_fraction),
+      random_(static_cast<std::uint64_t>(params.seed)),
       newest_{.message = initial},
       slots_(delay_ticks_ + static_cast<std::size_t>(jitter_ticks_) + 1) {}
 
 control::Arrival Channel::step(const control::Message& message) noexcept {
   ++sent_;
-  const auto [lost, jitter_share] = passages_.next();
-  const double late = std::floor(jitter_share * (jitter_ticks_ + 1.0));
+  const bool lost = loss_fraction_ > 0.0 && random_.uniform() < loss_fraction_;
+  const double late = jitter_ticks_ > 0.0 ? std::floor(random_.uniform() * (jitter_ticks_ + 1.0)) : 0.0;
   // A later message in the same slot is newer.
   if (!lost) slots_[(now_ + delay_ticks_ + static_cast<std::size_t>(late)) % slots_.size()] = {sent_, message};
 

@@ -2,7 +2,7 @@
 
 #include <tactus/control/site.hpp>
 #include <tactus/core/parameters.hpp>
-#include <tactus/simulation/passages.hpp>
+#include <tactus/signal/random.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,6 @@ class Channel {
     double delay_s = 0.0;
     double jitter_s = 0.0;
     double loss_fraction = 0.0;
-    double mean_burst = 0.0;
     std::int64_t seed = 1;
     static constexpr auto fields() {
       return std::tuple{field("delay_s", &Params::delay_s, units::second, between(0.0, 1.0),
@@ -30,8 +29,6 @@ class Channel {
                               "Longest delay on top of it, drawn evenly for every message."),
                         field("loss_fraction", &Params::loss_fraction, units::none, between(0.0, 1.0),
                               "Share of the messages that never arrive."),
-                        field("mean_burst", &Params::mean_burst, units::none, between(0.0, 10000.0),
-                              "Mean number of messages lost one after the other; up to 1 each is lost on its own."),
                         field("seed", &Params::seed, non_negative, "Seed of jitter and loss.")};
     }
   };
@@ -54,7 +51,8 @@ class Channel {
 
   std::size_t delay_ticks_;
   double jitter_ticks_;
-  Passages passages_;
+  double loss_fraction_;
+  signal::Random random_;
   std::int64_t sent_ = 0;
   std::size_t now_ = 0;
   Slot newest_;

@@ -11,8 +11,8 @@ namespace tactus::simulation {
 /// the jitter it takes. The simulated channel and the relay draw alike.
 ///
 /// Losses come alone, each drawn for itself, or in bursts of a given mean length (Gilbert 1960): a state that loses all
-/// and is left with probability 1/burst, and one that loses none and is left so often that the share comes out. Real-time
-/// safe.
+/// and is left with probability 1/burst, and one that loses none and is left so often that the share comes out.
+/// Real-time safe.
 class Passages {
  public:
   struct Passage {

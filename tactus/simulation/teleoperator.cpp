@@ -1,5 +1,7 @@
 #include <tactus/simulation/teleoperator.hpp>
 
+#include <algorithm>
+
 namespace tactus::simulation {
 
 Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
@@ -7,27 +9,60 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   const auto clock = Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
   const Seconds tick{clock->tick_s};
+  const Seconds substep{clock->substep_s};
 
+  auto master = mechanics::CableDrivenMaster::make(params.master, params.person.grip, substep);
+  if (!master) {
+    const Error& error = master.error();
+    return under(error.parameter.starts_with("grip.") ? "operator" : "master", error);
+  }
+  const double factor = params.person.grip_change.factor;
+  if (const auto changed =
+          mechanics::CableDrivenMaster::make(params.master, mechanics::scaled(params.person.grip, factor), substep);
+      !changed) {
+    return under("operator", changed.error());
+  }
+  auto slave = mechanics::ElectricSlave::make(params.slave, params.environment, substep);
+  if (!slave) {
+    const Error& error = slave.error();
+    return error.parameter.starts_with("environment.") ? error : under("slave", error);
+  }
+  auto person = mechanics::Operator::make(params.person, tick);
+  if (!person) return under("operator", person.error());
   auto sites = control::make_sites(params.control, tick);
   if (!sites) return under("control", sites.error());
-  auto master = MasterSide::make(params.master, params.person, *clock, std::move(sites->master), start_m);
-  if (!master) return master.error();
-  const double slave_start_m = params.control.position_scale * start_m;
-  auto slave = SlaveSide::make(params.slave, params.environment, *clock, std::move(sites->slave), slave_start_m);
-  if (!slave) return slave.error();
 
+  const double slave_start_m = params.control.position_scale * start_m;
+  master->reset(start_m);
+  slave->reset(slave_start_m);
   const auto to_slave = Channel::make(params.channel.to_slave, tick, {.position_m = slave_start_m});
   if (!to_slave) return under("channel.to_slave", to_slave.error());
   const auto to_master = Channel::make(params.channel.to_master, tick, {.position_m = slave_start_m});
   if (!to_master) return under("channel.to_master", to_master.error());
 
-  return Teleoperator(Parts{*std::move(master), *std::move(slave), *to_slave, *to_master}, clock->tick_s);
+  return Teleoperator(Parts{*master, *slave, *person, *std::move(sites), *to_slave, *to_master}, *clock, params.person);
+}
+
+void Teleoperator::change_grip(double time_s) noexcept {
+  const double factor = grip_change_.at(time_s);
+  if (factor == grip_factor_) return;
+  grip_factor_ = factor;
+  parts_.master.hold(mechanics::scaled(grip_, factor));
 }
 
 Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {
-  const double time_s = static_cast<double>(ticks_) * tick_s_;
-  const auto [master_reading, master] = parts_.master.control(arrived_);
-  const auto [slave_reading, slave] = parts_.slave.control(parts_.to_slave.step(master.message));
+  const double time_s = static_cast<double>(ticks_) * clock_.tick_s;
+  change_grip(time_s);
+  const mechanics::CableDrivenMaster::Reading master_reading = parts_.master.measure();
+  const mechanics::ElectricSlave::Reading slave_reading = parts_.slave.measure();
+
+  const auto master = parts_.sites.master.step({.motor_position_m = master_reading.motor_position_m,
+                                                .hand_force_N = master_reading.hand_force_N,
+                                                .arrival = arrived_,
+                                                .grip = grip_factor_});
+  const auto slave = parts_.sites.slave.step({.motor_position_m = slave_reading.motor_position_m,
+                                              .tip_force_N = slave_reading.tip_force_N,
+                                              .arrival = parts_.to_slave.step(master.message)});
   arrived_ = parts_.to_master.step(slave.message);
 
   Record record{.time_s = time_s,
@@ -35,24 +70,43 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
                 .induced_position_m = master.induced_position_m,
                 .command_m = master.message.position_m,
                 .slave_position_m = slave_reading.motor_position_m,
-                .tip_position_m = parts_.slave.tip_position_m(),
+                .tip_position_m = parts_.slave.mechanism().tip_position_m(),
                 .displayed_force_N = -master.motor_force_N,
                 .handle_force_N = master.handle_force_N,
                 .hand_force_N = master_reading.hand_force_N,
                 .told_force_N = slave.message.force_N};
 
-  parts_.master.move(path_m, path_at_next_tick_m);
-  const auto contact = parts_.slave.move(time_s);
-  record.contact_force_N = contact.force_N;
-  record.peak_contact_force_N = contact.peak_force_N;
-  record.touched = contact.touched;
-  record.touched_at_s = contact.touched_at_s;
+  const auto aim = parts_.person.step({.path_m = path_m,
+                                       .path_at_next_tick_m = path_at_next_tick_m,
+                                       .handle_position_m = parts_.master.mechanism().tip_position_m()});
+  double contact_sum_N = 0.0;
+  for (int i = 0; i < clock_.substeps; ++i) {
+    if (i == clock_.late_substeps) {
+      master_command_N_ = master.motor_force_N;
+      handle_command_N_ = master.handle_force_N;
+      slave_command_N_ = slave.motor_force_N;
+    }
+    const double middle_s = (i + 0.5) * clock_.substep_s;
+    parts_.master.step({.commanded_force_N = master_command_N_,
+                        .commanded_handle_force_N = handle_command_N_,
+                        .grip_position_m = aim.position_m + middle_s * aim.velocity_m_per_s,
+                        .grip_velocity_m_per_s = aim.velocity_m_per_s});
+    const auto contact = parts_.slave.step(slave_command_N_);
+    contact_sum_N += contact.contact_force_N;
+    record.peak_contact_force_N = std::max(record.peak_contact_force_N, contact.contact_force_N);
+    if (contact.touched && !record.touched) {
+      record.touched = true;
+      record.touched_at_s = time_s + i * clock_.substep_s + contact.touched_after_s;
+    }
+  }
+  record.contact_force_N = contact_sum_N / clock_.substeps;
   ++ticks_;
   return record;
 }
 
 bool Teleoperator::healthy() const noexcept {
-  return parts_.master.fault() == control::GateFault::none && parts_.slave.fault() == control::GateFault::none;
+  return parts_.sites.master.fault() == control::GateFault::none &&
+         parts_.sites.slave.fault() == control::GateFault::none;
 }
 
 }  // namespace tactus::simulation

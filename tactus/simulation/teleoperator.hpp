@@ -8,7 +8,6 @@
 #include <tactus/mechanics/operator.hpp>
 #include <tactus/simulation/channel.hpp>
 #include <tactus/simulation/clock.hpp>
-#include <tactus/simulation/sides.hpp>
 
 #include <cstdint>
 #include <utility>
@@ -113,24 +112,35 @@ class Teleoperator {
   /// Advances by one tick while the person intends to be at `path_m` now and at `path_at_next_tick_m` then.
   Record step(double path_m, double path_at_next_tick_m) noexcept;
 
-  [[nodiscard]] double tick_s() const noexcept { return tick_s_; }
+  [[nodiscard]] double tick_s() const noexcept { return clock_.tick_s; }
   /// False once a safety gate has latched a fault.
   [[nodiscard]] bool healthy() const noexcept;
 
  private:
   /// What a run is made of, each already valid.
   struct Parts {
-    MasterSide master;
-    SlaveSide slave;
+    mechanics::CableDrivenMaster master;
+    mechanics::ElectricSlave slave;
+    mechanics::Operator person;
+    control::Sites sites;
     Channel to_slave;
     Channel to_master;
   };
 
-  Teleoperator(Parts parts, double tick_s) : parts_(std::move(parts)), tick_s_(tick_s) {}
+  Teleoperator(Parts parts, const Clock& clock, const mechanics::Operator::Params& person)
+      : parts_(std::move(parts)), clock_(clock), grip_(person.grip), grip_change_(person.grip_change) {}
+
+  void change_grip(double time_s) noexcept;
 
   Parts parts_;
-  double tick_s_;
+  Clock clock_;
+  mechanics::LinearSpring::Params grip_;  ///< before any change
+  mechanics::Operator::GripChange grip_change_;
+  double grip_factor_ = 1.0;
   std::int64_t ticks_ = 0;
+  double master_command_N_ = 0.0;
+  double handle_command_N_ = 0.0;
+  double slave_command_N_ = 0.0;
   control::Arrival arrived_;  ///< at the master, for its next tick
 };
 

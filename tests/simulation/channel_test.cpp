@@ -65,20 +65,6 @@ TEST(Channel, LosesTheShareThatItWasAskedTo) {
   EXPECT_NEAR(fresh, 30000, 3.0 * std::sqrt(40000 * 0.25 * 0.75));
 }
 
-TEST(Channel, BurstsLoseTheSameShareInRunsOfTheMeanLengthAskedFor) {
-  int lost = 0, bursts = 0;
-  bool losing = false;
-  for (const auto& arrival : arrivals(channel({.loss_fraction = 0.2, .mean_burst = 8.0}), 400000)) {
-    lost += arrival.fresh ? 0 : 1;
-    bursts += !arrival.fresh && !losing ? 1 : 0;
-    losing = !arrival.fresh;
-  }
-  // The variance of the share is that of independent losses times (2 burst (1 - share) - 1), and the standard deviation
-  // of a geometric length is below its mean.
-  EXPECT_NEAR(lost / 400000.0, 0.2, 3.0 * std::sqrt(0.2 * 0.8 * (2.0 * 8.0 * 0.8 - 1.0) / 400000.0));
-  EXPECT_NEAR(lost / static_cast<double>(bursts), 8.0, 3.0 * 8.0 / std::sqrt(bursts));
-}
-
 TEST(Channel, ThatLosesEverythingDeliversNothing) {
   for (const auto& arrival : arrivals(channel({.loss_fraction = 1.0}, {.position_m = 2.0}), 100)) {
     EXPECT_FALSE(arrival.fresh);
