@@ -1,9 +1,9 @@
+#include <tactus/cli/passages.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/link/socket.hpp>
 #include <tactus/report/table.hpp>
-#include <tactus/simulation/passages.hpp>
 #include <tactus/simulation/tapping.hpp>
 
 #include <algorithm>
@@ -38,6 +38,7 @@ struct RelayOptions {
   std::string slave;
   std::string for_master;
   std::string for_slave;
+  double mean_burst = 0.0;
   double duplicate_fraction = 0.0;
   double duration_s = 0.0;
   bool json = false;
@@ -50,11 +51,11 @@ class Way {
     std::uint64_t arrived = 0, lost = 0, doubled = 0, overflowed = 0, passed = 0;
   };
 
-  Way(const simulation::Channel::Params& params, double duplicate_fraction)
+  Way(const simulation::Channel::Params& params, double mean_burst, double duplicate_fraction)
       : delay_ns_(params.delay_s * 1e9),
         jitter_ns_(params.jitter_s * 1e9),
         duplicate_fraction_(duplicate_fraction),
-        passages_(params.loss_fraction, params.mean_burst, params.jitter_s > 0.0, params.seed),
+        passages_(params.loss_fraction, mean_burst, params.jitter_s > 0.0, params.seed),
         doubles_(signal::Random(static_cast<std::uint64_t>(params.seed)).fork(0)) {}
 
   void take(const link::Packet& packet, std::int64_t now_ns) {
@@ -107,7 +108,7 @@ class Way {
   double delay_ns_;
   double jitter_ns_;
   double duplicate_fraction_;
-  simulation::Passages passages_;
+  Passages passages_;
   signal::Random doubles_;
   std::uint64_t number_ = 0;
   std::priority_queue<Waiting> waiting_;
@@ -161,8 +162,8 @@ Check run(const RelayOptions& options) {
   auto slave = socket_between(options.for_slave, options.slave);
   if (!slave) return slave.error();
 
-  Way to_slave(params->channel.to_slave, options.duplicate_fraction);
-  Way to_master(params->channel.to_master, options.duplicate_fraction);
+  Way to_slave(params->channel.to_slave, options.mean_burst, options.duplicate_fraction);
+  Way to_master(params->channel.to_master, options.mean_burst, options.duplicate_fraction);
   for (const int number : {SIGINT, SIGTERM}) {
     std::signal(number, [](int) { interrupted.store(true, std::memory_order_relaxed); });
   }
@@ -199,6 +200,10 @@ void add_relay(CLI::App& app, int& status) {
   address("--for-master", options->for_master, "Where the relay listens for it: the master's --peer");
   address("--slave", options->slave, "Where the slave listens");
   address("--for-slave", options->for_slave, "Where the relay listens for it: the slave's --peer");
+  verb->add_option("--mean-burst", options->mean_burst,
+                   "Mean number of packets lost one after the other; up to 1 each is lost on its own")
+      ->check(CLI::Range(0.0, 10000.0))
+      ->capture_default_str();
   verb->add_option("--duplicate-fraction", options->duplicate_fraction, "Share of the packets that are sent twice")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();

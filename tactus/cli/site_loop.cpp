@@ -49,15 +49,13 @@ Result<SiteLoop> SiteLoop::make(const simulation::TappingParams& params, const S
   const bool is_master = settings.link.site == link::SiteName::master;
   auto work = [&]() -> Result<Work> {
     if (is_master) {
-      auto side =
-          simulation::MasterSide::make(params.master, params.person, *clock, std::move(sites->master), path.start_m());
-      if (!side) return side.error();
-      return Work(Master{.side = *std::move(side), .path = path, .tick_s = tick.value});
+      const auto plant = simulation::MasterPlant::make(params.master, params.person, *clock, path.start_m());
+      if (!plant) return plant.error();
+      return Work(Master{.plant = *plant, .site = std::move(sites->master), .path = path, .clock = *clock});
     }
-    auto side =
-        simulation::SlaveSide::make(params.slave, params.environment, *clock, std::move(sites->slave), slave_start_m);
-    if (!side) return side.error();
-    return Work(Slave{.side = *std::move(side)});
+    const auto plant = simulation::SlavePlant::make(params.slave, params.environment, *clock, slave_start_m);
+    if (!plant) return plant.error();
+    return Work(Slave{.plant = *plant, .site = std::move(sites->slave), .clock = *clock});
   }();
   if (!work) return work.error();
   const auto following = link::Following::make(settings.following, tick, {.position_m = slave_start_m});
@@ -83,21 +81,30 @@ SiteLoop::SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpo
 }
 
 SiteLoop::Stepped SiteLoop::Master::step(const control::Arrival& arrival, bool active) noexcept {
-  const auto [reading, output] = side.control(arrival);
+  const auto reading = plant.measure();
+  const auto output = site.step({.motor_position_m = reading.motor_position_m,
+                                 .hand_force_N = reading.hand_force_N,
+                                 .arrival = arrival,
+                                 .grip = reading.grip});
   const double now_s = path_s;
-  if (active) path_s += tick_s;
-  side.move(path.position_m(now_s), path.position_m(path_s));
+  if (active) path_s += clock.tick_s;
+  plant.begin_tick({.motor_force_N = output.motor_force_N, .handle_force_N = output.handle_force_N},
+                   path.position_m(now_s), path.position_m(path_s));
+  for (int i = 0; i < clock.substeps; ++i) plant.substep(i);
   return {.message = output.message,
           .motor_force_N = output.motor_force_N,
-          .fault = side.fault() != control::GateFault::none};
+          .fault = site.fault() != control::GateFault::none};
 }
 
 SiteLoop::Stepped SiteLoop::Slave::step(const control::Arrival& arrival, bool) noexcept {
-  const auto [reading, output] = side.control(arrival);
-  side.move(0.0);
+  const auto reading = plant.measure();
+  const auto output =
+      site.step({.motor_position_m = reading.motor_position_m, .tip_force_N = reading.tip_force_N, .arrival = arrival});
+  plant.begin_tick(output.motor_force_N);
+  for (int i = 0; i < clock.substeps; ++i) plant.substep(i);
   return {.message = output.message,
           .motor_force_N = output.motor_force_N,
-          .fault = side.fault() != control::GateFault::none};
+          .fault = site.fault() != control::GateFault::none};
 }
 
 bool SiteLoop::operator()(const runtime::Tick& tick) noexcept {

@@ -4,7 +4,7 @@
 #include <tactus/link/endpoint.hpp>
 #include <tactus/link/following.hpp>
 #include <tactus/runtime/servo_thread.hpp>
-#include <tactus/simulation/sides.hpp>
+#include <tactus/simulation/site_plants.hpp>
 #include <tactus/simulation/tapping.hpp>
 #include <tactus/telemetry/ring.hpp>
 
@@ -96,14 +96,17 @@ class SiteLoop {
     bool fault;
   };
   struct Master {
-    simulation::MasterSide side;
+    simulation::MasterPlant plant;
+    control::MasterSite site;
     RepeatedTaps path;
-    double tick_s;
+    simulation::Clock clock;
     double path_s = 0.0;  ///< how far along the path the person is; a person waits while the site holds
     Stepped step(const control::Arrival& arrival, bool active) noexcept;
   };
   struct Slave {
-    simulation::SlaveSide side;
+    simulation::SlavePlant plant;
+    control::SlaveSite site;
+    simulation::Clock clock;
     Stepped step(const control::Arrival& arrival, bool active) noexcept;
   };
   using Work = std::variant<Master, Slave>;

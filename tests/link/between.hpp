@@ -29,7 +29,7 @@ class Between {
     for (const Packet& packet : master_side_->receive()) {
       attacker.hear(packet.bytes());
       slave_side_->send(packet.bytes());
-      passed_to_slave += packet.data[0] == std::byte{23} ? 1 : 0;
+      if (packet.data[0] == std::byte{23}) ++passed_to_slave;
     }
     for (const Packet& packet : slave_side_->receive()) {
       attacker.hear(packet.bytes());

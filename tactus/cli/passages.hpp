@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace tactus::simulation {
+namespace tactus::cli {
 
 /// What a datagram network does to one message after the other, drawn from a seed: whether it is lost, and how much of
-/// the jitter it takes. The simulated channel and the relay draw alike.
+/// the jitter it takes. The relay draws from it.
 ///
 /// Losses come alone, each drawn for itself, or in bursts of a given mean length (Gilbert 1960): a state that loses all
 /// and is left with probability 1/burst, and one that loses none and is left so often that the share comes out.
@@ -54,4 +54,4 @@ class Passages {
   bool losing_ = false;
 };
 
-}  // namespace tactus::simulation
+}  // namespace tactus::cli
