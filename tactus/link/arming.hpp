@@ -3,6 +3,7 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/link/endpoint.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -58,7 +59,8 @@ class Arming {
     } else if (standing_ == Standing::hold && may_follow(input) && asked(input)) {
       standing_ = Standing::active;
       cause_ = HoldCause::none;
-      armings_ = site_ == SiteName::master ? armings_ + 1 : input.peer_armings;
+      // A restarted master goes on from what the slave has followed, so that no number comes twice.
+      armings_ = site_ == SiteName::master ? std::max(armings_, input.peer_armings) + 1 : input.peer_armings;
       unanswered_s_ = 0.0;
       answered_ = site_ == SiteName::slave;
     }

@@ -115,8 +115,9 @@ std::string Address::text() const {
   if (getnameinfo(generic, static_cast<socklen_t>(size_), host.data(), host.size(), nullptr, 0, NI_NUMERICHOST) != 0) {
     return "?";
   }
-  const std::string name = host.data();
-  return (!is_ipv6() ? name : "[" + name + "]") + ":" + std::to_string(port());
+  std::string text = is_ipv6() ? "[" : "";
+  text.append(host.data()).append(is_ipv6() ? "]:" : ":").append(std::to_string(port()));
+  return text;
 }
 
 /// What `recvmmsg` writes into.

@@ -262,13 +262,16 @@ TEST(Following, ResumingMakesNoStepHoweverFarTheOtherSiteHasGone) {
     auto following = Following::make(params, Seconds{tick_s}).value();
     const double there_m = *rc::gen::inRange(-500, 500) * 1e-3, force_N = *rc::gen::inRange(-50, 50) * 0.2;
     double position_m = 0.0, last_N = 0.0;
+    double largest_m = 0.0, largest_N = 0.0;
     for (int i = 0; i < 8000; ++i) {
       const auto message = following.step({told(there_m, force_N), 0.0, Standing::active}).message;
-      RC_ASSERT(std::fabs(message.position_m - position_m) <= params.catch_up_m_per_s * tick_s * (1.0 + 1e-9));
-      RC_ASSERT(std::fabs(message.force_N - last_N) <= params.catch_up_N_per_s * tick_s * (1.0 + 1e-9));
+      largest_m = std::max(largest_m, std::fabs(message.position_m - position_m));
+      largest_N = std::max(largest_N, std::fabs(message.force_N - last_N));
       position_m = message.position_m;
       last_N = message.force_N;
     }
+    RC_ASSERT(largest_m <= params.catch_up_m_per_s * tick_s * (1.0 + 1e-9));
+    RC_ASSERT(largest_N <= params.catch_up_N_per_s * tick_s * (1.0 + 1e-9));
     RC_ASSERT(position_m == there_m);
     RC_ASSERT(last_N == force_N);
     RC_ASSERT(following.caught_up());

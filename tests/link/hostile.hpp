@@ -18,16 +18,16 @@ class Attacker {
  public:
   static constexpr int kinds = 8;
 
-  explicit Attacker(std::uint64_t seed) : random_(seed) {}
-
-  void hear(std::span<const std::byte> packet) {
-    if (heard_.size() < 4096) heard_.emplace_back();
-    heard_[next_++ % heard_.size()].assign(packet.begin(), packet.end());
+  /// All memory is taken here, so that what grows later is not the attacker's.
+  explicit Attacker(std::uint64_t seed) : random_(seed), heard_(4096, std::vector<std::byte>(256)) {
+    packet_.reserve(2 * Packet::longest);
   }
+
+  void hear(std::span<const std::byte> packet) { heard_[next_++ % heard_.size()].assign(packet.begin(), packet.end()); }
 
   /// One hostile packet of the kind asked for; of any kind without a number.
   std::span<const std::byte> next(int kind = -1) {
-    packet_ = heard_.empty() ? std::vector<std::byte>(125) : heard_[below(heard_.size())];
+    packet_ = heard_[below(std::clamp<std::size_t>(next_, 1, heard_.size()))];
     switch (kind < 0 ? static_cast<int>(below(kinds)) : kind) {
       case 0:
         break;  // again

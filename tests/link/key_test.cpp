@@ -94,8 +94,9 @@ TEST_F(KeyFile, ThatIsALinkAFolderOrNothingIsRefused) {
 }
 
 TEST_F(KeyFile, WithAnythingElseInItIsRefused) {
-  for (const std::string& text : {std::string(), std::string("\n"), good.substr(1), good + "\n", "g" + good.substr(1),
-                                  "A" + good.substr(1), good.substr(0, 64), std::string(100'000, 'a')}) {
+  for (const std::string& text :
+       {std::string(), std::string("\n"), good.substr(1), good + "\n", std::string("g").append(good, 1),
+        std::string("A").append(good, 1), good.substr(0, 64), std::string(100'000, 'a')}) {
     write(text);
     const auto key = read_key_file(file);
     ASSERT_FALSE(key) << text.size();
