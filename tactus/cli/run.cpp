@@ -1,6 +1,7 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/run_log.hpp>
+#include <tactus/cli/run_site.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
@@ -28,6 +29,7 @@ struct RunOptions {
   bool json = false;
   bool real_time = false;
   runtime::ServoThreadParams servo;
+  SiteOptions site;
 };
 
 Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
@@ -71,9 +73,30 @@ Check run_in_real_time(const RunOptions& options, const simulation::Request& req
   return done->log;
 }
 
+Check refuse_servo_options_without_a_servo_thread(const CLI::App& verb, const RunOptions& options) {
+  if (options.real_time || !options.site.site.empty()) return std::nullopt;
+  for (const char* name : {"--priority", "--core", "--spin-s"}) {
+    if (verb.count(name) == 0) continue;
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = "there is no servo thread in virtual time: add --realtime or --site",
+                 .place = name};
+  }
+  return std::nullopt;
+}
+
 Check run(const RunOptions& options, const std::string& command) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
+  if (!options.site.site.empty()) {
+    if (options.out || !options.vary.empty()) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = {},
+                   .message = "one site runs one combination and writes no folder: leave --vary and --out out",
+                   .place = "--site"};
+    }
+    return run_site(options.site, options.servo, request->document, options.json);
+  }
   const auto experiment = simulation::choose_experiment(request->document);
   if (!experiment) return experiment.error();
   if (options.out) {
@@ -118,9 +141,12 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   CLI::Option* real_time = verb->add_flag("--realtime", options->real_time,
                                           "Run it at the real clock, on a servo thread, with simulated devices");
   add_servo_options(*verb, options->servo);
-  for (const char* name : {"--priority", "--core", "--spin-s"}) verb->get_option(name)->needs(real_time);
-  verb->callback([options, &app, &command, &status] {
-    if (const auto error = run(*options, command)) {
+  add_site_options(*verb, options->site);
+  verb->get_option("--site")->excludes(real_time);
+  verb->callback([options, verb, &app, &command, &status] {
+    Check error = refuse_servo_options_without_a_servo_thread(*verb, *options);
+    if (!error) error = run(*options, command);
+    if (error) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";
       status = exit_status(*error);
     }
