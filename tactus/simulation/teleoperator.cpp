@@ -1,6 +1,7 @@
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::simulation {
 
@@ -40,7 +41,8 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   const auto to_master = Channel::make(params.channel.to_master, tick, {.position_m = slave_start_m});
   if (!to_master) return under("channel.to_master", to_master.error());
 
-  return Teleoperator(Parts{*master, *slave, *person, *std::move(sites), *to_slave, *to_master}, *clock, params.person);
+  return Teleoperator(Pieces{*master, *slave, *person, *std::move(sites), *to_slave, *to_master}, *clock,
+                      params.person);
 }
 
 void Teleoperator::change_grip(double time_s) noexcept {
@@ -56,13 +58,15 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
   const mechanics::CableDrivenMaster::Reading master_reading = parts_.master.measure();
   const mechanics::ElectricSlave::Reading slave_reading = parts_.slave.measure();
 
-  const auto master = parts_.sites.master.step({.motor_position_m = master_reading.motor_position_m,
-                                                .hand_force_N = master_reading.hand_force_N,
-                                                .arrival = arrived_,
-                                                .grip = grip_factor_});
-  const auto slave = parts_.sites.slave.step({.motor_position_m = slave_reading.motor_position_m,
-                                              .tip_force_N = slave_reading.tip_force_N,
-                                              .arrival = parts_.to_slave.step(master.message)});
+  master_input_ = {.motor_position_m = master_reading.motor_position_m,
+                   .hand_force_N = master_reading.hand_force_N,
+                   .arrival = arrived_,
+                   .grip = grip_factor_};
+  const auto master = parts_.sites.master.step(master_input_);
+  slave_input_ = {.motor_position_m = slave_reading.motor_position_m,
+                  .tip_force_N = slave_reading.tip_force_N,
+                  .arrival = parts_.to_slave.step(master.message)};
+  const auto slave = parts_.sites.slave.step(slave_input_);
   arrived_ = parts_.to_master.step(slave.message);
 
   Record record{.time_s = time_s,
@@ -102,6 +106,25 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
   record.contact_force_N = contact_sum_N / clock_.substeps;
   ++ticks_;
   return record;
+}
+
+void Teleoperator::exchange(Teleoperator& made, const Parts& parts) noexcept {
+  constexpr int ticks_to_rest = 1000;
+  if (parts.grip) {
+    std::swap(grip_, made.grip_);
+    parts_.master.hold(mechanics::scaled(grip_, grip_factor_));
+  }
+  if (parts.environment) parts_.slave.face(made.parts_.slave.environment());
+  if (parts.channel) {
+    made.parts_.to_slave.continue_from(parts_.to_slave);
+    made.parts_.to_master.continue_from(parts_.to_master);
+    std::swap(parts_.to_slave, made.parts_.to_slave);
+    std::swap(parts_.to_master, made.parts_.to_master);
+  }
+  if (parts.controllers) {
+    parts_.sites.master.exchange_controller(made.parts_.sites.master, master_input_, master_command_N_, ticks_to_rest);
+    parts_.sites.slave.exchange_controller(made.parts_.sites.slave, slave_input_, slave_command_N_, ticks_to_rest);
+  }
 }
 
 bool Teleoperator::healthy() const noexcept {

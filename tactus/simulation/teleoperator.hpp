@@ -110,13 +110,27 @@ class Teleoperator {
   /// Advances by one tick while the person intends to be at `path_m` now and at `path_at_next_tick_m` then.
   Record step(double path_m, double path_at_next_tick_m) noexcept;
 
+  /// What `exchange` takes over.
+  struct Parts {
+    bool grip = false;         ///< how the person holds the handle
+    bool environment = false;  ///< the wall
+    bool channel = false;      ///< both ways; what was on its way is lost
+    bool controllers = false;  ///< of both sites; the gates stay
+    bool operator==(const Parts&) const = default;
+  };
+  /// Goes on with these parts of `made`, a teleoperator of the same clock and devices that has not been stepped; `made`
+  /// keeps what was in their place. Devices and person stay where they are. Controllers are first brought to rest at
+  /// this very instant (`Site::exchange_controller`), those of another architecture cannot be: what is in the channel
+  /// means nothing to them. Between ticks; does not allocate, but takes about as long as 1000 ticks of the sites.
+  void exchange(Teleoperator& made, const Parts& parts) noexcept;
+
   [[nodiscard]] double tick_s() const noexcept { return clock_.tick_s; }
   /// False once a safety gate has latched a fault.
   [[nodiscard]] bool healthy() const noexcept;
 
  private:
   /// What a run is made of, each already valid.
-  struct Parts {
+  struct Pieces {
     mechanics::CableDrivenMaster master;
     mechanics::ElectricSlave slave;
     mechanics::Operator person;
@@ -125,12 +139,12 @@ class Teleoperator {
     Channel to_master;
   };
 
-  Teleoperator(Parts parts, const Clock& clock, const mechanics::Operator::Params& person)
+  Teleoperator(Pieces parts, const Clock& clock, const mechanics::Operator::Params& person)
       : parts_(std::move(parts)), clock_(clock), grip_(person.grip), grip_change_(person.grip_change) {}
 
   void change_grip(double time_s) noexcept;
 
-  Parts parts_;
+  Pieces parts_;
   Clock clock_;
   mechanics::LinearSpring::Params grip_;  ///< before any change
   mechanics::Operator::GripChange grip_change_;
@@ -139,7 +153,9 @@ class Teleoperator {
   double master_command_N_ = 0.0;
   double handle_command_N_ = 0.0;
   double slave_command_N_ = 0.0;
-  control::Arrival arrived_;  ///< at the master, for its next tick
+  control::Arrival arrived_;           ///< at the master, for its next tick
+  control::MasterInput master_input_;  ///< of the latest tick
+  control::SlaveInput slave_input_;
 };
 
 }  // namespace tactus::simulation
