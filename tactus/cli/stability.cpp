@@ -12,6 +12,7 @@ void add_stability(CLI::App& app, const std::string& command, int& status) {
   verb->require_subcommand(1);
   const std::string name = app.get_name();
   add_stability_limit(*verb, name, command, status);
+  add_stability_map(*verb, name, command, status);
   add_stability_margins(*verb, name, command, status);
   add_stability_scorecard(*verb, name, command, status);
 }

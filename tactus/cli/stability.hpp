@@ -12,6 +12,7 @@ class App;
 namespace tactus::cli {
 
 void add_stability_limit(CLI::App& stability, const std::string& name, const std::string& command, int& status);
+void add_stability_map(CLI::App& stability, const std::string& name, const std::string& command, int& status);
 void add_stability_margins(CLI::App& stability, const std::string& name, const std::string& command, int& status);
 void add_stability_scorecard(CLI::App& stability, const std::string& name, const std::string& command, int& status);
 

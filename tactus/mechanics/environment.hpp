@@ -63,6 +63,9 @@ class Environment {
     }
     return law_ == ContactLaw::kelvin_voigt ? kelvin_voigt_.step(depth) : hunt_crossley_.step(depth);
   }
+  double force_N(double position_m, double velocity_m_per_s) noexcept {
+    return step({.position_m = position_m, .velocity_m_per_s = velocity_m_per_s});
+  }
   void reset() noexcept {}
 
   [[nodiscard]] double position_m() const noexcept { return position_m_; }
