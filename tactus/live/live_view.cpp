@@ -195,7 +195,7 @@ std::optional<Status> LiveView::move_hand(ClientId client, std::string_view byte
   const double target_m = std::clamp(asked_m, -workspace_m, workspace_m);
   if (!engine_->aim(target_m)) return Status{StatusLevel::warning, "the loop is busy: the hand was not moved"};
   if (target_m == asked_m) return std::nullopt;
-  return Status{StatusLevel::warning, "position_m = " + format_number(asked_m) + " m is outside the workspace; " +
+  return Status{StatusLevel::warning, "position_m = " + format_number(asked_m) + " m is outside the workspace: it " +
                                           describe_bounds(between(-workspace_m, workspace_m), units::metre)};
 }
 
@@ -260,27 +260,27 @@ void LiveView::collect(const std::function<bool(std::size_t topic)>& is_wanted, 
 
 void LiveView::watch(Watched& watched, const LoopTick& tick) {
   const Engine::Record& record = tick.record;
-  LiveState& state = watched.state;
+  LiveState& shown = watched.state;
   if (tick.run != watched.run) {
     watched.run = tick.run;
     watched.judge.reset();
-    state.energy_J = 0.0;
+    shown.energy_J = 0.0;
   } else {
     // The hand gives what it pushes along the way; what it gets has the other sign.
-    state.energy_J -= watched.hand_force_N * (record.master_position_m - state.master_position_m);
+    shown.energy_J -= watched.hand_force_N * (record.master_position_m - shown.master_position_m);
   }
   watched.judge.step(record.contact_force_N, record.touched);
-  if (watched.judge.has_begun()) state.energy_J = 0.0;
+  if (watched.judge.has_begun()) shown.energy_J = 0.0;
   watched.hand_force_N = record.hand_force_N;
-  state.time_s = record.time_s;
-  state.hand_position_m = tick.hand_position_m;
-  state.master_position_m = record.master_position_m;
-  state.slave_position_m = record.slave_position_m;
-  state.wall_position_m = tick.wall_position_m;
-  state.slave_force_N = record.contact_force_N;
-  state.displayed_force_N = record.displayed_force_N;
-  state.in_contact = watched.judge.in_contact();
-  state.real_time_ratio = tick.real_time_ratio;
+  shown.time_s = record.time_s;
+  shown.hand_position_m = tick.hand_position_m;
+  shown.master_position_m = record.master_position_m;
+  shown.slave_position_m = record.slave_position_m;
+  shown.wall_position_m = tick.wall_position_m;
+  shown.slave_force_N = record.contact_force_N;
+  shown.displayed_force_N = record.displayed_force_N;
+  shown.in_contact = watched.judge.in_contact();
+  shown.real_time_ratio = tick.real_time_ratio;
 }
 
 }  // namespace tactus::live

@@ -15,7 +15,7 @@ struct Frame {
   bool binary = false;
   bool may_be_dropped = false;
   std::string head;
-  Payload payload;  ///< may be null
+  Payload payload = {};  ///< may be null
   [[nodiscard]] std::size_t size() const { return head.size() + (payload ? payload->size() : 0); }
 };
 
