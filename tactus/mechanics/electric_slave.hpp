@@ -79,6 +79,7 @@ class ElectricSlave {
   [[nodiscard]] const CableChain& mechanism() const noexcept { return mechanism_; }
   [[nodiscard]] const CurrentAmplifier& amplifier() const noexcept { return amplifier_; }
   [[nodiscard]] const ForceSensor& force_sensor() const noexcept { return force_sensor_; }
+  [[nodiscard]] const Environment& environment() const noexcept { return environment_; }
 
  private:
   ElectricSlave(const CableChain& mechanism, const CurrentAmplifier& amplifier, const Encoder& encoder,

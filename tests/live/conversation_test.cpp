@@ -146,7 +146,6 @@ TEST(Conversation, ASlowClientLosesTheOldestSamplesAndIsToldHowMany) {
   for (char c = 'a'; c <= 'z'; ++c) conversation.show(0, 0, std::make_shared<const std::string>(1, c));
   EXPECT_EQ(conversation.outbox().dropped(), 16U);
   conversation.tell_losses();
-  conversation.tell_losses();
   const auto sent = frames(conversation);
   ASSERT_EQ(sent.size(), 10U);
   EXPECT_EQ(*sent[0].payload, "r") << "one more went to make room for the status";

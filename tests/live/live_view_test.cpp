@@ -15,7 +15,7 @@ namespace {
 /// Reads CDR members in order, as a client would.
 class Reader {
  public:
-  explicit Reader(const std::string& bytes) : bytes_(bytes) {}
+  explicit Reader(std::string bytes) : bytes_(std::move(bytes)) {}
   double float64() { return std::bit_cast<double>(bits(8)); }
   bool boolean() { return bits(1) != 0; }
   std::string text() {
@@ -41,7 +41,7 @@ class Reader {
   [[nodiscard]] bool at_end() const { return 4 + offset_ == bytes_.size(); }
 
  private:
-  const std::string& bytes_;
+  std::string bytes_;
   std::size_t offset_ = 0;
 };
 

@@ -37,7 +37,7 @@ for _ in $(seq 300); do
 done
 sleep 2
 # The recorder ends when the server does.
-kill -INT "$server"
+kill -TERM "$server"
 wait "$server" || exit 1
 wait "$recorder" || exit 1
 node "$here/read_recording.mjs" "$folder/recorded.mcap" "$folder/log/log.mcap"
