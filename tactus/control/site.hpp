@@ -199,6 +199,17 @@ class Site {
   }
   [[nodiscard]] GateFault fault() const noexcept { return gates_.fault(); }
 
+  /// Exchanges the controller for that of `other` and keeps the gates, so that no limit is lost. The new one first
+  /// lives through `ticks` ticks of `present` and of the force that the motor has now: its filters and models are then
+  /// where a long rest at this very instant would have brought them. Does not allocate.
+  void exchange_controller(Site& other, const Input& present, double motor_force_N, int ticks) noexcept {
+    std::swap(controller_, other.controller_);
+    for (int i = 0; i < ticks; ++i) {
+      controller_->respond(present);
+      controller_->applied(motor_force_N);
+    }
+  }
+
  private:
   std::unique_ptr<Controller> controller_;
   Gates gates_;
