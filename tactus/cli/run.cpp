@@ -1,9 +1,7 @@
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/run_log.hpp>
-#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
-#include <tactus/report/figure.hpp>
-#include <tactus/report/files.hpp>
 #include <tactus/simulation/experiment.hpp>
 
 #include <filesystem>
@@ -11,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -52,31 +49,6 @@ Result<simulation::Request> make_request(const RunOptions& options, const std::s
                              .command = command};
 }
 
-/// Proves that results could be written to `folder`, before long work, without making it: a request that turns out to
-/// be wrong leaves nothing behind.
-Check check_writable(const std::string& folder) {
-  if (folder.empty()) {
-    return Error{.code = ErrorCode::syntax,
-                 .parameter = {},
-                 .message = "no folder is named: write one, as in --out results",
-                 .place = "--out"};
-  }
-  std::filesystem::path there = folder;
-  std::error_code ignored;
-  while (there.has_relative_path() && !std::filesystem::exists(there, ignored)) there = there.parent_path();
-  return report::prepare_directory(there.empty() ? "." : there);
-}
-
-Check write_results(const std::filesystem::path& folder, const simulation::Outcome& outcome) {
-  if (auto error = report::prepare_directory(folder)) return error;
-  for (std::size_t i = 0; i < outcome.figures.size(); ++i) {
-    const auto path = folder / ("figure-" + std::to_string(i + 1) + ".svg");
-    if (auto error = report::write_file(path, report::to_svg(outcome.figures[i]))) return error;
-  }
-  if (auto error = report::write_file(folder / "results.json", outcome.json)) return error;
-  return report::write_file(folder / "report.html", outcome.html);
-}
-
 Check run(const RunOptions& options, const std::string& command) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
@@ -92,16 +64,11 @@ Check run(const RunOptions& options, const std::string& command) {
   }();
   if (!outcome) return outcome.error();
 
-  std::cout << (options.json ? outcome->json : outcome->text);
-  if (auto error = flush_standard_output()) return error;
-  if (!options.out) return std::nullopt;
-  if (auto error = write_results(*options.out, *outcome)) return error;
-  const std::filesystem::path folder = *options.out;
-  std::ostream& notes = options.json ? std::cerr : std::cout;
-  notes << "Report: " << (folder / "report.html").string() << "\n";
-  if (outcome->traces.empty()) return std::nullopt;
-  if (auto error = write_run_log(folder / "log", *request, *outcome)) return error;
-  notes << "Log: " << (folder / "log").string() << "\n";
+  if (auto error = write_outcome(options.out, *outcome, options.json)) return error;
+  if (!options.out || outcome->traces.empty()) return std::nullopt;
+  const std::filesystem::path folder = std::filesystem::path(*options.out) / "log";
+  if (auto error = write_run_log(folder, *request, *outcome)) return error;
+  (options.json ? std::cerr : std::cout) << "Log: " << folder.string() << "\n";
   return std::nullopt;
 }
 

@@ -118,13 +118,20 @@ Result<InducedMotionModel> InducedMotionModel::make(const Params& requested, Sec
 
 InducedMotionModel::InducedMotionModel(const Params& params, const mechanics::BoucWenSpring& linkage, Seconds dt)
     : params_(params),
-      linkage_(linkage),
       bodies_(bodies_of(params.fidelity)),
       hysteretic_(params.master.linkage.hysteretic_fraction > 0.0),
-      linkage_stiffness_N_per_m_(linkage.initial_stiffness_N_per_m()),
-      dt_s_(dt.value),
       euler_substeps_(euler_substeps(dt)),
       euler_substep_s_(dt.value / euler_substeps_) {
+  exact_.dt_s = dt.value;
+  exact_.motor_friction_N = params.master.motor.friction_N;
+  exact_.drum_friction_N = params.master.drum.friction_N;
+  exact_.velocity_share = params.friction == ModelFriction::total_velocity ? 1.0 : 0.0;
+  exact_.friction_band_m_per_s = params.friction_band_m_per_s;
+  exact_.quintic_N_per_m5 = params.master.hand.quintic_stiffness_N_per_m5;
+  exact_.quintic_guard_m = params.master.hand.guard_m;
+  exact_.linkage_stiffness_N_per_m = linkage.initial_stiffness_N_per_m();
+  exact_.linkage = linkage.motion();
+  exact_.both_stopped = 1.0;
   const std::array<double, 3> mass_kg{params.master.motor.mass_kg, params.master.drum.mass_kg,
                                       params.master.handle.mass_kg};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -138,12 +145,13 @@ InducedMotionModel::InducedMotionModel(const Params& params, const mechanics::Bo
 
 void InducedMotionModel::precompute_exact_step() {
   // exp of the augmented matrix [A B; 0 0]·dt holds Φ and Γ side by side (Van Loan 1978).
-  const LinearPart part = linear_part(params_.master, bodies_, linkage_stiffness_N_per_m_);
+  const LinearPart part = linear_part(params_.master, bodies_, exact_.linkage_stiffness_N_per_m);
   const std::size_t states = 2 * bodies_, size = 3 * bodies_;
   std::vector<double> exponential(size * size);
   for (std::size_t row = 0; row < states; ++row) {
-    for (std::size_t i = 0; i < states; ++i) exponential[size * row + i] = part.a[states * row + i] * dt_s_;
-    for (std::size_t i = 0; i < bodies_; ++i) exponential[size * row + states + i] = part.b[bodies_ * row + i] * dt_s_;
+    for (std::size_t i = 0; i < states; ++i) exponential[size * row + i] = part.a[states * row + i] * exact_.dt_s;
+    for (std::size_t i = 0; i < bodies_; ++i)
+      exponential[size * row + states + i] = part.b[bodies_ * row + i] * exact_.dt_s;
   }
   signal::exponentiate(exponential, size);
 
@@ -152,61 +160,38 @@ void InducedMotionModel::precompute_exact_step() {
     const double* const held = &exponential[size * (body_of(row % 3, bodies_) + (row < 3 ? 0 : bodies_))];
     for (std::size_t mass = 0; mass < 3; ++mass) {
       const std::size_t body = body_of(mass, bodies_);
-      response_[mass][row] = held[body + states];
+      exact_.response[mass][row] = held[body + states];
       if (mass > 0 && body == body_of(mass - 1, bodies_)) continue;
-      transition_[mass][row] = held[body];
-      transition_[mass + 3][row] = held[body + bodies_];
+      exact_.transition[mass][row] = held[body];
+      exact_.transition[mass + 3][row] = held[body + bodies_];
     }
   }
 }
 
 void InducedMotionModel::precompute_friction() {
   constexpr std::size_t motor_velocity = 3, drum_velocity = 4, stops_motor = 6, stops_drum = 7;
-  const double on_motor = response_[0][motor_velocity], on_drum = response_[1][drum_velocity];
+  const double on_motor = exact_.response[0][motor_velocity], on_drum = exact_.response[1][drum_velocity];
   const auto add_stopping_forces = [&](Column& column) {
     column[stops_motor] = -column[motor_velocity] / on_motor;
     column[stops_drum] = -column[drum_velocity] / on_drum;
   };
-  for (Column& column : transition_) add_stopping_forces(column);
-  for (Column& column : response_) add_stopping_forces(column);
-  offset_response_[stops_motor] = -1.0 / on_motor;
-  offset_response_[stops_drum] = -1.0 / on_drum;
-  motor_per_drum_ = response_[1][motor_velocity] / on_motor;
-  drum_per_motor_ = response_[0][drum_velocity] / on_drum;
-  both_stopped_ = 1.0 / (1.0 - motor_per_drum_ * drum_per_motor_);
-}
-
-InducedMotionModel::FrictionRange InducedMotionModel::friction_range(double intended_velocity) const noexcept {
-  const double band = params_.friction_band_m_per_s;
-  // Faster than any hand; keeps the products below finite whatever the velocity.
-  constexpr double fastest_m_per_s = 1e3;
-  const double w = params_.friction == ModelFriction::total_velocity
-                       ? std::clamp(intended_velocity, -fastest_m_per_s, fastest_m_per_s)
-                       : 0.0;
-  const double used = std::clamp(w / band, -1.0, 1.0);
-  return {.least_share = used - 1.0, .most_share = used + 1.0, .offset_m_per_s = mechanics::soft_threshold(w, band)};
+  for (Column& column : exact_.transition) add_stopping_forces(column);
+  for (Column& column : exact_.response) add_stopping_forces(column);
+  exact_.offset_response[stops_motor] = -1.0 / on_motor;
+  exact_.offset_response[stops_drum] = -1.0 / on_drum;
+  exact_.motor_per_drum = exact_.response[1][motor_velocity] / on_motor;
+  exact_.drum_per_motor = exact_.response[0][drum_velocity] / on_drum;
+  exact_.both_stopped = 1.0 / (1.0 - exact_.motor_per_drum * exact_.drum_per_motor);
 }
 
 InducedMotionModel::Output InducedMotionModel::step(const Input& input) noexcept {
-  const FrictionRange range = friction_range(input.intended_velocity_m_per_s);
+  const FrictionRange range = exact_.friction_range(input.intended_velocity_m_per_s);
   if (params_.step == CancellationStep::exact) {
-    step_exact(input, range);
+    exact_.advance(input.motor_force_N, input.handle_force_N, range, hysteretic_);
   } else {
     step_euler(input, range);
   }
-  return state_[0];
-}
-
-double InducedMotionModel::quintic_force_N(double handle_position_m) const noexcept {
-  const mechanics::QuinticSpring::Params& hand = params_.master.hand;
-  const double guarded_m = std::clamp(handle_position_m, -hand.guard_m, hand.guard_m);
-  const double squared = guarded_m * guarded_m;
-  return (squared * squared) * (hand.quintic_stiffness_N_per_m5 * guarded_m);
-}
-
-double InducedMotionModel::slipped_force_N(double linkage_deflection_m) noexcept {
-  if (!hysteretic_) return 0.0;
-  return linkage_.step({.deflection_m = linkage_deflection_m}) - linkage_stiffness_N_per_m_ * linkage_deflection_m;
+  return exact_.state[0];
 }
 
 void InducedMotionModel::step_euler(const Input& input, const FrictionRange& range) noexcept {
@@ -216,14 +201,17 @@ void InducedMotionModel::step_euler(const Input& input, const FrictionRange& ran
     return free_velocity +
            std::clamp(-(free_velocity + range.offset_m_per_s), most * range.least_share, most * range.most_share);
   };
-  auto [x_motor, x_drum, x_handle, v_motor, v_drum, v_handle] = state_;
+  const auto slipped_N = [this](double deflection_m) {
+    return hysteretic_ ? exact_.slipped_force_N(deflection_m) : 0.0;
+  };
+  auto [x_motor, x_drum, x_handle, v_motor, v_drum, v_handle] = exact_.state;
   for (int i = 0; i < euler_substeps_; ++i) {
     const double cable =
         m.cable.stiffness_N_per_m * (x_motor - x_drum) + m.cable.damping_N_s_per_m * (v_motor - v_drum);
-    const double linkage = linkage_stiffness_N_per_m_ * (x_drum - x_handle) + slipped_force_N(x_drum - x_handle) +
+    const double linkage = exact_.linkage_stiffness_N_per_m * (x_drum - x_handle) + slipped_N(x_drum - x_handle) +
                            m.linkage.damping_N_s_per_m * (v_drum - v_handle);
     const double hand =
-        quintic_force_N(x_handle) + m.hand.stiffness_N_per_m * x_handle + m.hand.damping_N_s_per_m * v_handle;
+        exact_.quintic_force_N(x_handle) + m.hand.stiffness_N_per_m * x_handle + m.hand.damping_N_s_per_m * v_handle;
     double on_motor = input.motor_force_N - cable, on_drum = cable - linkage,
            on_handle = input.handle_force_N + linkage - hand;
     if (bodies_ < 3) on_motor = on_drum = on_motor + on_drum;
@@ -235,59 +223,7 @@ void InducedMotionModel::step_euler(const Input& input, const FrictionRange& ran
     v_drum = rub(v_drum + euler_response_[1] * on_drum, euler_response_[1] * m.drum.friction_N);
     v_handle += euler_response_[2] * on_handle;
   }
-  state_ = {x_motor, x_drum, x_handle, v_motor, v_drum, v_handle};
-}
-
-// Each force f is the clamp, to what friction can give, of what stops its mass while the other force acts. Put one into
-// the other: what stops the motor is a line in the motor's own force, of a slope below one, clamped because the drum's
-// force is. The fixed point of a clamped line is the fixed point of the line, which stops both masses, clamped alike.
-//
-// On the motor the sum of motor force and friction is found so, and not friction alone: what stops a mass at rest is
-// then zero exactly, and not the motor force to rounding.
-InducedMotionModel::GroundForces InducedMotionModel::ground_forces(double motor_force_N, double stops_motor_N,
-                                                                   double stops_drum_N,
-                                                                   const FrictionRange& range) const noexcept {
-  struct Bounds {
-    double least_N, most_N;
-  };
-  const auto bounds = [&range](double force_N, const mechanics::RubbingMass& body) {
-    return Bounds{force_N + body.friction_N * range.least_share, force_N + body.friction_N * range.most_share};
-  };
-  const auto force = [](double stops_both_N, double stops_alone_N, double per_other, const Bounds& own,
-                        const Bounds& other) {
-    const double a = per_other * other.least_N, b = per_other * other.most_N;
-    const double coupled = std::clamp(stops_both_N, stops_alone_N - std::max(a, b), stops_alone_N - std::min(a, b));
-    // In this order, unlike in std::clamp, a motor force that is no number comes out as it went in.
-    return std::min(std::max(own.least_N, coupled), own.most_N);
-  };
-  const Bounds motor = bounds(motor_force_N, params_.master.motor), drum = bounds(0.0, params_.master.drum);
-  const double motor_of_both_N = both_stopped_ * stops_motor_N - (both_stopped_ * motor_per_drum_) * stops_drum_N;
-  const double drum_of_both_N = both_stopped_ * stops_drum_N - (both_stopped_ * drum_per_motor_) * stops_motor_N;
-  return {.motor_N = force(motor_of_both_N, stops_motor_N, motor_per_drum_, motor, drum),
-          .drum_N = force(drum_of_both_N, stops_drum_N, drum_per_motor_, drum, motor)};
-}
-
-void InducedMotionModel::step_exact(const Input& input, const FrictionRange& range) noexcept {
-  // The nonlinear forces where the masses will be in the middle of the tick: half a tick of lag would cost an order.
-  const double quintic_N = quintic_force_N(state_[2] + 0.5 * dt_s_ * state_[5]);
-  const double slipped_N = slipped_force_N(state_[1] - state_[2] + 0.5 * dt_s_ * (state_[4] - state_[5]));
-
-  const double on_handle_N = slipped_N - quintic_N + input.handle_force_N;
-
-  // The sum stands in the order in which its terms become known, so that few of them are waited for.
-  Column next;
-  for (std::size_t row = 0; row < next.size(); ++row) {
-    const double offset = offset_response_[row] * range.offset_m_per_s;
-    const double positions =
-        transition_[0][row] * state_[0] + transition_[1][row] * state_[1] + transition_[2][row] * state_[2];
-    const double velocities =
-        transition_[3][row] * state_[3] + transition_[4][row] * state_[4] + transition_[5][row] * state_[5];
-    next[row] = (offset + (positions + velocities)) + response_[2][row] * on_handle_N - response_[1][row] * slipped_N;
-  }
-  const GroundForces ground = ground_forces(input.motor_force_N, next[6], next[7], range);
-  for (std::size_t row = 0; row < state_.size(); ++row) {
-    state_[row] = next[row] + (response_[0][row] * ground.motor_N + response_[1][row] * ground.drum_N);
-  }
+  exact_.state = {x_motor, x_drum, x_handle, v_motor, v_drum, v_handle};
 }
 
 }  // namespace tactus::control

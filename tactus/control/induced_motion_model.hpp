@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/induced_motion_step.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/mechanics/bodies.hpp>
@@ -139,59 +140,37 @@ class InducedMotionModel {
   Output step(const Input& input) noexcept;
   /// At rest, undeflected.
   void reset() noexcept {
-    state_ = {};
-    linkage_.reset();
+    exact_.state = {};
+    exact_.linkage.deflection_m = 0.0;
+    exact_.linkage.elastic_m = 0.0;
   }
 
   /// Where the force so far has moved the motor, in m: belongs to the sample taken at this very instant, before the
   /// next force acts.
-  [[nodiscard]] double motor_position_m() const noexcept { return state_[0]; }
-  [[nodiscard]] const State& state() const noexcept { return state_; }
+  [[nodiscard]] double motor_position_m() const noexcept { return exact_.state[0]; }
+  [[nodiscard]] const State& state() const noexcept { return exact_.state; }
+
+  /// The exact step as it stands, for sweeps; `hysteretic` tells whether its linkage is.
+  [[nodiscard]] const InducedMotionStep<double>& exact_step() const noexcept { return exact_; }
+  [[nodiscard]] bool hysteretic() const noexcept { return hysteretic_; }
 
  private:
-  /// The state, then the forces that would bring motor and drum to rest at the end of the tick, each on its own.
-  /// Eight make whole vector registers.
-  using Column = std::array<double, 8>;
-
-  /// What friction can still change, as bounds on its force, and the velocity offset that it acts against.
-  struct FrictionRange {
-    double least_share, most_share;
-    double offset_m_per_s;
-  };
-  /// What acts from outside and by friction on the two masses that rub.
-  struct GroundForces {
-    double motor_N, drum_N;
-  };
+  using Column = InducedMotionStep<double>::Column;
+  using FrictionRange = InducedMotionStep<double>::FrictionRange;
 
   InducedMotionModel(const Params& params, const mechanics::BoucWenSpring& linkage, Seconds dt);
   void precompute_exact_step();
   void precompute_friction();
 
-  [[nodiscard]] FrictionRange friction_range(double intended_velocity_m_per_s) const noexcept;
-  [[nodiscard]] GroundForces ground_forces(double motor_force_N, double stops_motor_N, double stops_drum_N,
-                                           const FrictionRange& range) const noexcept;
-  [[nodiscard]] double quintic_force_N(double handle_position_m) const noexcept;
-  /// What the linkage pulls with beyond its initial stiffness, in N: nothing for a linear one, else of the other sign.
-  double slipped_force_N(double linkage_deflection_m) noexcept;
   void step_euler(const Input& input, const FrictionRange& range) noexcept;
-  void step_exact(const Input& input, const FrictionRange& range) noexcept;
 
-  Params params_;  ///< linear ones without what they lack
-  mechanics::BoucWenSpring linkage_;
+  Params params_;       ///< linear ones without what they lack
   std::size_t bodies_;  ///< that move on their own
   bool hysteretic_;
-  double linkage_stiffness_N_per_m_;  ///< initial
-  double dt_s_;
   int euler_substeps_;
   double euler_substep_s_;
-  std::array<double, 3> euler_response_{};          ///< substep over mass of what motor, drum, handle move with
-  alignas(16) std::array<Column, 6> transition_{};  ///< columns of Φ
-  std::array<Column, 3> response_{};  ///< columns of Γ: unit force on motor, drum, handle held over a tick
-  Column offset_response_{};          ///< what a unit of the friction's velocity offset adds
-  double motor_per_drum_ = 0.0;       ///< by how much a unit of friction on the drum lessens what stops the motor
-  double drum_per_motor_ = 0.0;       ///< and the other way round
-  double both_stopped_ = 1.0;         ///< 1 / (1 − the product of the two)
-  State state_{};
+  std::array<double, 3> euler_response_{};  ///< substep over mass of what motor, drum, handle move with
+  InducedMotionStep<double> exact_;         ///< holds the state for both steps
 };
 
 }  // namespace tactus::control

@@ -38,6 +38,8 @@ class ServoPd {
   }
   void reset() noexcept { rate_.reset(); }
 
+  [[nodiscard]] const signal::FilteredDerivative& rate() const noexcept { return rate_; }
+
  private:
   ServoPd(const Params& params, const signal::FilteredDerivative& rate)
       : proportional_N_per_m_(params.proportional_N_per_m),

@@ -2,13 +2,26 @@
 
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/core/scalar.hpp>
 #include <tactus/signal/checks.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace tactus::mechanics {
+
+/// The arithmetic of a `CurrentAmplifier`. A template on the scalar, and made of nothing else: a sweep runs it in
+/// lanes.
+template <class Scalar>
+struct CurrentAmplifierMotion {
+  Scalar gain{}, limit_N{}, response{};
+  Scalar applied_N{};
+
+  constexpr Scalar step(const Scalar& commanded_N) noexcept {
+    applied_N = applied_N + response * (clamped<Scalar>(gain * commanded_N, -limit_N, limit_N) - applied_N);
+    return applied_N;
+  }
+};
 
 /// Current amplifier and motor constant: commanded force in, applied force out.
 ///
@@ -41,27 +54,23 @@ class CurrentAmplifier {
   static Result<CurrentAmplifier> make(const Params& params, Seconds dt) {
     if (Check error = signal::check(params, dt)) return *std::move(error);
     CurrentAmplifier amplifier;
-    amplifier.gain_ = params.gain;
-    amplifier.limit_N_ = params.limit_N;
-    amplifier.response_ = -std::expm1(-2.0 * std::numbers::pi * params.bandwidth_Hz * dt.value);
+    amplifier.motion_.gain = params.gain;
+    amplifier.motion_.limit_N = params.limit_N;
+    amplifier.motion_.response = -std::expm1(-2.0 * std::numbers::pi * params.bandwidth_Hz * dt.value);
     return amplifier;
   }
 
   /// Applied force in N at the end of the step, from the commanded force in N held over it. Real-time safe.
-  double step(double commanded_N) noexcept {
-    applied_N_ += response_ * (std::clamp(gain_ * commanded_N, -limit_N_, limit_N_) - applied_N_);
-    return applied_N_;
-  }
+  double step(double commanded_N) noexcept { return motion_.step(commanded_N); }
 
   /// No current flows.
-  void reset() noexcept { applied_N_ = 0.0; }
+  void reset() noexcept { motion_.applied_N = 0.0; }
+
+  [[nodiscard]] const CurrentAmplifierMotion<double>& motion() const noexcept { return motion_; }
 
  private:
   CurrentAmplifier() = default;
-  double gain_ = 1.0;
-  double limit_N_ = 0.0;
-  double response_ = 1.0;
-  double applied_N_ = 0.0;
+  CurrentAmplifierMotion<double> motion_;
 };
 
 }  // namespace tactus::mechanics

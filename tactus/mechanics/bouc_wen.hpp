@@ -2,6 +2,7 @@
 
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/core/scalar.hpp>
 #include <tactus/mechanics/springs.hpp>
 #include <tactus/signal/checks.hpp>
 
@@ -9,6 +10,36 @@
 #include <cmath>
 
 namespace tactus::mechanics {
+
+/// The arithmetic of a `BoucWenSpring`, apart from how parameters become its coefficients. A template on the scalar,
+/// and made of nothing else: a sweep runs it in lanes.
+template <class Scalar>
+struct BoucWenMotion {
+  Scalar sustained_N_per_m{};
+  Scalar hysteretic_N_per_m{};
+  Scalar slip_m{};
+  Scalar deflection_m{};
+  Scalar elastic_m{};
+
+  /// Force in N at this deflection, without damping.
+  Scalar step(const Scalar& to_deflection_m) noexcept {
+    using std::copysign;
+    using std::expm1;
+    using std::fabs;
+    using std::max;
+    using std::min;
+    const Scalar change_m = to_deflection_m - deflection_m;
+    deflection_m = to_deflection_m;
+    const Scalar direction = copysign(Scalar(1.0), change_m);
+    const Scalar distance_m = fabs(change_m);
+    Scalar along_m = direction * elastic_m;
+    const Scalar back_m = min(distance_m, max(Scalar(0.0), -along_m));
+    along_m = along_m + back_m;
+    along_m = along_m - (slip_m - along_m) * expm1((back_m - distance_m) / slip_m);
+    elastic_m = direction * along_m;
+    return sustained_N_per_m * to_deflection_m + hysteretic_N_per_m * elastic_m;
+  }
+};
 
 /// Bouc–Wen spring, the usual rival of `ElastoSlipSpring`:  F = K∞ δ + h K₀ z + b δ̇  with
 /// dz/dδ = 1 − (|z|/d)·½(1 + sgn(z δ̇)), K∞ = (1 − h) K₀.
@@ -59,11 +90,11 @@ class BoucWenSpring {
     if (Check error = signal::check(params, dt)) return *std::move(error);
     const double ratio = params.reference_deflection_m / params.slip_deflection_m;
     BoucWenSpring spring;
-    spring.slip_m_ = params.slip_deflection_m;
+    spring.motion_.slip_m = params.slip_deflection_m;
     const double kept = 1.0 - params.hysteretic_fraction + params.hysteretic_fraction * loop_tip(ratio) / ratio;
     const double initial_N_per_m = params.stiffness_N_per_m / kept;
-    spring.sustained_N_per_m_ = (1.0 - params.hysteretic_fraction) * initial_N_per_m;
-    spring.hysteretic_N_per_m_ = params.hysteretic_fraction * initial_N_per_m;
+    spring.motion_.sustained_N_per_m = (1.0 - params.hysteretic_fraction) * initial_N_per_m;
+    spring.motion_.hysteretic_N_per_m = params.hysteretic_fraction * initial_N_per_m;
     spring.damping_N_s_per_m_ = params.damping_N_s_per_m;
     return spring;
   }
@@ -71,26 +102,19 @@ class BoucWenSpring {
   /// Force in N, positive when it pulls the ends together. The element is at rest, force free, at zero deflection.
   /// Real-time safe.
   double step(const Stretch& stretch) noexcept {
-    const double change_m = stretch.deflection_m - deflection_m_;
-    deflection_m_ = stretch.deflection_m;
-    const double direction = std::copysign(1.0, change_m);
-    const double distance_m = std::fabs(change_m);
-    double along_m = direction * elastic_m_;
-    const double elastic_m = std::min(distance_m, std::max(0.0, -along_m));
-    along_m += elastic_m;
-    along_m -= (slip_m_ - along_m) * std::expm1((elastic_m - distance_m) / slip_m_);
-    elastic_m_ = direction * along_m;
-    return sustained_N_per_m_ * stretch.deflection_m + hysteretic_N_per_m_ * elastic_m_ +
-           damping_N_s_per_m_ * stretch.rate_m_per_s;
+    return motion_.step(stretch.deflection_m) + damping_N_s_per_m_ * stretch.rate_m_per_s;
   }
 
   void reset() noexcept {
-    deflection_m_ = 0.0;
-    elastic_m_ = 0.0;
+    motion_.deflection_m = 0.0;
+    motion_.elastic_m = 0.0;
   }
 
   /// K₀: the slope from rest and just after a reversal, in N/m.
-  [[nodiscard]] double initial_stiffness_N_per_m() const noexcept { return sustained_N_per_m_ + hysteretic_N_per_m_; }
+  [[nodiscard]] double initial_stiffness_N_per_m() const noexcept {
+    return motion_.sustained_N_per_m + motion_.hysteretic_N_per_m;
+  }
+  [[nodiscard]] const BoucWenMotion<double>& motion() const noexcept { return motion_; }
 
  private:
   BoucWenSpring() = default;
@@ -103,12 +127,8 @@ class BoucWenSpring {
     return tip;
   }
 
-  double sustained_N_per_m_ = 0.0;
-  double hysteretic_N_per_m_ = 0.0;
+  BoucWenMotion<double> motion_;
   double damping_N_s_per_m_ = 0.0;
-  double slip_m_ = 0.0;
-  double deflection_m_ = 0.0;
-  double elastic_m_ = 0.0;
 };
 
 }  // namespace tactus::mechanics

@@ -15,7 +15,18 @@ Result<CableChain> CableChain::make(const Params& params, const LinearSpring::Pa
   const auto linkage = ElastoSlipSpring::make(params.linkage, dt);
   if (!linkage) return under("linkage", linkage.error());
   if (auto error = check_step(params, grip.stiffness_N_per_m, "grip.stiffness_N_per_m", dt)) return *std::move(error);
-  return CableChain(params, grip, dt, *linkage);
+  Motion motion{.mass_kg = {params.motor.mass_kg, params.drum.mass_kg, params.tip.mass_kg},
+                .friction_N = {params.motor.friction_N, params.drum.friction_N},
+                .cable_stiffness_N_per_m = params.cable.stiffness_N_per_m,
+                .cable_damping_N_s_per_m = params.cable.damping_N_s_per_m,
+                .linkage_sustained_N_per_m = linkage->sustained_stiffness_N_per_m(),
+                .linkage_damping_N_s_per_m = params.linkage.damping_N_s_per_m,
+                .grip_stiffness_N_per_m = grip.stiffness_N_per_m,
+                .grip_damping_N_s_per_m = grip.damping_N_s_per_m,
+                .step = {},
+                .state = {.linkage = linkage->elements()}};
+  motion.step = motion.step_of(dt.value);
+  return CableChain(motion);
 }
 
 Check CableChain::check_step(const Params& params, double tip_stiffness_N_per_m, std::string_view tip_parameter,
@@ -55,46 +66,10 @@ Check CableChain::check_step(const Params& params, double tip_stiffness_N_per_m,
                .place = {}};
 }
 
-CableChain::CableChain(const Params& params, const LinearSpring::Params& grip, Seconds dt,
-                       const ElastoSlipSpring& linkage)
-    : mass_kg_{params.motor.mass_kg, params.drum.mass_kg, params.tip.mass_kg},
-      friction_N_{params.motor.friction_N, params.drum.friction_N},
-      cable_(params.cable),
-      linkage_damping_N_s_per_m_(params.linkage.damping_N_s_per_m),
-      grip_(grip),
-      step_(step_of(dt.value)),
-      state_{.linkage = linkage} {}
-
-CableChain::Step CableChain::step_of(double duration_s) const noexcept {
-  const double half = 0.5 * duration_s;
-  const double cable = half * cable_.damping_N_s_per_m;
-  const double linkage = half * linkage_damping_N_s_per_m_;
-  const double grip = half * grip_.damping_N_s_per_m;
-  const double tip = mass_kg_[2] + linkage + grip;
-  const double tip_on_drum = linkage / tip;
-  const double motor = mass_kg_[0] + cable;
-  const double drum = mass_kg_[1] + cable + linkage - tip_on_drum * linkage;
-  const double determinant = motor * drum - cable * cable;
-  return {.h_s = duration_s,
-          .half_s = half,
-          .cable_damping = cable,
-          .linkage_damping = linkage,
-          .grip_damping = grip,
-          .tip_on_drum = tip_on_drum,
-          .inverse_tip = 1.0 / tip,
-          .i00 = drum / determinant,
-          .i01 = cable / determinant,
-          .i11 = motor / determinant,
-          .drum_on_motor = cable / drum,
-          .motor_on_drum = cable / motor,
-          .motor_impulse = duration_s * friction_N_[0],
-          .drum_impulse = duration_s * friction_N_[1]};
-}
-
 void CableChain::reset(double position_m) noexcept {
-  state_.position_m.fill(position_m);
-  state_.velocity_m_per_s.fill(0.0);
-  state_.linkage.reset();
+  motion_.state.position_m.fill(position_m);
+  motion_.state.velocity_m_per_s.fill(0.0);
+  motion_.state.linkage.slider_m = {};
 }
 
 }  // namespace tactus::mechanics

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/core/element.hpp>
+#include <tactus/core/scalar.hpp>
 #include <tactus/mechanics/bodies.hpp>
 #include <tactus/mechanics/elasto_slip.hpp>
 #include <tactus/mechanics/springs.hpp>
@@ -13,6 +14,64 @@ namespace tactus::mechanics {
 
 /// The grip of nobody: no spring, no damper.
 inline constexpr LinearSpring::Params nobody_holds{.stiffness_N_per_m = 0.0, .damping_N_s_per_m = 0.0};
+
+/// The arithmetic of a `CableChain`, apart from how parameters become its coefficients. A template on the scalar, and
+/// made of nothing else: a sweep runs it in lanes.
+template <class Scalar>
+struct CableChainMotion {
+  struct Input {
+    Scalar motor_force_N{};
+    Scalar tip_force_N{};
+    Scalar grip_position_m{};
+    Scalar grip_velocity_m_per_s{};
+  };
+
+  /// Everything that moves, from the motor outward.
+  struct State {
+    std::array<Scalar, 3> position_m{};
+    std::array<Scalar, 3> velocity_m_per_s{};
+    ElastoSlipElements<Scalar> linkage;
+  };
+
+  /// All that depends on the length of a step. The matrix M + h/2 B is tridiagonal; the tip is eliminated first, so
+  /// that what is left couples motor and drum alone.
+  struct Step {
+    Scalar h_s, half_s;
+    Scalar cable_damping, linkage_damping, grip_damping;  ///< h/2 b of each
+    Scalar tip_on_drum, inverse_tip;      ///< the tip's row: h/2 b of the linkage, and 1, over its diagonal
+    Scalar i00, i01, i11;                 ///< the inverse of what is left
+    Scalar drum_on_motor, motor_on_drum;  ///< i01/i00 and i01/i11
+    Scalar motor_impulse, drum_impulse;   ///< the most that friction can give
+  };
+
+  std::array<Scalar, 3> mass_kg{};
+  std::array<Scalar, 2> friction_N{};
+  Scalar cable_stiffness_N_per_m{}, cable_damping_N_s_per_m{};
+  Scalar linkage_sustained_N_per_m{}, linkage_damping_N_s_per_m{};
+  Scalar grip_stiffness_N_per_m{}, grip_damping_N_s_per_m{};
+  Step step;  ///< of the whole substep
+  State state;
+
+  [[nodiscard]] Step step_of(const Scalar& duration_s) const noexcept;
+  /// Returns the grip's force on the tip, mean over the step.
+  Scalar advance(const Input& input, const Step& over) noexcept;
+};
+
+/// Lane by lane, one state or the other.
+template <class Condition, class Scalar>
+typename CableChainMotion<Scalar>::State select_state(const Condition& condition,
+                                                      const typename CableChainMotion<Scalar>::State& yes,
+                                                      const typename CableChainMotion<Scalar>::State& no) noexcept {
+  auto state = no;
+  for (std::size_t i = 0; i < 3; ++i) {
+    state.position_m[i] = select(condition, yes.position_m[i], no.position_m[i]);
+    state.velocity_m_per_s[i] = select(condition, yes.velocity_m_per_s[i], no.velocity_m_per_s[i]);
+  }
+  for (std::size_t i = 0; i < ElastoSlipElements<Scalar>::count; ++i) {
+    state.linkage.slider_m[i] = select(condition, yes.linkage.slider_m[i], no.linkage.slider_m[i]);
+  }
+  return state;
+}
 
 /// The mechanism of a cable-driven device, as a plant: motor –cable– drum –linkage– tip (paper A, Figs. 2 and 10).
 ///
@@ -50,24 +109,16 @@ class CableChain {
     }
   };
 
-  struct Input {
-    double motor_force_N = 0.0;          ///< on the motor, positive toward the environment
-    double tip_force_N = 0.0;            ///< on the tip from outside, positive toward the environment
-    double grip_position_m = 0.0;        ///< where the grip pulls the tip to, at the middle of the step
-    double grip_velocity_m_per_s = 0.0;  ///< its velocity, at the middle of the step
-  };
+  using Motion = CableChainMotion<double>;
+  /// Forces on motor and tip from outside, positive toward the environment; where the grip pulls the tip to and its
+  /// velocity, at the middle of the step.
+  using Input = Motion::Input;
+  using State = Motion::State;
 
   struct Output {
     double motor_position_m = 0.0;
     double tip_position_m = 0.0;
     double grip_force_N = 0.0;  ///< of the grip on the tip, mean over the step, positive toward the environment
-  };
-
-  /// Everything that moves, from the motor outward.
-  struct State {
-    std::array<double, 3> position_m{};
-    std::array<double, 3> velocity_m_per_s{};
-    ElastoSlipSpring linkage;
   };
 
   /// A chain at rest at the origin that nobody holds. Fails where a value is out of bounds or where the step is too
@@ -83,18 +134,18 @@ class CableChain {
 
   /// Advances by the step that `make` was given. Real-time safe.
   Output step(const Input& input) noexcept {
-    const double grip_force_N = advance(input, step_);
-    return {
-        .motor_position_m = state_.position_m[0], .tip_position_m = state_.position_m[2], .grip_force_N = grip_force_N};
+    const double grip_force_N = motion_.advance(input, motion_.step);
+    return {.motor_position_m = motor_position_m(), .tip_position_m = tip_position_m(), .grip_force_N = grip_force_N};
   }
   /// Advances by any `duration_s` from 0 to the step that `make` was given: the part of a step up to an event.
-  void advance(const Input& input, double duration_s) noexcept { advance(input, step_of(duration_s)); }
+  void advance(const Input& input, double duration_s) noexcept { motion_.advance(input, motion_.step_of(duration_s)); }
 
   /// Holds the tip through another grip from now on. Real-time safe. `grip` must be within its bounds and its stiffness
   /// one that `check_step` allows.
   void hold(const LinearSpring::Params& grip) noexcept {
-    grip_ = grip;
-    step_ = step_of(step_.h_s);
+    motion_.grip_stiffness_N_per_m = grip.stiffness_N_per_m;
+    motion_.grip_damping_N_s_per_m = grip.damping_N_s_per_m;
+    motion_.step = motion_.step_of(motion_.step.h_s);
   }
 
   /// At rest at the origin, the linkage relaxed.
@@ -102,79 +153,91 @@ class CableChain {
   /// At rest with every mass at `position_m`, the linkage relaxed.
   void reset(double position_m) noexcept;
 
-  [[nodiscard]] const State& state() const noexcept { return state_; }
+  [[nodiscard]] const Motion& motion() const noexcept { return motion_; }
+  /// For what steps the chain itself, as a tip at a wall does.
+  [[nodiscard]] Motion& motion() noexcept { return motion_; }
+  [[nodiscard]] const State& state() const noexcept { return motion_.state; }
   /// Goes back, or over, to `state`, which must come from this chain or an equal one.
-  void set_state(const State& state) noexcept { state_ = state; }
-  [[nodiscard]] double motor_position_m() const noexcept { return state_.position_m[0]; }
-  [[nodiscard]] double tip_position_m() const noexcept { return state_.position_m[2]; }
-  [[nodiscard]] double tip_velocity_m_per_s() const noexcept { return state_.velocity_m_per_s[2]; }
+  void set_state(const State& state) noexcept { motion_.state = state; }
+  [[nodiscard]] double motor_position_m() const noexcept { return motion_.state.position_m[0]; }
+  [[nodiscard]] double tip_position_m() const noexcept { return motion_.state.position_m[2]; }
+  [[nodiscard]] double tip_velocity_m_per_s() const noexcept { return motion_.state.velocity_m_per_s[2]; }
 
  private:
-  /// All that depends on the length of a step. The matrix M + h/2 B is tridiagonal; the tip is eliminated first, so
-  /// that what is left couples motor and drum alone.
-  struct Step {
-    double h_s, half_s;
-    double cable_damping, linkage_damping, grip_damping;  ///< h/2 b of each
-    double tip_on_drum, inverse_tip;      ///< the tip's row: h/2 b of the linkage, and 1, over its diagonal
-    double i00, i01, i11;                 ///< the inverse of what is left
-    double drum_on_motor, motor_on_drum;  ///< i01/i00 and i01/i11
-    double motor_impulse, drum_impulse;   ///< the most that friction can give
-  };
+  explicit CableChain(const Motion& motion) : motion_(motion) {}
 
-  [[nodiscard]] Step step_of(double duration_s) const noexcept;
-  /// Returns the grip's force on the tip, mean over the step.
-  double advance(const Input& input, const Step& step) noexcept;
-
-  CableChain(const Params& params, const LinearSpring::Params& grip, Seconds dt, const ElastoSlipSpring& linkage);
-
-  std::array<double, 3> mass_kg_;
-  std::array<double, 2> friction_N_;
-  LinearSpring::Params cable_;
-  double linkage_damping_N_s_per_m_;
-  LinearSpring::Params grip_;
-  Step step_;
-  State state_;
+  Motion motion_;
 };
 
-// In the header so that the plants' substeps, by far the most that a simulation computes, need no call.
-inline double CableChain::advance(const Input& input, const Step& step) noexcept {
-  auto& x = state_.position_m;
-  auto& v = state_.velocity_m_per_s;
-  for (std::size_t i = 0; i < 3; ++i) x[i] += step.half_s * v[i];
+template <class Scalar>
+typename CableChainMotion<Scalar>::Step CableChainMotion<Scalar>::step_of(const Scalar& duration_s) const noexcept {
+  const Scalar half = 0.5 * duration_s;
+  const Scalar cable = half * cable_damping_N_s_per_m;
+  const Scalar linkage = half * linkage_damping_N_s_per_m;
+  const Scalar grip = half * grip_damping_N_s_per_m;
+  const Scalar tip = mass_kg[2] + linkage + grip;
+  const Scalar on_drum = linkage / tip;
+  const Scalar motor = mass_kg[0] + cable;
+  const Scalar drum = mass_kg[1] + cable + linkage - on_drum * linkage;
+  const Scalar determinant = motor * drum - cable * cable;
+  return {.h_s = duration_s,
+          .half_s = half,
+          .cable_damping = cable,
+          .linkage_damping = linkage,
+          .grip_damping = grip,
+          .tip_on_drum = on_drum,
+          .inverse_tip = 1.0 / tip,
+          .i00 = drum / determinant,
+          .i01 = cable / determinant,
+          .i11 = motor / determinant,
+          .drum_on_motor = cable / drum,
+          .motor_on_drum = cable / motor,
+          .motor_impulse = duration_s * friction_N[0],
+          .drum_impulse = duration_s * friction_N[1]};
+}
 
-  const double cable_force = cable_.stiffness_N_per_m * (x[0] - x[1]);
-  const double linkage_force = state_.linkage.step({.deflection_m = x[1] - x[2]});
-  const double grip_force =
-      grip_.stiffness_N_per_m * (input.grip_position_m - x[2]) + grip_.damping_N_s_per_m * input.grip_velocity_m_per_s;
-  const double tip_velocity_before = v[2];
+// In the header so that the plants' substeps, by far the most that a simulation computes, need no call.
+template <class Scalar>
+inline Scalar CableChainMotion<Scalar>::advance(const Input& input, const Step& over) noexcept {
+  auto& x = state.position_m;
+  auto& v = state.velocity_m_per_s;
+  for (std::size_t i = 0; i < 3; ++i) x[i] += over.half_s * v[i];
+
+  const Scalar cable_force = cable_stiffness_N_per_m * (x[0] - x[1]);
+  const Scalar stretch = x[1] - x[2];
+  const Scalar linkage_force = linkage_sustained_N_per_m * stretch + state.linkage.step(stretch);
+  const Scalar grip_force =
+      grip_stiffness_N_per_m * (input.grip_position_m - x[2]) + grip_damping_N_s_per_m * input.grip_velocity_m_per_s;
+  const Scalar tip_velocity_before = v[2];
 
   // Momenta without friction, the damping's second half still to be taken out by the inverse.
-  const double cable_damping = step.cable_damping * (v[0] - v[1]);
-  const double linkage_damping = step.linkage_damping * (v[1] - v[2]);
-  const double p0 = mass_kg_[0] * v[0] - cable_damping + step.h_s * (input.motor_force_N - cable_force);
-  const double p1 = mass_kg_[1] * v[1] + cable_damping - linkage_damping + step.h_s * (cable_force - linkage_force);
-  const double p2 = mass_kg_[2] * v[2] + linkage_damping - step.grip_damping * v[2] +
-                    step.h_s * (linkage_force + grip_force + input.tip_force_N);
+  const Scalar cable_damping = over.cable_damping * (v[0] - v[1]);
+  const Scalar linkage_damping = over.linkage_damping * (v[1] - v[2]);
+  const Scalar p0 = mass_kg[0] * v[0] - cable_damping + over.h_s * (input.motor_force_N - cable_force);
+  const Scalar p1 = mass_kg[1] * v[1] + cable_damping - linkage_damping + over.h_s * (cable_force - linkage_force);
+  const Scalar p2 = mass_kg[2] * v[2] + linkage_damping - over.grip_damping * v[2] +
+                    over.h_s * (linkage_force + grip_force + input.tip_force_N);
 
   // Each impulse is the clamp, to what friction can give, of what stops its mass while the other impulse acts. Put one
   // into the other: a line of slope below one through what stops both masses, clamped because the other impulse is. The
   // fixed point of a clamped line is the fixed point of the line, clamped alike. What stops both masses takes all their
   // momentum, so a mass at rest keeps exactly none.
-  const auto impulse = [](double stops_both, double stops_alone, double reach_of_other, double most) {
-    const double coupled = std::clamp(stops_both, stops_alone - reach_of_other, stops_alone + reach_of_other);
-    return std::clamp(coupled, -most, most);
+  const auto impulse = [](const Scalar& stops_both, const Scalar& stops_alone, const Scalar& reach_of_other,
+                          const Scalar& most) {
+    const Scalar coupled = clamped<Scalar>(stops_both, stops_alone - reach_of_other, stops_alone + reach_of_other);
+    return clamped<Scalar>(coupled, -most, most);
   };
-  const double p1_dragged = p1 + step.tip_on_drum * p2;
-  const double q0 = p0 + impulse(-p0, -(p0 + step.drum_on_motor * p1_dragged), step.drum_on_motor * step.drum_impulse,
-                                 step.motor_impulse);
-  const double q1 = p1_dragged + impulse(-p1_dragged, -(p1_dragged + step.motor_on_drum * p0),
-                                         step.motor_on_drum * step.motor_impulse, step.drum_impulse);
+  const Scalar p1_dragged = p1 + over.tip_on_drum * p2;
+  const Scalar q0 = p0 + impulse(-p0, -(p0 + over.drum_on_motor * p1_dragged), over.drum_on_motor * over.drum_impulse,
+                                 over.motor_impulse);
+  const Scalar q1 = p1_dragged + impulse(-p1_dragged, -(p1_dragged + over.motor_on_drum * p0),
+                                         over.motor_on_drum * over.motor_impulse, over.drum_impulse);
 
-  v[0] = step.i00 * q0 + step.i01 * q1;
-  v[1] = step.i01 * q0 + step.i11 * q1;
-  v[2] = step.inverse_tip * p2 + step.tip_on_drum * v[1];
-  for (std::size_t i = 0; i < 3; ++i) x[i] += step.half_s * v[i];
-  return grip_force - grip_.damping_N_s_per_m * 0.5 * (tip_velocity_before + v[2]);
+  v[0] = over.i00 * q0 + over.i01 * q1;
+  v[1] = over.i01 * q0 + over.i11 * q1;
+  v[2] = over.inverse_tip * p2 + over.tip_on_drum * v[1];
+  for (std::size_t i = 0; i < 3; ++i) x[i] += over.half_s * v[i];
+  return grip_force - grip_damping_N_s_per_m * 0.5 * (tip_velocity_before + v[2]);
 }
 
 }  // namespace tactus::mechanics

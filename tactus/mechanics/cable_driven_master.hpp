@@ -75,6 +75,7 @@ class CableDrivenMaster {
   void reset(double position_m) noexcept;
 
   [[nodiscard]] const CableChain& mechanism() const noexcept { return mechanism_; }
+  [[nodiscard]] const CurrentAmplifier& amplifier() const noexcept { return amplifier_; }
 
  private:
   CableDrivenMaster(const CableChain& mechanism, const CurrentAmplifier& amplifier,

@@ -2,6 +2,7 @@
 
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/core/scalar.hpp>
 #include <tactus/signal/checks.hpp>
 
 #include <algorithm>
@@ -15,6 +16,15 @@ struct Penetration {
   double penetration_m = 0.0;
   double rate_m_per_s = 0.0;
 };
+
+/// The law of `KelvinVoigtContact`, a template on the scalar: a sweep evaluates it in lanes.
+template <class Scalar>
+constexpr Scalar kelvin_voigt_force_N(const Scalar& stiffness_N_per_m, const Scalar& damping_N_s_per_m,
+                                      const Scalar& penetration_m, const Scalar& rate_m_per_s) noexcept {
+  using std::max;
+  const Scalar force_N = stiffness_N_per_m * penetration_m + damping_N_s_per_m * rate_m_per_s;
+  return select(penetration_m > 0.0, max(Scalar(0.0), force_N), Scalar(0.0));
+}
 
 /// Spring and damper that cannot pull: F = max(0, k δ + b δ̇) for δ > 0, else 0. No state.
 ///
@@ -45,9 +55,8 @@ class KelvinVoigtContact {
 
   /// Force in N that pushes the bodies apart, never negative. Real-time safe.
   double step(const Penetration& input) noexcept {
-    const double force_N =
-        params_.stiffness_N_per_m * input.penetration_m + params_.damping_N_s_per_m * input.rate_m_per_s;
-    return input.penetration_m > 0.0 ? std::max(0.0, force_N) : 0.0;
+    return kelvin_voigt_force_N(params_.stiffness_N_per_m, params_.damping_N_s_per_m, input.penetration_m,
+                                input.rate_m_per_s);
   }
 
   void reset() noexcept {}

@@ -7,6 +7,7 @@
 #include <tactus/mechanics/encoder.hpp>
 #include <tactus/mechanics/environment.hpp>
 #include <tactus/mechanics/force_sensor.hpp>
+#include <tactus/mechanics/tip_at_wall.hpp>
 
 #include <cstdint>
 
@@ -54,14 +55,12 @@ class ElectricSlave {
 
   /// Advances by one substep under `commanded_force_N`, positive toward the environment. Real-time safe.
   Output step(double commanded_force_N) noexcept {
-    const double motor_force_N = amplifier_.step(commanded_force_N);
-    const CableChain::State before = mechanism_.state();
-    const double force_N = contact_force(dt_s_);
-    mechanism_.step({.motor_force_N = motor_force_N, .tip_force_N = -force_N});
-    const bool crossed = is_outside(before.position_m[2]) != is_outside(mechanism_.tip_position_m());
-    const Output output = crossed ? step_across_surface(before, motor_force_N) : Output{.contact_force_N = force_N};
-    force_sensor_.step(output.contact_force_N);
-    return output;
+    const auto contact = TipAtWall<double, Environment>(mechanism_.motion(), environment_, dt_s_)
+                             .step(amplifier_.step(commanded_force_N));
+    force_sensor_.step(contact.contact_force_N);
+    return {.contact_force_N = contact.contact_force_N,
+            .touched = contact.touched > 0.0,
+            .touched_after_s = contact.touched_after_s};
   }
 
   /// What the sensors read now: draws one sample of noise.
@@ -74,6 +73,8 @@ class ElectricSlave {
   void reset(double position_m) noexcept;
 
   [[nodiscard]] const CableChain& mechanism() const noexcept { return mechanism_; }
+  [[nodiscard]] const CurrentAmplifier& amplifier() const noexcept { return amplifier_; }
+  [[nodiscard]] const ForceSensor& force_sensor() const noexcept { return force_sensor_; }
 
  private:
   ElectricSlave(const CableChain& mechanism, const CurrentAmplifier& amplifier, const Encoder& encoder,
@@ -84,22 +85,6 @@ class ElectricSlave {
         force_sensor_(force_sensor),
         environment_(environment),
         dt_s_(dt.value) {}
-
-  [[nodiscard]] bool is_outside(double tip_position_m) const noexcept {
-    return environment_.position_m() - tip_position_m > 0.0;
-  }
-  /// The wall's force at the middle of the next `duration_s`.
-  double contact_force(double duration_s) noexcept {
-    const double velocity = mechanism_.tip_velocity_m_per_s();
-    return environment_.step(
-        {.position_m = mechanism_.tip_position_m() + 0.5 * duration_s * velocity, .velocity_m_per_s = velocity});
-  }
-  /// Advances by part of a substep and returns the wall's force on the way.
-  double advance(double motor_force_N, double duration_s) noexcept;
-  /// Takes back a substep in which the tip crossed the surface and steps it in two parts, cut at the crossing.
-  Output step_across_surface(const CableChain::State& before, double motor_force_N) noexcept;
-  /// Time from `before` at which the tip crosses the surface.
-  double crossing_time(const CableChain::State& before, double motor_force_N) noexcept;
 
   CableChain mechanism_;
   CurrentAmplifier amplifier_;

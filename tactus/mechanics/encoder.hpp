@@ -2,6 +2,7 @@
 
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/core/scalar.hpp>
 #include <tactus/signal/checks.hpp>
 
 #include <cmath>
@@ -9,8 +10,10 @@
 namespace tactus::mechanics {
 
 /// The nearest multiple of `resolution`, halves up; the value itself for a resolution of 0.
-inline double quantised(double value, double resolution) noexcept {
-  return resolution > 0.0 ? std::floor(value / resolution + 0.5) * resolution : value;
+template <class Scalar>
+Scalar quantised(const Scalar& value, const Scalar& resolution) noexcept {
+  using std::floor;
+  return select(resolution > 0.0, floor(value / resolution + 0.5) * resolution, value);
 }
 
 /// Quantised position, as an encoder reports it at the servo tick: the nearest multiple of the resolution, halves up.

@@ -12,7 +12,10 @@ Result<Environment> Environment::make(const Params& params, Seconds dt) {
                                                         .dissipation_s_per_m = params.dissipation_s_per_m},
                                                        dt);
   if (!hunt_crossley) return hunt_crossley.error();
-  return Environment(params, *kelvin_voigt, *hunt_crossley);
+  const auto bond = LinearSpring::make(
+      {.stiffness_N_per_m = params.stiffness_N_per_m, .damping_N_s_per_m = params.damping_N_s_per_m}, dt);
+  if (!bond) return bond.error();
+  return Environment(params, *kelvin_voigt, *hunt_crossley, *bond);
 }
 
 }  // namespace tactus::mechanics

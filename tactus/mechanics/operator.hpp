@@ -5,10 +5,50 @@
 #include <tactus/mechanics/cable_chain.hpp>
 #include <tactus/signal/delay_line.hpp>
 #include <tactus/signal/low_pass.hpp>
+#include <tactus/signal/sections.hpp>
 
 #include <algorithm>
 
 namespace tactus::mechanics {
+
+/// The arithmetic of an `Operator`, but for the reaction time. A template on the scalar, and made of nothing else: a
+/// sweep runs it in lanes.
+template <class Scalar>
+struct OperatorMotion {
+  /// A point on the unit circle; the tremor turns it by a fixed angle a tick, which needs no sine in the loop.
+  struct Phase {
+    Scalar cosine{}, sine{};
+  };
+  /// Where the hand wants the handle during this tick: `position_m` at its start, moving at `velocity_m_per_s`.
+  struct Aim {
+    Scalar position_m{}, velocity_m_per_s{};
+  };
+
+  Scalar dt_s{};
+  Scalar correction_gain_per_s{};
+  Scalar tremor_amplitude_m{};
+  Phase tremor_turn, tremor;
+  Scalar correction_m{};
+  signal::FirstOrderSection<Scalar> low_pass;
+
+  /// The error that the person will feel a reaction time later.
+  Scalar felt(const Scalar& handle_position_m, const Scalar& path_m) noexcept {
+    return low_pass.step(handle_position_m - path_m);
+  }
+  /// `error_m` is what `felt` gave a reaction time ago.
+  Aim step(const Scalar& path_m, const Scalar& path_at_next_tick_m, const Scalar& error_m) noexcept {
+    const Scalar correction_velocity = -correction_gain_per_s * error_m;
+    const Scalar tremor_now_m = tremor_amplitude_m * tremor.sine;
+    tremor = {.cosine = tremor.cosine * tremor_turn.cosine - tremor.sine * tremor_turn.sine,
+              .sine = tremor.sine * tremor_turn.cosine + tremor.cosine * tremor_turn.sine};
+    const Scalar tremor_next_m = tremor_amplitude_m * tremor.sine;
+    const Aim aim{
+        .position_m = path_m + tremor_now_m + correction_m,
+        .velocity_m_per_s = (path_at_next_tick_m - path_m + tremor_next_m - tremor_now_m) / dt_s + correction_velocity};
+    correction_m = correction_m + correction_velocity * dt_s;
+    return aim;
+  }
+};
 
 /// The person at the master, as a plant. Three things at once:
 ///
@@ -87,15 +127,14 @@ class Operator {
     double handle_position_m = 0.0;    ///< where the handle is at this tick
   };
 
-  /// Where the hand wants the handle during this tick: `position_m` at its start, moving at `velocity_m_per_s`.
-  struct Output {
-    double position_m = 0.0;
-    double velocity_m_per_s = 0.0;
-  };
+  using Output = OperatorMotion<double>::Aim;
 
   static Result<Operator> make(const Params& params, Seconds dt);
   Output step(const Input& input) noexcept;
   void reset() noexcept;
+
+  [[nodiscard]] const OperatorMotion<double>& motion() const noexcept { return motion_; }
+  [[nodiscard]] std::size_t reaction_ticks() const noexcept { return reaction_.delay_ticks(); }
 
   /// Longest reaction time in ticks: 0.4 s at 20 kHz.
   static constexpr std::size_t longest_reaction_ticks = 8000;
@@ -103,22 +142,11 @@ class Operator {
  private:
   using Reaction = signal::DelayLine<double, longest_reaction_ticks>;
 
-  /// A point on the unit circle; the tremor turns it by a fixed angle a tick, which needs no sine in the loop.
-  struct Phase {
-    double cosine = 1.0;
-    double sine = 0.0;
-  };
+  Operator(const OperatorMotion<double>& motion, const Reaction& reaction)
+      : start_(motion), motion_(motion), reaction_(reaction) {}
 
-  Operator(const Params& params, Seconds dt, const signal::LowPass& low_pass, const Reaction& reaction);
-
-  double dt_s_;
-  double correction_gain_per_s_;
-  Phase tremor_start_;
-  Phase tremor_turn_;
-  double tremor_amplitude_m_;
-  Phase tremor_;
-  double correction_m_ = 0.0;
-  signal::LowPass low_pass_;
+  OperatorMotion<double> start_;
+  OperatorMotion<double> motion_;
   Reaction reaction_;
 };
 

@@ -2,12 +2,30 @@
 
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/core/scalar.hpp>
 #include <tactus/signal/checks.hpp>
 
 #include <cmath>
 #include <numbers>
 
 namespace tactus::signal {
+
+/// The arithmetic of a `FilteredDerivative`. A template on the scalar, and made of nothing else: a sweep runs it in
+/// lanes.
+template <class Scalar>
+struct FilteredDerivativeMotion {
+  Scalar smoothing{}, rate_per_s{};
+  Scalar previous{}, velocity{};
+  Scalar samples{};  ///< 0 before the first, then 1
+
+  constexpr Scalar step(const Scalar& position) noexcept {
+    const Scalar before = select(samples > 0.0, previous, position);
+    velocity = velocity + smoothing * ((position - before) * rate_per_s - velocity);
+    previous = position;
+    samples = 1.0;
+    return velocity;
+  }
+};
 
 /// Velocity (1/s times the unit of the input) from sampled positions, low-passed at `cutoff_Hz`.
 ///
@@ -49,34 +67,26 @@ class FilteredDerivative {
     const double sine2 = std::sin(x) * std::sin(x);
     const double m = 4.0 * x * x * sine2 / (2.0 * sine2 - x * x);
     FilteredDerivative derivative;
-    derivative.smoothing_ = m / (std::sqrt(m + 0.25 * m * m) + 0.5 * m);
-    derivative.rate_per_s_ = 1.0 / dt.value;
+    derivative.motion_.smoothing = m / (std::sqrt(m + 0.25 * m * m) + 0.5 * m);
+    derivative.motion_.rate_per_s = 1.0 / dt.value;
     return derivative;
   }
 
   /// The velocity at this sample. Real-time safe.
-  double step(double position) noexcept {
-    const double before = started_ ? previous_ : position;
-    velocity_ += smoothing_ * ((position - before) * rate_per_s_ - velocity_);
-    previous_ = position;
-    started_ = true;
-    return velocity_;
-  }
+  double step(double position) noexcept { return motion_.step(position); }
 
   /// At rest; the next sample only initialises.
   void reset() noexcept {
-    previous_ = 0.0;
-    velocity_ = 0.0;
-    started_ = false;
+    motion_.previous = 0.0;
+    motion_.velocity = 0.0;
+    motion_.samples = 0.0;
   }
+
+  [[nodiscard]] const FilteredDerivativeMotion<double>& motion() const noexcept { return motion_; }
 
  private:
   FilteredDerivative() = default;
-  double smoothing_ = 0.0;
-  double rate_per_s_ = 0.0;
-  double previous_ = 0.0;
-  double velocity_ = 0.0;
-  bool started_ = false;
+  FilteredDerivativeMotion<double> motion_;
 };
 
 }  // namespace tactus::signal

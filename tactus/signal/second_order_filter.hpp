@@ -91,6 +91,9 @@ class SecondOrderFilter {
     section_.state_2 = section_.b2 * value - section_.a2 * output;
   }
 
+  /// Coefficients and state as they stand.
+  [[nodiscard]] const SecondOrderSection<double>& section() const noexcept { return section_; }
+
  private:
   SecondOrderFilter() = default;
   SecondOrderSection<double> section_;

@@ -8,7 +8,7 @@
 namespace tactus::simulation {
 
 void for_each_in_parallel(std::size_t count, const std::function<void(std::size_t)>& work,
-                          const std::function<void(double)>& progress) {
+                          const std::function<void(double)>& progress, std::size_t threads) {
   std::atomic<std::size_t> next = 0;
   std::atomic<std::size_t> done = 0;
   const auto take = [&] {
@@ -18,16 +18,17 @@ void for_each_in_parallel(std::size_t count, const std::function<void(std::size_
     ++done;
     return true;
   };
-  const std::size_t useful = std::min<std::size_t>(std::thread::hardware_concurrency(), count);
-  std::vector<std::jthread> threads;
+  const std::size_t wanted = threads > 0 ? threads : std::thread::hardware_concurrency();
+  const std::size_t useful = std::min(wanted, count);
+  std::vector<std::jthread> others;
   for (std::size_t i = 1; i < useful; ++i) {
-    threads.emplace_back([&take] {
+    others.emplace_back([&take] {
       while (take()) {
       }
     });
   }
   while (take()) progress(static_cast<double>(done.load()) / static_cast<double>(count));
-  threads.clear();  // joins
+  others.clear();  // joins
   progress(1.0);
 }
 

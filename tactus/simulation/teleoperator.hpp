@@ -93,6 +93,8 @@ class Teleoperator {
                    "Force of the actuator on the handle."),
           observed("hand_force_N", &Record::hand_force_N, units::newton, "master", "hand", onward,
                    "Measured force of the hand on the handle."),
+          observed("told_force_N", &Record::told_force_N, units::newton, "slave", "slave", "the slave is pushed back",
+                   "Tip force that the slave sent to the master, measured or estimated."),
           observed("contact_force_N", &Record::contact_force_N, units::newton, "environment", "slave",
                    "the wall is pressed", "True, mean until the next tick."),
           observed("peak_contact_force_N", &Record::peak_contact_force_N, units::newton, "environment", "slave",

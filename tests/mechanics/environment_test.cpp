@@ -71,5 +71,13 @@ TEST(Environment, NeverPullsAndTakesNoLessEnergyThanItGivesBack) {
   }
 }
 
+TEST(Environment, BondedWallPullsAsItPushes) {
+  Environment wall = *Environment::make(
+      {.law = ContactLaw::bonded, .position_m = 0.01, .stiffness_N_per_m = 2000.0, .damping_N_s_per_m = 3.0},
+      Seconds{1e-5});
+  EXPECT_DOUBLE_EQ(wall.step({.position_m = 0.012, .velocity_m_per_s = 0.1}), 2000.0 * 0.002 + 0.3);
+  EXPECT_DOUBLE_EQ(wall.step({.position_m = 0.008, .velocity_m_per_s = -0.1}), -(2000.0 * 0.002 + 0.3));
+}
+
 }  // namespace
 }  // namespace tactus::mechanics

@@ -1,0 +1,20 @@
+#include <tactus/cli/stability.hpp>
+#include <tactus/cli/verbs.hpp>
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+void add_stability(CLI::App& app, const std::string& command, int& status) {
+  CLI::App* verb = app.add_subcommand("stability", "How much force gain is safe, and what limits it");
+  verb->require_subcommand(1);
+  const std::string name = app.get_name();
+  add_stability_limit(*verb, name, command, status);
+  add_stability_map(*verb, name, command, status);
+  add_stability_margins(*verb, name, command, status);
+  add_stability_scorecard(*verb, name, command, status);
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,14 @@
+#include <tactus/cli/stability.hpp>
+#include <tactus/cli/stability_verb.hpp>
+
+namespace tactus::cli {
+
+void add_stability_margins(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
+  const auto report = [](const auto& request, const auto& options, const auto&) {
+    return stability::report_margins(request, options);
+  };
+  add_stability_verb(stability, "margins", "Margins, poles and gain limit of the linear loop in contact", report, name,
+                     command, status);
+}
+
+}  // namespace tactus::cli

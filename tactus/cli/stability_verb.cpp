@@ -1,0 +1,84 @@
+#include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/stability_verb.hpp>
+#include <tactus/configuration/document.hpp>
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+struct Options {
+  std::string file;
+  std::vector<std::string> set;
+  std::optional<std::string> out;
+  bool json = false;
+  stability::ReportOptions report;
+};
+
+Check run(const Options& options, const StabilityReport& report, const std::string& command) {
+  auto document = configuration::Document::load(options.file);
+  if (!document) return document.error();
+  for (const std::string& assignment : options.set) {
+    if (auto error = document->set(assignment)) return error;
+  }
+  if (options.out) {
+    if (auto error = check_writable(*options.out)) return error;
+  }
+  const simulation::Request request{.document = *std::move(document),
+                                    .variations = {},
+                                    .name = std::filesystem::path(options.file).stem().string(),
+                                    .command = command};
+  const auto outcome = [&] {
+    ProgressLine line(request.name);
+    return report(request, options.report, [&line](double done) { line.update(done); });
+  }();
+  if (!outcome) return outcome.error();
+  return write_outcome(options.out, *outcome, options.json);
+}
+
+}  // namespace
+
+void add_stability_verb(CLI::App& stability, const std::string& verb, const std::string& summary,
+                        const StabilityReport& report, const std::string& name, const std::string& command,
+                        int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* added = stability.add_subcommand(verb, summary);
+  added->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind tapping")->required();
+  added->add_option("--set", options->set, "Override one value: key=value")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  added
+      ->add_option("--friction-speed", options->report.linearisation.friction_speed_m_per_s,
+                   "Velocity amplitude of friction's describing function, in m/s; 0 leaves friction out")
+      ->check(CLI::Range(0.0, 1e6));
+  added
+      ->add_option("--linkage-amplitude", options->report.linearisation.linkage_amplitude_m,
+                   "Deflection amplitude whose chord is the linkage's stiffness, in m; 0 is the average stiffness")
+      ->check(CLI::Range(0.0, 1e6));
+  added
+      ->add_option("--preload", options->report.linearisation.preload_N,
+                   "Contact force about which the wall is linear, in N")
+      ->check(CLI::Range(1e-6, 1e6));
+  added
+      ->add_option("--uncertainty", options->report.uncertainty,
+                   "Share by which the controller's model may be wrong, 0 to 0.9")
+      ->check(CLI::Range(0.0, 0.9));
+  added->add_option("--out", options->out, "Folder for report.html, results.json and the figures")->type_name("DIR");
+  added->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  added->callback([options, report, name, &command, &status] {
+    if (const auto error = run(*options, report, command)) {
+      std::cerr << name << ": " << describe(*error) << "\n";
+      status = exit_status(*error);
+    }
+  });
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::report {
+
+/// A grid of cells, each of one class: where on a plane of two parameters what happens. Several panels over the same
+/// axes side by side, and lines that are drawn in each of them.
+struct HeatMap {
+  struct Axis {
+    std::string label;
+    std::string unit = {};
+    std::vector<double> values;  ///< at the middle of the cells, ascending, at least two; positive if logarithmic
+    bool logarithmic = false;
+  };
+  struct Class {
+    std::string name;
+    std::string colour;  ///< as `#rrggbb`
+  };
+  struct Panel {
+    std::string title;
+    std::vector<std::size_t> cells;  ///< class of each, y slow, x fast; one that does not exist stays blank
+  };
+  struct Line {
+    std::string name;
+    std::vector<double> y;  ///< one for each value of x; not finite breaks the line
+    bool dashed = false;
+    std::optional<std::size_t> panel = {};  ///< the only one that it is drawn in; else in all, and named in the legend
+  };
+  std::string title;  ///< the accessible name
+  Axis x, y;
+  std::vector<Class> classes;
+  std::vector<Panel> panels;
+  std::vector<Line> lines;
+};
+
+/// The picture as an SVG file of its own, on white. Cells of one class in a row are one stroke, so the size follows the
+/// pattern and not the number of cells. Equal maps give equal bytes.
+std::string to_svg(const HeatMap& map);
+
+}  // namespace tactus::report

@@ -1,0 +1,102 @@
+#include <tactus/signal/random.hpp>
+#include <tactus/stability/linear_element.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Dense>
+
+namespace tactus::stability {
+
+namespace {
+
+constexpr double tolerance = 1e-9;
+
+Error not_linear(const char* what) {
+  return {.code = ErrorCode::failed,
+          .parameter = {},
+          .message = std::string(what) + " does not answer as a linear one would: nothing here can judge it",
+          .place = {}};
+}
+
+}  // namespace
+
+Result<StateSpace> probe(int order, const std::function<double(double)>& step) {
+  constexpr Eigen::Index samples = 4000;
+  step(0.0);
+  Eigen::VectorXd h(samples);
+  for (Eigen::Index k = 0; k < samples; ++k) h[k] = step(k == 0 ? 1.0 : 0.0);
+  const double peak = h.cwiseAbs().maxCoeff();
+  const bool memoryless = h.tail(samples - 1).isZero(0.0);
+  const Eigen::Index n = memoryless ? 0 : order;
+
+  // h[k + n] + a₁ h[k + n − 1] + … + aₙ h[k] = 0 from k = 1 on, since the numerator has n + 1 coefficients.
+  const Eigen::Index rows = samples - n - 1;
+  Eigen::MatrixXd past(rows, n);
+  for (Eigen::Index i = 0; i < n; ++i) past.col(i) = h.segment(n - i, rows);
+  Eigen::VectorXd a(n);
+  if (n > 0) a = past.completeOrthogonalDecomposition().solve(-h.segment(n + 1, rows));
+
+  StateSpace system{.a = Eigen::MatrixXd::Zero(n, n),
+                    .b = Eigen::MatrixXd::Zero(n, 1),
+                    .c = Eigen::MatrixXd::Zero(1, n),
+                    .d = Eigen::MatrixXd::Constant(1, 1, h[0])};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    // Observer form: the states are what the output still owes to past inputs.
+    system.a(i, 0) = -a[i];
+    if (i + 1 < n) system.a(i, i + 1) = 1.0;
+    double numerator = h[i + 1];
+    for (Eigen::Index j = 0; j <= i; ++j) numerator += a[j] * h[i - j];
+    system.b(i, 0) = numerator - a[i] * h[0];
+  }
+  if (n > 0) system.c(0, 0) = 1.0;
+
+  Eigen::VectorXd state = system.b.col(0);
+  for (Eigen::Index k = 1; k < samples; ++k) {
+    const double predicted = n > 0 ? state[0] : 0.0;
+    // Written so that a NaN counts as a failure.
+    if (!(std::fabs(predicted - h[k]) <= tolerance * peak)) return not_linear("an element of a site");
+    state = (system.a * state).eval();
+  }
+  return system;
+}
+
+Result<StateSpace> probe_model(control::InducedMotionModel::Params params, Seconds dt) {
+  params.master.motor.friction_N = 0.0;
+  params.master.drum.friction_N = 0.0;
+  params.master.linkage.hysteretic_fraction = 0.0;
+  params.master.hand.quintic_stiffness_N_per_m5 = 0.0;
+  auto model = control::InducedMotionModel::make(params, dt);
+  if (!model) return model.error();
+
+  constexpr Eigen::Index samples = 2000, states = 6;
+  Eigen::MatrixXd before(states + 1, samples), after(states, samples);
+  signal::Random random(1);
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    const double force_N = random.uniform() < 0.5 ? -1.0 : 1.0;
+    const auto column = [&model] { return Eigen::Map<const Eigen::Matrix<double, states, 1>>(model->state().data()); };
+    before.col(k) << column(), force_N;
+    model->step({.motor_force_N = force_N});
+    after.col(k) = column();
+  }
+  // Positions and velocities differ by orders of magnitude: each row in units of its own largest value. Bodies that a
+  // model of lower order takes as one have equal rows; the decomposition takes the solution of least norm.
+  const Eigen::VectorXd scale = before.rowwise().lpNorm<Eigen::Infinity>();
+  const Eigen::MatrixXd scaled_before = scale.cwiseInverse().asDiagonal() * before;
+  const Eigen::MatrixXd scaled_after = scale.head(states).cwiseInverse().asDiagonal() * after;
+  auto decomposition = scaled_before.transpose().completeOrthogonalDecomposition();
+  const Eigen::MatrixXd fit = decomposition.solve(scaled_after.transpose()).transpose();
+  const double misfit = (fit * scaled_before - scaled_after).cwiseAbs().maxCoeff();
+  if (!(misfit <= tolerance)) return not_linear("the model of cancellation");
+
+  const Eigen::MatrixXd step = scale.head(states).asDiagonal() * fit * scale.cwiseInverse().asDiagonal();
+  StateSpace system{.a = step.leftCols(states),
+                    .b = step.rightCols(1),
+                    .c = Eigen::MatrixXd::Zero(1, states),
+                    .d = Eigen::MatrixXd::Zero(1, 1)};
+  system.c(0, 0) = 1.0;
+  return system;
+}
+
+}  // namespace tactus::stability

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <tactus/mechanics/cable_driven_master.hpp>
+#include <tactus/mechanics/electric_slave.hpp>
+#include <tactus/stability/linearisation.hpp>
+#include <tactus/stability/state_space.hpp>
+
+/// Linear models of the devices in continuous time, from the parameters that describe the simulated ones.
+namespace tactus::stability {
+
+/// A spring and damper from the tip to the ground: a hand, or a wall. Nobody and nothing is all zeros.
+using TipLoad = mechanics::LinearSpring::Params;
+
+/// The wall about `preload_N`, found from what the environment's law answers to small changes of depth and rate.
+TipLoad wall_load(const mechanics::Environment::Params& wall, double preload_N);
+
+/// Inputs of a device: the amplifier's command, then a force on the tip from outside, both in N and positive toward
+/// the environment.
+enum DeviceInput : Eigen::Index { command_in, tip_force_in, device_inputs };
+/// Outputs of a device: positions of motor and tip in m, velocity of the tip in m/s, and what its force sensor says
+/// about the force in N on the tip: of a slave that with which load and outside push the tip back, of a master that
+/// with which the hand pushes it forward, which is the same with the other sign. Here: pushes back.
+enum DeviceOutput : Eigen::Index { motor_out, tip_out, tip_velocity_out, sensor_out, device_outputs };
+
+/// Amplifier, motor, cable, drum, linkage and tip; the sensor as the analogue second-order low-pass that its sampled
+/// form stands for. Saturation, quantisation, noise and offset are left out.
+StateSpace linear_device(const mechanics::CableChain::Params& mechanism,
+                         const mechanics::CurrentAmplifier::Params& amplifier, double sensor_bandwidth_Hz,
+                         const TipLoad& load, const Linearisation& linearisation);
+
+}  // namespace tactus::stability

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <tactus/core/parameters.hpp>
+
+namespace tactus::stability {
+
+/// What of the nonlinear device a linear model stands for.
+struct Linearisation {
+  /// Amplitude of the velocity at which Coulomb friction is replaced by its describing function, a damper of
+  /// 4 f / (π V) to the ground, in m/s; 0 leaves friction out.
+  double friction_speed_m_per_s = 0.0;
+  /// Amplitude of the linkage's deflection whose chord is its stiffness, in m; 0 is the reference deflection, where the
+  /// chord is the described average stiffness. The loss of the loop is left out.
+  double linkage_amplitude_m = 0.0;
+  /// Contact force about which a wall with a curved law is taken as straight, in N.
+  double preload_N = 1.0;
+  static constexpr auto fields() {
+    return std::tuple{
+        field("friction_speed_m_per_s", &Linearisation::friction_speed_m_per_s, units::metre_per_second, non_negative,
+              "Velocity amplitude of the describing function of friction; 0 leaves friction out."),
+        field("linkage_amplitude_m", &Linearisation::linkage_amplitude_m, units::metre, non_negative,
+              "Deflection amplitude whose chord is the linkage's stiffness; 0 is the reference deflection."),
+        field("preload_N", &Linearisation::preload_N, units::newton, positive,
+              "Contact force about which the wall is linearised.")};
+  }
+};
+
+}  // namespace tactus::stability

@@ -1,0 +1,185 @@
+#include <tactus/stability/linear_element.hpp>
+#include <tactus/stability/loop.hpp>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace tactus::stability {
+
+namespace {
+
+Error unsupported(std::string parameter, const char* message) {
+  return {.code = ErrorCode::inconsistent, .parameter = std::move(parameter), .message = message, .place = {}};
+}
+
+Check check_supported(const control::ControlParams& control) {
+  if (control.architecture != "position-force") {
+    return unsupported("control.architecture", "linear analysis knows position-force alone: choose it");
+  }
+  const control::Crossover::Params defaults;
+  if (control.crossover.frequency_Hz != defaults.frequency_Hz) {
+    return unsupported("control.crossover.frequency_Hz", "linear analysis knows no actuator on the handle: leave it 0");
+  }
+  if (control.hand_compensation_Hz != 0.0) {
+    return unsupported("control.hand_compensation_Hz", "linear analysis knows no hand compensation: leave it 0");
+  }
+  if (control.operator_estimate == control::OperatorEstimate::online) {
+    return unsupported("control.operator_estimate", "linear analysis knows no estimate that adapts: choose off");
+  }
+  return std::nullopt;
+}
+
+/// A system of one input and one output that is stepped within another tick.
+struct Part {
+  const StateSpace& system;
+  Eigen::Index at;  ///< of its first state among those of the whole
+
+  [[nodiscard]] double output(const Eigen::VectorXd& state, double input) const {
+    return (system.c * state.segment(at, system.states()))(0) + system.d(0, 0) * input;
+  }
+  void advance(const Eigen::VectorXd& state, double input, Eigen::VectorXd& next) const {
+    next.segment(at, system.states()) = system.a * state.segment(at, system.states()) + system.b.col(0) * input;
+  }
+};
+
+template <class Element>
+Result<StateSpace> probe_element(int order, const typename Element::Params& params, Seconds dt) {
+  auto element = Element::make(params, dt);
+  if (!element) return element.error();
+  return probe(order, [&element](double input) { return element->step(input); });
+}
+
+}  // namespace
+
+Eigen::Index ticks_of(const simulation::Channel::Params& channel, double tick_s) {
+  return static_cast<Eigen::Index>(std::lround(channel.delay_s / tick_s));
+}
+
+Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params) {
+  // What cannot be simulated is not analysed either, so that both refuse alike.
+  if (const auto teleoperator = simulation::Teleoperator::make(params, 0.0); !teleoperator) return teleoperator.error();
+  const control::ControlParams& control = params.control;
+  if (auto error = check_supported(control)) return *std::move(error);
+  const Seconds tick{simulation::Clock::make(params.servo, params.plant)->tick_s};
+
+  const auto model = probe_model({.master = control.model,
+                                  .fidelity = control.cancellation_model,
+                                  .step = control.cancellation_step,
+                                  .friction = control.cancellation_friction},
+                                 tick);
+  if (!model) return model.error();
+  const auto force_filter = probe_element<control::ShapingFilter>(2, control.force_filter, tick);
+  if (!force_filter) return force_filter.error();
+  const auto command_filter = probe_element<control::ShapingFilter>(2, control.command_filter, tick);
+  if (!command_filter) return command_filter.error();
+  const auto damping = probe_element<control::LocalDamping>(1, control.damping, tick);
+  if (!damping) return damping.error();
+  auto servo = probe_element<control::ServoPd>(1, control.slave, tick);
+  if (!servo) return servo.error();
+
+  const bool cancels = control.cancellation == control::CancellationMode::on;
+  const Part force{*force_filter, 0};
+  const Part rate{*damping, force.at + force.system.states()};
+  const Part command{*command_filter, rate.at + rate.system.states()};
+  const Part belief{*model, command.at + command.system.states()};
+  const Eigen::Index states = belief.at + (cancels ? belief.system.states() : 0);
+  LinearSites sites;
+  sites.master =
+      assemble(states, site_inputs, site_outputs, [&](const auto& state, const auto& input, auto& next, auto& output) {
+        // Damping's force counts as displayed, so it drives the model too.
+        const double motor_N = rate.output(state, input[measured_in]) - force.output(state, input[arrived_force_in]);
+        const double induced_m = cancels ? belief.output(state, 0.0) : 0.0;
+        const double intended_m = input[measured_in] - induced_m;
+        output[motor_force_out] = motor_N;
+        output[message_out] = control.position_scale * command.output(state, intended_m);
+        force.advance(state, input[arrived_force_in], next);
+        rate.advance(state, input[measured_in], next);
+        command.advance(state, intended_m, next);
+        if (cancels) belief.advance(state, motor_N, next);
+      });
+  sites.slave = *std::move(servo);
+  sites.modelled = *model;
+  return sites;
+}
+
+Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Linearisation& linearisation) {
+  if (auto error = validate(linearisation)) return *std::move(error);
+  const auto sites = linear_sites(params);
+  if (!sites) return sites.error();
+  const auto clock = simulation::Clock::make(params.servo, params.plant);
+  const double late_s = clock->late_substeps * clock->substep_s;
+
+  const StateSpace master = linear_device(params.master.mechanism, params.master.amplifier,
+                                          params.master.force_sensor.bandwidth_Hz, params.person.grip, linearisation);
+  const StateSpace slave =
+      linear_device(params.slave.mechanism, params.slave.amplifier, params.slave.force_sensor.bandwidth_Hz,
+                    wall_load(params.environment, linearisation.preload_N), linearisation);
+  const StateSpace master_plant = sampled(one_channel(master, command_in, motor_out), clock->tick_s, late_s);
+  const StateSpace slave_plant = sampled(
+      {.a = slave.a, .b = slave.b.col(command_in), .c = slave.c, .d = slave.d.col(command_in)}, clock->tick_s, late_s);
+
+  Loop loop;
+  loop.tick_s = clock->tick_s;
+  loop.force_gain = params.control.force_gain;
+  loop.position_scale = params.control.position_scale;
+  loop.delay_ticks =
+      ticks_of(params.channel.to_slave, loop.tick_s) + ticks_of(params.channel.to_master, loop.tick_s) + 1;
+
+  // No plant answers within its tick, so each is read first.
+  const Eigen::Index motors = master_plant.states(), sited = sites->master.states();
+  loop.master = assemble(motors + sited, 1, 1, [&](const auto& state, const auto& input, auto& next, auto& output) {
+    const Eigen::VectorXd plant = state.head(motors), site = state.tail(sited);
+    const Eigen::Vector2d seen{(master_plant.c * plant)(0), input[0]};
+    const Eigen::VectorXd said = sites->master.c * site + sites->master.d * seen;
+    output[0] = said[message_out];
+    next.head(motors) = master_plant.a * plant + master_plant.b.col(0) * said[motor_force_out];
+    next.tail(sited) = sites->master.a * site + sites->master.b * seen;
+  });
+  const Part feedback{sites->slave, slave_plant.states()};
+  loop.slave = assemble(slave_plant.states() + feedback.system.states(), 1, 1,
+                        [&](const auto& state, const auto& input, auto& next, auto& output) {
+                          const Eigen::VectorXd plant = state.head(slave_plant.states());
+                          const Eigen::VectorXd measured = slave_plant.c * plant;
+                          const double error_m = input[0] - measured[motor_out];
+                          output[0] = measured[sensor_out];
+                          next.head(slave_plant.states()) =
+                              slave_plant.a * plant + slave_plant.b.col(0) * feedback.output(state, error_m);
+                          feedback.advance(state, error_m, next);
+                        });
+  loop.induced = master_plant;
+  loop.modelled = sites->modelled;
+  return loop;
+}
+
+std::complex<double> Loop::at(double frequency_rad_per_s) const {
+  const double angle = frequency_rad_per_s * tick_s;
+  const std::complex<double> z = std::polar(1.0, angle);
+  // The master gives way to the force, so its response is negative and the feedback that it closes is too.
+  return -force_gain * response(master, z)(0, 0) * response(slave, z)(0, 0) *
+         std::polar(1.0, -angle * static_cast<double>(delay_ticks));
+}
+
+StateSpace Loop::closed(double gain) const {
+  const Eigen::Index masters = master.states(), slaves = slave.states();
+  const Eigen::Index states = masters + slaves + delay_ticks;
+  return assemble(states, 0, 0, [&](const auto& state, const auto&, auto& next, auto&) {
+    const Eigen::VectorXd q = state.head(masters), s = state.segment(masters, slaves);
+    // The oldest force in the delay, which stands last, arrives.
+    const double arrived_N = gain * state[states - 1];
+    const double command_m = (master.c * q)(0) + master.d(0, 0) * arrived_N;
+    next.head(masters) = master.a * q + master.b.col(0) * arrived_N;
+    next.segment(masters, slaves) = slave.a * s + slave.b.col(0) * command_m;
+    next[masters + slaves] = (slave.c * s)(0) + slave.d(0, 0) * command_m;
+    for (Eigen::Index i = masters + slaves + 1; i < states; ++i) next[i] = state[i - 1];
+  });
+}
+
+double mass_ratio(const simulation::Teleoperator::Params& params) {
+  const auto moving_kg = [](const mechanics::CableChain::Params& chain) {
+    return chain.motor.mass_kg + chain.drum.mass_kg + chain.tip.mass_kg;
+  };
+  return moving_kg(params.master.mechanism) / moving_kg(params.slave.mechanism);
+}
+
+}  // namespace tactus::stability

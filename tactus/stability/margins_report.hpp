@@ -1,0 +1,19 @@
+#pragma once
+
+#include <tactus/simulation/experiment.hpp>
+#include <tactus/stability/linearisation.hpp>
+
+/// What the verbs of `tactus stability` print, from an experiment file of the kind `tapping`.
+namespace tactus::stability {
+
+/// What a person may choose beside the file.
+struct ReportOptions {
+  Linearisation linearisation;
+  double uncertainty = 0.2;  ///< share by which the controller's model may be wrong, for the small-gain bound
+};
+
+/// Margins, poles and gain limit of the linear loop, with Bode, Nyquist and Nichols figures. Errors: those of reading
+/// the file and of `make_loop`, with the place of the value that caused them. No variations are looked at.
+Result<simulation::Outcome> report_margins(const simulation::Request& request, const ReportOptions& options);
+
+}  // namespace tactus::stability

@@ -1,0 +1,160 @@
+#include <tactus/report/text.hpp>
+#include <tactus/simulation/presentation.hpp>
+#include <tactus/simulation/tapping.hpp>
+#include <tactus/stability/scorecard.hpp>
+#include <tactus/stability/scorecard_report.hpp>
+#include <tactus/stability/z_width.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus::stability {
+
+namespace {
+
+constexpr double turn = 2.0 * std::numbers::pi;
+
+std::string number_or_none(double value) { return std::isfinite(value) ? report::number(value, 4) : "none"; }
+
+report::Table card_table(const Scorecard& card, const simulation::Teleoperator::Params& params) {
+  report::Table table(
+      {{"what", "", report::Column::Align::left}, {"value"}, {"unit", "", report::Column::Align::left}, {"at", "Hz"}},
+      "Scorecard of the master");
+  const auto row = [&table](const char* what, double value, const char* unit, double at_Hz = 0.0) {
+    table.add_row({what, number_or_none(value), unit, at_Hz > 0.0 ? report::number(at_Hz, 4) : ""});
+  };
+  row("largest stable force gain", card.limit.force_gain, "", card.limit.frequency_rad_per_s / turn);
+  row("the same without cancellation", card.uncancelled.force_gain, "", card.uncancelled.frequency_rad_per_s / turn);
+  row("Daniel and McAree: mass of master over slave", card.mass_ratio, "");
+  row("force bandwidth to the hand", card.force_bandwidth_Hz.value_or(INFINITY), "Hz");
+  row("largest hand force over motor force", card.force_peak, "", card.force_peak_Hz);
+  row("effort in free motion", card.effort_2_Hz_N_s_per_m, "N s/m", 2.0);
+  row("effort in free motion", card.effort_10_Hz_N_s_per_m, "N s/m", 10.0);
+  const double tick_s = 1.0 / params.servo.rate_Hz;
+  const auto& chain = params.master.mechanism;
+  row("virtual wall that damping of the hand makes passive (Colgate, Brown)",
+      passive_stiffness_N_per_m(params.person.grip.damping_N_s_per_m, 0.0, tick_s), "N/m");
+  row("virtual wall that friction lets the encoder hide (Abbott, Okamura)",
+      quantised_stiffness_N_per_m(params.person.grip.damping_N_s_per_m, tick_s,
+                                  chain.motor.friction_N + chain.drum.friction_N, params.master.encoder.resolution_m),
+      "N/m");
+  row("virtual wall that is stable with the computation delay (Gil, Hulin)",
+      stable_stiffness_N_per_m(params.person.grip.damping_N_s_per_m, 0.0, tick_s, params.servo.computation_delay_s),
+      "N/m");
+  return table;
+}
+
+report::Table sensitivity_table(const Scorecard& card) {
+  constexpr std::size_t most = 15;
+  report::Table table({{"10 % more of", "", report::Column::Align::left}, {"gain limit", "%"}},
+                      "What changes the gain limit most");
+  for (std::size_t i = 0; i < std::min(most, card.sensitivities.size()); ++i) {
+    table.add_row({card.sensitivities[i].key, report::number(100.0 * card.sensitivities[i].limit_change, 3)});
+  }
+  return table;
+}
+
+std::string limited_by(const Scorecard& card) {
+  if (!std::isfinite(card.limit.force_gain)) return "No force gain makes the linear loop unstable.\n";
+  if (card.limit.force_gain == 0.0) return "One of the devices is unstable without any force between them.\n";
+  std::string text = "Limited at " + report::number(card.limit.frequency_rad_per_s / turn, 4) + " Hz";
+  const auto device = std::find_if(card.sensitivities.begin(), card.sensitivities.end(),
+                                   [](const Sensitivity& s) { return s.key.starts_with("master.mechanism."); });
+  if (device != card.sensitivities.end()) text += ", of the master mostly by " + device->key;
+  return text + ".\n";
+}
+
+report::Figure two_port_figure(const TwoPort& port, const simulation::Teleoperator::Params& params,
+                               const Linearisation& linearisation) {
+  const TipLoad wall = wall_load(params.environment, linearisation.preload_N);
+  std::vector<double> hertz, free, contact, itself, llewellyn, scattering;
+  const double highest_Hz = 0.45 * params.servo.rate_Hz;
+  for (double f = 0.5; f < highest_Hz; f *= 1.015) {
+    const HybridMatrix h = port.at(turn * f);
+    const std::complex<double> environment =
+        wall.damping_N_s_per_m + wall.stiffness_N_per_m / std::complex<double>(0.0, turn * f);
+    hertz.push_back(f);
+    free.push_back(std::abs(transmitted_impedance(h, 0.0)));
+    contact.push_back(std::abs(transmitted_impedance(h, environment)));
+    itself.push_back(std::abs(environment));
+    llewellyn.push_back(llewellyn_index(h));
+    scattering.push_back(scattering_norm(h, std::max(params.person.grip.damping_N_s_per_m, 1.0)));
+  }
+  const auto logarithmic = report::Axis::Scale::logarithmic;
+  const report::Axis frequency{.label = "frequency", .unit = "Hz", .scale = logarithmic};
+  report::Figure figure{.title = "Two-port",
+                        .caption =
+                            "What the hand feels in free motion and on the wall, beside the wall itself: "
+                            "transparent is where they agree. Stable between all passive ends where "
+                            "Llewellyn's index is at least 1, passive where the scattering norm is at most 1.",
+                        .columns = 1,
+                        .panels = {}};
+  figure.panels.push_back({"Transmitted impedance",
+                           frequency,
+                           {.label = "impedance", .unit = "N s/m", .scale = logarithmic},
+                           {{"free", hertz, free, 0},
+                            {"on the wall", hertz, contact, 1},
+                            {"the wall", hertz, itself, 2, report::Dash::dashed}},
+                           {}});
+  figure.panels.push_back({"Absolute stability",
+                           frequency,
+                           {.label = "Llewellyn's index", .lower = -1.5, .upper = 3.0},
+                           {{"", hertz, llewellyn, 3}},
+                           {{.at = 1.0, .label = "bound"}}});
+  figure.panels.push_back({"Passivity",
+                           frequency,
+                           {.label = "scattering norm", .scale = logarithmic},
+                           {{"", hertz, scattering, 4}},
+                           {{.at = 1.0, .label = "bound"}}});
+  return figure;
+}
+
+}  // namespace
+
+Result<simulation::Outcome> report_scorecard(const simulation::Request& request, const ReportOptions& options,
+                                             const simulation::Progress& progress) {
+  const auto params = request.document.read<simulation::TappingParams>();
+  if (!params) return params.error();
+  const auto card = score(*params, options.linearisation, progress);
+  if (!card) return request.document.locate(card.error());
+  const auto port = TwoPort::make(*params, options.linearisation);
+  if (!port) return request.document.locate(port.error());
+
+  const report::Table table = card_table(*card, *params), changes = sensitivity_table(*card);
+  const report::Figure figure = two_port_figure(*port, *params, options.linearisation);
+  const std::string limited = limited_by(*card);
+  const auto number = [](double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+  };
+  nlohmann::ordered_json document{{"experiment", request.name},
+                                  {"gain_limit", number(card->limit.force_gain)},
+                                  {"gain_limit_at_Hz", card->limit.frequency_rad_per_s / turn},
+                                  {"gain_limit_without_cancellation", number(card->uncancelled.force_gain)},
+                                  {"mass_ratio", card->mass_ratio},
+                                  {"force_bandwidth_Hz", number(card->force_bandwidth_Hz.value_or(INFINITY))},
+                                  {"force_peak", card->force_peak},
+                                  {"force_peak_Hz", card->force_peak_Hz},
+                                  {"effort_2_Hz_N_s_per_m", card->effort_2_Hz_N_s_per_m},
+                                  {"effort_10_Hz_N_s_per_m", card->effort_10_Hz_N_s_per_m},
+                                  {"sensitivities", nlohmann::ordered_json::object()}};
+  for (const Sensitivity& s : card->sensitivities) document["sensitivities"][s.key] = number(s.limit_change);
+
+  report::Page page(request.name + ": scorecard of the master");
+  page.paragraph(
+      "How much force gain the master allows before its induced motion closes an unstable loop, how well its "
+      "force reaches the hand, and what it costs to move it. Linear, in contact.");
+  page.table(table);
+  page.paragraph(limited);
+  page.table(changes);
+  page.figure(figure);
+  simulation::add_provenance(page, request, configuration::to_toml(*params));
+  return simulation::Outcome{.text = table.to_text() + limited + changes.to_text(),
+                             .json = document.dump(2) + "\n",
+                             .html = page.to_html(),
+                             .figures = {figure}};
+}
+
+}  // namespace tactus::stability

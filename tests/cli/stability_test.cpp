@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <string>
+
+#include "tests/cli/command.hpp"
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace tactus::cli {
+namespace {
+
+using Stability = Command;
+using Json = nlohmann::json;
+
+const std::string tapping = std::string(TACTUS_EXPERIMENT_FOLDER) + "/tapping.toml";
+
+TEST_F(Stability, the_gain_margin_times_the_gain_is_the_gain_limit_and_a_report_is_left) {
+  const Outcome outcome = tactus({"stability", "margins", tapping, "--set", "control.cancellation=off", "--set",
+                                  "control.force_gain=0.2", "--json", "--out", "results"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json found = Json::parse(outcome.out);
+  EXPECT_NEAR(found["gain_margin"].get<double>() * 0.2, found["gain_limit"].get<double>(), 1e-9);
+  EXPECT_EQ(found["stable"], 1.0);
+  EXPECT_EQ(found["unstable_poles"], 0.0);
+  const auto left = files();
+  EXPECT_NE(std::find(left.begin(), left.end(), "results/report.html"), left.end());
+}
+
+TEST_F(Stability, a_gain_beyond_the_limit_has_two_unstable_poles) {
+  const Outcome outcome = tactus({"stability", "margins", tapping, "--set", "control.cancellation=off", "--set",
+                                  "control.force_gain=0.5", "--json"});
+  const Json found = Json::parse(outcome.out);
+  EXPECT_LT(found["gain_limit"].get<double>(), 0.5);
+  EXPECT_EQ(found["unstable_poles"], 2.0);
+}
+
+TEST_F(Stability, the_limit_in_time_of_the_bonded_rig_stands_beside_the_linear_one) {
+  const Outcome outcome =
+      tactus({"stability", "limit", tapping, "--set", "control.cancellation=off", "--set", "task.taps=1", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json limits = Json::parse(outcome.out)["limits"];
+  ASSERT_EQ(limits.size(), 5U);
+  const double linear = limits[0]["force_gain"], bonded = limits[1]["force_gain"];
+  EXPECT_NEAR(bonded, linear, 0.02 * linear);
+}
+
+TEST_F(Stability, a_scorecard_says_what_changes_the_limit) {
+  const Outcome outcome = tactus({"stability", "scorecard", tapping, "--set", "control.cancellation=off", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json card = Json::parse(outcome.out);
+  // Scaling the command by 1.1 takes the limit down by as much, exactly.
+  EXPECT_NEAR(card["sensitivities"]["control.position_scale"].get<double>(), 1.0 / 1.1 - 1.0, 1e-9);
+  EXPECT_GT(card["force_bandwidth_Hz"].get<double>(), 20.0);
+}
+
+TEST_F(Stability, what_cannot_be_judged_is_refused_at_its_place) {
+  const std::string file =
+      write("wave.toml", "[task]\nkind = \"tapping\"\n[control]\narchitecture = \"wave-variables\"\n");
+  for (const std::string verb : {"margins", "limit", "scorecard"}) {
+    const Outcome outcome = tactus({"stability", verb, file, "--out", "results"});
+    EXPECT_EQ(outcome.status, 2) << verb;
+    EXPECT_NE(outcome.err.find("wave.toml:4"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("control.architecture"), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(files(), std::vector<std::string>{"wave.toml"});
+  EXPECT_EQ(tactus({"stability"}).status, 2);
+  EXPECT_EQ(tactus({"stability", "margins", tapping, "--uncertainty", "2"}).status, 2);
+}
+
+}  // namespace
+}  // namespace tactus::cli

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <tactus/simulation/model_mismatch.hpp>
+#include <tactus/stability/bonded_run.hpp>
+
+/// The rig of the experiment file without anything that is not linear.
+inline tactus::simulation::Teleoperator::Params linear_rig() {
+  tactus::simulation::Teleoperator::Params params;
+  params.slave.force_sensor.bandwidth_Hz = 1000.0;
+  params.control.slave.derivative_N_s_per_m = 0.65;
+  params.environment = {.stiffness_N_per_m = 40000.0, .damping_N_s_per_m = 3.0};
+  return tactus::stability::linear_version(params);
+}
+
+/// Another mass of master and hand in the controller's model.
+inline void misjudge_mass(tactus::simulation::Teleoperator::Params& params, double factor) {
+  params.control.model = tactus::simulation::mismatched(params.control.model, {.mass = factor});
+}
