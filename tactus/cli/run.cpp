@@ -1,6 +1,8 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
+#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/simulation/experiment.hpp>
 
@@ -9,6 +11,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -24,6 +28,8 @@ struct RunOptions {
   std::vector<std::string> vary;
   std::optional<std::string> out;
   bool json = false;
+  bool ros2 = false;
+  std::string name_space = "tactus";
 };
 
 Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
@@ -49,6 +55,28 @@ Result<simulation::Request> make_request(const RunOptions& options, const std::s
                              .command = command};
 }
 
+Error refuse_ros2(std::string message) {
+  return {.code = ErrorCode::inconsistent, .parameter = {}, .message = std::move(message), .place = "--ros2"};
+}
+
+Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request& request, std::string_view kind) {
+  if (kind != "tapping") {
+    return refuse_ros2("an experiment of kind " + std::string(kind) +
+                       " cannot be run in real time: choose one of kind tapping");
+  }
+  if (!request.variations.empty()) {
+    return refuse_ros2("there is one teleoperator at a time: write --set in place of --vary");
+  }
+  Ros2Options session{.name_space = options.name_space};
+  if (options.out) session.log_folder = std::filesystem::path(*options.out) / "log";
+  const auto output = run_ros2_session(request, session, options.json);
+  if (!output) return output.error();
+  std::cout << *output;
+  if (auto error = flush_standard_output()) return error;
+  if (session.log_folder) (options.json ? std::cerr : std::cout) << "Log: " << session.log_folder->string() << "\n";
+  return std::nullopt;
+}
+
 Check run(const RunOptions& options, const std::string& command) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
@@ -57,6 +85,7 @@ Check run(const RunOptions& options, const std::string& command) {
   if (options.out) {
     if (auto error = check_writable(*options.out)) return error;
   }
+  if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind());
 
   Result<simulation::Outcome> outcome = [&] {
     ProgressLine line(request->name);
@@ -91,6 +120,13 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--out", options->out, "Folder for report.html, results.json, the figures and the log")
       ->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  CLI::Option* const ros2 =
+      verb->add_flag("--ros2", options->ros2,
+                     "Run the taps in real time among ROS 2 nodes: publish under CRTK names, take operator/servo_jp");
+  verb->add_option("--namespace", options->name_space, "Namespace of the ROS 2 topics")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->needs(ros2);
   verb->callback([options, &app, &command, &status] {
     if (const auto error = run(*options, command)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";
