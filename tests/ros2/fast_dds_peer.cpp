@@ -22,11 +22,6 @@
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 
-/// Fast DDS 2.9 as Debian builds it frees an object of its own with the size of the base class. Read by the address
-/// sanitizer, unused without it.
-extern "C" const char* __asan_default_options();                               // NOLINT: the name is not ours
-const char* __asan_default_options() { return "new_delete_type_mismatch=0"; }  // NOLINT
-
 namespace tactus::ros2::test {
 
 namespace {
