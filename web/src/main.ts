@@ -37,7 +37,7 @@ element('loops').append(...views.map((view) => view.element));
 
 const closeUp = new Plot(descriptions.closeUp);
 const energy = new Plot(descriptions.energy);
-const plots = [left.positions, right.positions, left.forces, right.forces, closeUp, energy];
+const plots = [closeUp, energy, left.positions, right.positions, left.forces, right.forces];
 element('plots').append(...plots.map((plot) => plot.element));
 
 showConnection(session);

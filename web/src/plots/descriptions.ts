@@ -21,7 +21,7 @@ export const positions: PlotDescription = {
   title: 'Positions',
   note: 'Induced: what the force alone did to the handle. Intended: what is left, your own motion.',
   yLabel: 'mm',
-  base: [-2, 12],
+  base: [-2, 15],
   height: 190,
   lines: [
     { label: 'robot', colour: 'slave' },
@@ -64,7 +64,7 @@ export const closeUp: PlotDescription = {
 export const energy: PlotDescription = {
   ...overTime,
   title: 'Energy given to your hand',
-  note: 'A real wall never gives more than it took. A line that keeps climbing is the buzz at work.',
+  note: 'Since the contact began. A real wall never gives; a line that keeps climbing is the buzz at work.',
   yLabel: 'mJ',
   base: [-2, 2],
   height: 190,

@@ -107,7 +107,7 @@ function drawWall(context: Context, width: number, scale: Scale, wall_mm: number
   line(context, x, top, x, axisTop);
   context.lineWidth = 1;
   context.setLineDash([3, 5]);
-  line(context, x, 24, x, top);
+  line(context, x, masterLane - 34, x, top);
   context.setLineDash([]);
   const text = 'wall';
   context.font = font;

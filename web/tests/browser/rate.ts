@@ -1,3 +1,4 @@
+import { cpus, loadavg } from 'node:os';
 import type { Page } from 'playwright-core';
 import { expect } from 'vitest';
 
@@ -5,7 +6,7 @@ import { expect } from 'vitest';
 export interface Rate {
   readonly medianInterval_ms: number;
   readonly picturesPerSecond: number;
-  /** Time of the page's own thread for one picture: scripts, style, layout and drawing commands. */
+  /** Processor time of the page's process for one picture: scripts, style, layout, drawing. */
   readonly work_ms: number;
 }
 
@@ -13,11 +14,11 @@ export interface Rate {
 export async function measureRate(page: Page, seconds: number): Promise<Rate> {
   const session = await page.context().newCDPSession(page);
   await session.send('Performance.enable');
-  const taskTime = async (): Promise<number> => {
+  const processorTime = async (): Promise<number> => {
     const { metrics } = await session.send('Performance.getMetrics');
-    return metrics.find(({ name }) => name === 'TaskDuration')!.value;
+    return metrics.find(({ name }) => name === 'ProcessTime')!.value;
   };
-  const before_s = await taskTime();
+  const before_s = await processorTime();
   const intervals = await page.evaluate(
     (length_ms) =>
       new Promise<number[]>((resolve) => {
@@ -34,7 +35,7 @@ export async function measureRate(page: Page, seconds: number): Promise<Rate> {
       }),
     1000 * seconds,
   );
-  const work_ms = (1000 * ((await taskTime()) - before_s)) / intervals.length;
+  const work_ms = (1000 * ((await processorTime()) - before_s)) / intervals.length;
   const sorted = [...intervals].sort((a, b) => a - b);
   return {
     medianInterval_ms: sorted[Math.floor(sorted.length / 2)]!,
@@ -43,11 +44,20 @@ export async function measureRate(page: Page, seconds: number): Promise<Rate> {
   };
 }
 
+/** Whether so much else runs that times say nothing of the page. */
+export function machineIsBusy(): boolean {
+  return loadavg()[0]! > 2.5 * cpus().length;
+}
+
+/** Not judged on a machine that is busy with other work; it says so then. */
 export function expectSixtyHertz(rate: Rate): void {
+  const busy = machineIsBusy();
   console.log(
     `${rate.picturesPerSecond.toFixed(1)} pictures a second, median interval ${rate.medianInterval_ms.toFixed(1)} ms, ` +
-      `${rate.work_ms.toFixed(1)} ms of work each`,
+      `${rate.work_ms.toFixed(1)} ms of work each` +
+      (busy ? '; the machine is busy with other work, so this is not judged' : ''),
   );
+  if (busy) return;
   expect(rate.medianInterval_ms).toBeLessThan(17.5);
   expect(rate.work_ms).toBeLessThan(1000 / 60);
 }

@@ -19,13 +19,13 @@ export class MockHand {
   tick(now_s: number): void {
     if (this.tapAt_s !== undefined) this.position_m = tapPath(now_s - this.tapAt_s);
     else this.position_m += (this.asked_m - this.position_m) * Math.min(1, tick_s / 0.02);
-    if (this.tapAt_s !== undefined && now_s - this.tapAt_s > 1.6) this.tapAt_s = undefined;
+    if (this.tapAt_s !== undefined && now_s - this.tapAt_s > 2.6) this.tapAt_s = undefined;
   }
 }
 
 function tapPath(time_s: number): number {
   const depth = wall_m + 0.002;
-  return depth * (minimumJerk(time_s / 0.15) - minimumJerk((time_s - 1) / 0.4));
+  return depth * (minimumJerk(time_s / 0.15) - minimumJerk((time_s - 2) / 0.4));
 }
 
 function minimumJerk(share: number): number {

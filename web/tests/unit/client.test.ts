@@ -10,7 +10,7 @@ let client: FoxgloveClient;
 let connections: Connection[];
 let notices: string[];
 
-const until = (check: () => void) => vi.waitFor(check, { timeout: 4000, interval: 20 });
+const until = (check: () => void) => vi.waitFor(check, { timeout: 20_000, interval: 20 });
 
 beforeEach(async () => {
   server = await MockServer.start();
