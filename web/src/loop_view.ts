@@ -34,6 +34,7 @@ export class LoopView {
   private readonly handle: HTMLElement;
   private readonly verdict = new SteadyVerdict();
   private textAt_s = -Infinity;
+  private textIsDue = false;
   private peak_N = 0;
   private width = 0;
 
@@ -70,9 +71,11 @@ export class LoopView {
   /** Draws everything as it is now. */
   draw(now_s: number, plotsToo: boolean, hint: boolean): void {
     this.width = fitCanvas(this.canvas, this.context);
+    this.textIsDue = now_s - this.textAt_s >= textEvery_s;
+    if (this.textIsDue) this.textAt_s = now_s;
     this.drawVerdict(now_s);
-    this.drawMeter(now_s);
-    this.drawHand(now_s, hint);
+    this.drawMeter();
+    this.drawHand(hint);
     if (plotsToo) this.drawPlots(now_s);
   }
 
@@ -90,7 +93,8 @@ export class LoopView {
   }
 
   private drawVerdict(now_s: number): void {
-    const { verdict, word, sentence } = this.verdict.update(this.loop.state, now_s);
+    const { verdict, word, sentence, measured } = this.verdict.update(this.loop.state, now_s);
+    if (this.textIsDue) this.find('.measured').textContent = measured;
     const element = this.find('.verdict');
     if (this.element.dataset.verdict === verdict && element.dataset.sentence === sentence) return;
     this.element.dataset.verdict = verdict;
@@ -100,7 +104,7 @@ export class LoopView {
     element.querySelector('span')!.textContent = sentence;
   }
 
-  private drawMeter(now_s: number): void {
+  private drawMeter(): void {
     const { trace } = this.loop;
     const [low, high] = magnitudes(trace.extremes(signalIndex('hand_force_n'), trace.latest - blur_s));
     this.peak_N = Math.max(high, this.peak_N * 0.985);
@@ -108,15 +112,14 @@ export class LoopView {
     this.find('.meter-level').style.transform = `scaleX(${share(low)})`;
     this.find('.meter-range').style.transform = `translateX(${100 * share(low)}%) scaleX(${Math.max(0.004, share(high) - share(low))})`;
     this.find('.meter-peak').style.transform = `translateX(${100 * share(this.peak_N)}%)`;
-    if (now_s - this.textAt_s < textEvery_s) return;
-    this.textAt_s = now_s;
+    if (!this.textIsDue) return;
     const text = `${high.toFixed(2)} N`;
     this.find('.meter-text').textContent = text;
     this.find('.meter').setAttribute('aria-valuenow', high.toFixed(2));
     this.find('.meter').setAttribute('aria-valuetext', text);
   }
 
-  private drawHand(now_s: number, hint: boolean): void {
+  private drawHand(hint: boolean): void {
     const { state, trace } = this.loop;
     const hand_m = this.hand.engaged ? this.hand.position_m : state.hand_position_m;
     const recent = (name: SignalName, since_s: number): [number, number] =>
@@ -135,11 +138,10 @@ export class LoopView {
     });
     const x = scaleFor(this.width).x((master_mm[0] + master_mm[1]) / 2);
     this.handle.style.transform = `translateX(${x.toFixed(1)}px)`;
-    this.describeHandle(hand_m, now_s);
+    if (this.textIsDue) this.describeHandle(hand_m);
   }
 
-  private describeHandle(hand_m: number, now_s: number): void {
-    if (this.textAt_s !== now_s) return; // as often as the meter's text
+  private describeHandle(hand_m: number): void {
     const toWall_mm = 1e3 * (this.loop.state.wall_position_m - hand_m);
     const where = toWall_mm >= 0 ? `${toWall_mm.toFixed(1)} mm before the wall` : `${(-toWall_mm).toFixed(1)} mm into the wall`;
     this.handle.setAttribute('aria-valuenow', (1e3 * hand_m).toFixed(1));

@@ -21,7 +21,7 @@ export const positions: PlotDescription = {
   title: 'Positions',
   note: 'Induced: what the force alone did to the handle. Intended: what is left, your own motion.',
   yLabel: 'mm',
-  base: [-2, 15],
+  base: [-2, 18],
   height: 190,
   lines: [
     { label: 'robot', colour: 'slave' },

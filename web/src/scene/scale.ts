@@ -1,8 +1,6 @@
-import { highest_m, lowest_m } from '../operator/hand';
-
-/** The stretch of the axis that the scene shows, in mm: the reach of the hand and a margin. */
-export const first_mm = 1e3 * lowest_m - 1;
-export const last_mm = 1e3 * highest_m + 1.5;
+/** The stretch of the axis that the scene shows, in mm: the reach of the visitor's hand, and that of the scripted tap. */
+export const first_mm = -6;
+export const last_mm = 19;
 
 export interface Scale {
   readonly pixelsPerMillimetre: number;

@@ -5,6 +5,8 @@ export interface Judgement {
   readonly verdict: Verdict;
   readonly word: string;
   readonly sentence: string;
+  /** What the server measured, in its words. It changes with every picture, so it is shown and not read aloud. */
+  readonly measured: string;
 }
 
 const words: Readonly<Record<Verdict, readonly [string, string]>> = {
@@ -17,8 +19,9 @@ const words: Readonly<Record<Verdict, readonly [string, string]>> = {
 
 export function judgement(state: Pick<LoopState, 'verdict' | 'cause'>): Judgement {
   const [word, sentence] = words[state.verdict];
-  const cause = state.cause === '' || state.verdict === 'free' ? '' : ` ${sentenceCase(state.cause)}`;
-  return { verdict: state.verdict, word, sentence: sentence + cause };
+  const cause = state.cause === '' || state.verdict === 'free' ? '' : sentenceCase(state.cause);
+  if (state.verdict === 'stopped') return { verdict: state.verdict, word, sentence: `${sentence} ${cause}`, measured: '' };
+  return { verdict: state.verdict, word, sentence, measured: cause };
 }
 
 function sentenceCase(text: string): string {

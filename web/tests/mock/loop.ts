@@ -72,6 +72,11 @@ export class MockLoop {
     return this.rings ? 'rings' : 'settled';
   }
 
+  get cause(): string {
+    if (this.verdict !== 'rings') return this.stopped;
+    return `still loud ${(1000 * (this.time_s - this.touch_s)).toFixed(0)} ms after the touch`;
+  }
+
   private get rings(): boolean {
     return this.settings.forceGain > (settlesUpTo[this.settings.method] ?? Infinity);
   }

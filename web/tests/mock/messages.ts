@@ -80,7 +80,7 @@ export function stateMessage(time_s: number, hand_m: number, loop: MockLoop, las
     .float64(loop.energy_J)
     .bool(loop.inContact)
     .string(loop.verdict)
-    .string(loop.stopped)
+    .string(loop.cause)
     .float64(1)
     .uint64(dropped)
     .finish();
