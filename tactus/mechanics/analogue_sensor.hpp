@@ -52,6 +52,9 @@ class AnalogueSensor {
     noise_ = signal::Random(static_cast<std::uint64_t>(settings_.seed));
   }
 
+  /// The analogue part as it stands, for sweeps.
+  [[nodiscard]] const signal::SecondOrderSection<double>& section() const noexcept { return filter_.section(); }
+
  private:
   AnalogueSensor(const Settings& settings, const signal::SecondOrderFilter& filter)
       : settings_(settings), filter_(filter) {}

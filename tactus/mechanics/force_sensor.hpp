@@ -56,8 +56,8 @@ class ForceSensor {
   /// No force so far, and the noise from its beginning.
   void reset() noexcept { sensor_.reset(0.0); }
 
-  /// The analogue part as it stands.
-  [[nodiscard]] const signal::SecondOrderSection<double>& analogue() const noexcept { return filter_.section(); }
+  /// The analogue part as it stands, for sweeps.
+  [[nodiscard]] const signal::SecondOrderSection<double>& analogue() const noexcept { return sensor_.section(); }
 
  private:
   explicit ForceSensor(const AnalogueSensor& sensor) : sensor_(sensor) {}

@@ -159,7 +159,7 @@ TEST(DefaultTapping, TrajectoriesConvergeWithThePlantsStepThroughTheImpactsInEve
 
 TEST(DefaultTapping, IsNoInverseCrime) {
   // Other laws: what the controller believes is not what simulates the devices.
-  static_assert(std::is_same_v<decltype(mechanics::CableChain::State::linkage), mechanics::ElastoSlipSpring>);
+  static_assert(std::is_same_v<decltype(mechanics::CableChain::Params::linkage), mechanics::ElastoSlipSpring::Params>);
   static_assert(std::is_same_v<decltype(control::MasterModel::linkage), mechanics::BoucWenSpring::Params>);
   static_assert(std::is_same_v<decltype(mechanics::Operator::Params::grip), mechanics::LinearSpring::Params>);
   static_assert(std::is_same_v<decltype(control::MasterModel::hand), mechanics::QuinticSpring::Params>);
