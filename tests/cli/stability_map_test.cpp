@@ -55,7 +55,7 @@ TEST_F(StabilityMap, LeavesTableHdf5PictureReportAndResults) {
 TEST_F(StabilityMap, TheReportNamesAxesWithUnitsAndHowItWasMade) {
   ASSERT_EQ(map({"--vary", "environment.stiffness_N_per_m=1e3:5e4:10[log]", "--out", "results"}).status, 0);
   const std::string page = content("results/report.html");
-  for (const std::string words : {"Stability map", "wall stiffness", "N/m", "force gain", "limit-cycle",
+  for (const std::string words : {"stability map", "environment stiffness", "N/m", "force gain", "limit-cycle",
                                   "tactus stability map", "observation_s = 0.25"}) {
     EXPECT_NE(page.find(words), std::string::npos) << words;
   }
