@@ -20,12 +20,14 @@ struct Corner {
   double x, y;
 };
 
-/// To a tenth of a pixel.
-std::string px(double value) {
+/// Rounded to a multiple of 1 / `parts`.
+std::string rounded(double value, double parts) {
   char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, std::round(value * 10.0) / 10.0);
+  const auto [end, error] = std::to_chars(text, text + sizeof text, std::round(value * parts) / parts);
   return error == std::errc{} ? std::string(text, end) : std::string("0");
 }
+
+std::string px(double value) { return rounded(value, 10.0); }
 
 /// An axis as coordinates: where cells begin and where values stand.
 struct Scale {
@@ -47,7 +49,20 @@ struct Scale {
   [[nodiscard]] double share(double value) const { return (own(value) - lower) / (upper - lower); }
   [[nodiscard]] double value(double at) const { return logarithmic ? std::pow(10.0, at) : at; }
   [[nodiscard]] Ticks ticks() const {
-    return logarithmic ? logarithmic_ticks(value(lower), value(upper), 8) : linear_ticks(lower, upper, 7);
+    if (!logarithmic) return linear_ticks(lower, upper, 7);
+    Ticks ticks = logarithmic_ticks(value(lower), value(upper), 8);
+    // Two labels alone do not say where a boundary lies.
+    if (ticks.major.size() > 2 || value(upper) > 1e3 || value(lower) < 1e-2) return ticks;
+    ticks.major.clear();
+    ticks.labels.clear();
+    for (double decade = 1e-2; decade <= value(upper); decade *= 10.0) {
+      for (const double times : {1.0, 2.0, 5.0}) {
+        if (times * decade < value(lower) || times * decade > value(upper)) continue;
+        ticks.major.push_back(times * decade);
+        ticks.labels.push_back(rounded(times * decade, 100.0));
+      }
+    }
+    return ticks;
   }
 };
 
@@ -131,7 +146,12 @@ std::string named(const HeatMap::Axis& axis, const Ticks& ticks) {
   return with_unit(axis.label, ticks.exponent == 0 ? axis.unit : power_of_ten(ticks.exponent) + " " + axis.unit);
 }
 
-std::string legend_of(const HeatMap& map) {
+struct Legend {
+  std::string svg;
+  double right;
+};
+
+Legend legend_of(const HeatMap& map) {
   std::string svg;
   double at = left;
   for (std::size_t kind = 0; kind < map.classes.size(); ++kind) {
@@ -144,6 +164,7 @@ std::string legend_of(const HeatMap& map) {
            text(at + 17.0, 20.0, "start", of.name);
     at += 40.0 + 6.5 * static_cast<double>(display_width(of.name));
   }
+  const double after_classes = at;
   at = left;
   for (const HeatMap::Line& line : map.lines) {
     if (line.panel) continue;
@@ -151,7 +172,7 @@ std::string legend_of(const HeatMap& map) {
     svg += stroke(line, sample.append(px(at)).append(" 35h24")) + text(at + 30.0, 39.0, "start", line.name);
     at += 56.0 + 6.5 * static_cast<double>(display_width(line.name));
   }
-  return svg;
+  return {.svg = svg, .right = std::max(after_classes, at)};
 }
 
 std::string frame_of(const HeatMap& map, const Scale& x, const Scale& y, Corner corner, bool first_of_row) {
@@ -183,13 +204,13 @@ Drawing draw(const HeatMap& map) {
   const std::size_t columns = std::clamp(map.panels.size(), std::size_t{1}, panels_in_row);
   const std::size_t rows = std::max(std::size_t{1}, (map.panels.size() + columns - 1) / columns);
   const double row_height = panel_height + bottom + row_gap;
-  const double width = left + static_cast<double>(columns) * (panel_width + gap);
+  const Legend legend = legend_of(map);
+  const double width = std::max(legend.right, left + static_cast<double>(columns) * (panel_width + gap));
   const double height = top + static_cast<double>(rows) * row_height - row_gap;
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) + "\" height=\"" + px(height) +
                     "\" viewBox=\"0 0 " + px(width) + " " + px(height) +
                     "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#16191d\" role=\"img\">\n<title>" +
-                    escape(map.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" +
-                    legend_of(map);
+                    escape(map.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" + legend.svg;
   for (std::size_t i = 0; i < map.panels.size(); ++i) {
     const Corner corner{left + static_cast<double>(i % columns) * (panel_width + gap),
                         top + static_cast<double>(i / columns) * row_height};

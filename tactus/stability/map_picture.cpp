@@ -93,14 +93,14 @@ MapPicture limits_of(const MapResult& map) {
   report::HeatMap picture{.title = "Limit of the " + label_of(along),
                           .x = drawn(fast),
                           .y = drawn(slow),
-                          .classes = {{"below " + report::number(steps.front(), 3), "#8a4b7d"}},
+                          .classes = {{"below " + report::number(steps.front(), 2), "#8a4b7d"}},
                           .panels = {{"largest " + label_of(along) + " below which every run settled or rang", {}}},
                           .lines = {}};
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
     const double share = steps.size() > 2 ? static_cast<double>(i) / static_cast<double>(steps.size() - 2) : 0.0;
-    picture.classes.push_back({report::number(steps[i], 3) + " to " + report::number(steps[i + 1], 3), warmth(share)});
+    picture.classes.push_back({report::number(steps[i], 2) + " to " + report::number(steps[i + 1], 2), warmth(share)});
   }
-  picture.classes.push_back({"at least " + report::number(steps.back(), 3) + ", where the map ends", "#cfe8d5"});
+  picture.classes.push_back({report::number(steps.back(), 2) + " or more, where the map ends", "#cfe8d5"});
   for (const double limit : settled_limit(map, 1)) {
     const auto above = std::upper_bound(steps.begin(), steps.end(), limit);
     picture.panels[0].cells.push_back(std::isnan(limit) ? 0 : static_cast<std::size_t>(above - steps.begin()));

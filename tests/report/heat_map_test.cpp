@@ -56,12 +56,24 @@ TEST(HeatMap, EachClassCoversItsShareOfTheCells) {
 
 TEST(HeatMap, NamesAxesWithUnitsAndOnlyClassesThatThereAre) {
   const std::string svg = to_svg(small_map());
-  EXPECT_NE(svg.find("stiffness (N/m)"), std::string::npos);
+  EXPECT_NE(svg.find(">stiffness"), std::string::npos);
+  EXPECT_NE(svg.find("(N/m)<"), std::string::npos);
   EXPECT_NE(svg.find(">gain<"), std::string::npos);
   EXPECT_NE(svg.find(">wild<"), std::string::npos);
   EXPECT_NE(svg.find(">boundary<"), std::string::npos);
   EXPECT_EQ(svg.find("absent"), std::string::npos);
   EXPECT_NE(svg.find("Small &lt;map&gt;"), std::string::npos);
+}
+
+TEST(HeatMap, AShortLogarithmicAxisIsLabelledInStepsOfOneTwoAndFive) {
+  HeatMap map = small_map();
+  map.y = {.label = "gain", .values = {0.5, 4.0, 32.0}, .logarithmic = true};
+  map.lines.clear();
+  const std::string svg = to_svg(map);
+  for (const char* label : {">0.5<", ">1<", ">2<", ">5<", ">10<", ">20<", ">50<"}) {
+    EXPECT_NE(svg.find(label), std::string::npos) << label;
+  }
+  EXPECT_EQ(svg.find(">100<"), std::string::npos);
 }
 
 TEST(HeatMap, ItsSizeFollowsThePatternAndNotTheNumberOfCells) {
