@@ -54,6 +54,7 @@ int run_command(int argc, char** argv) {
   add_estimate(app, command, status);
   add_identify(app, command, status);
   add_export(app, status);
+  add_faults(app, command, status);
   add_stability(app, command, status);
   add_schema(app, status);
   try {

@@ -15,6 +15,7 @@ namespace tactus::cli {
 void add_run(CLI::App& app, const std::string& command, int& status);
 void add_estimate(CLI::App& app, const std::string& command, int& status);
 void add_export(CLI::App& app, int& status);
+void add_faults(CLI::App& app, const std::string& command, int& status);
 void add_identify(CLI::App& app, const std::string& command, int& status);
 void add_stability(CLI::App& app, const std::string& command, int& status);
 void add_schema(CLI::App& app, int& status);
