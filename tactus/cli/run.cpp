@@ -1,7 +1,10 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
+#include <tactus/cli/run_site.hpp>
 #include <tactus/cli/servo_options.hpp>
+#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
 #include <tactus/simulation/experiment.hpp>
@@ -11,6 +14,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -28,6 +33,9 @@ struct RunOptions {
   bool json = false;
   bool real_time = false;
   runtime::ServoThreadParams servo;
+  SiteOptions site;
+  bool ros2 = false;
+  std::string name_space = "tactus";
 };
 
 Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
@@ -57,10 +65,32 @@ void say_log(const RunOptions& options, const std::filesystem::path& folder) {
   (options.json ? std::cerr : std::cout) << "Log: " << folder.string() << "\n";
 }
 
+Error refuse_ros2(std::string message) {
+  return {.code = ErrorCode::inconsistent, .parameter = {}, .message = std::move(message), .place = "--ros2"};
+}
+
+Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request& request, std::string_view kind) {
+  if (kind != "tapping") {
+    return refuse_ros2("an experiment of kind " + std::string(kind) +
+                       " cannot be run in real time: choose one of kind tapping");
+  }
+  if (!request.variations.empty()) {
+    return refuse_ros2("there is one teleoperator at a time: write --set in place of --vary");
+  }
+  Ros2Options session{.name_space = options.name_space};
+  if (options.out) session.log_folder = std::filesystem::path(*options.out) / "log";
+  const auto output = run_ros2_session(request, session, options.json);
+  if (!output) return output.error();
+  std::cout << *output;
+  if (auto error = flush_standard_output()) return error;
+  if (session.log_folder) say_log(options, *session.log_folder);
+  return std::nullopt;
+}
+
 Check run_in_real_time(const RunOptions& options, const simulation::Request& request) {
   runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin()};
   const std::filesystem::path folder = std::filesystem::path(options.out.value_or("")) / "log";
-  if (options.out) real_time.log = folder / "log.mcap";
+  if (options.out) real_time.log = folder / log_file_name;
   const auto done = [&] {
     ProgressLine line(request.name);
     return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
@@ -71,15 +101,36 @@ Check run_in_real_time(const RunOptions& options, const simulation::Request& req
   return done->log;
 }
 
+Check refuse_servo_options_without_a_servo_thread(const CLI::App& verb, const RunOptions& options) {
+  if (options.real_time || !options.site.site.empty()) return std::nullopt;
+  for (const char* name : {"--priority", "--core", "--spin-s"}) {
+    if (verb.count(name) == 0) continue;
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = "there is no servo thread in virtual time: add --realtime or --site",
+                 .place = name};
+  }
+  return std::nullopt;
+}
+
 Check run(const RunOptions& options, const std::string& command) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
+  if (!options.site.site.empty()) {
+    if (options.out || !options.vary.empty()) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = {},
+                   .message = "one site runs one combination and writes no folder: leave --vary and --out out",
+                   .place = "--site"};
+    }
+    return run_site(options.site, options.servo, request->document, options.json);
+  }
   const auto experiment = simulation::choose_experiment(request->document);
   if (!experiment) return experiment.error();
   if (options.out) {
     if (auto error = check_writable(*options.out)) return error;
   }
-
+  if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind());
   if (options.real_time) return run_in_real_time(options, *request);
 
   Result<simulation::Outcome> outcome = [&] {
@@ -118,9 +169,21 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   CLI::Option* real_time = verb->add_flag("--realtime", options->real_time,
                                           "Run it at the real clock, on a servo thread, with simulated devices");
   add_servo_options(*verb, options->servo);
-  for (const char* name : {"--priority", "--core", "--spin-s"}) verb->get_option(name)->needs(real_time);
-  verb->callback([options, &app, &command, &status] {
-    if (const auto error = run(*options, command)) {
+  add_site_options(*verb, options->site);
+  verb->get_option("--site")->excludes(real_time);
+  CLI::Option* const ros2 =
+      verb->add_flag("--ros2", options->ros2,
+                     "Run the taps in real time among ROS 2 nodes: publish under CRTK names, take operator/servo_jp");
+  verb->add_option("--namespace", options->name_space, "Namespace of the ROS 2 topics")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->needs(ros2);
+  ros2->excludes(real_time);
+  ros2->excludes(verb->get_option("--site"));
+  verb->callback([options, verb, &app, &command, &status] {
+    Check error = refuse_servo_options_without_a_servo_thread(*verb, *options);
+    if (!error) error = run(*options, command);
+    if (error) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";
       status = exit_status(*error);
     }

@@ -6,7 +6,7 @@
 namespace tactus::simulation {
 
 namespace {
-constexpr std::string_view title = "Tapping a wall through the teleoperator";
+constexpr std::string_view tapping_title = "Tapping a wall through the teleoperator";
 }  // namespace
 
 report::Table tapping_table(const std::vector<TappingRun>& runs) {
@@ -19,7 +19,7 @@ report::Table tapping_table(const std::vector<TappingRun>& runs) {
                                  {"peak force", "N"},
                                  {"residual", "mN RMS"},
                                  {"verdict", "", report::Column::Align::left}});
-  report::Table table(columns, std::string(title));
+  report::Table table(columns, std::string(tapping_title));
   for (const TappingRun& run : runs) {
     const TappingMetrics& m = run.metrics;
     // A quantile that falls on a tap that never settled is only a lower bound.
@@ -56,7 +56,7 @@ std::string tapping_json(const Request& request, const std::vector<TappingRun>& 
 
 report::Page tapping_page(const Request& request, const report::Table& table,
                           const std::vector<report::Figure>& figures) {
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(tapping_title));
   page.paragraph(
       "A person reaches through the teleoperator onto a wall and presses. The force measured at the slave's tip, times "
       "the force gain, is displayed to the hand, saturated. Each row of the table is an ensemble of taps that differ "
