@@ -43,6 +43,8 @@ function(tactus_module name)
   else()
     add_library(${target} STATIC ${arg_SOURCES})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tactus_options> ${arg_LINK_PRIVATE})
+    # The headers are read once for several sources.
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ${TACTUS_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
   endif()
   add_library(tactus::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})

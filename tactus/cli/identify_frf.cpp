@@ -42,7 +42,7 @@ struct FrfOptions {
   bool json = false;
 };
 
-struct Run {
+struct Pair {
   recording::Signal input, output;
 };
 
@@ -72,8 +72,8 @@ recording::Source source_of(const FrfOptions& options, const std::string& file, 
   return source;
 }
 
-Result<std::vector<Run>> read_runs(const FrfOptions& options) {
-  std::vector<Run> runs;
+Result<std::vector<Pair>> read_runs(const FrfOptions& options) {
+  std::vector<Pair> runs;
   for (const std::string& file : options.files) {
     auto input = recording::read(source_of(options, file, options.input));
     if (!input) return input.error();
@@ -101,9 +101,9 @@ Result<std::vector<Run>> read_runs(const FrfOptions& options) {
 }
 
 /// The longest segments up to 4096 samples of which the shortest run holds eight.
-std::int64_t usual_segment(const std::vector<Run>& runs) {
+std::int64_t usual_segment(const std::vector<Pair>& runs) {
   std::size_t shortest = runs.front().input.values.size();
-  for (const Run& run : runs) shortest = std::min(shortest, run.input.values.size());
+  for (const Pair& run : runs) shortest = std::min(shortest, run.input.values.size());
   return static_cast<std::int64_t>(std::clamp<std::size_t>(std::bit_floor(shortest / 8), 8, 4096));
 }
 
@@ -129,7 +129,7 @@ Result<FrequencyResponse> estimate(const FrfOptions& options, std::span<const In
   return response;
 }
 
-Result<Estimates> estimate_all(const FrfOptions& options, const std::vector<Run>& runs) {
+Result<Estimates> estimate_all(const FrfOptions& options, const std::vector<Pair>& runs) {
   Estimates found{
       .sample_time = Seconds{*runs.front().input.sample_time_s}, .how = {}, .response = {}, .linearity = std::nullopt};
   const std::int64_t segment = options.segment_samples.value_or(usual_segment(runs));
@@ -137,7 +137,7 @@ Result<Estimates> estimate_all(const FrfOptions& options, const std::vector<Run>
                                        : (options.method == "h1" ? "H1" : "H2") + std::string(", Hann segments of ") +
                                              std::to_string(segment) + " samples that overlap by half";
   std::vector<InputOutput> all;
-  for (const Run& run : runs) all.push_back({run.input.values, run.output.values});
+  for (const Pair& run : runs) all.push_back({run.input.values, run.output.values});
   auto together = estimate(options, all, found.sample_time, segment);
   if (!together) return together.error();
   found.response = *std::move(together);

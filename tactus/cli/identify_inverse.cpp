@@ -25,7 +25,7 @@ using identification::AxisRecording;
 using identification::Estimate;
 using identification::InverseDynamics;
 
-struct Row {
+struct Term {
   const char* name;
   Estimate estimate;
   double least_squares;
@@ -37,11 +37,11 @@ struct InverseOptions {
   std::optional<double> cutoff_Hz;
 };
 
-std::array<Row, 4> rows_of(const InverseDynamics& model, bool rotary) {
-  return {Row{"inertia", model.inertia, model.least_squares[0], rotary ? "kg m^2" : "kg"},
-          Row{"viscous_friction", model.viscous, model.least_squares[1], rotary ? "N m s/rad" : "N s/m"},
-          Row{"coulomb_friction", model.coulomb, model.least_squares[2], rotary ? "N m" : "N"},
-          Row{"offset", model.offset, model.least_squares[3], rotary ? "N m" : "N"}};
+std::array<Term, 4> rows_of(const InverseDynamics& model, bool rotary) {
+  return {Term{"inertia", model.inertia, model.least_squares[0], rotary ? "kg m^2" : "kg"},
+          Term{"viscous_friction", model.viscous, model.least_squares[1], rotary ? "N m s/rad" : "N s/m"},
+          Term{"coulomb_friction", model.coulomb, model.least_squares[2], rotary ? "N m" : "N"},
+          Term{"offset", model.offset, model.least_squares[3], rotary ? "N m" : "N"}};
 }
 
 /// A parameter is determined when its interval leaves zero out.
@@ -59,7 +59,7 @@ std::string json_of(const InverseDynamics& model, const AxisRecording& axis, con
                 {"explained", model.explained},
                 {axis.rotary ? "residual_rms_N_m" : "residual_rms_N", model.residual_rms},
                 {"parameters", Json::array()}};
-  for (const Row& row : rows_of(model, axis.rotary)) {
+  for (const Term& row : rows_of(model, axis.rotary)) {
     document["parameters"].push_back({{"name", row.name},
                                       {"value", row.estimate.value},
                                       {"unit", row.unit},
@@ -127,7 +127,7 @@ Check identify_inverse(const InverseOptions& options, const std::string& command
                        {.title = "95 % from"},
                        {.title = "to"},
                        {.title = "Unit", .align = report::Column::Align::left}});
-  for (const Row& row : rows_of(*model, axis->rotary)) {
+  for (const Term& row : rows_of(*model, axis->rotary)) {
     table.add_row({row.name, report::number(row.estimate.value, 4), report::number(row.estimate.lower, 4),
                    report::number(row.estimate.upper, 4), row.unit});
   }

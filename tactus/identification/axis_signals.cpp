@@ -1,4 +1,5 @@
 #include <tactus/identification/axis_signals.hpp>
+#include <tactus/identification/refusal.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
@@ -9,8 +10,6 @@
 namespace tactus::identification {
 namespace {
 
-Error refuse(std::string message) { return {ErrorCode::inconsistent, {}, std::move(message), {}}; }
-
 Check check_signal(const std::vector<double>& values, const char* role) {
   for (const double value : values) {
     if (!std::isfinite(value)) {
@@ -19,8 +18,8 @@ Check check_signal(const std::vector<double>& values, const char* role) {
   }
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   if (*high - *low <= 1e-12 * std::max(std::abs(*high), std::abs(*low))) {
-    return refuse(std::string("the ") + role + " is constant (" + report::number(*low, 3) +
-                  " throughout): name the column that moves, or record motion");
+    return inconsistent(std::string("the ") + role + " is constant (" + report::number(*low, 3) +
+                        " throughout): name the column that moves, or record motion");
   }
   return std::nullopt;
 }
@@ -36,10 +35,10 @@ Check check_gaps(const std::vector<double>& position, Seconds dt) {
   std::nth_element(sorted.begin(), usual, sorted.end());
   for (std::size_t i = 1; i < position.size(); ++i) {
     if (std::abs(position[i] - position[i - 1]) <= 20.0 * *usual) continue;
-    return refuse("the position jumps by " + report::number(position[i] - position[i - 1], 3) + " at " +
-                  report::number(static_cast<double>(i) * dt.value, 3) +
-                  " s, 20 times more than it moves between samples elsewhere: samples are missing or the signal "
-                  "wraps; use a part of the recording without the jump");
+    return inconsistent("the position jumps by " + report::number(position[i] - position[i - 1], 3) + " at " +
+                        report::number(static_cast<double>(i) * dt.value, 3) +
+                        " s, 20 times more than it moves between samples elsewhere: samples are missing or the signal "
+                        "wraps; use a part of the recording without the jump");
   }
   return std::nullopt;
 }
@@ -50,8 +49,8 @@ Check check_axis(const AxisSignals& signals) {
   const std::size_t count = signals.position.size();
   const double dt = signals.sample_time.value;
   if (signals.force.size() != count) {
-    return refuse("the position has " + std::to_string(count) + " samples and the force " +
-                  std::to_string(signals.force.size()) + ": they must be of one recording");
+    return inconsistent("the position has " + std::to_string(count) + " samples and the force " +
+                        std::to_string(signals.force.size()) + ": they must be of one recording");
   }
   if (!(dt >= 1e-5 && dt <= 0.05)) {
     return Error{ErrorCode::out_of_bounds,
@@ -62,9 +61,9 @@ Check check_axis(const AxisSignals& signals) {
                  {}};
   }
   if (count < 200 || static_cast<double>(count) * dt < 0.5) {
-    return refuse("the recording is too short to tell: " + std::to_string(count) + " samples, " +
-                  report::number(static_cast<double>(count) * dt, 3) +
-                  " s; it takes 200 samples and 0.5 s, better several seconds");
+    return inconsistent("the recording is too short to tell: " + std::to_string(count) + " samples, " +
+                        report::number(static_cast<double>(count) * dt, 3) +
+                        " s; it takes 200 samples and 0.5 s, better several seconds");
   }
   if (auto error = check_signal(signals.position, "position")) return error;
   if (auto error = check_signal(signals.force, "force")) return error;

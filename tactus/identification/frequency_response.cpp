@@ -1,5 +1,6 @@
 #include <tactus/identification/frequency_response.hpp>
 #include <tactus/identification/real_pair_transform.hpp>
+#include <tactus/identification/refusal.hpp>
 #include <tactus/signal/checks.hpp>
 
 #include <algorithm>
@@ -19,8 +20,6 @@ using ComplexPair = RealPairTransform::ComplexPair;
 
 constexpr double outside_chance = 0.05;
 constexpr double infinite = std::numeric_limits<double>::infinity();
-
-Error inconsistent(std::string message) { return {ErrorCode::inconsistent, {}, std::move(message), {}}; }
 
 Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> samples) {
   return {samples.data(), static_cast<Eigen::Index>(samples.size())};

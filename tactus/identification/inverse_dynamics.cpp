@@ -1,5 +1,6 @@
 #include <tactus/identification/inverse_dynamics.hpp>
 #include <tactus/identification/linear_fit.hpp>
+#include <tactus/identification/refusal.hpp>
 #include <tactus/identification/zero_phase.hpp>
 
 #include <algorithm>
@@ -32,8 +33,6 @@ std::string text(double value) {
   std::snprintf(buffer.data(), buffer.size(), "%.3g", value);
   return buffer.data();
 }
-
-Error refuse(std::string message) { return {ErrorCode::inconsistent, {}, std::move(message), {}}; }
 
 /// The fast velocity passes a filter with four times the cutoff: it tells when friction changes sign, and then friction
 /// passes the filter of the force.
@@ -105,13 +104,14 @@ Result<Problem> prepare(const AxisSignals& signals, double cutoff_Hz) {
   const auto even = differentiate(every_second(signals.position, 0), cutoff_Hz, dt);
   const auto odd = differentiate(every_second(signals.position, 1), cutoff_Hz, dt);
   const auto force = zero_phase_low_pass(signals.force, cutoff_Hz, dt);
-  if (!even || !odd || !force) return refuse("the recording could not be filtered: choose another --cutoff-Hz");
+  if (!even || !odd || !force) return inconsistent("the recording could not be filtered: choose another --cutoff-Hz");
   Problem problem;
   problem.friction_speed = friction_speed_share * root_mean_square(motion->velocity);
   problem.cut = std::min(static_cast<std::size_t>(1.0 / (cutoff_Hz * dt.value)), signals.position.size() / 8);
   const auto regressors = regressors_of(*even, problem.friction_speed, cutoff_Hz, dt, problem.cut);
   const auto instruments = regressors_of(*odd, problem.friction_speed, cutoff_Hz, dt, problem.cut);
-  if (!regressors || !instruments) return refuse("the recording could not be filtered: choose another --cutoff-Hz");
+  if (!regressors || !instruments)
+    return inconsistent("the recording could not be filtered: choose another --cutoff-Hz");
   problem.regressors = *regressors;
   problem.instruments = *instruments;
   const double slow = standstill_share * root_mean_square(motion->velocity);
@@ -161,37 +161,38 @@ double explained_swapped(const AxisSignals& signals, double cutoff_Hz) {
 Check check_plausible(const InverseDynamics& model, const Problem& problem, const AxisSignals& signals) {
   const std::string explained = text(100.0 * model.explained) + " %";
   if (model.explained < least_explained && explained_swapped(signals, model.cutoff_Hz) > least_explained) {
-    return refuse("position and force look swapped: as named, the model explains " + explained +
-                  " of the force, and the other way round more than half; exchange --position and --force");
+    return inconsistent("position and force look swapped: as named, the model explains " + explained +
+                        " of the force, and the other way round more than half; exchange --position and --force");
   }
   const auto with_position = explained_with(problem, signals.position);
   if (with_position && *with_position - model.explained > 0.15) {
-    return refuse("the force follows the position (the model explains " + explained + " of it, with a spring " +
-                  text(100.0 * *with_position) +
-                  " %): the axis was in contact, on a spring or under gravity; record free motion");
+    return inconsistent("the force follows the position (the model explains " + explained + " of it, with a spring " +
+                        text(100.0 * *with_position) +
+                        " %): the axis was in contact, on a spring or under gravity; record free motion");
   }
   if (model.inertia.upper < 0.0) {
-    return refuse("the inertia comes out negative (" + text(model.inertia.value) +
-                  "): the force has the opposite sign of the motion it makes (turn it with --force-sign -1), or "
-                  "position and force are swapped or not of one axis");
+    return inconsistent("the inertia comes out negative (" + text(model.inertia.value) +
+                        "): the force has the opposite sign of the motion it makes (turn it with --force-sign -1), or "
+                        "position and force are swapped or not of one axis");
   }
   if (model.explained < least_explained) {
-    return refuse("the model explains only " + explained +
-                  " of the force: the columns may not belong together, the sample time may be wrong or the axis was in "
-                  "contact; check the columns, and record free motion");
+    return inconsistent(
+        "the model explains only " + explained +
+        " of the force: the columns may not belong together, the sample time may be wrong or the axis was in "
+        "contact; check the columns, and record free motion");
   }
   double power = 0.0;
   for (const double v : problem.velocity) {
     power += v * (model.viscous.value * v + model.coulomb.value * std::tanh(v / model.friction_speed));
   }
   if (power < 0.0) {
-    return refuse("friction comes out as giving energy (viscous " + text(model.viscous.value) + ", Coulomb " +
-                  text(model.coulomb.value) +
-                  "): the force lags or leads the position, has the wrong sign, or another force moves the axis");
+    return inconsistent("friction comes out as giving energy (viscous " + text(model.viscous.value) + ", Coulomb " +
+                        text(model.coulomb.value) +
+                        "): the force lags or leads the position, has the wrong sign, or another force moves the axis");
   }
   if (model.inertia.lower <= 0.0) {
-    return refuse("the data cannot tell the inertia (95 % interval " + text(model.inertia.lower) + " to " +
-                  text(model.inertia.upper) + "): record faster motion or a longer time");
+    return inconsistent("the data cannot tell the inertia (95 % interval " + text(model.inertia.lower) + " to " +
+                        text(model.inertia.upper) + "): record faster motion or a longer time");
   }
   return std::nullopt;
 }
@@ -206,8 +207,9 @@ Check check_motion(const Problem& problem) {
     direction = v;
   }
   if (turns >= 2) return std::nullopt;
-  return refuse("the axis turns round " + std::to_string(turns) +
-                " times in the recording: friction, offset and inertia cannot be told apart; record motion to and fro");
+  return inconsistent(
+      "the axis turns round " + std::to_string(turns) +
+      " times in the recording: friction, offset and inertia cannot be told apart; record motion to and fro");
 }
 
 /// Instrumental variables with intervals from the scatter of the score over blocks.

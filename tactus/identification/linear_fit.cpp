@@ -1,4 +1,5 @@
 #include <tactus/identification/linear_fit.hpp>
+#include <tactus/identification/refusal.hpp>
 
 #include <cmath>
 #include <string>
@@ -11,8 +12,6 @@ namespace {
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double smallest_pivot = 1e-10;
-
-Error inconsistent(std::string message) { return {ErrorCode::inconsistent, {}, std::move(message), {}}; }
 
 }  // namespace
 

@@ -1,4 +1,5 @@
 #include <tactus/identification/nonlinear_fit.hpp>
+#include <tactus/identification/refusal.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -80,8 +81,6 @@ class Functor {
   Index free_, rows_;
   int evaluations_ = 0;
 };
-
-Error inconsistent(std::string message) { return {ErrorCode::inconsistent, {}, std::move(message), {}}; }
 
 /// Σ over blocks of (Jᵀr)(Jᵀr)ᵀ, corrected for the degrees of freedom that the fit has used up.
 MatrixXd scatter(const MatrixXd& jacobian, const VectorXd& residuals) {

@@ -1,4 +1,5 @@
 #include <tactus/identification/operator_impedance.hpp>
+#include <tactus/identification/refusal.hpp>
 #include <tactus/identification/zero_phase.hpp>
 #include <tactus/report/text.hpp>
 
@@ -27,8 +28,6 @@ constexpr double quicker = 1.25;  // force over position: from this ratio of qui
 
 using Vector = Eigen::Vector3d;
 using Matrix = Eigen::Matrix3d;
-
-Error refuse(std::string message) { return {ErrorCode::inconsistent, {}, std::move(message), {}}; }
 
 Error out_of_bounds(const char* option, std::string message) {
   return {ErrorCode::out_of_bounds, option, std::move(message), {}};
@@ -107,7 +106,7 @@ Result<Problem> prepare(const AxisSignals& signals, Band band, double window_s) 
   const auto force = band_pass(every_second(signals.force, 0), band, dt);
   const auto even = motion_of(every_second(signals.position, 0), band, dt);
   const auto odd = motion_of(every_second(signals.position, 1), band, dt);
-  if (!force || !even || !odd) return refuse("the recording could not be filtered: choose another band");
+  if (!force || !even || !odd) return inconsistent("the recording could not be filtered: choose another band");
   Problem problem;
   problem.dt_s = dt.value;
   problem.first =
@@ -246,19 +245,19 @@ bool look_swapped(const AxisSignals& signals, Band band, double window_s) {
 Check check_plausible(const AxisSignals& signals, const OperatorImpedances& found, bool doubt_sign) {
   if (found.whole.verdict != ImpedanceVerdict::told &&
       look_swapped(signals, {found.lower_Hz, found.upper_Hz}, found.window_s)) {
-    return refuse(
+    return inconsistent(
         "position and force look swapped: the other way round they show a passive hand; exchange --position and "
         "--force");
   }
   const double slow_Hz = slow_share * found.lower_Hz;
   const double work = slow_work(signals, slow_Hz);
   if (work > taken_slowly || !(doubt_sign || found.whole.verdict == ImpedanceVerdict::hand_drives)) return std::nullopt;
-  return refuse("below " + report::number(slow_Hz, 2) +
-                " Hz the hand takes energy from the device (correlation of force and velocity " +
-                report::number(work, 2) +
-                "), but a person who moves a device gives it: the force of the hand on the device counts toward "
-                "+position, so turn it with --force-sign -1, or exchange --position and --force if they are "
-                "swapped; if the device really moved a resting hand, say --force-sign 1");
+  return inconsistent("below " + report::number(slow_Hz, 2) +
+                      " Hz the hand takes energy from the device (correlation of force and velocity " +
+                      report::number(work, 2) +
+                      "), but a person who moves a device gives it: the force of the hand on the device counts toward "
+                      "+position, so turn it with --force-sign -1, or exchange --position and --force if they are "
+                      "swapped; if the device really moved a resting hand, say --force-sign 1");
 }
 
 Result<Band> band_of(const AxisSignals& signals, const OperatorImpedanceOptions& options) {
@@ -298,10 +297,10 @@ Result<OperatorImpedances> estimate_operator_impedance(const AxisSignals& signal
   const auto problem = prepare(signals, *band, options.window_s);
   if (!problem) return problem.error();
   if (problem->blocks.size() < blocks_of_window) {
-    return refuse("the recording is too short to tell: " +
-                  report::number(static_cast<double>(signals.position.size()) * signals.sample_time.value, 3) +
-                  " s; it takes a window of " + report::number(options.window_s, 3) +
-                  " s and a period of the band's lower edge at both ends");
+    return inconsistent("the recording is too short to tell: " +
+                        report::number(static_cast<double>(signals.position.size()) * signals.sample_time.value, 3) +
+                        " s; it takes a window of " + report::number(options.window_s, 3) +
+                        " s and a period of the band's lower edge at both ends");
   }
   OperatorImpedances found;
   found.lower_Hz = band->lower_Hz;

@@ -12,7 +12,7 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr std::string_view title = "Every way to keep contact stable, side by side";
+constexpr std::string_view contest_title = "Every way to keep contact stable, side by side";
 
 /// The file's parameters with what the method sets on top.
 Result<ContestParams> read_with(configuration::Document document, const ContestMethod& method) {
@@ -38,7 +38,7 @@ report::Table settings_table() {
 
 std::string page_of(const Request& request, const report::Table& table, const report::Figure& figure,
                     std::string_view configuration) {
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(contest_title));
   page.paragraph(
       "The same hand taps the same wall through the same devices; only the controllers differ. For each method the "
       "force gain is raised until the taps no longer settle.");

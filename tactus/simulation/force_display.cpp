@@ -14,7 +14,7 @@ namespace {
 
 /// The hand moves this long before the force starts, so that everything runs steadily.
 constexpr double approach_s = 0.3;
-constexpr double transient_cutoff_Hz = 20.0;
+constexpr double displayed_cutoff_Hz = 20.0;
 
 struct Variant {
   control::ModelFriction friction;
@@ -57,7 +57,7 @@ double square_sum(const std::vector<double>& values) {
 /// Sum of squares of `values` above 20 Hz.
 double transient_energy(std::vector<double> values, double tick_s) {
   auto high_pass = signal::SecondOrderFilter::make(
-      {.kind = signal::FilterKind::high_pass, .frequency_Hz = transient_cutoff_Hz}, Seconds{tick_s});
+      {.kind = signal::FilterKind::high_pass, .frequency_Hz = displayed_cutoff_Hz}, Seconds{tick_s});
   for (double& value : values) value = high_pass->step(value);
   return square_sum(values);
 }

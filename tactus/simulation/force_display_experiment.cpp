@@ -10,7 +10,7 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr std::string_view title = "A force displayed to a moving hand";
+constexpr std::string_view force_display_title = "A force displayed to a moving hand";
 
 /// One combination of the varied parameters as it went.
 struct DisplayRun {
@@ -28,7 +28,7 @@ report::Table table_of(const std::vector<DisplayRun>& runs) {
                                  {"induced motion", "um RMS"},
                                  {"kept by the estimate", "%"},
                                  {"encoder alone", "%"}});
-  report::Table table(columns, std::string(title) + ": what is left of the induced motion above 20 Hz");
+  report::Table table(columns, std::string(force_display_title) + ": what is left of the induced motion above 20 Hz");
   for (const DisplayRun& run : runs) {
     for (const ForceDisplayCase& one : run.cases) {
       std::vector<std::string> cells = settings_cells(run.settings);
@@ -108,7 +108,7 @@ report::Figure figure_of(const DisplayRun& run) {
 
 std::string page_of(const Request& request, const std::vector<DisplayRun>& runs, const report::Table& table,
                     const std::vector<report::Figure>& figures, std::string_view configuration) {
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(force_display_title));
   page.paragraph(
       "While a person moves the handle at constant speed, a force is played that knows nothing of the motion. The "
       "motion "

@@ -12,7 +12,7 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr std::string_view title = "Contact force without a sensor: estimators on the same data";
+constexpr std::string_view force_estimators_title = "Contact force without a sensor: estimators on the same data";
 
 /// Round-off of a signal that stands still is no noise.
 std::string in_millinewton(double force_N, int digits) {
@@ -33,7 +33,7 @@ report::Table table_of(const std::vector<EstimatorsRun>& runs) {
                                  {"lead", "ms"},
                                  {"false force in free motion", "mN RMS"},
                                  {"noise at rest", "mN RMS"}});
-  report::Table table(columns, std::string(title));
+  report::Table table(columns, std::string(force_estimators_title));
   for (const EstimatorsRun& run : runs) {
     for (const EstimatorScore& score : run.result.scores) {
       std::vector<std::string> cells = settings_cells(run.settings);
@@ -169,7 +169,7 @@ Result<Outcome> ForceEstimatorsExperiment::run(const Request& request, const Pro
   const report::Table table = table_of(runs);
   const report::Table narx_table = narx_table_of(runs.front().result.narx);
   report::Figure figure = figure_of(runs.front());
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(force_estimators_title));
   page.paragraph(
       "A slave rests, goes to and fro before a wall, presses onto it and leaves. Every estimator sees the same "
       "commands "

@@ -12,7 +12,7 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr std::string_view title = "Valve current in free motion, measured and from an inverse model";
+constexpr std::string_view hydraulic_chirp_title = "Valve current in free motion, measured and from an inverse model";
 
 struct HydraulicChirpRun {
   Settings settings;
@@ -32,7 +32,7 @@ report::Table table_of(const std::vector<HydraulicChirpRun>& runs) {
                                  {"of full current", "%"},
                                  {"below 2 Hz", "mA MAE"},
                                  {"of full current", "%"}});
-  report::Table table(columns, std::string(title));
+  report::Table table(columns, std::string(hydraulic_chirp_title));
   for (const HydraulicChirpRun& run : runs) {
     for (const CurrentScore& score : run.result.scores) {
       std::vector<std::string> cells = settings_cells(run.settings);
@@ -144,7 +144,7 @@ Result<Outcome> HydraulicChirpExperiment::run(const Request& request, const Prog
   std::vector<report::Figure> figures;
   for (const HydraulicChirpRun& run : runs) figures.push_back(figure_of(run));
 
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(hydraulic_chirp_title));
   page.paragraph(
       "A servo-hydraulic slave follows a chirp and touches nothing. An inverse model, identified on another motion, "
       "says "

@@ -10,7 +10,7 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr std::string_view title = "Twice into the end stop without a force sensor";
+constexpr std::string_view hydraulic_rigid_contact_title = "Twice into the end stop without a force sensor";
 
 struct ContactCase {
   Settings settings;
@@ -30,7 +30,7 @@ report::Table table_of(const std::vector<ContactCase>& cases) {
                                  {"estimate after", "ms"},
                                  {"pressure after", "ms"},
                                  {"lead", "ms"}});
-  report::Table table(columns, std::string(title));
+  report::Table table(columns, std::string(hydraulic_rigid_contact_title));
   for (const ContactCase& one : cases) {
     for (const RigidContactRun& run : one.runs) {
       for (std::size_t i = 0; i < run.contacts.size(); ++i) {
@@ -139,7 +139,7 @@ Result<Outcome> HydraulicRigidContactExperiment::run(const Request& request, con
   std::vector<report::Figure> figures;
   for (const ContactCase& one : cases) figures.push_back(figure_of(one));
 
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(hydraulic_rigid_contact_title));
   page.paragraph(
       "A person drives a servo-hydraulic slave into its end stop twice. Nothing measures the contact force: an inverse "
       "model says which valve current free motion would take, and what the current has beyond that is fed back.");

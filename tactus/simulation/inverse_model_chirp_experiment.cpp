@@ -10,7 +10,7 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr std::string_view title = "Force felt in free motion through an inverse model";
+constexpr std::string_view inverse_model_chirp_title = "Force felt in free motion through an inverse model";
 
 struct ChirpRun {
   Settings settings;
@@ -30,7 +30,7 @@ report::Table table_of(const std::vector<ChirpRun>& runs) {
                                  {"below 2 Hz", "N RMS"},
                                  {"multisine", "N RMS"},
                                  {"multisine below 2 Hz", "N RMS"}});
-  report::Table table(columns, std::string(title));
+  report::Table table(columns, std::string(inverse_model_chirp_title));
   for (const ChirpRun& run : runs) {
     for (const InverseModelVariant& one : run.result.variants) {
       std::vector<std::string> cells = settings_cells(run.settings);
@@ -149,7 +149,7 @@ Result<Outcome> InverseModelChirpExperiment::run(const Request& request, const P
   std::vector<report::Figure> figures;
   for (const ChirpRun& run : runs) figures.push_back(figure_of(run));
 
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(inverse_model_chirp_title));
   page.paragraph(
       "A slave with transport delays and lags follows a path and touches nothing. An inverse model says from the "
       "measured position which command that took; the difference is fed back as force and should be zero. The fitted "

@@ -17,7 +17,7 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr std::string_view title = "Prediction in frequency and in time";
+constexpr std::string_view prediction_block_title = "Prediction in frequency and in time";
 
 enum class PredictionBlockKind { prediction_block };
 constexpr auto enumerators(PredictionBlockKind) {
@@ -183,7 +183,7 @@ Result<Outcome> PredictionBlockExperiment::run(const Request& request, const Pro
                                  {"usable band", "Hz"},
                                  {"gain at high frequency"},
                                  {"gain of white noise"}});
-  report::Table table(columns, std::string(title));
+  report::Table table(columns, std::string(prediction_block_title));
   nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
   std::vector<report::Figure> figures;
   for (const auto& [settings, run] : cases->all) {
@@ -211,7 +211,7 @@ Result<Outcome> PredictionBlockExperiment::run(const Request& request, const Pro
     figures.push_back(figure_of(run));
   }
   progress(1.0);
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(prediction_block_title));
   page.paragraph(
       "A prediction block leads by its time constant at low frequency and doubles what is fast. A polynomial through "
       "the "

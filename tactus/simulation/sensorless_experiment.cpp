@@ -11,11 +11,11 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr std::string_view title = "Teleoperation without a force sensor";
+constexpr std::string_view sensorless_title = "Teleoperation without a force sensor";
 
 std::string page_of(const Request& request, const report::Table& table, const report::Figure& figure,
                     const std::vector<std::string>& verdicts, std::string_view configuration) {
-  report::Page page(request.name + ": " + std::string(title));
+  report::Page page(request.name + ": " + std::string(sensorless_title));
   page.paragraph(
       "The same hand taps the same wall through the same devices; the force that comes back is the slave's sensor's, "
       "or "
