@@ -13,7 +13,7 @@ namespace tactus::report {
 namespace {
 
 constexpr double panel_width = 400.0, panel_height = 300.0, left = 62.0, top = 68.0, gap = 24.0, bottom = 46.0;
-constexpr double row_gap = 28.0;
+constexpr double space_of_rows = 28.0;
 constexpr std::size_t panels_in_row = 3;
 
 struct Corner {
@@ -203,10 +203,10 @@ Drawing draw(const HeatMap& map) {
   const Scale x(map.x), y(map.y);
   const std::size_t columns = std::clamp(map.panels.size(), std::size_t{1}, panels_in_row);
   const std::size_t rows = std::max(std::size_t{1}, (map.panels.size() + columns - 1) / columns);
-  const double row_height = panel_height + bottom + row_gap;
+  const double row_height = panel_height + bottom + space_of_rows;
   const Legend legend = legend_of(map);
   const double width = std::max(legend.right, left + static_cast<double>(columns) * (panel_width + gap));
-  const double height = top + static_cast<double>(rows) * row_height - row_gap;
+  const double height = top + static_cast<double>(rows) * row_height - space_of_rows;
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) + "\" height=\"" + px(height) +
                     "\" viewBox=\"0 0 " + px(width) + " " + px(height) +
                     "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#16191d\" role=\"img\">\n<title>" +
