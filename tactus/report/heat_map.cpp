@@ -212,8 +212,9 @@ Drawing draw(const HeatMap& map) {
                     "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#16191d\" role=\"img\">\n<title>" +
                     escape(map.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" + legend.svg;
   for (std::size_t i = 0; i < map.panels.size(); ++i) {
+    const std::size_t row = i / columns;
     const Corner corner{left + static_cast<double>(i % columns) * (panel_width + gap),
-                        top + static_cast<double>(i / columns) * row_height};
+                        top + static_cast<double>(row) * row_height};
     svg += text(corner.x + 0.5 * panel_width, corner.y - 8.0, "middle", map.panels[i].title, " font-weight=\"bold\"");
     for (std::size_t kind = 0; kind < map.classes.size(); ++kind) {
       svg += cells_of(map, map.panels[i], kind, x, y, corner);
