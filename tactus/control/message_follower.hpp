@@ -28,7 +28,7 @@ class MessageFollower {
   struct Params {
     double extrapolation_s = 0.01;
     double decay_s = 0.02;
-    double catch_up_m_per_s = 0.2;
+    double catch_up_m_per_s = 0.05;
     double catch_up_N_per_s = 20.0;
     static constexpr auto fields() {
       return std::tuple{
