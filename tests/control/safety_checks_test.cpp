@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -75,7 +76,8 @@ TEST(PassivityMonitor, DampsInProportionThenLatches) {
           .value();
   double position_m = 0.0;
   monitor.step({.acted_N = 0.0, .position_m = position_m});
-  for (const auto& [work_J, damping] : {std::pair{1.0, 0.0}, {0.25, 2.0}, {0.5, 6.0}, {0.5, 8.0}, {-2.0, 8.0}}) {
+  for (const auto& [work_J, damping] :
+       {std::pair{1.0, 0.0}, std::pair{0.25, 2.0}, std::pair{0.5, 6.0}, std::pair{0.5, 8.0}, std::pair{-2.0, 8.0}}) {
     position_m += work_J;
     EXPECT_NEAR(monitor.step({.acted_N = 1.0, .position_m = position_m}), damping, 1e-12);
   }

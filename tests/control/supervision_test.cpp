@@ -166,6 +166,7 @@ TEST(Supervision, ACutEndsInHoldWithinTheTimeOutAndOnlyANewArmingLeadsOut) {
   EXPECT_EQ(pair.slave.state(), SiteState::hold);
   EXPECT_EQ(static_cast<SiteCause>(pair.slave_out.record.cause), SiteCause::silent);
   pair.cut = false;
+  pair.step(5);
   pair.buttons.arm = true;
   pair.buttons.dead_man = false;
   pair.step(10);
