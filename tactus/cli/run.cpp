@@ -68,7 +68,7 @@ void say_log(const RunOptions& options, const std::filesystem::path& folder) {
 Check run_in_real_time(const RunOptions& options, const simulation::Request& request) {
   runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin()};
   const std::filesystem::path folder = std::filesystem::path(options.out.value_or("")) / "log";
-  if (options.out) real_time.log = folder / log_file_name;
+  if (options.out) real_time.log = folder / "log.mcap";
   const auto done = [&] {
     ProgressLine line(request.name);
     return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
