@@ -13,8 +13,8 @@ DeviceReading trusted_reading(Device& device, const Tick& tick) noexcept {
   return reading;
 }
 
-void tighten(control::SafetyGate::Params& gate, double limit_N) {
-  if (limit_N > 0.0) gate.force_limit_N = std::min(gate.force_limit_N, limit_N);
+void tighten(double& force_limit_N, double limit_N) {
+  if (limit_N > 0.0) force_limit_N = std::min(force_limit_N, limit_N);
 }
 
 }  // namespace
@@ -23,9 +23,9 @@ Result<LocalTeleoperator> LocalTeleoperator::make(const control::ControlParams& 
                                                   const simulation::LinkParams& channel, Seconds tick,
                                                   double slave_start_m, Device& master, Device& slave) {
   control::ControlParams tightened = control;
-  tighten(tightened.gate, master.limits().force_N);
-  tighten(tightened.handle_gate, master.limits().handle_force_N);
-  tighten(tightened.slave_gate, slave.limits().force_N);
+  tighten(tightened.gate.force_limit_N, master.limits().force_N);
+  tighten(tightened.handle_gate.force_limit_N, master.limits().handle_force_N);
+  tighten(tightened.slave_gate.force_limit_N, slave.limits().force_N);
   auto sites = simulation::SitePair::make(tightened, channel, tick, slave_start_m);
   if (!sites) return sites.error();
   return LocalTeleoperator(*std::move(sites), master, slave);
@@ -39,7 +39,8 @@ LocalTeleoperator::Output LocalTeleoperator::step(const Tick& tick) noexcept {
                               .hand_force_N = output.master.force_N,
                               .grip = output.master.grip,
                               .slave_position_m = output.slave.position_m,
-                              .tip_force_N = output.slave.force_N});
+                              .tip_force_N = output.slave.force_N},
+                             tick.missed + 1);
   master_->write({.force_N = output.sites.master.motor_force_N, .handle_force_N = output.sites.master.handle_force_N});
   slave_->write({.force_N = output.sites.slave.motor_force_N});
   return output;
