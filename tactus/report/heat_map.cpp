@@ -13,7 +13,7 @@ namespace tactus::report {
 namespace {
 
 constexpr double panel_width = 400.0, panel_height = 300.0, left = 62.0, top = 68.0, gap = 24.0, bottom = 46.0;
-constexpr double map_row_gap = 28.0;
+constexpr double space_of_rows = 28.0;
 constexpr std::size_t panels_in_row = 3;
 
 struct Corner {
@@ -203,17 +203,18 @@ Drawing draw(const HeatMap& map) {
   const Scale x(map.x), y(map.y);
   const std::size_t columns = std::clamp(map.panels.size(), std::size_t{1}, panels_in_row);
   const std::size_t rows = std::max(std::size_t{1}, (map.panels.size() + columns - 1) / columns);
-  const double row_height = panel_height + bottom + map_row_gap;
+  const double row_height = panel_height + bottom + space_of_rows;
   const Legend legend = legend_of(map);
   const double width = std::max(legend.right, left + static_cast<double>(columns) * (panel_width + gap));
-  const double height = top + static_cast<double>(rows) * row_height - map_row_gap;
+  const double height = top + static_cast<double>(rows) * row_height - space_of_rows;
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) + "\" height=\"" + px(height) +
                     "\" viewBox=\"0 0 " + px(width) + " " + px(height) +
                     "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#16191d\" role=\"img\">\n<title>" +
                     escape(map.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" + legend.svg;
   for (std::size_t i = 0; i < map.panels.size(); ++i) {
+    const std::size_t row = i / columns;
     const Corner corner{left + static_cast<double>(i % columns) * (panel_width + gap),
-                        top + static_cast<double>(i / columns) * row_height};
+                        top + static_cast<double>(row) * row_height};
     svg += text(corner.x + 0.5 * panel_width, corner.y - 8.0, "middle", map.panels[i].title, " font-weight=\"bold\"");
     for (std::size_t kind = 0; kind < map.classes.size(); ++kind) {
       svg += cells_of(map, map.panels[i], kind, x, y, corner);

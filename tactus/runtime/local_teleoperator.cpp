@@ -13,8 +13,9 @@ DeviceReading trusted_reading(Device& device, const Tick& tick) noexcept {
   return reading;
 }
 
-void tighten(double& force_limit_N, double limit_N) {
-  if (limit_N > 0.0) force_limit_N = std::min(force_limit_N, limit_N);
+template <class GateParams>
+void tighten(GateParams& gate, double limit_N) {
+  if (limit_N > 0.0) gate.force_limit_N = std::min(gate.force_limit_N, limit_N);
 }
 
 }  // namespace
@@ -23,9 +24,9 @@ Result<LocalTeleoperator> LocalTeleoperator::make(const control::ControlParams& 
                                                   const simulation::LinkParams& channel, Seconds tick,
                                                   double slave_start_m, Device& master, Device& slave) {
   control::ControlParams tightened = control;
-  tighten(tightened.gate.force_limit_N, master.limits().force_N);
-  tighten(tightened.handle_gate.force_limit_N, master.limits().handle_force_N);
-  tighten(tightened.slave_gate.force_limit_N, slave.limits().force_N);
+  tighten(tightened.gate, master.limits().force_N);
+  tighten(tightened.handle_gate, master.limits().handle_force_N);
+  tighten(tightened.slave_gate, slave.limits().force_N);
   auto sites = simulation::SitePair::make(tightened, channel, tick, slave_start_m);
   if (!sites) return sites.error();
   return LocalTeleoperator(*std::move(sites), master, slave);

@@ -113,7 +113,7 @@ MapPicture limits_of(const MapResult& map) {
 }  // namespace
 
 std::string label_of(const MapAxis& axis) {
-  const std::string own = simulation::axis_of(axis.key).label;
+  std::string own = simulation::axis_of(axis.key).label;
   const std::size_t dot = axis.key.rfind('.');
   if (dot == std::string::npos) return own;
   std::string group = axis.key.substr(0, dot);
