@@ -13,7 +13,8 @@ DeviceReading trusted_reading(Device& device, const Tick& tick) noexcept {
   return reading;
 }
 
-void tighten(control::SafetyGate::Params& gate, double limit_N) {
+template <class GateParams>
+void tighten(GateParams& gate, double limit_N) {
   if (limit_N > 0.0) gate.force_limit_N = std::min(gate.force_limit_N, limit_N);
 }
 

@@ -4,6 +4,8 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/simulation/channel.hpp>
 
+#include <utility>
+
 namespace tactus::simulation {
 
 /// The link between the sites, one channel each way.
@@ -41,17 +43,25 @@ class SitePair {
 
   /// One tick. Real-time safe.
   Output step(const Input& input) noexcept {
-    Output output;
-    output.master = sites_.master.step({.motor_position_m = input.master_position_m,
-                                        .hand_force_N = input.hand_force_N,
-                                        .arrival = arrived_,
-                                        .grip = input.grip});
-    output.slave = sites_.slave.step({.motor_position_m = input.slave_position_m,
-                                      .tip_force_N = input.tip_force_N,
-                                      .arrival = to_slave_.step(output.master.message)});
-    arrived_ = to_master_.step(output.slave.message);
-    return output;
+    master_input_ = {.motor_position_m = input.master_position_m,
+                     .hand_force_N = input.hand_force_N,
+                     .arrival = arrived_,
+                     .grip = input.grip};
+    output_.master = sites_.master.step(master_input_);
+    slave_input_ = {.motor_position_m = input.slave_position_m,
+                    .tip_force_N = input.tip_force_N,
+                    .arrival = to_slave_.step(output_.master.message)};
+    output_.slave = sites_.slave.step(slave_input_);
+    arrived_ = to_master_.step(output_.slave.message);
+    return output_;
   }
+
+  /// Goes on with the channels of `made`, which has not been stepped, and gives it the own ones; what is on its way is
+  /// lost. Between ticks. Real-time safe.
+  void exchange_channels(SitePair& made) noexcept;
+  /// Goes on with the controllers of `made`, brought to rest at the latest tick (`Site::exchange_controller`); the
+  /// gates stay. Between ticks; does not allocate, but takes as long as a thousand ticks.
+  void exchange_controllers(SitePair& made) noexcept;
 
   /// False once a safety gate has latched a fault.
   [[nodiscard]] bool healthy() const noexcept {
@@ -65,7 +75,10 @@ class SitePair {
   control::Sites sites_;
   Channel to_slave_;
   Channel to_master_;
-  control::Arrival arrived_;  ///< at the master, for its next tick
+  control::Arrival arrived_;           ///< at the master, for its next tick
+  control::MasterInput master_input_;  ///< of the latest tick, as the two below
+  control::SlaveInput slave_input_;
+  Output output_;
 };
 
 }  // namespace tactus::simulation

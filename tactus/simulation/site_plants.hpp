@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 /// What stands at each site of a simulated teleoperator. A tick of a plant: `measure`, then `begin_tick` with the
 /// command that follows, then its substeps in order. A command acts after the computation delay; until then the one
@@ -39,6 +40,11 @@ class MasterPlant {
                          .path_at_next_tick_m = path_at_next_tick_m,
                          .handle_position_m = device_.mechanism().tip_position_m()});
     ++ticks_;
+  }
+  /// The person holds the handle as that of `other` is held, from the next substep on, and the other way round.
+  void exchange_grip(MasterPlant& other) noexcept {
+    std::swap(grip_, other.grip_);
+    device_.hold(mechanics::scaled(grip_, grip_factor_));
   }
   void substep(int index) noexcept {
     if (index == clock_.late_substeps) command_ = next_;
@@ -100,6 +106,12 @@ class SlavePlant {
       contact_.touched_substep = index;
       contact_.touched_after_s = contact.touched_after_s;
     }
+  }
+  /// Faces the wall of `other` from the next substep on, and the other way round.
+  void exchange_wall(SlavePlant& other) noexcept {
+    const mechanics::Environment wall = device_.environment();
+    device_.face(other.device_.environment());
+    other.device_.face(wall);
   }
   /// Since `begin_tick`.
   [[nodiscard]] const Contact& contact() const noexcept { return contact_; }

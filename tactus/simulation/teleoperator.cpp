@@ -40,6 +40,13 @@ Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_
   return record;
 }
 
+void Teleoperator::exchange(Teleoperator& made, const Parts& parts) noexcept {
+  if (parts.grip) master_.exchange_grip(made.master_);
+  if (parts.environment) slave_.exchange_wall(made.slave_);
+  if (parts.channel) sites_.exchange_channels(made.sites_);
+  if (parts.controllers) sites_.exchange_controllers(made.sites_);
+}
+
 Teleoperator::Record Teleoperator::recorded(double time_s, const MasterPlant::Reading& master,
                                             const SlavePlant::Reading& slave, const SitePair::Output& output) noexcept {
   Record record;

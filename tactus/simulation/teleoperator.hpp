@@ -98,6 +98,20 @@ class Teleoperator {
   /// Advances by one tick while the person intends to be at `path_m` now and at `path_at_next_tick_m` then.
   Record step(double path_m, double path_at_next_tick_m) noexcept;
 
+  /// What `exchange` takes over.
+  struct Parts {
+    bool grip = false;         ///< how the person holds the handle
+    bool environment = false;  ///< the wall
+    bool channel = false;      ///< both ways; what was on its way is lost
+    bool controllers = false;  ///< of both sites; the gates stay
+    bool operator==(const Parts&) const = default;
+  };
+  /// Goes on with these parts of `made`, a teleoperator of the same clock and devices that has not been stepped; `made`
+  /// keeps what was in their place. Devices and person stay where they are. Controllers are first brought to rest at
+  /// this very instant (`Site::exchange_controller`), those of another architecture cannot be: what is in the channel
+  /// means nothing to them. Between ticks; does not allocate, but takes about as long as 1000 ticks of the sites.
+  void exchange(Teleoperator& made, const Parts& parts) noexcept;
+
   /// The record of a tick as far as it is known before the plants go on; `add_contact` adds what they do,
   /// `tip_position_m` is the caller's to fill in.
   static Record recorded(double time_s, const MasterPlant::Reading& master, const SlavePlant::Reading& slave,

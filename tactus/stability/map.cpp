@@ -24,8 +24,8 @@ namespace tactus::stability {
 namespace {
 
 constexpr std::size_t most_points = 10'000'000;
-/// Blocks of the second pass of a float map are numbered from here.
-constexpr std::uint64_t second_pass = std::uint64_t{1} << 40;
+/// Blocks of each further pass of a float map are numbered from a multiple of this.
+constexpr std::uint64_t blocks_a_pass = std::uint64_t{1} << 40;
 
 /// FNV-1a of everything that the results depend on.
 std::uint64_t identity_of(const MapRequest& request) {
@@ -46,16 +46,20 @@ struct PointRunner {
   LanePlan plan;
   const LaneRunner& lanes;
 
-  /// The points of the grid with these indices, as many lanes at once as there are. Returns the loop ticks that it
-  /// took.
-  Result<double> run(std::span<const std::size_t> indices, PointResult* results) const {
+  struct Effort {
+    double ticks = 0.0;
+    double lane_ticks = 0.0;
+  };
+
+  /// The points of the grid with these indices, as many lanes at once as there are.
+  Result<Effort> run(std::span<const std::size_t> indices, PointResult* results) const {
     PointParams params(request.base, request.axes);
     const std::size_t width = lanes.lanes;
     std::vector<LanePoint> points;
     std::vector<const LanePoint*> pointers(width);
     std::vector<LaneResult> runs(width);
     std::vector<double> force_N(plan.longest() * width), one_N;
-    double ticks = 0.0;
+    Effort effort;
     for (std::size_t first = 0; first < indices.size(); first += width) {
       const std::size_t count = std::min(width, indices.size() - first);
       points.clear();
@@ -68,14 +72,17 @@ struct PointRunner {
       for (std::size_t i = 0; i < width; ++i) pointers[i] = &points[std::min(i, count - 1)];
       LaneMemory lines(lane_room(points.data(), count, width));
       lanes.run(pointers.data(), plan, lines.numbers(), force_N.data(), runs.data());
+      std::size_t longest = 0;
       for (std::size_t i = 0; i < count; ++i) {
         one_N.resize(runs[i].ticks);
         for (std::size_t n = 0; n < one_N.size(); ++n) one_N[n] = force_N[n * width + i];
         results[first + i] = judge(runs[i], one_N, plan.clock.tick_s);
-        ticks += static_cast<double>(runs[i].ticks);
+        effort.ticks += static_cast<double>(runs[i].ticks);
+        longest = std::max(longest, runs[i].ticks);
       }
+      effort.lane_ticks += static_cast<double>(longest * width);
     }
-    return ticks;
+    return effort;
   }
 };
 
@@ -113,7 +120,8 @@ struct Pass {
   }
 };
 
-/// Runs what this rank has to do of a pass, then waits for the others where `wait` says so.
+/// Runs what this rank has to do of a pass, then waits for the others where `wait` says so; but not once rank 0 has the
+/// whole map and has removed the files.
 Check run_pass(Pass& pass, const MapRequest& request, const PointRunner& runner, std::optional<MapStore>& store,
                bool wait, MapResult& result, const std::function<void(double)>& progress) {
   if (store) {
@@ -133,13 +141,14 @@ Check run_pass(Pass& pass, const MapRequest& request, const PointRunner& runner,
       [&](std::size_t i) {
         if (failed) return;
         const std::size_t block = mine[i], first = block * block_points, count = pass.size_of(block);
-        const auto ticks = runner.run(std::span(pass.indices).subspan(first, count), pass.results.data() + first);
+        const auto effort = runner.run(std::span(pass.indices).subspan(first, count), pass.results.data() + first);
         const std::lock_guard lock(guard);
-        if (!ticks) {
-          if (!failed.exchange(true)) failure = ticks.error();
+        if (!effort) {
+          if (!failed.exchange(true)) failure = effort.error();
           return;
         }
-        result.ticks += *ticks;
+        result.ticks += effort->ticks;
+        result.lane_ticks += effort->lane_ticks;
         pass.done[block] = 1;
         if (!store) return;
         if (auto error = store->append(pass.first_number + block, pass.results.data() + first, count)) {
@@ -148,7 +157,7 @@ Check run_pass(Pass& pass, const MapRequest& request, const PointRunner& runner,
       },
       progress, request.threads);
   if (failure) return failure;
-  while (wait && !pass.complete()) {
+  while (wait && !pass.complete() && store->is_there()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     const auto blocks = store->read_all();
     if (!blocks) return blocks.error();
@@ -157,8 +166,9 @@ Check run_pass(Pass& pass, const MapRequest& request, const PointRunner& runner,
   return {};
 }
 
-/// Points with another verdict next to them along some axis: where rounding could matter.
-std::vector<std::size_t> near_boundary(const MapResult& map) {
+/// Points with another verdict next to them along some axis, where rounding could matter, but for those that are
+/// `exact`.
+std::vector<std::size_t> near_boundary(const MapResult& map, const std::vector<char>& exact) {
   std::vector<char> near(map.points.size());
   std::size_t stride = 1;
   for (std::size_t axis = map.axes.size(); axis-- > 0;) {
@@ -171,7 +181,7 @@ std::vector<std::size_t> near_boundary(const MapResult& map) {
   }
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < near.size(); ++i) {
-    if (near[i] != 0) indices.push_back(i);
+    if (near[i] != 0 && exact[i] == 0) indices.push_back(i);
   }
   return indices;
 }
@@ -233,27 +243,34 @@ Result<MapResult> run_map(const MapRequest& request, const std::function<void(do
 
   const bool single = request.precision == MapPrecision::lanes_of_float;
   const bool several = store && request.share.ranks > 1;
+  // In float every rank must know all verdicts, to tell which points to run again.
+  const bool waits = several && (single || request.share.rank == 0);
   const PointRunner first_runner{request, *plan, lane_runner(single)};
   MapResult result{.axes = request.axes, .points = {}, .instruction_set = first_runner.lanes.name};
   std::vector<std::size_t> all(*count);
   std::iota(all.begin(), all.end(), std::size_t{0});
   Pass pass(std::move(all), 0);
-  const bool collects = several && (single || request.share.rank == 0);
-  if (auto error = run_pass(pass, request, first_runner, store, collects, result, progress)) return *std::move(error);
+  if (auto error = run_pass(pass, request, first_runner, store, waits, result, progress)) return *std::move(error);
   result.points = std::move(pass.results);
-  if (single) {
-    Pass again(near_boundary(result), second_pass);
-    const PointRunner exact_runner{request, *plan, lane_runner(false)};
-    if (auto error =
-            run_pass(again, request, exact_runner, store, several && request.share.rank == 0, result, progress)) {
-      return *std::move(error);
+  if (!single) return result;
+
+  // A verdict that changes in double can put the boundary beside points that are still in float, so until none is left.
+  const PointRunner exact_runner{request, *plan, lane_runner(false)};
+  std::vector<char> exact(*count);
+  for (std::uint64_t number = blocks_a_pass;; number += blocks_a_pass) {
+    Pass again(near_boundary(result, exact), number);
+    if (again.indices.empty()) return result;
+    if (auto error = run_pass(again, request, exact_runner, store, waits, result, progress)) return *std::move(error);
+    if (!again.complete()) return result;  // a rank above 0 whose work is no longer wanted
+    for (std::size_t i = 0; i < again.indices.size(); ++i) {
+      result.points[again.indices[i]] = again.results[i];
+      exact[again.indices[i]] = 1;
     }
-    for (std::size_t i = 0; i < again.indices.size(); ++i) result.points[again.indices[i]] = again.results[i];
-    result.redone = again.indices.size();
+    result.redone += again.indices.size();
   }
-  if (store && request.share.rank == 0) store->remove_all();
-  return result;
 }
+
+void remove_partial(const std::filesystem::path& folder) { MapStore::remove_all(folder); }
 
 std::vector<double> settled_limit(const MapResult& map, std::size_t along) {
   std::size_t stride = 1;

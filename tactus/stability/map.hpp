@@ -16,7 +16,7 @@ namespace tactus::stability {
 
 enum class MapPrecision {
   lanes_of_double,  ///< every point in double
-  lanes_of_float,   ///< in float, and again in double where a neighbour's verdict differs
+  lanes_of_float,   ///< in float, and again in double until no verdict in float stands beside another one
 };
 
 /// A share of the work: process `rank` of `ranks`, which all write to one folder.
@@ -39,6 +39,7 @@ struct MapResult {
   std::size_t resumed = 0;          ///< points that an earlier run had left
   std::size_t redone = 0;           ///< points of a float map that were run again in double
   double ticks = 0.0;               ///< loop ticks that this process ran
+  double lane_ticks = 0.0;          ///< and as many as there would be without lanes that wait for the last of a block
   std::string instruction_set;
 };
 
@@ -51,11 +52,15 @@ Result<std::size_t> count_points(const std::vector<MapAxis>& axes);
 
 /// Runs every point that no earlier run has left in the folder. Equal requests give equal results, bit for bit,
 /// whatever the number of threads and ranks, the order of the blocks, the instruction set, and however often the run
-/// was killed. A rank above 0 returns with what it knows when its own share is done; rank 0 waits for the others.
+/// was killed. A rank above 0 returns with what it knows when its own share is done; rank 0 waits for the others. The
+/// finished blocks stay in the folder until `remove_partial`.
 ///
 /// Errors: those of `make_point`, checked at the corners of the grid before anything is run; `inconsistent` for a
 /// folder that holds a part of another map; `unwritable`.
 Result<MapResult> run_map(const MapRequest& request, const std::function<void(double)>& progress);
+
+/// Removes the finished blocks of all ranks: what rank 0 does once the results are written.
+void remove_partial(const std::filesystem::path& folder);
 
 /// The largest value of axis `along` (an index) below which every verdict is settled or ringing, for each combination
 /// of the others in row-major order: 0 steps gives NaN, all steps the last value.

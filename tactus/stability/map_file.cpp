@@ -130,11 +130,14 @@ Result<MapStore> MapStore::open(const std::filesystem::path& folder, std::uint64
     ::close(file);
     return unwritable(path);
   }
-  return MapStore(folder, identity, file);
+  return MapStore(folder, identity, rank, file);
 }
 
 MapStore::MapStore(MapStore&& other) noexcept
-    : folder_(std::move(other.folder_)), identity_(other.identity_), file_(std::exchange(other.file_, -1)) {}
+    : folder_(std::move(other.folder_)),
+      identity_(other.identity_),
+      rank_(other.rank_),
+      file_(std::exchange(other.file_, -1)) {}
 
 MapStore::~MapStore() {
   if (file_ >= 0) ::close(file_);
@@ -170,10 +173,15 @@ Check MapStore::append(std::uint64_t number, const PointResult* points, std::siz
   return {};
 }
 
-void MapStore::remove_all() const {
+bool MapStore::is_there() const {
+  std::error_code ignored;
+  return std::filesystem::exists(path_of(folder_, rank_), ignored);
+}
+
+void MapStore::remove_all(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
     if (entry.path().extension() == ".partial") files.push_back(entry.path());
   }
   for (const auto& file : files) std::filesystem::remove(file, ignored);

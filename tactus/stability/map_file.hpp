@@ -34,14 +34,17 @@ class MapStore {
   [[nodiscard]] Result<std::vector<Block>> read_all() const;
   /// Appends one block with one write. Errors: `unwritable`.
   Check append(std::uint64_t number, const PointResult* points, std::size_t count);
+  /// Whether nobody has removed the file of this rank.
+  [[nodiscard]] bool is_there() const;
   /// Removes the files of all ranks: the map is complete and its results are written.
-  void remove_all() const;
+  static void remove_all(const std::filesystem::path& folder);
 
  private:
-  MapStore(std::filesystem::path folder, std::uint64_t identity, int file)
-      : folder_(std::move(folder)), identity_(identity), file_(file) {}
+  MapStore(std::filesystem::path folder, std::uint64_t identity, std::size_t rank, int file)
+      : folder_(std::move(folder)), identity_(identity), rank_(rank), file_(file) {}
   std::filesystem::path folder_;
   std::uint64_t identity_;
+  std::size_t rank_;
   int file_;
 };
 

@@ -40,11 +40,19 @@ bool write_text(hid_t object, const char* name, const std::string& text) {
 /// H5S_ALL without the cast in its definition.
 constexpr hid_t everything = 0;
 
+/// How objects are made: without the time of day, so that equal maps give equal bytes.
+Handle timeless(hid_t kind) {
+  const hid_t list = H5Pcreate(kind);
+  if (list >= 0) H5Pset_obj_track_times(list, false);
+  return {list, H5Pclose};
+}
+
 /// `words` only where there are some.
 bool write_numbers(hid_t place, const std::string& name, const std::vector<hsize_t>& shape,
                    const std::vector<double>& numbers, const std::string& unit, const std::string& words) {
   const Handle space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-  const Handle set(H5Dcreate2(place, name.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Handle how = timeless(H5P_DATASET_CREATE);
+  const Handle set(H5Dcreate2(place, name.c_str(), H5T_IEEE_F64LE, space.get(), H5P_DEFAULT, how.get(), H5P_DEFAULT),
                    H5Dclose);
   return set.ok() && H5Dwrite(set.get(), H5T_NATIVE_DOUBLE, everything, everything, H5P_DEFAULT, numbers.data()) >= 0 &&
          write_text(set.get(), "unit", unit) && (words.empty() || write_text(set.get(), "words", words));
@@ -52,9 +60,10 @@ bool write_numbers(hid_t place, const std::string& name, const std::vector<hsize
 
 bool write_all(const std::string& path, const MapResult& map) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are returned and not printed
-  const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  const Handle how_file = timeless(H5P_FILE_CREATE), how_group = timeless(H5P_GROUP_CREATE);
+  const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, how_file.get(), H5P_DEFAULT), H5Fclose);
   if (!file.ok()) return false;
-  const Handle axes(H5Gcreate2(file.get(), "axes", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  const Handle axes(H5Gcreate2(file.get(), "axes", H5P_DEFAULT, how_group.get(), H5P_DEFAULT), H5Gclose);
   if (!axes.ok()) return false;
   std::vector<hsize_t> shape;
   for (const MapAxis& axis : map.axes) {
