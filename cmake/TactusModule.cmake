@@ -27,7 +27,7 @@ if(TACTUS_SANITIZE)
   # The code that a sanitizer adds sets off warnings about the flow of values that are not true of the source.
   target_compile_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE} -fno-sanitize-recover=all
                                                   -fno-omit-frame-pointer -Wno-maybe-uninitialized
-                                                  -Wno-null-dereference)
+                                                  -Wno-null-dereference -Wno-subobject-linkage)
   target_link_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE})
 endif()
 

@@ -29,7 +29,7 @@ namespace {
 /// More than this waits nowhere: ten seconds of a fast servo.
 constexpr std::size_t longest_queue = 100'000;
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> relay_interrupted{false};
 
 struct RelayOptions {
   std::string file;
@@ -165,11 +165,11 @@ Check run(const RelayOptions& options) {
   Way to_slave(params->channel.to_slave, options.mean_burst, options.duplicate_fraction);
   Way to_master(params->channel.to_master, options.mean_burst, options.duplicate_fraction);
   for (const int number : {SIGINT, SIGTERM}) {
-    std::signal(number, [](int) { interrupted.store(true, std::memory_order_relaxed); });
+    std::signal(number, [](int) { relay_interrupted.store(true, std::memory_order_relaxed); });
   }
   constexpr std::int64_t look_up_ns = 50'000'000;
   const std::int64_t start_ns = link::monotonic_ns();
-  while (!interrupted.load(std::memory_order_relaxed)) {
+  while (!relay_interrupted.load(std::memory_order_relaxed)) {
     std::int64_t now_ns = link::monotonic_ns();
     if (options.duration_s > 0.0 && static_cast<double>(now_ns - start_ns) > options.duration_s * 1e9) break;
     for (const link::Packet& packet : master->receive()) to_slave.take(packet, now_ns);

@@ -6,6 +6,7 @@
 #include <tactus/report/text.hpp>
 #include <tactus/ros2/bridge.hpp>
 #include <tactus/ros2/remote_path.hpp>
+#include <tactus/runtime/servo_presentation.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
@@ -22,20 +22,16 @@ namespace tactus::cli {
 namespace {
 
 using simulation::Teleoperator;
-using Clock = std::chrono::steady_clock;
 using Record = Teleoperator::Record;
 
 constexpr double rest_s = 0.3;
 constexpr double workspace_m = 1.0;
-/// Beyond this the session gives up on the time that it has lost instead of making up for it.
-constexpr std::chrono::milliseconds longest_lag{100};
-
-volatile std::sig_atomic_t interrupted = 0;
+std::atomic<bool> interrupted{false};
 
 /// Ctrl-C ends the session and not the program.
 class Interruptible {
  public:
-  Interruptible() : before_{std::signal(SIGINT, &note), std::signal(SIGTERM, &note)} { interrupted = 0; }
+  Interruptible() : before_{std::signal(SIGINT, &note), std::signal(SIGTERM, &note)} { interrupted = false; }
   Interruptible(const Interruptible&) = delete;
   Interruptible& operator=(const Interruptible&) = delete;
   ~Interruptible() {
@@ -44,18 +40,8 @@ class Interruptible {
   }
 
  private:
-  static void note(int) { interrupted = 1; }
+  static void note(int) { interrupted.store(true, std::memory_order_relaxed); }
   void (*before_[2])(int);
-};
-
-struct Session {
-  double time_s = 0.0;
-  double worst_lag_s = 0.0;
-  int contacts = 0;
-  double peak_force_N = 0.0;
-  bool driven = false;
-  bool diverged = false;
-  ros2::Bridge::Counts counts;
 };
 
 ros2::Snapshot snapshot_of(const Record& record, std::int64_t stamp_ns, bool healthy) {
@@ -90,81 +76,88 @@ Result<Parts> make_parts(const simulation::TappingParams& params) {
 
 using RecordStream = telemetry::RecordStream<Record>;
 
-Session run(Parts& parts, ros2::Bridge& bridge, RecordStream* log) {
-  const Interruptible interruptible;
-  const std::int64_t tick_ns = std::llround(1e9 * parts.teleoperator.tick_s());
-  const auto ticks = static_cast<std::int64_t>(parts.script.duration_s() / parts.teleoperator.tick_s());
-  Session session;
-  Clock::time_point start = Clock::now();
-  std::int64_t stamp_ns = std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count();
-  double path_m = parts.script.position_m(0.0);
-  for (std::int64_t tick = 0; tick < ticks && interrupted == 0; ++tick) {
-    const Clock::time_point due = start + std::chrono::nanoseconds(tick * tick_ns);
-    std::this_thread::sleep_until(due);
-    const auto lag = Clock::now() - due;
-    session.worst_lag_s = std::max(session.worst_lag_s, std::chrono::duration<double>(lag).count());
-    if (lag > longest_lag) {
-      start += lag;
-      stamp_ns += std::chrono::nanoseconds(lag).count();
-    }
+/// What a servo thread steps, and what it saw. `Parts` and the rest outlive it.
+struct Session {
+  Parts* parts;
+  ros2::Bridge* bridge;
+  RecordStream* log;        ///< or null
+  std::int64_t to_wall_ns;  ///< from CLOCK_MONOTONIC to the time of day
+  std::int64_t first_tick = -1;
+  std::int64_t done = 0;  ///< ticks
+  double path_m = 0.0;
+  int contacts = 0;
+  double peak_force_N = 0.0;
+  bool diverged = false;
 
-    session.time_s = static_cast<double>(tick + 1) * parts.teleoperator.tick_s();
-    const double next_m =
-        parts.path.step({.scripted_m = parts.script.position_m(session.time_s), .wished_m = bridge.take_wish()});
-    const Record record = parts.teleoperator.step(path_m, next_m);
-    path_m = next_m;
-    const bool healthy = parts.teleoperator.healthy();
-    bridge.publish(snapshot_of(record, stamp_ns + tick * tick_ns, healthy));
-    if (log != nullptr) log->push(static_cast<std::uint64_t>(tick * tick_ns), record);
+  [[nodiscard]] double time_s() const noexcept { return static_cast<double>(done) * parts->teleoperator.tick_s(); }
 
-    session.contacts += record.touched ? 1 : 0;
-    session.peak_force_N = std::max(session.peak_force_N, record.peak_contact_force_N);
-    // Written so that a NaN counts as outside.
-    const bool inside =
-        std::fabs(record.master_position_m) < workspace_m && std::fabs(record.tip_position_m) < parts.slave_workspace_m;
-    if (!inside || !healthy) {
-      session.diverged = true;
-      break;
+  bool operator()(const runtime::Tick& tick) noexcept {
+    if (first_tick < 0) {
+      first_tick = tick.number;
+      path_m = parts->script.position_m(0.0);
     }
+    while (done <= tick.number - first_tick) {
+      if (time_s() >= parts->script.duration_s() || !advance(tick.deadline_ns + to_wall_ns)) return false;
+    }
+    return !interrupted.load(std::memory_order_relaxed);
   }
-  session.driven = parts.path.driven();
-  bridge.close();
-  session.counts = bridge.counts();
-  return session;
-}
 
-std::string json_of(const simulation::Request& request, const Ros2Options& options, const Session& session) {
+ private:
+  /// One tick. False once the teleoperator is not what it should be.
+  bool advance(std::int64_t stamp_ns) noexcept {
+    Teleoperator& teleoperator = parts->teleoperator;
+    const auto since_start_ns = static_cast<std::uint64_t>(std::llround(1e9 * time_s()));
+    ++done;
+    const double next_m =
+        parts->path.step({.scripted_m = parts->script.position_m(time_s()), .wished_m = bridge->take_wish()});
+    const Record record = teleoperator.step(path_m, next_m);
+    path_m = next_m;
+    bridge->publish(snapshot_of(record, stamp_ns, teleoperator.healthy()));
+    if (log != nullptr) log->push(since_start_ns, record);
+    contacts += record.touched ? 1 : 0;
+    peak_force_N = std::max(peak_force_N, record.peak_contact_force_N);
+    // Written so that a NaN counts as outside.
+    const bool inside = std::fabs(record.master_position_m) < workspace_m &&
+                        std::fabs(record.tip_position_m) < parts->slave_workspace_m;
+    diverged = !inside || !teleoperator.healthy();
+    return !diverged;
+  }
+};
+
+std::string json_of(const simulation::Request& request, const Ros2Options& options, const Session& session,
+                    const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo) {
   return nlohmann::ordered_json{{"experiment", request.name},
                                 {"command", request.command},
                                 {"namespace", options.name_space},
-                                {"time_s", session.time_s},
-                                {"worst_lag_s", session.worst_lag_s},
+                                {"time_s", session.time_s()},
                                 {"contacts", session.contacts},
                                 {"peak_contact_force_N", session.peak_force_N},
-                                {"driven", session.driven},
-                                {"published", session.counts.published},
-                                {"dropped", session.counts.dropped},
-                                {"messages_lost", session.counts.lost},
-                                {"wishes", session.counts.wishes},
-                                {"commands_refused", session.counts.refused}}
+                                {"driven", session.parts->path.driven()},
+                                {"published", counts.published},
+                                {"dropped", counts.dropped},
+                                {"messages_lost", counts.lost},
+                                {"wishes", counts.wishes},
+                                {"commands_refused", counts.refused},
+                                {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}}
              .dump(2) +
          "\n";
 }
 
-std::string text_of(const Ros2Options& options, const Session& session) {
+std::string text_of(const Ros2Options& options, const Session& session, const ros2::Bridge::Counts& counts,
+                    const runtime::ServoReport& servo) {
   report::Table table({{.title = "quantity", .align = report::Column::Align::left}, {.title = "value"}},
                       "Among ROS 2 nodes, namespace " + options.name_space);
   const auto count = [](std::uint64_t value) { return std::to_string(value); };
-  table.add_row({"time", report::number(session.time_s, 4) + " s"});
-  table.add_row({"largest lag behind real time", report::number(1e3 * session.worst_lag_s, 3) + " ms"});
+  table.add_row({"time", report::number(session.time_s(), 4) + " s"});
   table.add_row({"contacts", std::to_string(session.contacts)});
   table.add_row({"largest contact force", report::number(session.peak_force_N, 3) + " N"});
-  table.add_row({"snapshots published", count(session.counts.published)});
-  table.add_row({"snapshots dropped", count(session.counts.dropped)});
-  table.add_row({"messages lost", count(session.counts.lost)});
-  table.add_row({"wishes for the hand", count(session.counts.wishes)});
-  table.add_row({"commands refused", count(session.counts.refused)});
-  return table.to_text();
+  table.add_row({"snapshots published", count(counts.published)});
+  table.add_row({"snapshots dropped", count(counts.dropped)});
+  table.add_row({"messages lost", count(counts.lost)});
+  table.add_row({"wishes for the hand", count(counts.wishes)});
+  table.add_row({"commands refused", count(counts.refused)});
+  return table.to_text() + "\n" + runtime::timing_table(servo).to_text() + "\n" +
+         runtime::late_ticks_table(servo).to_text();
 }
 
 }  // namespace
@@ -208,29 +201,44 @@ Result<std::string> run_ros2_session(const simulation::Request& request, const R
   RecordStream* stream = nullptr;
   if (options.log_folder) {
     if (auto error = report::prepare_directory(*options.log_folder)) return *std::move(error);
-    auto opened = telemetry::Recorder::create(*options.log_folder / log_file_name);
+    auto opened = telemetry::Recorder::create(*options.log_folder / "log.mcap");
     if (!opened) return opened.error();
     recorder.emplace(*std::move(opened));
-    recorder->add_metadata("tactus", about_run(request, configuration::to_toml(*params)));
-    stream = &recorder->add<Record>(teleoperator_topic, teleoperator_type);
+    auto about = log_origin();
+    about["experiment"] = request.name;
+    about["configuration"] = configuration::to_toml(*params);
+    about["clock"] = "real";
+    recorder->add_metadata("tactus", about);
+    stream = &recorder->add<Record>("/teleoperator", "tactus_msgs/msg/TeleoperatorRecord");
   }
+  runtime::ServoThreadParams servo = options.servo;
+  servo.rate_Hz = params->servo.rate_Hz;
   if (recorder) recorder->start();
-  const Session session = run(*parts, *bridge, stream);
+  const std::int64_t wall_ns =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  Session session{.parts = &*parts, .bridge = &*bridge, .log = stream, .to_wall_ns = wall_ns - runtime::monotonic_ns()};
+  const auto report = [&] {
+    const Interruptible interruptible;
+    return runtime::run_servo(servo, [&session](const runtime::Tick& tick) noexcept { return session(tick); });
+  }();
+  bridge->close();
   if (recorder) {
     if (auto error = recorder->stop()) return *std::move(error);
-    if (auto error = telemetry::write_bag_metadata(*options.log_folder / log_file_name, recorder->log())) {
+    if (auto error = telemetry::write_bag_metadata(*options.log_folder / "log.mcap", recorder->log())) {
       return *std::move(error);
     }
   }
+  if (!report) return report.error();
   if (session.diverged) {
     return Error{.code = ErrorCode::failed,
                  .parameter = {},
-                 .message = "after " + report::number(session.time_s, 4) +
+                 .message = "after " + report::number(session.time_s(), 4) +
                             " s a safety gate has closed or a device has left its workspace of 1 m: lower "
                             "control.force_gain, or switch cancellation on",
                  .place = {}};
   }
-  return json ? json_of(request, options, session) : text_of(options, session);
+  const ros2::Bridge::Counts counts = bridge->counts();
+  return json ? json_of(request, options, session, counts, *report) : text_of(options, session, counts, *report);
 }
 
 }  // namespace tactus::cli

@@ -2,6 +2,7 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
+#include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/experiment.hpp>
 #include <tactus/simulation/tapping.hpp>
 
@@ -33,13 +34,14 @@ class TapScript {
 
 struct Ros2Options {
   std::string name_space = "tactus";
+  runtime::ServoThreadParams servo = {};  ///< the rate is that of the experiment
   std::optional<std::filesystem::path> log_folder = {};
 };
 
-/// Runs the teleoperator of a `tapping` experiment among ROS 2 nodes, its virtual time paced to real time, for as long
-/// as the taps of `TapScript` take or until it is interrupted. Returns a table, or one JSON document. Errors: those of
-/// the experiment's file, of the network and of the log; `failed` once a safety gate has closed or the devices have
-/// left their workspace.
+/// Runs the teleoperator of a `tapping` experiment among ROS 2 nodes, on a servo thread, for as long as the taps of
+/// `TapScript` take or until it is interrupted. Deadlines that are missed are made up for, so that its time keeps to
+/// the real one. Returns a table, or one JSON document. Errors: those of the experiment's file, of the network and of
+/// the log; `failed` once a safety gate has closed or the devices have left their workspace.
 Result<std::string> run_ros2_session(const simulation::Request& request, const Ros2Options& options, bool json);
 
 }  // namespace tactus::cli

@@ -65,6 +65,20 @@ void say_log(const RunOptions& options, const std::filesystem::path& folder) {
   (options.json ? std::cerr : std::cout) << "Log: " << folder.string() << "\n";
 }
 
+Check run_in_real_time(const RunOptions& options, const simulation::Request& request) {
+  runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin()};
+  const std::filesystem::path folder = std::filesystem::path(options.out.value_or("")) / "log";
+  if (options.out) real_time.log = folder / "log.mcap";
+  const auto done = [&] {
+    ProgressLine line(request.name);
+    return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
+  }();
+  if (!done) return done.error();
+  if (auto error = write_outcome(options.out, done->outcome, options.json)) return error;
+  if (options.out && !done->log) say_log(options, folder);
+  return done->log;
+}
+
 Error refuse_ros2(std::string message) {
   return {.code = ErrorCode::inconsistent, .parameter = {}, .message = std::move(message), .place = "--ros2"};
 }
@@ -77,7 +91,7 @@ Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request&
   if (!request.variations.empty()) {
     return refuse_ros2("there is one teleoperator at a time: write --set in place of --vary");
   }
-  Ros2Options session{.name_space = options.name_space};
+  Ros2Options session{.name_space = options.name_space, .servo = options.servo};
   if (options.out) session.log_folder = std::filesystem::path(*options.out) / "log";
   const auto output = run_ros2_session(request, session, options.json);
   if (!output) return output.error();
@@ -87,27 +101,13 @@ Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request&
   return std::nullopt;
 }
 
-Check run_in_real_time(const RunOptions& options, const simulation::Request& request) {
-  runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin()};
-  const std::filesystem::path folder = std::filesystem::path(options.out.value_or("")) / "log";
-  if (options.out) real_time.log = folder / log_file_name;
-  const auto done = [&] {
-    ProgressLine line(request.name);
-    return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
-  }();
-  if (!done) return done.error();
-  if (auto error = write_outcome(options.out, done->outcome, options.json)) return error;
-  if (options.out && !done->log) say_log(options, folder);
-  return done->log;
-}
-
 Check refuse_servo_options_without_a_servo_thread(const CLI::App& verb, const RunOptions& options) {
-  if (options.real_time || !options.site.site.empty()) return std::nullopt;
+  if (options.real_time || options.ros2 || !options.site.site.empty()) return std::nullopt;
   for (const char* name : {"--priority", "--core", "--spin-s"}) {
     if (verb.count(name) == 0) continue;
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = {},
-                 .message = "there is no servo thread in virtual time: add --realtime or --site",
+                 .message = "there is no servo thread in virtual time: add --realtime, --ros2 or --site",
                  .place = name};
   }
   return std::nullopt;
@@ -130,6 +130,7 @@ Check run(const RunOptions& options, const std::string& command) {
   if (options.out) {
     if (auto error = check_writable(*options.out)) return error;
   }
+
   if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind());
   if (options.real_time) return run_in_real_time(options, *request);
 
@@ -174,12 +175,11 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   CLI::Option* const ros2 =
       verb->add_flag("--ros2", options->ros2,
                      "Run the taps in real time among ROS 2 nodes: publish under CRTK names, take operator/servo_jp");
+  ros2->excludes(real_time)->excludes("--site");
   verb->add_option("--namespace", options->name_space, "Namespace of the ROS 2 topics")
       ->type_name("NAME")
       ->capture_default_str()
       ->needs(ros2);
-  ros2->excludes(real_time);
-  ros2->excludes(verb->get_option("--site"));
   verb->callback([options, verb, &app, &command, &status] {
     Check error = refuse_servo_options_without_a_servo_thread(*verb, *options);
     if (!error) error = run(*options, command);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 
 #include <sys/utsname.h>
@@ -26,22 +27,18 @@ std::map<std::string, std::string> log_origin() {
   return {{"version", std::string(version())}, {"machine", machine}};
 }
 
-std::map<std::string, std::string> about_run(const simulation::Request& request, const std::string& configuration) {
-  auto about = log_origin();
-  about["experiment"] = request.name;
-  about["configuration"] = configuration;
-  return about;
-}
-
 Check write_run_log(const std::filesystem::path& folder, const simulation::Request& request,
                     const simulation::Outcome& outcome) {
   using Record = simulation::Teleoperator::Record;
   if (auto error = report::prepare_directory(folder)) return error;
-  const std::filesystem::path file = folder / log_file_name;
+  const std::filesystem::path file = folder / "log.mcap";
   auto log = telemetry::LogWriter::create(file);
   if (!log) return log.error();
 
-  log->add_metadata("tactus", about_run(request, outcome.configuration));
+  auto about = log_origin();
+  about["experiment"] = request.name;
+  about["configuration"] = outcome.configuration;
+  log->add_metadata("tactus", about);
   const std::size_t runs = outcome.traces.size();
   const std::size_t logged = std::min(runs, most_runs);
   const bool several = runs > 1;
@@ -50,8 +47,8 @@ Check write_run_log(const std::filesystem::path& folder, const simulation::Reque
     const simulation::Trace& trace = outcome.traces[i];
     const std::string name = "run_" + std::to_string(i + 1);
     if (!trace.settings.empty()) log->add_metadata(name, {trace.settings.begin(), trace.settings.end()});
-    const auto channel = log->add_channel({.topic = several ? "/" + name + teleoperator_topic : teleoperator_topic,
-                                           .type_name = teleoperator_type,
+    const auto channel = log->add_channel({.topic = several ? "/" + name + "/teleoperator" : "/teleoperator",
+                                           .type_name = "tactus_msgs/msg/TeleoperatorRecord",
                                            .columns = telemetry::columns_of<Record>()});
     std::uint32_t sequence = 0;
     for (const Record& record : trace.records) {

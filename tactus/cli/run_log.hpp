@@ -9,14 +9,8 @@
 
 namespace tactus::cli {
 
-inline constexpr const char* log_file_name = "log.mcap";
-inline constexpr const char* teleoperator_topic = "/teleoperator";
-inline constexpr const char* teleoperator_type = "tactus_msgs/msg/TeleoperatorRecord";
-
 /// Where a log comes from: version of tactus, system and processor family. No name of the machine: logs are passed on.
 std::map<std::string, std::string> log_origin();
-/// What a log says of its run under the name `tactus`: version, experiment, kind of machine, configuration.
-std::map<std::string, std::string> about_run(const simulation::Request& request, const std::string& configuration);
 
 /// Writes the traces of an outcome as a log: `folder/log.mcap`, with `metadata.yaml` for ROS 2 bag tools. One trace is
 /// the topic `/teleoperator`, several are `/run_1/teleoperator` and so on, by the row of the table; of more than 64,

@@ -17,10 +17,12 @@ namespace tactus::cli {
 
 namespace {
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> site_interrupted{false};
 std::atomic<bool> asked_to_arm{false};
 
-void on_signal(int number) { (number == SIGUSR1 ? asked_to_arm : interrupted).store(true, std::memory_order_relaxed); }
+void on_signal(int number) {
+  (number == SIGUSR1 ? asked_to_arm : site_interrupted).store(true, std::memory_order_relaxed);
+}
 
 Error refused(ErrorCode code, const char* option, std::string message) {
   return Error{.code = code, .parameter = {}, .message = std::move(message), .place = option};
@@ -119,7 +121,7 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   lines << second_head(options.site) << std::flush;
   bool input_open = true;
   while (!(*servo)->ended()) {
-    if (interrupted.load(std::memory_order_relaxed)) (*servo)->stop();
+    if (site_interrupted.load(std::memory_order_relaxed)) (*servo)->stop();
     const bool typed = line_typed(input_open);
     if (asked_to_arm.exchange(false, std::memory_order_relaxed) || typed) {
       exchange.arm.store(true, std::memory_order_relaxed);

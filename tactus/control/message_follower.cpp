@@ -44,9 +44,11 @@ void MessageFollower::resume() noexcept {
 }
 
 Arrival MessageFollower::step(const Input& input) noexcept {
+  const double most_m = params_.catch_up_m_per_s * dt_s_, most = params_.catch_up_N_per_s * dt_s_;
   if (!input.following) {
-    const double position_m = out_.position_m, energy_J = out_.energy_J;
-    out_ = {.position_m = position_m, .energy_J = energy_J};
+    out_.velocity_m_per_s = toward_zero(out_.velocity_m_per_s, most);
+    out_.force_N = toward_zero(out_.force_N, most);
+    out_.wave = toward_zero(out_.wave, most);
     follows_ = learnt_ = false;
     velocity_m_per_s_ = share_ = ahead_m_ = silence_s_ = 0.0;
     gap_ = {};
@@ -67,7 +69,6 @@ Arrival MessageFollower::step(const Input& input) noexcept {
   } else {
     lapse(input.elapsed_ticks);
   }
-  const double most_m = params_.catch_up_m_per_s * dt_s_, most = params_.catch_up_N_per_s * dt_s_;
   gap_.position_m = toward_zero(gap_.position_m, most_m);
   gap_.velocity_m_per_s = toward_zero(gap_.velocity_m_per_s, most);
   gap_.force_N = toward_zero(gap_.force_N, most);

@@ -16,7 +16,7 @@ namespace tactus::control {
 /// - A message that is fresh every tick passes unchanged, bit for bit.
 /// - In silence a position goes on at its estimated velocity for `extrapolation_s`; then velocity, force and wave decay
 ///   with the time constant `decay_s`, so a position goes no farther than v·(extrapolation + decay).
-/// - Where the site does not follow, the position stays where it was and all else is zero.
+/// - Where the site does not follow, the position stays where it was and all else fades to zero at the rate below.
 /// - What then comes again differs from what stands. The difference is kept and closed at a bounded rate, so neither
 /// the
 ///   end of a silence nor the start of following makes a step.
@@ -28,7 +28,7 @@ class MessageFollower {
   struct Params {
     double extrapolation_s = 0.01;
     double decay_s = 0.02;
-    double catch_up_m_per_s = 0.2;
+    double catch_up_m_per_s = 0.05;
     double catch_up_N_per_s = 20.0;
     static constexpr auto fields() {
       return std::tuple{
@@ -43,7 +43,7 @@ class MessageFollower {
     }
   };
   struct Input {
-    Arrival arrival;  ///< the newest that counts
+    Arrival arrival{};  ///< the newest that counts
     bool following = false;
     std::int64_t elapsed_ticks = 1;
   };

@@ -25,7 +25,7 @@ struct Packet {
   double age_s = 0.0;         ///< since it was sent, as well as the receiver knows
   SiteState state = SiteState::configure;
   std::int64_t armings = 0;  ///< how often the master was armed; a slave repeats the one that it follows
-  Message message;
+  Message message{};
 };
 
 /// What becomes of a packet.

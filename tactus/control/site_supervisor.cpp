@@ -65,6 +65,8 @@ SiteState SiteSupervisor::step(const Input& input) noexcept {
              cause != SiteCause::none) {
     go(SiteState::hold, cause, input);
   } else if (state_ == SiteState::armed) {
+    // Armed anew, for a slave that was not ready the first time.
+    arm_where_asked(input, arm);
     become_active_where_ready(input);
   } else if (role_ == SiteRole::master ? !input.requests.dead_man : input.peer == SiteState::armed) {
     state_ = SiteState::armed;

@@ -53,7 +53,7 @@ class SiteSupervisor {
     }
   };
   struct Input {
-    SiteRequests requests;
+    SiteRequests requests{};
     bool heard = false;        ///< the other site, ever
     std::int64_t session = 0;  ///< of the other site
     SiteState peer = SiteState::configure;

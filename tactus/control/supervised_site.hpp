@@ -15,8 +15,8 @@ namespace tactus::control {
 class SupervisedMaster {
  public:
   struct Input {
-    MasterInput sensors;  ///< its arrival is not used: packets say what came
-    SiteRequests requests;
+    MasterInput sensors{};  ///< its arrival is not used: packets say what came
+    SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;  ///< since the step before; more after a stall
   };
   struct Output {
@@ -48,8 +48,8 @@ class SupervisedMaster {
 class SupervisedSlave {
  public:
   struct Input {
-    SlaveInput sensors;  ///< its arrival is not used: packets say what came
-    SiteRequests requests;
+    SlaveInput sensors{};  ///< its arrival is not used: packets say what came
+    SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;
   };
   struct Output {

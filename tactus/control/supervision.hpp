@@ -87,7 +87,7 @@ class Supervision {
 
   /// What the site itself saw, for `decide`.
   struct Sight {
-    SiteRequests requests;
+    SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;
     GateFault fault = GateFault::none;
     bool force_sensor = false;

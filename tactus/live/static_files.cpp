@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -51,16 +50,19 @@ Result<StaticFiles> StaticFiles::load(const std::filesystem::path& folder) {
     const bool hidden = entry->path().filename().string().starts_with('.');
     if (hidden && entry->is_directory(error)) entry.disable_recursion_pending();
     if (hidden || entry->is_symlink(error) || !entry->is_regular_file(error)) continue;
-    bytes += entry->file_size(error);
+    const std::uintmax_t size = entry->file_size(error);
     if (error) break;
+    bytes += size;
     if (page.files_.size() == most_files || bytes > most_bytes) {
       return bad_page(ErrorCode::out_of_bounds, folder, "holds more than 1000 files or 64 MiB and cannot be a page");
     }
     std::ifstream file(entry->path(), std::ios::binary);
-    std::string content{std::istreambuf_iterator<char>(file), {}};
-    if (!file) return bad_page(ErrorCode::missing, entry->path(), "cannot be read");
-    page.files_["/" + entry->path().lexically_relative(folder).generic_string()] = {std::move(content),
-                                                                                    type_of(entry->path())};
+    std::string content(static_cast<std::size_t>(size), '\0');
+    if (!file.read(content.data(), static_cast<std::streamsize>(content.size())))
+      return bad_page(ErrorCode::missing, entry->path(), "cannot be read");
+    std::string name = "/";
+    name += entry->path().lexically_relative(folder).generic_string();
+    page.files_[name] = {std::move(content), type_of(entry->path())};
   }
   if (error) return bad_page(ErrorCode::missing, folder, "cannot be read (" + error.message() + ")");
   if (!page.files_.contains("/index.html")) return bad_page(ErrorCode::missing, folder, "holds no index.html");

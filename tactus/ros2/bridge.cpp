@@ -11,11 +11,10 @@ namespace tactus::ros2 {
 
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
 /// How long the thread waits for a command before it looks for snapshots.
 constexpr Seconds look_every{0.001};
 /// The state is told when it changes and this often, for those who come late.
-constexpr std::int64_t state_every_ns = second_ns / 10;
+constexpr std::int64_t state_every_ns = 100'000'000;
 
 JointState joint_state(const Snapshot& at, const char* device) {
   return {.stamp_ns = at.stamp_ns, .frame_id = device, .name = {device}, .position = {}, .velocity = {}, .effort = {}};

@@ -44,15 +44,19 @@ bool is_word(std::string_view word) {
 }  // namespace
 
 Environment environment() {
-  return {.domain_id = std::getenv("ROS_DOMAIN_ID"),
-          .localhost_only = std::getenv("ROS_LOCALHOST_ONLY"),
-          .discovery_range = std::getenv("ROS_AUTOMATIC_DISCOVERY_RANGE")};
+  // Nothing here sets variables.
+  const auto variable = [](const char* name) { return std::getenv(name); };  // NOLINT(concurrency-mt-unsafe)
+  return {.domain_id = variable("ROS_DOMAIN_ID"),
+          .localhost_only = variable("ROS_LOCALHOST_ONLY"),
+          .discovery_range = variable("ROS_AUTOMATIC_DISCOVERY_RANGE"),
+          .configuration = variable("CYCLONEDDS_URI")};
 }
 
 Result<Network> network_of(const Environment& variables) {
   const auto domain = domain_of(variables.domain_id);
   if (!domain) return domain.error();
   Network network{.domain = *domain};
+  if (variables.configuration != nullptr) network.configuration = variables.configuration;
   if (const char* const text = variables.localhost_only; text != nullptr && *text != '\0') {
     const std::string_view value = text;
     if (value != "0" && value != "1") {

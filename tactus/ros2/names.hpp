@@ -13,13 +13,17 @@ namespace tactus::ros2 {
 struct Network {
   std::uint32_t domain = 0;    ///< programs of different domains do not see one another
   bool loopback_only = false;  ///< only programs on this machine
+  /// Configuration of Cyclone DDS, as CYCLONEDDS_URI has it; not read with `loopback_only`: it could bring other
+  /// interfaces back in.
+  std::string configuration = {};
 };
 
-/// The variables of ROS 2 that choose the network, as text; null where one is not set.
+/// The variables that choose the network, as text; null where one is not set.
 struct Environment {
   const char* domain_id = nullptr;        ///< ROS_DOMAIN_ID: 0 to 232, 0 where it is empty
   const char* localhost_only = nullptr;   ///< ROS_LOCALHOST_ONLY: 0 or 1 (to Humble)
   const char* discovery_range = nullptr;  ///< ROS_AUTOMATIC_DISCOVERY_RANGE: SUBNET or LOCALHOST (from Iron on)
+  const char* configuration = nullptr;    ///< CYCLONEDDS_URI
 };
 
 /// Those of this process.

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <string_view>
@@ -177,12 +176,8 @@ Result<dds_entity_t> open_topic(dds_entity_t participant, const std::string& top
 
 Result<Participant> Participant::create(const Network& network) {
   std::string configuration = size_limit;
-  if (network.loopback_only) {
-    // A file of the user's could bring other interfaces back in.
-    configuration += std::string(",") + loopback;
-  } else if (const char* const wanted = std::getenv("CYCLONEDDS_URI"); wanted != nullptr && *wanted != '\0') {
-    configuration += std::string(",") + wanted;
-  }
+  const std::string more = network.loopback_only ? std::string(loopback) : network.configuration;
+  if (!more.empty()) configuration += "," + more;
   const std::string where = "DDS domain " + std::to_string(network.domain);
   const Complaints complaints;
   dds_set_log_sink(&on_log, nullptr);

@@ -54,8 +54,8 @@ class Reader {
 /// This process among the programs of a DDS domain. It has threads of its own.
 class Participant {
  public:
-  /// Joins the domain. Outside of `loopback_only` the variable CYCLONEDDS_URI can choose interfaces and more. Errors:
-  /// `failed` where the network does not do it, and for a second participant of the process in the same domain.
+  /// Joins the domain. Errors: `failed` where the network does not do it, and for a second participant of the process
+  /// in the same domain.
   static Result<Participant> create(const Network& network);
   Participant(Participant&& other) noexcept : domain_(std::exchange(other.domain_, 0)), handle_(other.handle_) {}
   Participant& operator=(Participant&&) = delete;

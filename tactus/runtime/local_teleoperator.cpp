@@ -13,7 +13,8 @@ DeviceReading trusted_reading(Device& device, const Tick& tick) noexcept {
   return reading;
 }
 
-void tighten(control::SafetyGate::Params& gate, double limit_N) {
+template <class GateParams>
+void tighten(GateParams& gate, double limit_N) {
   if (limit_N > 0.0) gate.force_limit_N = std::min(gate.force_limit_N, limit_N);
 }
 
@@ -39,7 +40,8 @@ LocalTeleoperator::Output LocalTeleoperator::step(const Tick& tick) noexcept {
                               .hand_force_N = output.master.force_N,
                               .grip = output.master.grip,
                               .slave_position_m = output.slave.position_m,
-                              .tip_force_N = output.slave.force_N});
+                              .tip_force_N = output.slave.force_N},
+                             tick.missed + 1);
   master_->write({.force_N = output.sites.master.motor_force_N, .handle_force_N = output.sites.master.handle_force_N});
   slave_->write({.force_N = output.sites.slave.motor_force_N});
   return output;

@@ -7,7 +7,7 @@
 #include <tactus/simulation/tapping_presentation.hpp>
 #include <tactus/telemetry/log_writer.hpp>
 
-#include <algorithm>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -25,7 +25,7 @@ using simulation::TapResult;
 struct Prepared {
   TappingEnsemble ensemble;
   double observation_s;
-  double rate_Hz;
+  ServoThreadParams servo;
 };
 using Cases = simulation::Cases<Prepared>;
 
@@ -96,17 +96,18 @@ Check close_log(Log& log, const std::filesystem::path& file) {
   return telemetry::write_bag_metadata(file, log.recorder.log());
 }
 
+/// Taps of a run whose every tick is kept in memory, one of them to be shown; the log has all.
+constexpr std::size_t most_traces = 64;
+
 /// One run as it went, and how time was kept in it.
 struct RealTimeRun {
   TappingRun run;
   ServoReport servo;
 };
 
-Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, const ServoThreadParams& params,
-                             const RealTimeStreams& streams, const std::function<void()>& tap_done) {
+Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, const RealTimeStreams& streams,
+                             const std::function<void()>& tap_done) {
   const auto& [settings, prepared] = one;
-  ServoThreadParams servo = params;
-  servo.rate_Hz = prepared.rate_Hz;
   RealTimeRun done;
   std::vector<TapResult> results;
   std::vector<std::vector<simulation::Teleoperator::Record>> traces;
@@ -114,14 +115,15 @@ Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, const ServoT
     auto made = RealTimeTap::make(prepared.ensemble.tap(tap), prepared.observation_s, streams);
     if (!made) return made.error();
     RealTimeTap& running = **made;
-    const auto report = run_servo(servo, [&running](const Tick& tick) noexcept { return running.step(tick); });
+    const auto report = run_servo(prepared.servo, [&running](const Tick& tick) noexcept { return running.step(tick); });
     if (!report) return report.error();
     done.servo.add(*report);
     results.push_back(running.result());
-    traces.push_back(running.trace());
+    if (traces.size() < most_traces) traces.push_back(running.trace());
     tap_done();
   }
-  const std::size_t shown = simulation::median_tap(results);
+  const std::vector<TapResult> kept(results.begin(), results.begin() + static_cast<std::ptrdiff_t>(traces.size()));
+  const std::size_t shown = simulation::median_tap(kept);
   done.run = {.settings = settings,
               .metrics = simulation::summarise(results),
               .observation_s = prepared.observation_s,
@@ -156,15 +158,17 @@ std::string losses_of(const ServoReport& report) {
 Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, const RealTimeOptions& options,
                                          const simulation::Progress& progress) {
   if (auto error = refuse_other_kinds(request)) return *std::move(error);
-  const auto cases =
-      simulation::prepare_cases<TappingParams, Prepared>(request, [](const TappingParams& params) -> Result<Prepared> {
+  const auto cases = simulation::prepare_cases<TappingParams, Prepared>(
+      request, [&options](const TappingParams& params) -> Result<Prepared> {
+        ServoThreadParams servo = options.servo;
+        servo.rate_Hz = params.servo.rate_Hz;
+        if (auto error = check_servo_thread(servo)) return *std::move(error);
         auto ensemble = TappingEnsemble::make(params);
         if (!ensemble) return ensemble.error();
-        return Prepared{*std::move(ensemble), params.task.observation_s, params.servo.rate_Hz};
+        return Prepared{*std::move(ensemble), params.task.observation_s, servo};
       });
   if (!cases) return cases.error();
   if (auto error = refuse_long_runs(*cases)) return *std::move(error);
-  if (auto error = check_servo_thread(options.servo)) return *std::move(error);
 
   std::unique_ptr<Log> log;
   if (options.log) {
@@ -182,7 +186,7 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
   std::vector<ServoReport> servos;
   ServoReport all;
   for (std::size_t i = 0; i < cases->all.size(); ++i) {
-    auto done = run_taps(cases->all[i], options.servo, log ? log->streams[i] : RealTimeStreams{}, tap_done);
+    auto done = run_taps(cases->all[i], log ? log->streams[i] : RealTimeStreams{}, tap_done);
     if (!done) return done.error();
     all.add(done->servo);
     runs.push_back(std::move(done->run));

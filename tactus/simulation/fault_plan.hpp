@@ -108,7 +108,7 @@ struct FaultPlan {
   double size = 0.0;
   std::int64_t choice = 0;
   std::int64_t seed = 1;
-  Impairment impairment;
+  Impairment impairment{};
   static constexpr auto fields() {
     return std::tuple{
         field("kind", &FaultPlan::kind, "What fails."),

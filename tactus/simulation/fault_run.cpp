@@ -21,7 +21,7 @@ constexpr double align_s = 0.05, arm_s = 0.10, press_s = 0.15, button_s = 0.01;
 /// After the fault: what is looked at first, then cleared, aligned, armed, pressed.
 constexpr double look_after_s = 0.25, realign_after_s = 0.29, rearm_after_s = 0.34, repress_after_s = 0.40;
 constexpr double settled_after_s = 0.75, end_after_s = 0.9;
-constexpr double resume_watch_s = 0.1;
+constexpr double resume_watch_s = 0.02;
 
 /// The state that a bad number is to meet, and what brings a site there.
 double bad_number_at_s(SiteState state) {
@@ -158,9 +158,12 @@ Result<Run> Run::make(const Teleoperator::Params& params, const FaultPlan& plan)
   return run;
 }
 
-/// Taps as a raised cosine, the wall in the middle of the way.
+/// Taps as a raised cosine, the wall in the middle of the way; or presses on it and stays.
 double Run::path_m(double time_s) const {
   const double wall_m = params_.environment.position_m / params_.control.position_scale;
+  if (plan_.kind == FaultKind::delayed_wall) {
+    return wall_m - depth_m_ * std::cos(std::numbers::pi * std::clamp(2.0 * (time_s - press_s), 0.0, 1.0));
+  }
   return wall_m - depth_m_ * std::cos(2.0 * std::numbers::pi * (tap_Hz_ * time_s + 0.1 * phase_cycles_));
 }
 

@@ -24,7 +24,7 @@ struct FaultOutcome {
   double time_to_stop_s = 0.0;             ///< from the begin of the fault until no site was active
   std::int64_t detection_ticks = -1;       ///< from the begin of the fault to a latched fault or a hold; -1 is never
   bool active_at_end = false;              ///< both, after clearing and arming where that was needed
-  double resume_step_N = 0.0;              ///< largest change of a force in a tick, from arming to 0.1 s after
+  double resume_step_N = 0.0;  ///< largest change of a force in a tick, from arming to 20 ms after following began
 };
 
 /// Runs one plan. `params` must make a teleoperator; its channel is not used.

@@ -71,12 +71,12 @@ FaultsParams::FaultsParams() {
     gate->rate_limit_N_per_s = 2000.0;
     gate->velocity_limit_m_per_s = 2.0;
     gate->position_limit_m = 0.2;
-    gate->encoder = {.fastest_m_per_s = 5.0, .frozen_force_N = 0.5, .frozen_after_s = 0.01};
+    gate->encoder = {.fastest_m_per_s = 5.0, .frozen_force_N = 0.3, .frozen_after_s = 0.01};
     gate->energy = {
         .damp_above_J = 0.02, .hold_above_J = 0.05, .credit_J = 0.02, .drain_W = 0.05, .damping_N_s_per_m = 3.0};
   }
   control.handle_gate.rate_limit_N_per_s = 2000.0;
-  control.supervision.force_sensor.residual_limit_N = 0.4;
+  control.supervision.force_sensor.residual_limit_N = 0.5;
 }
 
 std::vector<FaultRow> fault_rows() {
@@ -107,6 +107,8 @@ Teleoperator::Params params_of(const FaultRow& row, const FaultsParams& params) 
   if (row.kind == FaultKind::delayed_wall) {
     of.control.cancellation = control::CancellationMode::off;
     of.person.grip.damping_N_s_per_m *= params.task.light_grip_fraction;
+    // Else its check could end what the monitor is to end.
+    of.control.supervision.force_sensor.residual_limit_N = 100.0;
   }
   if (!row.monitored) {
     for (control::SafetyGate::Params* gate : {&of.control.gate, &of.control.slave_gate}) {

@@ -69,7 +69,7 @@ struct FaultTally {
   std::int64_t stopped = 0;
   std::int64_t detected = 0;
   double simulated_s = 0.0;
-  FaultOutcome worst;  ///< sums of the counts, largest of the rest
+  FaultOutcome worst{};  ///< sums of the counts, largest of the rest
   double time_to_stop_median_s = 0.0;
   double time_to_stop_most_s = 0.0;
   double detection_ticks_median = 0.0;

@@ -4,6 +4,7 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/simulation/channel.hpp>
 
+#include <cstdint>
 #include <utility>
 
 namespace tactus::simulation {
@@ -41,17 +42,17 @@ class SitePair {
   static Result<SitePair> make(const control::ControlParams& control, const LinkParams& channel, Seconds tick,
                                double slave_start_m);
 
-  /// One tick. Real-time safe.
-  Output step(const Input& input) noexcept {
+  /// One tick; `elapsed_ticks` since the last is more than 1 after a stall. Real-time safe.
+  Output step(const Input& input, std::int64_t elapsed_ticks = 1) noexcept {
     master_input_ = {.motor_position_m = input.master_position_m,
                      .hand_force_N = input.hand_force_N,
                      .arrival = arrived_,
                      .grip = input.grip};
-    output_.master = sites_.master.step(master_input_);
+    output_.master = sites_.master.step(master_input_, 1.0, elapsed_ticks);
     slave_input_ = {.motor_position_m = input.slave_position_m,
                     .tip_force_N = input.tip_force_N,
                     .arrival = to_slave_.step(output_.master.message)};
-    output_.slave = sites_.slave.step(slave_input_);
+    output_.slave = sites_.slave.step(slave_input_, 1.0, elapsed_ticks);
     arrived_ = to_master_.step(output_.slave.message);
     return output_;
   }

@@ -36,7 +36,7 @@ TEST(ForceGate, WhateverComesInWhatComesOutIsFiniteWithinTheLimitAndNoFasterThan
   std::uniform_real_distribution<double> fraction(0.0, 1.0);
   for (int run = 0; run < 300; ++run) {
     const ForceGate::Params params{.force_limit_N = 100.0 * (1.0 - fraction(engine)),
-                                    .rate_limit_N_per_s = std::pow(10.0, 6.0 * (1.0 - fraction(engine)))};
+                                   .rate_limit_N_per_s = std::pow(10.0, 6.0 * (1.0 - fraction(engine)))};
     ForceGate element = gate(params);
     // In two runs of three nothing comes that would latch the fault for the rest of the run.
     const bool faults = run % 3 == 0;

@@ -68,9 +68,8 @@ TEST(Participant, ADomainIsJoinedOnceAndCanBeJoinedAgain) {
 TEST(Participant, AConfigurationThatDoesNotWorkIsAnErrorThatSaysSo) {
   Network network = test::private_network();
   network.loopback_only = false;
-  setenv("CYCLONEDDS_URI", "<General><Interfaces><NetworkInterface name='nowhere0'/></></>", 1);
+  network.configuration = "<General><Interfaces><NetworkInterface name='nowhere0'/></></>";
   const auto participant = Participant::create(network);
-  unsetenv("CYCLONEDDS_URI");
   ASSERT_FALSE(participant);
   EXPECT_EQ(participant.error().code, ErrorCode::failed);
   EXPECT_NE(participant.error().message.find("nowhere0"), std::string::npos) << participant.error().message;

@@ -17,8 +17,11 @@ struct Deeds {
 
 /// Watches this thread from now on. A thread-scoped seccomp filter traps every system call but `clock_nanosleep` to an
 /// absolute time of CLOCK_MONOTONIC, `clock_gettime` and `getrusage`; what is trapped is counted and not done. The
-/// filter stays for good, so the thread can do no more afterwards than report and end the process.
-void arm() noexcept;
-Deeds disarm() noexcept;
+/// filter stays for good, so after `disarm` the thread can do no more than end the process.
+///
+/// `report` is written by `disarm`, and where the thread calls the system without end: one that waits for a contended
+/// lock, or that wants to exit, asks again and again. Then the process ends, as one that has reported.
+void arm(Deeds& report) noexcept;
+void disarm() noexcept;
 
 }  // namespace tactus::runtime

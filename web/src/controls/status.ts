@@ -45,18 +45,36 @@ export function showNotices(session: Session): void {
 export function showIntroduction(): void {
   const intro = element('intro');
   const help = element('help');
-  const remembered = 'tactus.introduction-seen';
   const show = (visible: boolean): void => {
     intro.hidden = !visible;
     help.setAttribute('aria-expanded', String(visible));
   };
-  show(localStorage.getItem(remembered) === null);
+  show(!wasSeen());
   help.addEventListener('click', () => show(intro.hidden === true));
   element('dismiss').addEventListener('click', () => {
-    localStorage.setItem(remembered, 'yes');
+    rememberSeen();
     show(false);
     element('help').focus();
   });
+}
+
+const seenKey = 'tactus.introduction-seen';
+
+/** A browser that keeps nothing shows the explanation each time. */
+function wasSeen(): boolean {
+  try {
+    return localStorage.getItem(seenKey) !== null;
+  } catch {
+    return false;
+  }
+}
+
+function rememberSeen(): void {
+  try {
+    localStorage.setItem(seenKey, 'yes');
+  } catch {
+    // Nothing is kept, and nothing is lost.
+  }
 }
 
 export function showSound(sound: Sound, session: Session): void {
