@@ -177,7 +177,11 @@ int main(int argc, char** argv) {
         ->Arg(50)
         ->Arg(100);
   }
-  benchmark::RegisterBenchmark("map_on_threads", run_map_on_threads)->Arg(1)->Arg(2)->MeasureProcessCPUTime()->UseRealTime();
+  benchmark::RegisterBenchmark("map_on_threads", run_map_on_threads)
+      ->Arg(1)
+      ->Arg(2)
+      ->MeasureProcessCPUTime()
+      ->UseRealTime();
   print_operations();
   if (tactus::bench::has_avx512()) register_peers();
   benchmark::Initialize(&argc, argv);

@@ -18,7 +18,7 @@ double loss_of(const SiteTotals& totals) {
 }
 
 std::string standing_of(link::Standing standing, link::HoldCause cause) {
-  return standing == link::Standing::active ? "active" : "hold: " + std::string(name_of(cause));
+  return standing == link::Standing::active ? "active" : std::string("hold: ").append(name_of(cause));
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ std::string site_text(const std::string& site, const SiteTotals& totals, const r
   table.add_row({"largest force step in a tick", report::number(totals.largest_force_step_N, 3), "N"});
   table.add_row({"the same, 1 s after arming", report::number(totals.largest_resuming_force_step_N, 3), "N"});
   table.add_row({"force steps above the gate's limit", count(totals.steps_above_limit), ""});
-  return "\n" + table.to_text() + "\n" + runtime::timing_table(servo).to_text() + "\n" +
+  return table.to_text() + "\n" + runtime::timing_table(servo).to_text() + "\n" +
          runtime::late_ticks_table(servo).to_text();
 }
 

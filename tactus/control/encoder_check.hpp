@@ -30,8 +30,8 @@ constexpr auto enumerators(EncoderFault) {
 class EncoderCheck {
  public:
   struct Params {
-    double fastest_m_per_s = 10.0;
-    double frozen_force_N = 2.0;
+    double fastest_m_per_s = 100.0;
+    double frozen_force_N = 20.0;
     double frozen_after_s = 0.01;
     static constexpr auto fields() {
       return std::tuple{

@@ -6,10 +6,6 @@
 
 #include <algorithm>
 
-namespace tactus::units {
-inline constexpr Unit watt{"W", "_W"};
-}
-
 namespace tactus::control {
 
 /// An account of the energy that a motor gives to whatever it moves. It knows the force that was really applied and the
@@ -28,10 +24,10 @@ namespace tactus::control {
 class PassivityMonitor {
  public:
   struct Params {
-    double damp_above_J = 5.0;
-    double hold_above_J = 10.0;
+    double damp_above_J = 20.0;
+    double hold_above_J = 40.0;
     double credit_J = 0.1;
-    double drain_W = 5.0;
+    double drain_W = 10.0;
     double damping_N_s_per_m = 3.0;
     static constexpr auto fields() {
       return std::tuple{

@@ -30,10 +30,10 @@ class SafetyGate {
   struct Params {
     double force_limit_N = 10.0;
     double rate_limit_N_per_s = 1e5;
-    double velocity_limit_m_per_s = 10.0;
-    double position_limit_m = 1.0;
-    EncoderCheck::Params encoder;
-    PassivityMonitor::Params energy;
+    double velocity_limit_m_per_s = 50.0;
+    double position_limit_m = 10.0;
+    EncoderCheck::Params encoder{};
+    PassivityMonitor::Params energy{};
     static constexpr auto fields() {
       return std::tuple{
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),

@@ -71,6 +71,29 @@ inline bool is_finite(const SlaveInput& input) noexcept {
   return std::isfinite(input.motor_position_m) && std::isfinite(input.tip_force_N) && is_finite(input.arrival.message);
 }
 
+/// Puts what was read last in the place of each number that is none. Real-time safe.
+inline void mend(double& value, double last) noexcept {
+  if (!std::isfinite(value)) value = last;
+}
+inline void mend(Message& message, const Message& last) noexcept {
+  mend(message.position_m, last.position_m);
+  mend(message.velocity_m_per_s, last.velocity_m_per_s);
+  mend(message.force_N, last.force_N);
+  mend(message.wave, last.wave);
+  mend(message.energy_J, last.energy_J);
+}
+inline void mend(MasterInput& input, const MasterInput& last) noexcept {
+  mend(input.motor_position_m, last.motor_position_m);
+  mend(input.hand_force_N, last.hand_force_N);
+  mend(input.grip, last.grip);
+  mend(input.arrival.message, last.arrival.message);
+}
+inline void mend(SlaveInput& input, const SlaveInput& last) noexcept {
+  mend(input.motor_position_m, last.motor_position_m);
+  mend(input.tip_force_N, last.tip_force_N);
+  mend(input.arrival.message, last.arrival.message);
+}
+
 /// A controller of one site: where a user plugs in. Once a tick `respond` and then `applied` are called; both must not
 /// allocate, lock or throw.
 template <class Input, class Output>
@@ -198,13 +221,13 @@ class Site {
   Output step(const Input& input, double share = 1.0, std::int64_t elapsed_ticks = 1) noexcept {
     // A site that reads nonsense lets go until it is re-armed, even where the nonsense would not have reached a force,
     // and its controller goes on with what was read last: no number that is none gets into its state.
-    if (is_finite(input)) {
-      believed_ = input;
-      believed_.motor_position_m = gates_.motor().believe(input.motor_position_m, elapsed_ticks);
-    } else {
+    Input read = input;
+    if (!is_finite(input)) {
       gates_.motor().refuse();
-      believed_.arrival.fresh = false;
+      mend(read, believed_);
     }
+    read.motor_position_m = gates_.motor().believe(read.motor_position_m, elapsed_ticks);
+    believed_ = read;
     Output output = controller_->respond(believed_);
     if (share != 1.0) scale(output, share);
     gates_.pass(output);
