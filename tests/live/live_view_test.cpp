@@ -147,7 +147,7 @@ TEST(LiveView, ParametersStayAsTheyAreWithoutLeaveAndOutsideTheirBounds) {
                                               {"environment.stiffness_N_per_m", std::nan("")},
                                               {"operator.grip", 2.0}});
   ASSERT_EQ(statuses.size(), 6U) << "the last is fine and is taken";
-  EXPECT_EQ(statuses[0].message, "control.force_gain: 99 is out of bounds: it must lie between 0 and 30");
+  EXPECT_EQ(statuses[0].message, "control.force_gain: 99 is out of bounds: it must be at least 0 and at most 30");
   EXPECT_EQ(std::get<double>(view->parameters()[0].value), 10.0);
   EXPECT_EQ(std::get<double>(view->parameters()[3].value), 2.0);
 }

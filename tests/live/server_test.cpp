@@ -1,5 +1,6 @@
 #include <tactus/live/server.hpp>
 #include <tactus/signal/random.hpp>
+#include <tactus/telemetry/log_reader.hpp>
 
 #include <atomic>
 #include <chrono>
