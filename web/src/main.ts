@@ -1,5 +1,6 @@
 import 'uplot/dist/uPlot.min.css';
-import './style.css';
+import './base.css';
+import './page.css';
 import { buildControls } from './controls/parameters';
 import { element, HealthLine, showConnection, showIntroduction, showNotices, showSound } from './controls/status';
 import { LoopView } from './loop_view';
