@@ -202,7 +202,8 @@ Result<identification::RigRun> SimulatedRig::run(const identification::MotorProg
     }
     record.position_m.push_back(position_m);
     record.commanded_force_N.push_back(command_N);
-    record.current_force_N.push_back(amplifier->applied_force_N() + params_.current_noise_rms_N * current_noise.normal());
+    record.current_force_N.push_back(amplifier->applied_force_N() +
+                                     params_.current_noise_rms_N * current_noise.normal());
 
     mechanics::Operator::Output aim;
     if (held) {

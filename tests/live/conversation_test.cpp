@@ -175,7 +175,7 @@ TEST(Conversation, WhoAsksAndNeverReadsIsGivenUpAndNotGrownInto) {
 
 TEST(Conversation, LimitsHoldForSubscriptionsAdvertisementsAndNames) {
   Example example;
-  Conversation conversation(1, example, {.subscriptions = 3, .advertisements = 3, .names = 3});
+  Conversation conversation(1, example, {.subscriptions = 3, .advertisements = 3, .names = 3, .outbox = {}});
   frames(conversation);
   for (int i = 0; i < 5; ++i) {
     const std::string id = std::to_string(i);
@@ -231,7 +231,7 @@ TEST(Conversation, SurvivesAnyInput) {
       static_cast<void>(conversation.take_text(text));
       conversation.take_binary(text);
       for (const Frame& frame : frames(conversation)) {
-        if (!frame.binary) answered += Json::parse(frame.head).contains("op") ? 1 : 0;
+        if (!frame.binary) answered += Json::parse(frame.head).contains("op") ? 1U : 0U;
       }
       ASSERT_FALSE(conversation.is_hopeless());
     }

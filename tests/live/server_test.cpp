@@ -186,7 +186,7 @@ TEST(Server, MoreClientsThanAllowedAreTurnedAwayAndTheOthersServed) {
   std::size_t opened = 0;
   for (int i = 0; i < 50; ++i) {
     clients.emplace_back(served.port());
-    opened += clients.back().open(served.port()) ? 1 : 0;
+    opened += clients.back().open(served.port()) ? 1U : 0U;
   }
   EXPECT_EQ(opened, 10U);
   EXPECT_EQ(served.server().counts().turned_away, 40U);
