@@ -86,7 +86,8 @@ TappingParams linear_taps(const TappingParams& file) {
   constexpr double most_N = 100.0, most_N_per_s = 1e6, no_limit_N = 1e6;
   params.control.force_limit_N = most_N;
   for (auto* gate : {&params.control.gate, &params.control.handle_gate, &params.control.slave_gate}) {
-    *gate = {.force_limit_N = most_N, .rate_limit_N_per_s = most_N_per_s};
+    gate->force_limit_N = most_N;
+    gate->rate_limit_N_per_s = most_N_per_s;
   }
   params.master.amplifier.limit_N = no_limit_N;
   params.master.handle_actuator.limit_N = no_limit_N;
