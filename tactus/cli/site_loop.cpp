@@ -115,8 +115,11 @@ bool SiteLoop::operator()(const runtime::Tick& tick) noexcept {
   }
   const auto received = endpoint_.receive(now_ns);
   const link::Standing before = arming_.standing();
-  const bool arm = exchange_->arm.exchange(false, std::memory_order_relaxed) || (may_arm_at_once_ && received.heard);
-  if (received.heard) may_arm_at_once_ = false;
+  if (received.heard) heard_s_ += tick_s_;
+  // The slave follows a number that rises, so it must have heard the one before.
+  const bool arm_at_once = may_arm_at_once_ && heard_s_ > settings_.following.hold_after_s;
+  if (arm_at_once) may_arm_at_once_ = false;
+  const bool arm = exchange_->arm.exchange(false, std::memory_order_relaxed) || arm_at_once;
   const link::Standing standing = arming_.step({.heard = received.heard,
                                                 .silence_s = received.silence_s,
                                                 .session = received.session,

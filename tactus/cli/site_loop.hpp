@@ -126,6 +126,7 @@ class SiteLoop {
   double tick_s_;
   bool fault_ = false;
   bool may_arm_at_once_;
+  double heard_s_ = 0.0;  ///< since the other site was heard first
   double motor_force_N_ = 0.0;
   std::int64_t ticks_since_arming_ = 0;
   std::uint64_t last_session_ = 0;
