@@ -21,7 +21,7 @@ struct FaultsTask {
   std::int64_t seed = 1;
   double longest_cut_s = 60.0;
   double light_grip_fraction = 0.1;
-  double diverged_above_J = 0.5;
+  double diverged_above_J = 0.25;
   static constexpr auto fields() {
     return std::tuple{field("kind", &FaultsTask::kind, "Which experiment this is."),
                       field("seeds", &FaultsTask::seeds, between(1, 1000000), "Runs of each fault."),
