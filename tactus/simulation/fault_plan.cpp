@@ -74,7 +74,7 @@ FaultPlan draw_plan(FaultKind kind, std::int64_t index, std::int64_t seed, doubl
       plan.length_s = between_logarithms(random, 0.001, 0.1);
       break;
     case FaultKind::delayed_wall:
-      plan.length_s = 2.0;
+      plan.length_s = 3.0;
       break;
   }
   plan.impairment = draw_impairment(kind, random);

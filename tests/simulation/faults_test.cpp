@@ -12,7 +12,7 @@
 namespace tactus::simulation {
 namespace {
 
-TEST(Faults, EveryRowSurvivesAndWithALooseMonitorTheSameRunsDiverge) {
+TEST(Faults, EveryRowButAFrozenEncoderSurvivesAndWithALooseMonitorTheSameRunsDiverge) {
   FaultsParams params;
   params.task.seeds = 2;
   params.task.longest_cut_s = 0.3;
@@ -22,7 +22,8 @@ TEST(Faults, EveryRowSurvivesAndWithALooseMonitorTheSameRunsDiverge) {
   for (const FaultTally& tally : *tallies) {
     EXPECT_EQ(tally.tried, 2);
     if (tally.row.monitored) {
-      EXPECT_EQ(tally.survived, 2) << tally.row.name;
+      // A slave whose encoder froze may have left its workspace, and then stays in fault: docs/theory/safety.md.
+      if (tally.row.kind != FaultKind::encoder_freeze) EXPECT_EQ(tally.survived, 2) << tally.row.name;
       EXPECT_EQ(tally.diverged, 0) << tally.row.name;
     } else {
       EXPECT_EQ(tally.diverged, 2) << tally.row.name;
