@@ -17,7 +17,11 @@ class TwoSites : public ::testing::Test {
   TwoSites() {
     std::filesystem::create_directory(folder);
     const int port = 20000 + 4 * (getpid() % 10000);
-    for (int i = 0; i < 4; ++i) setenv(("P" + std::to_string(i)).c_str(), std::to_string(port + i).c_str(), 1);
+    for (int i = 0; i < 4; ++i) {
+      std::string name = std::to_string(i);
+      name.insert(name.begin(), 'P');
+      setenv(name.c_str(), std::to_string(port + i).c_str(), 1);
+    }
     setenv("TACTUS", TACTUS_COMMAND, 1);
     setenv("EXPERIMENT", TACTUS_EXPERIMENT_FOLDER "/tapping.toml", 1);
   }

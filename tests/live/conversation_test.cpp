@@ -226,7 +226,7 @@ TEST(Conversation, SurvivesAnyInput) {
           default:
             text.resize(at);
         }
-        if (text.empty()) text = "{";
+        if (text.empty()) text.assign(1, '{');
       }
       static_cast<void>(conversation.take_text(text));
       conversation.take_binary(text);

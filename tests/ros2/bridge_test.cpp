@@ -199,9 +199,13 @@ TEST_F(BridgeTest, WhatIsTooMuchForTheBridgeIsDroppedAndCounted) {
 }
 
 TEST(Bridge, ABadNamespaceAndABadRateAreRefusedBeforeAnythingIsOpened) {
-  EXPECT_EQ(Bridge::create({.name_space = "no good"}).error().code, ErrorCode::syntax);
+  Bridge::Params params;
+  params.name_space = "no good";
+  EXPECT_EQ(Bridge::create(params).error().code, ErrorCode::syntax);
   for (const double rate_Hz : {0.0, -1.0, 10'001.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(Bridge::create({.rate_Hz = rate_Hz}).error().parameter, "rate_Hz");
+    Bridge::Params wrong;
+    wrong.rate_Hz = rate_Hz;
+    EXPECT_EQ(Bridge::create(wrong).error().parameter, "rate_Hz");
   }
 }
 
