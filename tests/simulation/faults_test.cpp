@@ -23,7 +23,9 @@ TEST(Faults, EveryRowButAFrozenEncoderSurvivesAndWithALooseMonitorTheSameRunsDiv
     EXPECT_EQ(tally.tried, 2);
     if (tally.row.monitored) {
       // A slave whose encoder froze may have left its workspace, and then stays in fault: docs/theory/safety.md.
-      if (tally.row.kind != FaultKind::encoder_freeze) EXPECT_EQ(tally.survived, 2) << tally.row.name;
+      if (tally.row.kind != FaultKind::encoder_freeze) {
+        EXPECT_EQ(tally.survived, 2) << tally.row.name;
+      }
       EXPECT_EQ(tally.diverged, 0) << tally.row.name;
     } else {
       EXPECT_EQ(tally.diverged, 2) << tally.row.name;
