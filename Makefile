@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc)
 BUILD := build/release
 
 .DEFAULT_GOAL := help
-.PHONY: help run test bench format check clean deps configure
+.PHONY: help run live page test bench format check clean deps configure
 
 help: ## List these commands
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
@@ -15,6 +15,18 @@ run: configure ## Build tactus and run the main experiment into out/tapping
 	cmake --build --preset release --parallel $(JOBS) --target tactus
 	$(BUILD)/bin/tactus run experiments/tapping.toml \
 	  --vary control.force_gain=1,3,5,7,10,15 --vary control.cancellation=off,on --out out/tapping
+
+live: configure page ## Build tactus and its live page, and serve it: be the operator in a browser
+	cmake --build --preset release --parallel $(JOBS) --target tactus
+	$(BUILD)/bin/tactus serve experiments/tapping.toml --allow-tuning --page web/dist
+
+# Fetches its tools when they have changed, and builds the page when a source of it has.
+page: web/dist/index.html
+web/node_modules/.package-lock.json: web/package-lock.json
+	@scripts/install-deps --page
+	npm ci --prefix web --ignore-scripts --no-audit --no-fund
+web/dist/index.html: web/node_modules/.package-lock.json web/index.html $(shell find web/src web/public -type f)
+	npm run --prefix web build
 
 test: configure ## Build everything and run the test suite
 	cmake --build --preset release --parallel $(JOBS)
@@ -32,7 +44,7 @@ check: ## Run everything that must hold before a change is taken (.ci/run)
 	bash .ci/run
 
 clean: ## Remove what was built; results in out/ stay
-	rm -rf build
+	rm -rf build web/dist
 
 deps:
 	@scripts/install-deps

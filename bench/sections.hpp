@@ -20,6 +20,9 @@ Findings force_estimators(const Times& times);
 /// A whole successive isolation, the runs on the rig taken as recorded.
 Findings isolation();
 
+/// One step of the servo thread in real time, with and without a log, in alternating windows.
+Findings servo_step(bool quick);
+
 /// The plants and the closed loop in virtual time.
 void add_virtual_time();
 Findings virtual_time(const Times& times);

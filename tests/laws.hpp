@@ -114,7 +114,8 @@ Violation run_alike(E& left, E& right, Inputs<E>& inputs, const char* claim) {
   for (int tick = 0; tick < 300; ++tick) sequence.push_back(inputs.ordinary());
   for (const auto& input : sequence) outputs.push_back(left.step(input));
   for (std::size_t tick = 0; tick < sequence.size(); ++tick) {
-    if (!alike(right.step(sequence[tick]), outputs[tick])) {
+    const typename E::Output expected = outputs[tick];  // a vector of bool gives no reference
+    if (!alike(right.step(sequence[tick]), expected)) {
       return std::string(claim) + ": they differ at tick " + std::to_string(tick);
     }
   }

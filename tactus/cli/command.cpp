@@ -54,8 +54,13 @@ int run_command(int argc, char** argv) {
   add_estimate(app, command, status);
   add_identify(app, command, status);
   add_export(app, status);
+  add_key(app, status);
+  add_relay(app, status);
+  add_faults(app, command, status);
   add_stability(app, command, status);
+  add_doctor(app, status);
   add_schema(app, status);
+  add_serve(app, status);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) return refuse(name, "A command is required");

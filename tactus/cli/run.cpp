@@ -1,7 +1,12 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
+#include <tactus/cli/run_site.hpp>
+#include <tactus/cli/servo_options.hpp>
+#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
+#include <tactus/runtime/real_time_tapping.hpp>
 #include <tactus/simulation/experiment.hpp>
 
 #include <filesystem>
@@ -9,6 +14,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -24,6 +31,11 @@ struct RunOptions {
   std::vector<std::string> vary;
   std::optional<std::string> out;
   bool json = false;
+  bool real_time = false;
+  runtime::ServoThreadParams servo;
+  SiteOptions site;
+  bool ros2 = false;
+  std::string name_space = "tactus";
 };
 
 Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
@@ -49,14 +61,78 @@ Result<simulation::Request> make_request(const RunOptions& options, const std::s
                              .command = command};
 }
 
+void say_log(const RunOptions& options, const std::filesystem::path& folder) {
+  (options.json ? std::cerr : std::cout) << "Log: " << folder.string() << "\n";
+}
+
+Check run_in_real_time(const RunOptions& options, const simulation::Request& request) {
+  runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin()};
+  const std::filesystem::path folder = std::filesystem::path(options.out.value_or("")) / "log";
+  if (options.out) real_time.log = folder / "log.mcap";
+  const auto done = [&] {
+    ProgressLine line(request.name);
+    return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
+  }();
+  if (!done) return done.error();
+  if (auto error = write_outcome(options.out, done->outcome, options.json)) return error;
+  if (options.out && !done->log) say_log(options, folder);
+  return done->log;
+}
+
+Error refuse_ros2(std::string message) {
+  return {.code = ErrorCode::inconsistent, .parameter = {}, .message = std::move(message), .place = "--ros2"};
+}
+
+Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request& request, std::string_view kind) {
+  if (kind != "tapping") {
+    return refuse_ros2("an experiment of kind " + std::string(kind) +
+                       " cannot be run in real time: choose one of kind tapping");
+  }
+  if (!request.variations.empty()) {
+    return refuse_ros2("there is one teleoperator at a time: write --set in place of --vary");
+  }
+  Ros2Options session{.name_space = options.name_space, .servo = options.servo};
+  if (options.out) session.log_folder = std::filesystem::path(*options.out) / "log";
+  const auto output = run_ros2_session(request, session, options.json);
+  if (!output) return output.error();
+  std::cout << *output;
+  if (auto error = flush_standard_output()) return error;
+  if (session.log_folder) say_log(options, *session.log_folder);
+  return std::nullopt;
+}
+
+Check refuse_servo_options_without_a_servo_thread(const CLI::App& verb, const RunOptions& options) {
+  if (options.real_time || options.ros2 || !options.site.site.empty()) return std::nullopt;
+  for (const char* name : {"--priority", "--core", "--spin-s"}) {
+    if (verb.count(name) == 0) continue;
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = "there is no servo thread in virtual time: add --realtime, --ros2 or --site",
+                 .place = name};
+  }
+  return std::nullopt;
+}
+
 Check run(const RunOptions& options, const std::string& command) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
+  if (!options.site.site.empty()) {
+    if (options.out || !options.vary.empty()) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = {},
+                   .message = "one site runs one combination and writes no folder: leave --vary and --out out",
+                   .place = "--site"};
+    }
+    return run_site(options.site, options.servo, request->document, options.json);
+  }
   const auto experiment = simulation::choose_experiment(request->document);
   if (!experiment) return experiment.error();
   if (options.out) {
     if (auto error = check_writable(*options.out)) return error;
   }
+
+  if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind());
+  if (options.real_time) return run_in_real_time(options, *request);
 
   Result<simulation::Outcome> outcome = [&] {
     ProgressLine line(request->name);
@@ -68,7 +144,7 @@ Check run(const RunOptions& options, const std::string& command) {
   if (!options.out || outcome->traces.empty()) return std::nullopt;
   const std::filesystem::path folder = std::filesystem::path(*options.out) / "log";
   if (auto error = write_run_log(folder, *request, *outcome)) return error;
-  (options.json ? std::cerr : std::cout) << "Log: " << folder.string() << "\n";
+  say_log(options, folder);
   return std::nullopt;
 }
 
@@ -76,7 +152,7 @@ Check run(const RunOptions& options, const std::string& command) {
 
 void add_run(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* verb = app.add_subcommand("run", "Run an experiment in virtual time");
+  CLI::App* verb = app.add_subcommand("run", "Run an experiment, in virtual or in real time");
   verb->add_option("EXPERIMENT", options->file, "Experiment file (TOML)")->required();
   verb->add_option("--with", options->with,
                    "File whose keys take the place of the experiment's, as an identified model")
@@ -91,8 +167,23 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--out", options->out, "Folder for report.html, results.json, the figures and the log")
       ->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
-  verb->callback([options, &app, &command, &status] {
-    if (const auto error = run(*options, command)) {
+  CLI::Option* real_time = verb->add_flag("--realtime", options->real_time,
+                                          "Run it at the real clock, on a servo thread, with simulated devices");
+  add_servo_options(*verb, options->servo);
+  add_site_options(*verb, options->site);
+  verb->get_option("--site")->excludes(real_time);
+  CLI::Option* const ros2 =
+      verb->add_flag("--ros2", options->ros2,
+                     "Run the taps in real time among ROS 2 nodes: publish under CRTK names, take operator/servo_jp");
+  ros2->excludes(real_time)->excludes("--site");
+  verb->add_option("--namespace", options->name_space, "Namespace of the ROS 2 topics")
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->needs(ros2);
+  verb->callback([options, verb, &app, &command, &status] {
+    Check error = refuse_servo_options_without_a_servo_thread(*verb, *options);
+    if (!error) error = run(*options, command);
+    if (error) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";
       status = exit_status(*error);
     }

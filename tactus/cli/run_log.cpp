@@ -18,14 +18,14 @@ namespace {
 /// A sweep may have many thousands of runs; a log of all would be larger than anyone wants.
 constexpr std::size_t most_runs = 64;
 
-/// System and processor family. No name of the machine: logs are passed on.
-std::string machine() {
-  utsname system{};
-  if (uname(&system) != 0) return "unknown";
-  return std::string(system.sysname) + " " + system.release + " " + system.machine;
-}
-
 }  // namespace
+
+std::map<std::string, std::string> log_origin() {
+  utsname system{};
+  const std::string machine =
+      uname(&system) == 0 ? std::string(system.sysname) + " " + system.release + " " + system.machine : "unknown";
+  return {{"version", std::string(version())}, {"machine", machine}};
+}
 
 Check write_run_log(const std::filesystem::path& folder, const simulation::Request& request,
                     const simulation::Outcome& outcome) {
@@ -35,10 +35,10 @@ Check write_run_log(const std::filesystem::path& folder, const simulation::Reque
   auto log = telemetry::LogWriter::create(file);
   if (!log) return log.error();
 
-  log->add_metadata("tactus", {{"version", std::string(version())},
-                               {"experiment", request.name},
-                               {"machine", machine()},
-                               {"configuration", outcome.configuration}});
+  auto about = log_origin();
+  about["experiment"] = request.name;
+  about["configuration"] = outcome.configuration;
+  log->add_metadata("tactus", about);
   const std::size_t runs = outcome.traces.size();
   const std::size_t logged = std::min(runs, most_runs);
   const bool several = runs > 1;

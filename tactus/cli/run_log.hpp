@@ -4,8 +4,13 @@
 #include <tactus/simulation/experiment.hpp>
 
 #include <filesystem>
+#include <map>
+#include <string>
 
 namespace tactus::cli {
+
+/// Where a log comes from: version of tactus, system and processor family. No name of the machine: logs are passed on.
+std::map<std::string, std::string> log_origin();
 
 /// Writes the traces of an outcome as a log: `folder/log.mcap`, with `metadata.yaml` for ROS 2 bag tools. One trace is
 /// the topic `/teleoperator`, several are `/run_1/teleoperator` and so on, by the row of the table; of more than 64,

@@ -15,6 +15,7 @@ void add_stability(CLI::App& app, const std::string& command, int& status) {
   add_stability_map(*verb, name, command, status);
   add_stability_margins(*verb, name, command, status);
   add_stability_scorecard(*verb, name, command, status);
+  add_stability_two_port(*verb, name, command, status);
 }
 
 }  // namespace tactus::cli

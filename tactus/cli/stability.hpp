@@ -15,5 +15,6 @@ void add_stability_limit(CLI::App& stability, const std::string& name, const std
 void add_stability_map(CLI::App& stability, const std::string& name, const std::string& command, int& status);
 void add_stability_margins(CLI::App& stability, const std::string& name, const std::string& command, int& status);
 void add_stability_scorecard(CLI::App& stability, const std::string& name, const std::string& command, int& status);
+void add_stability_two_port(CLI::App& stability, const std::string& name, const std::string& command, int& status);
 
 }  // namespace tactus::cli

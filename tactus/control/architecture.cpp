@@ -175,7 +175,7 @@ Result<Sites> make_sites(const ControlParams& params, Seconds dt) {
   if (auto error = estimate_slave_force(params, *chosen, dt, *controllers)) return *std::move(error);
   const auto gate = SafetyGate::make(params.gate, dt);
   if (!gate) return under("gate", gate.error());
-  const auto handle_gate = SafetyGate::make(params.handle_gate, dt);
+  const auto handle_gate = ForceGate::make(params.handle_gate, dt);
   if (!handle_gate) return under("handle_gate", handle_gate.error());
   const auto slave_gate = SafetyGate::make(params.slave_gate, dt);
   if (!slave_gate) return under("slave_gate", slave_gate.error());

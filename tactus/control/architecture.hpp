@@ -7,6 +7,7 @@
 #include <tactus/control/shared_compliant.hpp>
 #include <tactus/control/site.hpp>
 #include <tactus/control/slave_force.hpp>
+#include <tactus/control/supervision.hpp>
 #include <tactus/control/time_domain_passivity.hpp>
 #include <tactus/control/wave_variables.hpp>
 #include <tactus/core/parameters.hpp>
@@ -25,7 +26,7 @@ struct ControlParams : PositionForceMaster::Params {
   ServoPd::Params slave;
   SlaveForce::Params slave_force;
   SafetyGate::Params gate;
-  SafetyGate::Params handle_gate;
+  ForceGate::Params handle_gate;
   SafetyGate::Params slave_gate;
   FourChannelParams four_channel;
   ProjectionParams projection;
@@ -33,6 +34,7 @@ struct ControlParams : PositionForceMaster::Params {
   WaveParams wave;
   PassivityParams passivity;
   EnergyTank::Params tank;
+  SupervisionParams supervision;
   static constexpr auto fields() {
     return std::tuple_cat(
         std::tuple{
@@ -53,7 +55,10 @@ struct ControlParams : PositionForceMaster::Params {
                   "Architecture shared-compliant: how the slave's command yields to the tip force."),
             field("wave", &ControlParams::wave, "Architecture wave-variables."),
             field("passivity", &ControlParams::passivity, "Architecture time-domain-passivity."),
-            field("tank", &ControlParams::tank, "Architecture energy-tank.")});
+            field("tank", &ControlParams::tank, "Architecture energy-tank."),
+            field("supervision", &ControlParams::supervision,
+                  "States, watchdogs and what a site believes of the other; used where sites are supervised: by "
+                  "`tactus faults` and on a real clock.")});
   }
 };
 

@@ -1,70 +1,139 @@
 #pragma once
 
+#include <tactus/control/encoder_check.hpp>
+#include <tactus/control/force_gate.hpp>
+#include <tactus/control/passivity_monitor.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
-#include <tactus/signal/checks.hpp>
+#include <tactus/signal/filtered_derivative.hpp>
 
-#include <algorithm>
-#include <array>
+#include <cmath>
+#include <cstdint>
 
 namespace tactus::control {
 
-/// What made the gate close. A fault is latched; a limit that merely clips is not a fault.
-enum class GateFault { none, not_finite };
-constexpr auto enumerators(GateFault) {
-  return std::array{Enumerator{GateFault::none, "none"}, Enumerator{GateFault::not_finite, "not-finite"}};
-}
-
-/// The last thing before a motor: a finite force, within its limit, that changes no faster than its rate limit.
+/// All that stands between a controller and a motor. In this order:
 ///
-/// The order matters: a command that is not finite is caught before any limiter could turn it into a number, latches
-/// the fault, and from then on the output falls to zero at the rate limit and stays there until `reset`. There is no
-/// parameter that switches the gate off: both limits have an upper bound, so a configuration can only tighten it.
+/// 1. **finite**: a reading or a command that is not a number latches a fault before any limiter sees it;
+/// 2. **encoder**: a reading that cannot be true latches a fault, and the one before stands in its place;
+/// 3. **energy**: `PassivityMonitor` damps, then latches and damps alone;
+/// 4. **workspace** and **velocity**: from the limit outward a force that pushes on fades; at 1.25 times the limit it
+/// is
+///    gone and a fault latched;
+/// 5. **force** and **rate**: `ForceGate`.
+///
+/// After a fault the force falls to zero at the rate limit and stays there until the gate is re-armed; after one of
+/// energy, damping stays. Every limit has an upper bound, so a configuration can tighten the gate and not remove it. It
+/// knows nothing of the controller.
 class SafetyGate {
  public:
   struct Params {
     double force_limit_N = 10.0;
     double rate_limit_N_per_s = 1e5;
+    double velocity_limit_m_per_s = 50.0;
+    double position_limit_m = 10.0;
+    EncoderCheck::Params encoder{};
+    PassivityMonitor::Params energy{};
     static constexpr auto fields() {
-      return std::tuple{field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
-                              "Largest force either way that reaches the motor."),
-                        field("rate_limit_N_per_s", &Params::rate_limit_N_per_s, units::newton_per_second,
-                              positive_up_to(1e6), "Fastest change of the force that reaches the motor.")};
+      return std::tuple{
+          field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
+                "Largest force either way that reaches the motor."),
+          field("rate_limit_N_per_s", &Params::rate_limit_N_per_s, units::newton_per_second, positive_up_to(1e6),
+                "Fastest change of the force that reaches the motor."),
+          field("velocity_limit_m_per_s", &Params::velocity_limit_m_per_s, units::metre_per_second,
+                positive_up_to(100.0), "Speed from which on no force may add to it; a fault at 1.25 times as much."),
+          field("position_limit_m", &Params::position_limit_m, units::metre, positive_up_to(10.0),
+                "Distance from zero from which on no force may add to it; a fault at 1.25 times as much."),
+          field("encoder", &Params::encoder, "When a measured position cannot be true."),
+          field("energy", &Params::energy, "When the motor gives more energy than it may.")};
     }
   };
-  using Input = double;
+  struct Input {
+    double command_N = 0.0;
+    double position_m = 0.0;  ///< measured, in the direction of the force
+  };
   using Output = double;
 
+  /// The velocity that the limit and the damping act on is low-passed here: an encoder step within one tick is fast.
+  static constexpr double velocity_cutoff_Hz = 200.0;
+  /// A limit times this is a fault.
+  static constexpr double fault_factor = 1.25;
+
+  /// Errors: a value out of bounds; those of the parts, under their groups; a servo rate below 455 Hz.
   static Result<SafetyGate> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);
-    return SafetyGate(params.force_limit_N, params.rate_limit_N_per_s * dt.value);
+    const auto force =
+        ForceGate::make({.force_limit_N = params.force_limit_N, .rate_limit_N_per_s = params.rate_limit_N_per_s}, dt);
+    if (!force) return force.error();
+    const auto encoder = EncoderCheck::make(params.encoder, dt);
+    if (!encoder) return under("encoder", encoder.error());
+    const auto energy = PassivityMonitor::make(params.energy, dt);
+    if (!energy) return under("energy", energy.error());
+    const auto velocity = signal::FilteredDerivative::make({.cutoff_Hz = velocity_cutoff_Hz}, dt);
+    if (!velocity) return velocity.error();
+    return SafetyGate(params, *force, *encoder, *energy, *velocity);
   }
 
-  /// The force in N that may reach the motor instead of `command_N`. Always finite. Real-time safe.
-  double step(double command_N) noexcept {
-    const bool finite = command_N - command_N == 0.0;
-    if (!finite) fault_ = GateFault::not_finite;
-    const double wanted = fault_ == GateFault::none ? std::clamp(command_N, -force_limit_N_, force_limit_N_) : 0.0;
-    passed_N_ = std::clamp(wanted, passed_N_ - largest_step_N_, passed_N_ + largest_step_N_);
-    return passed_N_;
+  /// Looks at a reading, before the controller does: the position in m to believe, which is the last good one where
+  /// this is none. `elapsed_ticks` is more than 1 after a stall; then nothing is said about the way in between.
+  /// Real-time safe.
+  double believe(double position_m, std::int64_t elapsed_ticks = 1) noexcept;
+  /// The force in N that may reach the motor instead of `command_N`. Always finite. Once a tick, after `believe`.
+  /// Real-time safe.
+  double pass(double command_N) noexcept;
+  /// Both. Real-time safe.
+  double step(const Input& input) noexcept {
+    believe(input.position_m);
+    return pass(input.command_N);
   }
 
-  /// Re-arms: no fault, no force.
+  /// No fault, no force, as made.
   void reset() noexcept {
-    passed_N_ = 0.0;
-    fault_ = GateFault::none;
+    rearm();
+    force_.reset();
   }
+  /// No fault any more and an empty account of energy; the force goes on from where it is.
+  void rearm() noexcept;
+  /// Latches `not_finite`, for what is found elsewhere.
+  void refuse() noexcept { latch(GateFault::not_finite); }
 
-  [[nodiscard]] GateFault fault() const noexcept { return fault_; }
+  [[nodiscard]] GateFault fault() const noexcept { return fault_ != GateFault::none ? fault_ : force_.fault(); }
+  [[nodiscard]] ActiveLimit limit() const noexcept { return limit_; }
+  /// Of the reading that is believed, low-passed.
+  [[nodiscard]] double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
+  /// What the motor gave, as `PassivityMonitor` counts it.
+  [[nodiscard]] double given_J() const noexcept { return energy_.given_J(); }
+  /// What passed last.
+  [[nodiscard]] double passed_N() const noexcept { return force_.passed_N(); }
+  /// The last stage alone, for an actuator that nobody measures.
+  [[nodiscard]] const ForceGate& force_gate() const noexcept { return force_; }
 
  private:
-  SafetyGate(double force_limit_N, double largest_step_N)
-      : force_limit_N_(force_limit_N), largest_step_N_(largest_step_N) {}
+  SafetyGate(const Params& params, const ForceGate& force, const EncoderCheck& encoder, const PassivityMonitor& energy,
+             const signal::FilteredDerivative& velocity)
+      : velocity_limit_m_per_s_(params.velocity_limit_m_per_s),
+        position_limit_m_(params.position_limit_m),
+        force_(force),
+        encoder_(encoder),
+        energy_(energy),
+        derivative_(velocity) {}
 
-  double force_limit_N_;
-  double largest_step_N_;
-  double passed_N_ = 0.0;
+  /// The first fault stays, but for one of energy, after which damping needs what any other fault takes away.
+  void latch(GateFault fault) noexcept {
+    if (this->fault() == GateFault::none || this->fault() == GateFault::energy) fault_ = fault;
+  }
+
+  double velocity_limit_m_per_s_;
+  double position_limit_m_;
+  ForceGate force_;
+  EncoderCheck encoder_;
+  PassivityMonitor energy_;
+  signal::FilteredDerivative derivative_;
+  double believed_m_ = 0.0;
+  double velocity_m_per_s_ = 0.0;
+  double damping_N_s_per_m_ = 0.0;
   GateFault fault_ = GateFault::none;
+  ActiveLimit limit_ = ActiveLimit::none;
 };
 
 }  // namespace tactus::control

@@ -71,6 +71,29 @@ inline bool is_finite(const SlaveInput& input) noexcept {
   return std::isfinite(input.motor_position_m) && std::isfinite(input.tip_force_N) && is_finite(input.arrival.message);
 }
 
+/// Puts what was read last in the place of each number that is none. Real-time safe.
+inline void mend(double& value, double last) noexcept {
+  if (!std::isfinite(value)) value = last;
+}
+inline void mend(Message& message, const Message& last) noexcept {
+  mend(message.position_m, last.position_m);
+  mend(message.velocity_m_per_s, last.velocity_m_per_s);
+  mend(message.force_N, last.force_N);
+  mend(message.wave, last.wave);
+  mend(message.energy_J, last.energy_J);
+}
+inline void mend(MasterInput& input, const MasterInput& last) noexcept {
+  mend(input.motor_position_m, last.motor_position_m);
+  mend(input.hand_force_N, last.hand_force_N);
+  mend(input.grip, last.grip);
+  mend(input.arrival.message, last.arrival.message);
+}
+inline void mend(SlaveInput& input, const SlaveInput& last) noexcept {
+  mend(input.motor_position_m, last.motor_position_m);
+  mend(input.tip_force_N, last.tip_force_N);
+  mend(input.arrival.message, last.arrival.message);
+}
+
 /// A controller of one site: where a user plugs in. Once a tick `respond` and then `applied` are called; both must not
 /// allocate, lock or throw.
 template <class Input, class Output>
@@ -125,30 +148,37 @@ std::unique_ptr<SlaveController> slave_controller(const E& element) {
   return std::make_unique<ControllerOf<SlaveInput, SlaveOutput, E>>(element);
 }
 
-/// The safety gates of the master: one for its motor, one for the actuator on its handle. A command that is not finite
-/// for either of them releases both: a controller that lost one number is not trusted with the other.
+/// The safety gates of the master: one for its motor, one for the actuator on its handle, which nobody measures. A
+/// command that is not finite for either of them, and any other fault, releases both: a controller that lost one number
+/// is not trusted with the other.
 class MasterGates {
  public:
-  MasterGates(const SafetyGate& motor, const SafetyGate& handle) : motor_(motor), handle_(handle) {}
-  /// The same limits for both. Implicit, because one gate says all where nobody asked for a second actuator.
-  MasterGates(const SafetyGate& both) : MasterGates(both, both) {}
+  MasterGates(const SafetyGate& motor, const ForceGate& handle) : motor_(motor), handle_(handle) {}
+  /// The same force and rate for both. Implicit, because one gate says all where nobody asked for a second actuator.
+  MasterGates(const SafetyGate& both) : MasterGates(both, both.force_gate()) {}
 
+  /// The gate that reads the motor's position.
+  [[nodiscard]] SafetyGate& motor() noexcept { return motor_; }
+  [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// Puts what may reach the actuators in place of what was commanded. Real-time safe.
   void pass(MasterOutput& output) noexcept {
     constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
     const bool finite = std::isfinite(output.motor_force_N) && std::isfinite(output.handle_force_N);
-    output.motor_force_N = motor_.step(finite ? output.motor_force_N : not_a_number);
-    output.handle_force_N = handle_.step(finite ? output.handle_force_N : not_a_number);
+    output.motor_force_N = motor_.pass(finite ? output.motor_force_N : not_a_number);
+    output.handle_force_N = handle_.step(motor_.fault() == GateFault::none ? output.handle_force_N : not_a_number);
   }
   void reset() noexcept {
     motor_.reset();
     handle_.reset();
   }
-  [[nodiscard]] GateFault fault() const noexcept { return motor_.fault(); }
+  void rearm() noexcept {
+    motor_.rearm();
+    handle_.rearm();
+  }
 
  private:
   SafetyGate motor_;
-  SafetyGate handle_;
+  ForceGate handle_;
 };
 
 /// The safety gate of the slave's motor.
@@ -156,10 +186,12 @@ class SlaveGates {
  public:
   SlaveGates(const SafetyGate& motor) : motor_(motor) {}
 
+  [[nodiscard]] SafetyGate& motor() noexcept { return motor_; }
+  [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// Puts what may reach the motor in place of what was commanded. Real-time safe.
-  void pass(SlaveOutput& output) noexcept { output.motor_force_N = motor_.step(output.motor_force_N); }
+  void pass(SlaveOutput& output) noexcept { output.motor_force_N = motor_.pass(output.motor_force_N); }
   void reset() noexcept { motor_.reset(); }
-  [[nodiscard]] GateFault fault() const noexcept { return motor_.fault(); }
+  void rearm() noexcept { motor_.rearm(); }
 
  private:
   SafetyGate motor_;
@@ -174,34 +206,71 @@ class Site {
 
   Site(std::unique_ptr<Controller> controller, const Gates& gates)
       : controller_(std::move(controller)), gates_(gates) {}
-  Site(const Site& other) : controller_(other.controller_->clone()), gates_(other.gates_) {}
+  Site(const Site& other) : controller_(other.controller_->clone()), gates_(other.gates_), believed_(other.believed_) {}
   Site(Site&&) noexcept = default;
   Site& operator=(Site other) noexcept {
     std::swap(controller_, other.controller_);
     gates_ = other.gates_;
+    believed_ = other.believed_;
     return *this;
   }
   ~Site() = default;
 
-  /// One tick; the forces in the output are what the gates let through. Real-time safe.
-  Output step(const Input& input) noexcept {
-    Output output = controller_->respond(input);
-    // What a sensor or the other site says may be nonsense without making the force so: a position enters only the
-    // command. A site that reads nonsense lets go all the same, until it is reset with its controller.
-    if (!is_finite(input)) output.motor_force_N = std::numeric_limits<double>::quiet_NaN();
+  /// One tick; the forces in the output are what the gates let through. What the controller wants is scaled by `share`
+  /// before it, which brings a force in and out. `elapsed_ticks` is more than 1 after a stall. Real-time safe.
+  Output step(const Input& input, double share = 1.0, std::int64_t elapsed_ticks = 1) noexcept {
+    // A site that reads nonsense lets go until it is re-armed, even where the nonsense would not have reached a force,
+    // and its controller goes on with what was read last: no number that is none gets into its state.
+    Input read = input;
+    if (!is_finite(input)) {
+      gates_.motor().refuse();
+      mend(read, believed_);
+    }
+    read.motor_position_m = gates_.motor().believe(read.motor_position_m, elapsed_ticks);
+    believed_ = read;
+    Output output = controller_->respond(believed_);
+    if (share != 1.0) scale(output, share);
     gates_.pass(output);
     controller_->applied(output.motor_force_N);
     return output;
   }
+  /// As made.
   void reset() noexcept {
     controller_->reset();
     gates_.reset();
+    believed_ = {};
   }
-  [[nodiscard]] GateFault fault() const noexcept { return gates_.fault(); }
+  /// The controller as made and no fault any more; the forces go on from where they are, within the rate limit.
+  void rearm() noexcept {
+    controller_->reset();
+    gates_.rearm();
+    believed_ = {};
+  }
+  [[nodiscard]] GateFault fault() const noexcept { return gates_.motor().fault(); }
+  [[nodiscard]] ActiveLimit limit() const noexcept { return gates_.motor().limit(); }
+  /// The gate of the motor, to look at.
+  [[nodiscard]] const SafetyGate& gate() const noexcept { return gates_.motor(); }
+
+  /// Exchanges the controller for that of `other` and keeps the gates, so that no limit is lost. The new one first
+  /// lives through `ticks` ticks of `present` and of the force that the motor has now: its filters and models are then
+  /// where a long rest at this very instant would have brought them. Does not allocate.
+  void exchange_controller(Site& other, const Input& present, double motor_force_N, int ticks) noexcept {
+    std::swap(controller_, other.controller_);
+    for (int i = 0; i < ticks; ++i) {
+      controller_->respond(present);
+      controller_->applied(motor_force_N);
+    }
+  }
 
  private:
+  static void scale(Output& output, double share) noexcept {
+    output.motor_force_N *= share;
+    if constexpr (requires { output.handle_force_N; }) output.handle_force_N *= share;
+  }
+
   std::unique_ptr<Controller> controller_;
   Gates gates_;
+  Input believed_{};
 };
 
 using MasterSite = Site<MasterInput, MasterOutput, MasterGates>;

@@ -34,6 +34,7 @@ inline constexpr Unit newton_per_metre{"N/m", "_N_per_m"};
 inline constexpr Unit newton_per_metre5{"N/m^5", "_N_per_m5"};
 inline constexpr Unit newton_second_per_metre{"N s/m", "_N_s_per_m"};
 inline constexpr Unit joule{"J", "_J"};
+inline constexpr Unit watt{"W", "_W"};
 inline constexpr Unit milliampere{"mA", "_mA"};
 inline constexpr Unit milliampere_per_metre{"mA/m", "_mA_per_m"};
 inline constexpr Unit newton_per_milliampere{"N/mA", "_N_per_mA"};
@@ -58,6 +59,7 @@ inline constexpr std::array known{second,
                                   newton_per_metre5,
                                   newton_second_per_metre,
                                   joule,
+                                  watt,
                                   Unit{"ms", "_ms"},
                                   Unit{"us", "_us"},
                                   Unit{"ns", "_ns"},

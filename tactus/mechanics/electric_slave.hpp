@@ -68,6 +68,10 @@ class ElectricSlave {
     return {.motor_position_m = encoder_.step(mechanism_.motor_position_m()), .tip_force_N = force_sensor_.sample()};
   }
 
+  /// Puts another wall before the tip, from the next substep on. It must have been accepted by `make` of a slave like
+  /// this one. Real-time safe.
+  void face(const Environment& environment) noexcept { environment_ = environment; }
+
   void reset() noexcept { reset(0.0); }
   /// At rest with every mass at `position_m`.
   void reset(double position_m) noexcept;
@@ -75,6 +79,7 @@ class ElectricSlave {
   [[nodiscard]] const CableChain& mechanism() const noexcept { return mechanism_; }
   [[nodiscard]] const CurrentAmplifier& amplifier() const noexcept { return amplifier_; }
   [[nodiscard]] const ForceSensor& force_sensor() const noexcept { return force_sensor_; }
+  [[nodiscard]] const Environment& environment() const noexcept { return environment_; }
 
  private:
   ElectricSlave(const CableChain& mechanism, const CurrentAmplifier& amplifier, const Encoder& encoder,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tactus/report/figure.hpp>
+
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -8,7 +10,7 @@
 namespace tactus::report {
 
 /// A grid of cells, each of one class: where on a plane of two parameters what happens. Several panels over the same
-/// axes side by side, and lines that are drawn in each of them.
+/// axes, up to three in a row, and lines that are drawn in each of them.
 struct HeatMap {
   struct Axis {
     std::string label;
@@ -37,8 +39,11 @@ struct HeatMap {
   std::vector<Line> lines;
 };
 
-/// The picture as an SVG file of its own, on white. Cells of one class in a row are one stroke, so the size follows the
-/// pattern and not the number of cells. Equal maps give equal bytes.
+/// The picture, with its own colours on white. Neighbouring cells of one class are drawn as one rectangle, so the size
+/// follows the pattern and not the number of cells. A line beyond the y axis runs along its edge. Equal maps give equal
+/// bytes.
+Drawing draw(const HeatMap& map);
+/// The same as an SVG file.
 std::string to_svg(const HeatMap& map);
 
 }  // namespace tactus::report

@@ -29,7 +29,7 @@ figcaption{max-width:44rem;margin-top:.6rem;font-size:.92rem;color:var(--tactus-
 figcaption strong{color:var(--tactus-text)}
 .scroll{overflow-x:auto}
 .scroll:focus-visible,button:focus-visible{outline:2px solid var(--tactus-accent);outline-offset:2px}
-.picture .tactus-figure{display:block;width:100%;height:auto;max-width:calc(var(--width)*1px);
+.picture svg{display:block;width:100%;height:auto;max-width:calc(var(--width)*1px);
 min-width:calc(var(--width)*.85px)}
 table{border-collapse:collapse;font-size:.92rem;font-variant-numeric:tabular-nums;margin:1rem 0}
 caption{text-align:left;font-weight:600;padding-bottom:.5rem}
@@ -52,17 +52,17 @@ footer{padding-top:1rem;padding-bottom:2rem;border-top:1px solid var(--tactus-gr
 color:var(--tactus-muted);overflow-wrap:anywhere}
 .enlarge{display:block;margin:.4rem 0 0;padding:.15rem .6rem;font:inherit;font-size:.82rem;cursor:pointer;
 background:none;border:1px solid var(--tactus-frame);border-radius:.3rem}
-.zooms .tactus-figure{cursor:zoom-in}
+.zooms svg{cursor:zoom-in}
 dialog{width:100vw;height:100vh;max-width:none;max-height:none;padding:2.8rem 1rem 1rem;border:0;overflow:auto;
 background:var(--tactus-surface);color:var(--tactus-text)}
 dialog::backdrop{background:var(--tactus-surface)}
-dialog .tactus-figure{display:block;height:auto;margin:0 auto;cursor:zoom-out;
+dialog svg{display:block;height:auto;margin:0 auto;cursor:zoom-out;
 width:max(calc(var(--width)*1.25px),min(100%,calc(86vh*var(--width)/var(--height))))}
 dialog .enlarge{position:fixed;top:.6rem;right:1rem;margin:0;background:var(--tactus-surface)}
 @media(max-width:40rem){main,footer{padding-left:1rem;padding-right:1rem}h1{font-size:1.5rem}
 dl{grid-template-columns:1fr;gap:0}dd{margin-bottom:.6rem}}
 @media print{body{font-size:10pt}main,footer{max-width:none;padding-left:0;padding-right:0}
-.enlarge,dialog{display:none}.scroll{overflow:visible}.picture .tactus-figure{min-width:0;max-width:100%}
+.enlarge,dialog{display:none}.scroll{overflow:visible}.picture svg{min-width:0;max-width:100%}
 figure,table,pre,tr{break-inside:avoid}h1,h2,h3,h4,h5,h6{break-after:avoid}pre{white-space:pre-wrap}}
 )css";
 
@@ -124,16 +124,22 @@ void Page::table(const Table& table) {
   body_ += scrolling("scroll", table.caption().empty() ? "Table" : table.caption(), "", table.to_html());
 }
 
-void Page::figure(const Figure& figure) {
+void Page::add_picture(const Drawing& drawing, std::string_view title, std::string_view caption) {
   const std::string label = "Figure " + std::to_string(++figures_);
-  const std::string name = label + (figure.title.empty() ? "" : ": " + figure.title);
-  const Drawing drawing = draw(figure);
+  std::string name = label, ahead = label + ".";
+  if (!title.empty()) {
+    name.append(": ").append(title);
+    ahead.append(" ").append(title).append(".");
+  }
   const std::string size =
       " style=\"--width:" + pixels(drawing.width_px) + ";--height:" + pixels(drawing.height_px) + "\"";
   body_ += "<figure>\n" + scrolling("scroll picture", name, size, drawing.svg) + "<figcaption><strong>" +
-           escape(label + "." + (figure.title.empty() ? "" : " " + figure.title + ".")) + "</strong> " +
-           escape(figure.caption) + "</figcaption>\n</figure>\n";
+           escape(ahead) + "</strong> " + escape(caption) + "</figcaption>\n</figure>\n";
 }
+
+void Page::figure(const Figure& figure) { add_picture(draw(figure), figure.title, figure.caption); }
+
+void Page::figure(const HeatMap& map, std::string_view caption) { add_picture(draw(map), map.title, caption); }
 
 void Page::code(std::string_view text, std::string_view label) {
   if (!label.empty()) body_ += "<p class=\"label\">" + escape(label) + "</p>\n";

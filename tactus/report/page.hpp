@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/report/figure.hpp>
+#include <tactus/report/heat_map.hpp>
 #include <tactus/report/table.hpp>
 
 #include <string>
@@ -24,6 +25,8 @@ class Page {
   void table(const Table& table);
   /// The figure, numbered, with its title and caption below.
   void figure(const Figure& figure);
+  /// The map, numbered among the figures, with its title and this caption below.
+  void figure(const HeatMap& map, std::string_view caption);
   /// A command or a file, line by line as it is; `label` says what it is.
   void code(std::string_view text, std::string_view label = {});
   /// Terms and what they stand for: settings, results in a few words.
@@ -35,6 +38,8 @@ class Page {
   [[nodiscard]] std::string to_html() const;
 
  private:
+  void add_picture(const Drawing& drawing, std::string_view title, std::string_view caption);
+
   std::string title_;
   std::string body_;
   std::string footer_;

@@ -8,8 +8,6 @@
 namespace tactus::simulation {
 
 namespace {
-constexpr double transient_cutoff_Hz = 15.0;
-constexpr double settled_share = 0.1;
 constexpr double residual_window_s = 0.1;
 }  // namespace
 

@@ -16,6 +16,10 @@ struct ContactMetrics {
   double residual_rms_N = 0;   ///< RMS of the force above 15 Hz over the last 100 ms of the window
 };
 
+/// Corner of the high-pass before "force above 15 Hz".
+inline constexpr double transient_cutoff_Hz = 15.0;
+/// What is left of the peak in a contact that has settled.
+inline constexpr double settled_share = 0.1;
 /// The transient must stay small for at least this long at the end of the window to count as settled.
 inline constexpr double quiet_time_s = 0.05;
 

@@ -1,5 +1,6 @@
 #include <tactus/simulation/contest_experiment.hpp>
 #include <tactus/simulation/experiment.hpp>
+#include <tactus/simulation/fault_experiment.hpp>
 #include <tactus/simulation/force_display_experiment.hpp>
 #include <tactus/simulation/force_estimators_experiment.hpp>
 #include <tactus/simulation/hydraulic_chirp_experiment.hpp>
@@ -93,9 +94,10 @@ std::span<const Experiment* const> experiments() {
   static const HydraulicChirpExperiment hydraulic_chirp;
   static const HydraulicRigidContactExperiment hydraulic_rigid_contact;
   static const SensorlessExperiment sensorless;
-  static constexpr auto all =
-      std::to_array<const Experiment*>({&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block,
-                                        &force_estimators, &hydraulic_chirp, &hydraulic_rigid_contact, &sensorless});
+  static const FaultExperiment faults;
+  static constexpr auto all = std::to_array<const Experiment*>(
+      {&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block, &force_estimators, &hydraulic_chirp,
+       &hydraulic_rigid_contact, &sensorless, &faults});
   return all;
 }
 

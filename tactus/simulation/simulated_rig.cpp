@@ -184,12 +184,8 @@ Result<identification::RigRun> SimulatedRig::run(const identification::MotorProg
   record.commanded_force_N.reserve(ticks);
   record.position_m.reserve(ticks);
   record.current_force_N.reserve(ticks);
-  // The mean of an exponential over a substep, as a share of its way.
-  const double substeps_of_lag = 2.0 * std::numbers::pi * params_.benched.master.amplifier.bandwidth_Hz * substep.value;
-  const double mean_share = -1.0 / std::expm1(-substeps_of_lag) - 1.0 / substeps_of_lag;
   const double bias_N = params_.amplifier_offset_N / params_.benched.master.amplifier.gain;
   double held_command_N = 0.0;
-  double applied_N = 0.0;
   double path_m = 0.0;
   for (std::size_t i = 0; i < ticks; ++i) {
     const double time_s = static_cast<double>(i) * tick.value;
@@ -206,7 +202,8 @@ Result<identification::RigRun> SimulatedRig::run(const identification::MotorProg
     }
     record.position_m.push_back(position_m);
     record.commanded_force_N.push_back(command_N);
-    record.current_force_N.push_back(applied_N + params_.current_noise_rms_N * current_noise.normal());
+    record.current_force_N.push_back(amplifier->applied_force_N() +
+                                     params_.current_noise_rms_N * current_noise.normal());
 
     mechanics::Operator::Output aim;
     if (held) {
@@ -220,9 +217,8 @@ Result<identification::RigRun> SimulatedRig::run(const identification::MotorProg
         std::sin(2.0 * std::numbers::pi * (true_position_m / params_.ripple_period_m + params_.ripple_phase_cycles));
     for (int s = 0; s < clock->substeps; ++s) {
       if (s == clock->late_substeps) held_command_N = command_N;
-      const double before_N = std::exchange(applied_N, amplifier->step(held_command_N + bias_N));
       const double middle_s = (s + 0.5) * substep.value;
-      chain->step({.motor_force_N = before_N + mean_share * (applied_N - before_N) + ripple_N,
+      chain->step({.motor_force_N = amplifier->step(held_command_N + bias_N) + ripple_N,
                    .grip_position_m = aim.position_m + middle_s * aim.velocity_m_per_s,
                    .grip_velocity_m_per_s = aim.velocity_m_per_s});
     }

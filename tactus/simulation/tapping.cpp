@@ -4,7 +4,6 @@
 #include <tactus/simulation/tapping.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -14,13 +13,6 @@ namespace {
 
 /// The person rests this long before the reach, so that every filter is at rest too.
 constexpr double rest_s = 0.05;
-/// A slave that has not met the wall this long after the reach has ended never will.
-constexpr double patience_s = 0.2;
-constexpr double workspace_m = 1.0;
-
-std::size_t ticks_in(double duration_s, double tick_s) {
-  return static_cast<std::size_t>(std::lround(duration_s / tick_s));
-}
 
 Check check_range(double lower, double upper, const char* lower_name, const char* upper_name) {
   if (lower <= upper) return std::nullopt;
@@ -83,42 +75,15 @@ TapResult TappingEnsemble::run(std::size_t tap, std::vector<Teleoperator::Record
   const auto& [params, path] = taps_[tap];
   Result<Teleoperator> teleoperator = Teleoperator::make(params, path.start_m);
   const double tick_s = teleoperator->tick_s();
-
-  TapResult result;
-  int contacts = 0;
-  double peak_force_N = 0.0;
-  std::vector<double> contact_force_N;
-  std::size_t first_touch = 0;
-  std::size_t ticks = ticks_in(path.start_time_s + path.duration_s + patience_s, tick_s);
-  for (std::size_t tick = 0; tick < ticks; ++tick) {
+  TapObserver judge = observer(tap);
+  bool more = true;
+  for (std::size_t tick = 0; more; ++tick) {
     const double time_s = static_cast<double>(tick) * tick_s;
     const auto record = teleoperator->step(path.position_m(time_s), path.position_m(time_s + tick_s));
-    contact_force_N.push_back(record.contact_force_N);
-    peak_force_N = std::max(peak_force_N, record.peak_contact_force_N);
     if (trace != nullptr) trace->push_back(record);
-    if (record.touched) {
-      ++contacts;
-      if (!result.touched) {
-        result.touched = true;
-        result.first_touch_s = record.touched_at_s;
-        first_touch = tick;
-        ticks = tick + ticks_in(observation_s_, tick_s);
-      }
-    }
-    // Written so that a NaN counts as outside.
-    const bool inside = std::fabs(record.master_position_m) < workspace_m &&
-                        std::fabs(record.tip_position_m) < workspace_m * params.control.position_scale;
-    if (!inside || !teleoperator->healthy()) {
-      result.diverged = true;
-      break;
-    }
+    more = judge.observe(record, teleoperator->healthy());
   }
-  if (result.touched) result.metrics = judge_contact(contact_force_N, first_touch, tick_s);
-  result.metrics.settled = result.metrics.settled && result.touched && !result.diverged;
-  if (!result.metrics.settled) result.metrics.settling_time_s = observation_s_;
-  result.metrics.contacts = contacts;
-  result.metrics.peak_force_N = peak_force_N;
-  return result;
+  return judge.result();
 }
 
 TappingMetrics summarise(const std::vector<TapResult>& taps) {

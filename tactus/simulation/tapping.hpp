@@ -1,9 +1,8 @@
 #pragma once
 
 #include <tactus/core/parameters.hpp>
-#include <tactus/mechanics/minimum_jerk.hpp>
-#include <tactus/simulation/contact_metrics.hpp>
 #include <tactus/simulation/model_mismatch.hpp>
+#include <tactus/simulation/tap_observer.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <array>
@@ -64,14 +63,6 @@ struct TappingParams : Teleoperator::Params {
   }
 };
 
-/// One tap as it went.
-struct TapResult {
-  ContactMetrics metrics;
-  bool touched = false;
-  bool diverged = false;  ///< a safety gate latched, or the master or the slave left its workspace of 1 m
-  double first_touch_s = 0.0;
-};
-
 enum class Verdict { settled, ringing, limit_cycle, diverged };
 constexpr auto enumerators(Verdict) {
   return std::array{Enumerator{Verdict::settled, "settled"}, Enumerator{Verdict::ringing, "ringing"},
@@ -105,12 +96,11 @@ class TappingEnsemble {
   [[nodiscard]] std::size_t size() const { return taps_.size(); }
   /// Runs one tap; with `trace`, appends every tick to it. Taps are independent of one another.
   TapResult run(std::size_t tap, std::vector<Teleoperator::Record>* trace = nullptr) const;
+  /// What a tap is made of, for other clocks.
+  [[nodiscard]] const Tap& tap(std::size_t tap) const { return taps_[tap]; }
+  [[nodiscard]] TapObserver observer(std::size_t tap) const { return {taps_[tap], observation_s_}; }
 
  private:
-  struct Tap {
-    Teleoperator::Params params;
-    mechanics::MinimumJerk path;
-  };
   explicit TappingEnsemble(std::vector<Tap> taps, double observation_s)
       : taps_(std::move(taps)), observation_s_(observation_s) {}
 

@@ -1,112 +1,73 @@
 #include <tactus/simulation/teleoperator.hpp>
 
-#include <algorithm>
-
 namespace tactus::simulation {
 
 Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   if (auto error = validate(params)) return *std::move(error);
   const auto clock = Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
-  const Seconds tick{clock->tick_s};
-  const Seconds substep{clock->substep_s};
-
-  auto master = mechanics::CableDrivenMaster::make(params.master, params.person.grip, substep);
-  if (!master) {
-    const Error& error = master.error();
-    return under(error.parameter.starts_with("grip.") ? "operator" : "master", error);
-  }
-  const double factor = params.person.grip_change.factor;
-  if (const auto changed =
-          mechanics::CableDrivenMaster::make(params.master, mechanics::scaled(params.person.grip, factor), substep);
-      !changed) {
-    return under("operator", changed.error());
-  }
-  auto slave = mechanics::ElectricSlave::make(params.slave, params.environment, substep);
-  if (!slave) {
-    const Error& error = slave.error();
-    return error.parameter.starts_with("environment.") ? error : under("slave", error);
-  }
-  auto person = mechanics::Operator::make(params.person, tick);
-  if (!person) return under("operator", person.error());
-  auto sites = control::make_sites(params.control, tick);
-  if (!sites) return under("control", sites.error());
-
   const double slave_start_m = params.control.position_scale * start_m;
-  master->reset(start_m);
-  slave->reset(slave_start_m);
-  const auto to_slave = Channel::make(params.channel.to_slave, tick, {.position_m = slave_start_m});
-  if (!to_slave) return under("channel.to_slave", to_slave.error());
-  const auto to_master = Channel::make(params.channel.to_master, tick, {.position_m = slave_start_m});
-  if (!to_master) return under("channel.to_master", to_master.error());
-
-  return Teleoperator(Parts{*master, *slave, *person, *std::move(sites), *to_slave, *to_master}, *clock, params.person);
-}
-
-void Teleoperator::change_grip(double time_s) noexcept {
-  const double factor = grip_change_.at(time_s);
-  if (factor == grip_factor_) return;
-  grip_factor_ = factor;
-  parts_.master.hold(mechanics::scaled(grip_, factor));
+  auto master = MasterPlant::make(params.master, params.person, *clock, start_m);
+  if (!master) return master.error();
+  auto slave = SlavePlant::make(params.slave, params.environment, *clock, slave_start_m);
+  if (!slave) return slave.error();
+  auto sites = SitePair::make(params.control, params.channel, Seconds{clock->tick_s}, slave_start_m);
+  if (!sites) return sites.error();
+  return Teleoperator(*std::move(master), *std::move(slave), *std::move(sites), *clock);
 }
 
 Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {
-  const double time_s = static_cast<double>(ticks_) * clock_.tick_s;
-  change_grip(time_s);
-  const mechanics::CableDrivenMaster::Reading master_reading = parts_.master.measure();
-  const mechanics::ElectricSlave::Reading slave_reading = parts_.slave.measure();
+  const MasterPlant::Reading master = master_.measure();
+  const SlavePlant::Reading slave = slave_.measure();
+  const SitePair::Output output = sites_.step({.master_position_m = master.motor_position_m,
+                                               .hand_force_N = master.hand_force_N,
+                                               .grip = master.grip,
+                                               .slave_position_m = slave.motor_position_m,
+                                               .tip_force_N = slave.tip_force_N});
+  Record record = recorded(static_cast<double>(ticks_) * clock_.tick_s, master, slave, output);
+  record.tip_position_m = slave_.tip_position_m();
 
-  const auto master = parts_.sites.master.step({.motor_position_m = master_reading.motor_position_m,
-                                                .hand_force_N = master_reading.hand_force_N,
-                                                .arrival = arrived_,
-                                                .grip = grip_factor_});
-  const auto slave = parts_.sites.slave.step({.motor_position_m = slave_reading.motor_position_m,
-                                              .tip_force_N = slave_reading.tip_force_N,
-                                              .arrival = parts_.to_slave.step(master.message)});
-  arrived_ = parts_.to_master.step(slave.message);
-
-  Record record{.time_s = time_s,
-                .master_position_m = master_reading.motor_position_m,
-                .induced_position_m = master.induced_position_m,
-                .command_m = master.message.position_m,
-                .slave_position_m = slave_reading.motor_position_m,
-                .tip_position_m = parts_.slave.mechanism().tip_position_m(),
-                .displayed_force_N = -master.motor_force_N,
-                .handle_force_N = master.handle_force_N,
-                .hand_force_N = master_reading.hand_force_N,
-                .told_force_N = slave.message.force_N};
-
-  const auto aim = parts_.person.step({.path_m = path_m,
-                                       .path_at_next_tick_m = path_at_next_tick_m,
-                                       .handle_position_m = parts_.master.mechanism().tip_position_m()});
-  double contact_sum_N = 0.0;
+  master_.begin_tick({.motor_force_N = output.master.motor_force_N, .handle_force_N = output.master.handle_force_N},
+                     path_m, path_at_next_tick_m);
+  slave_.begin_tick(output.slave.motor_force_N);
+  // In turns, so that the processor works on both at once.
   for (int i = 0; i < clock_.substeps; ++i) {
-    if (i == clock_.late_substeps) {
-      master_command_N_ = master.motor_force_N;
-      handle_command_N_ = master.handle_force_N;
-      slave_command_N_ = slave.motor_force_N;
-    }
-    const double middle_s = (i + 0.5) * clock_.substep_s;
-    parts_.master.step({.commanded_force_N = master_command_N_,
-                        .commanded_handle_force_N = handle_command_N_,
-                        .grip_position_m = aim.position_m + middle_s * aim.velocity_m_per_s,
-                        .grip_velocity_m_per_s = aim.velocity_m_per_s});
-    const auto contact = parts_.slave.step(slave_command_N_);
-    contact_sum_N += contact.contact_force_N;
-    record.peak_contact_force_N = std::max(record.peak_contact_force_N, contact.contact_force_N);
-    if (contact.touched && !record.touched) {
-      record.touched = true;
-      record.touched_at_s = time_s + i * clock_.substep_s + contact.touched_after_s;
-    }
+    master_.substep(i);
+    slave_.substep(i);
   }
-  record.contact_force_N = contact_sum_N / clock_.substeps;
+  add_contact(record, slave_.contact(), clock_);
   ++ticks_;
   return record;
 }
 
-bool Teleoperator::healthy() const noexcept {
-  return parts_.sites.master.fault() == control::GateFault::none &&
-         parts_.sites.slave.fault() == control::GateFault::none;
+void Teleoperator::exchange(Teleoperator& made, const Parts& parts) noexcept {
+  if (parts.grip) master_.exchange_grip(made.master_);
+  if (parts.environment) slave_.exchange_wall(made.slave_);
+  if (parts.channel) sites_.exchange_channels(made.sites_);
+  if (parts.controllers) sites_.exchange_controllers(made.sites_);
+}
+
+Teleoperator::Record Teleoperator::recorded(double time_s, const MasterPlant::Reading& master,
+                                            const SlavePlant::Reading& slave, const SitePair::Output& output) noexcept {
+  Record record;
+  record.time_s = time_s;
+  record.master_position_m = master.motor_position_m;
+  record.induced_position_m = output.master.induced_position_m;
+  record.command_m = output.master.message.position_m;
+  record.slave_position_m = slave.motor_position_m;
+  record.displayed_force_N = -output.master.motor_force_N;
+  record.handle_force_N = output.master.handle_force_N;
+  record.hand_force_N = master.hand_force_N;
+  record.told_force_N = output.slave.message.force_N;
+  return record;
+}
+
+void Teleoperator::add_contact(Record& record, const SlavePlant::Contact& contact, const Clock& clock) noexcept {
+  record.contact_force_N = contact.sum_N / clock.substeps;
+  record.peak_contact_force_N = contact.peak_N;
+  record.touched = contact.touched;
+  record.touched_at_s =
+      contact.touched ? record.time_s + contact.touched_substep * clock.substep_s + contact.touched_after_s : 0.0;
 }
 
 }  // namespace tactus::simulation

@@ -1,29 +1,15 @@
 #pragma once
 
-#include <tactus/control/architecture.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/signals.hpp>
-#include <tactus/mechanics/cable_driven_master.hpp>
-#include <tactus/mechanics/electric_slave.hpp>
-#include <tactus/mechanics/operator.hpp>
-#include <tactus/simulation/channel.hpp>
 #include <tactus/simulation/clock.hpp>
+#include <tactus/simulation/site_pair.hpp>
+#include <tactus/simulation/site_plants.hpp>
 
 #include <cstdint>
 #include <utility>
 
 namespace tactus::simulation {
-
-/// The link between the sites, one channel each way.
-struct LinkParams {
-  Channel::Params to_slave{.seed = 1};
-  Channel::Params to_master{.seed = 2};
-  static constexpr auto fields() {
-    return std::tuple{field("to_slave", &LinkParams::to_slave, "The way from master to slave."),
-                      field("to_master", &LinkParams::to_master,
-                            "The way from slave to master; a message arrives at the next tick at the earliest.")};
-  }
-};
 
 /// A one-axis teleoperator in virtual time: person, master, two sites, channel, slave and wall.
 ///
@@ -112,36 +98,39 @@ class Teleoperator {
   /// Advances by one tick while the person intends to be at `path_m` now and at `path_at_next_tick_m` then.
   Record step(double path_m, double path_at_next_tick_m) noexcept;
 
+  /// What `exchange` takes over.
+  struct Parts {
+    bool grip = false;         ///< how the person holds the handle
+    bool environment = false;  ///< the wall
+    bool channel = false;      ///< both ways; what was on its way is lost
+    bool controllers = false;  ///< of both sites; the gates stay
+    bool operator==(const Parts&) const = default;
+  };
+  /// Goes on with these parts of `made`, a teleoperator of the same clock and devices that has not been stepped; `made`
+  /// keeps what was in their place. Devices and person stay where they are. Controllers are first brought to rest at
+  /// this very instant (`Site::exchange_controller`), those of another architecture cannot be: what is in the channel
+  /// means nothing to them. Between ticks; does not allocate, but takes about as long as 1000 ticks of the sites.
+  void exchange(Teleoperator& made, const Parts& parts) noexcept;
+
+  /// The record of a tick as far as it is known before the plants go on; `add_contact` adds what they do,
+  /// `tip_position_m` is the caller's to fill in.
+  static Record recorded(double time_s, const MasterPlant::Reading& master, const SlavePlant::Reading& slave,
+                         const SitePair::Output& output) noexcept;
+  static void add_contact(Record& record, const SlavePlant::Contact& contact, const Clock& clock) noexcept;
+
   [[nodiscard]] double tick_s() const noexcept { return clock_.tick_s; }
   /// False once a safety gate has latched a fault.
-  [[nodiscard]] bool healthy() const noexcept;
+  [[nodiscard]] bool healthy() const noexcept { return sites_.healthy(); }
 
  private:
-  /// What a run is made of, each already valid.
-  struct Parts {
-    mechanics::CableDrivenMaster master;
-    mechanics::ElectricSlave slave;
-    mechanics::Operator person;
-    control::Sites sites;
-    Channel to_slave;
-    Channel to_master;
-  };
+  Teleoperator(MasterPlant master, SlavePlant slave, SitePair sites, const Clock& clock)
+      : master_(std::move(master)), slave_(std::move(slave)), sites_(std::move(sites)), clock_(clock) {}
 
-  Teleoperator(Parts parts, const Clock& clock, const mechanics::Operator::Params& person)
-      : parts_(std::move(parts)), clock_(clock), grip_(person.grip), grip_change_(person.grip_change) {}
-
-  void change_grip(double time_s) noexcept;
-
-  Parts parts_;
+  MasterPlant master_;
+  SlavePlant slave_;
+  SitePair sites_;
   Clock clock_;
-  mechanics::LinearSpring::Params grip_;  ///< before any change
-  mechanics::Operator::GripChange grip_change_;
-  double grip_factor_ = 1.0;
   std::int64_t ticks_ = 0;
-  double master_command_N_ = 0.0;
-  double handle_command_N_ = 0.0;
-  double slave_command_N_ = 0.0;
-  control::Arrival arrived_;  ///< at the master, for its next tick
 };
 
 }  // namespace tactus::simulation

@@ -81,6 +81,9 @@ struct Lane {
     return Lane(reinterpret_cast<Vector>((reinterpret_cast<Bits>(size.v) & ~sign_bits()) |
                                          (reinterpret_cast<Bits>(sign.v) & sign_bits())));
   }
+  [[nodiscard]] Real get(std::size_t lane) const noexcept { return v[lane]; }
+  void set(std::size_t lane, double value) noexcept { v[lane] = static_cast<Real>(value); }
+
   /// For magnitudes below 2⁵¹ (2²² in float): rounds by adding a number so large that no fraction fits beside it.
   friend Lane floor(Lane a) noexcept {
     constexpr Real large = sizeof(Real) == 8 ? Real(6755399441055744.0) : Real(12582912.0f);
@@ -96,6 +99,58 @@ struct Lane {
  private:
   static Bits sign_bits() noexcept { return Bits{} + sign_bit; }
   static constexpr Whole sign_bit = std::numeric_limits<Whole>::min();
+};
+
+/// Two lane types beside each other, as one of twice as many numbers. A loop is one long chain of operations, each of
+/// which waits for the last; the two halves do not wait for each other, so the processor works on both.
+template <class Half>
+struct LanePair {
+  using Real = typename Half::Real;
+  static constexpr std::size_t count = 2 * Half::count;
+
+  struct Mask {
+    typename Half::Mask low, high;
+    friend Mask operator==(Mask a, Mask b) noexcept { return {a.low == b.low, a.high == b.high}; }
+    friend Mask operator!=(Mask a, Mask b) noexcept { return {a.low != b.low, a.high != b.high}; }
+    friend Mask operator&(Mask a, Mask b) noexcept { return {a.low & b.low, a.high & b.high}; }
+    friend Mask operator|(Mask a, Mask b) noexcept { return {a.low | b.low, a.high | b.high}; }
+    friend bool any(Mask mask) noexcept { return any(mask.low | mask.high); }
+  };
+
+  Half low, high;
+
+  LanePair() noexcept = default;
+  // Implicit on purpose, as that of a lane.
+  LanePair(double value) noexcept : low(value), high(value) {}
+  LanePair(Half first, Half second) noexcept : low(first), high(second) {}
+
+  friend LanePair operator+(LanePair a, LanePair b) noexcept { return {a.low + b.low, a.high + b.high}; }
+  friend LanePair operator-(LanePair a, LanePair b) noexcept { return {a.low - b.low, a.high - b.high}; }
+  friend LanePair operator*(LanePair a, LanePair b) noexcept { return {a.low * b.low, a.high * b.high}; }
+  friend LanePair operator/(LanePair a, LanePair b) noexcept { return {a.low / b.low, a.high / b.high}; }
+  friend LanePair operator-(LanePair a) noexcept { return {-a.low, -a.high}; }
+  LanePair& operator+=(LanePair b) noexcept { return *this = *this + b; }
+
+  friend Mask operator<(LanePair a, LanePair b) noexcept { return {a.low < b.low, a.high < b.high}; }
+  friend Mask operator>(LanePair a, LanePair b) noexcept { return {a.low > b.low, a.high > b.high}; }
+  friend Mask operator>=(LanePair a, LanePair b) noexcept { return {a.low >= b.low, a.high >= b.high}; }
+  friend LanePair select(Mask mask, LanePair yes, LanePair no) noexcept {
+    return {select(mask.low, yes.low, no.low), select(mask.high, yes.high, no.high)};
+  }
+  friend LanePair min(LanePair a, LanePair b) noexcept { return {min(a.low, b.low), min(a.high, b.high)}; }
+  friend LanePair max(LanePair a, LanePair b) noexcept { return {max(a.low, b.low), max(a.high, b.high)}; }
+  friend LanePair fabs(LanePair a) noexcept { return {fabs(a.low), fabs(a.high)}; }
+  friend LanePair copysign(LanePair size, LanePair sign) noexcept {
+    return {copysign(size.low, sign.low), copysign(size.high, sign.high)};
+  }
+  [[nodiscard]] Real get(std::size_t lane) const noexcept {
+    return lane < Half::count ? low.get(lane) : high.get(lane - Half::count);
+  }
+  void set(std::size_t lane, double value) noexcept {
+    lane < Half::count ? low.set(lane, value) : high.set(lane - Half::count, value);
+  }
+  friend LanePair floor(LanePair a) noexcept { return {floor(a.low), floor(a.high)}; }
+  friend LanePair expm1(LanePair a) noexcept { return {expm1(a.low), expm1(a.high)}; }
 };
 
 }  // namespace tactus::stability

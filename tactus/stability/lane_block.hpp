@@ -15,10 +15,8 @@ template <class Scalar>
 struct Access {
   using Real = typename Scalar::Real;
   static constexpr std::size_t count = Scalar::count;
-  static Real get(const Scalar& scalar, std::size_t lane) noexcept { return scalar.v[lane]; }
-  static void set(Scalar& scalar, std::size_t lane, double value) noexcept {
-    scalar.v[lane] = static_cast<Real>(value);
-  }
+  static Real get(const Scalar& scalar, std::size_t lane) noexcept { return scalar.get(lane); }
+  static void set(Scalar& scalar, std::size_t lane, double value) noexcept { scalar.set(lane, value); }
 };
 template <>
 struct Access<double> {

@@ -1,11 +1,8 @@
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/contest.hpp>
 #include <tactus/simulation/presentation.hpp>
-#include <tactus/simulation/tapping.hpp>
-#include <tactus/stability/bonded_run.hpp>
+#include <tactus/stability/limit_ladder.hpp>
 #include <tactus/stability/limit_report.hpp>
 #include <tactus/stability/margins.hpp>
-#include <tactus/stability/uncertainty.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -17,36 +14,118 @@ namespace tactus::stability {
 
 namespace {
 
-constexpr double lowest_gain = 0.05;
-constexpr double highest_gain = 1000.0;
-/// Highest gain that taps are tried with, as in the contest: what settles there settles for every purpose.
-constexpr double highest_tapped = 32.0;
+std::string shown(const simulation::GainLimit& limit) { return simulation::gain_limit_text(limit, lowest_tried_gain); }
 
-struct Rung {
-  std::string key, words, adds;
-  simulation::GainLimit limit;
+std::string ratio(const simulation::GainLimit& limit, const simulation::GainLimit& over) {
+  if (limit.gain == 0.0 || over.gain == 0.0 || (limit.beyond_search && over.beyond_search)) return "";
+  const char* bound = limit.beyond_search ? "≥ " : over.beyond_search ? "≤ " : "";
+  return bound + report::number(limit.gain / over.gain, 3);
+}
+
+report::Table ladder_table(const std::vector<LimitRung>& rungs) {
+  report::Table table({{"gain limit of", "", report::Column::Align::left},
+                       {"force gain"},
+                       {"over the one above"},
+                       {"what comes in", "", report::Column::Align::left}},
+                      "Gain limit, from the linear loop to the taps of the file");
+  for (std::size_t i = 0; i < rungs.size(); ++i) {
+    table.add_row(
+        {rungs[i].words, shown(rungs[i].limit), i > 0 ? ratio(rungs[i].limit, rungs[i - 1].limit) : "", rungs[i].adds});
+  }
+  return table;
+}
+
+report::Table without_table(const std::vector<LimitRung>& rungs) {
+  report::Table table({{"taps of the file without", "", report::Column::Align::left}, {"force gain"}, {"over theirs"}},
+                      "One thing taken out at a time");
+  table.add_row({"nothing", shown(rungs.back().limit), ""});
+  for (const LimitRung& rung : rungs) {
+    if (rung.without) table.add_row({rung.adds, shown(*rung.without), ratio(*rung.without, rungs.back().limit)});
+  }
+  return table;
+}
+
+report::Figure ladder_figure(const std::vector<LimitRung>& rungs) {
+  report::Panel panel{"",
+                      {.label = "force gain", .lower = lowest_tried_gain, .scale = report::Axis::Scale::logarithmic},
+                      {.label = ""},
+                      {},
+                      {}};
+  report::Bars limits{.name = "up to here", .lengths = {}};
+  report::Bars without{.name = "the file without it", .lengths = {}, .colour = 1};
+  for (const LimitRung& rung : rungs) {
+    panel.y.categories.push_back(rung.words);
+    limits.lengths.push_back(rung.limit.gain);
+    limits.labels.push_back(shown(rung.limit));
+    without.lengths.push_back(rung.without ? rung.without->gain : std::nan(""));
+    without.labels.push_back(rung.without ? shown(*rung.without) : "");
+  }
+  panel.bars = {limits, without};
+  return {.title = "Gain limit",
+          .caption =
+              "Each row has all that the rows above it have, and one thing more; the second bar is the file's own with "
+              "that one thing taken out. A ≥ marks the end of the search.",
+          .columns = 1,
+          .panels = {panel}};
+}
+
+/// The gain limit of the linear loop with friction as a damper, over the velocity amplitude that it stands for.
+struct FrictionCurve {
+  std::vector<double> speed_m_per_s, limit;
 };
 
-std::string shown(const simulation::GainLimit& limit) {
-  return (limit.beyond_search ? "> " : "") + report::number(limit.gain, 4);
+Result<FrictionCurve> friction_curve(const simulation::TappingParams& params, Linearisation linearisation) {
+  FrictionCurve curve;
+  for (double speed = 1e-3; speed < 1.0; speed *= 1.25) {
+    linearisation.friction_speed_m_per_s = speed;
+    const auto loop = make_loop(params, linearisation);
+    if (!loop) return loop.error();
+    curve.speed_m_per_s.push_back(speed);
+    curve.limit.push_back(gain_limit(*loop).force_gain);
+  }
+  return curve;
 }
 
-simulation::GainLimit tapped(simulation::TappingParams params) {
-  return simulation::find_gain_limit(lowest_gain, highest_tapped, [&params](double gain) {
-    params.control.force_gain = gain;
-    return simulation::taps_settle(params);
-  });
+report::Figure friction_figure(const FrictionCurve& curve, double frictionless, const simulation::GainLimit& taps) {
+  const auto logarithmic = report::Axis::Scale::logarithmic;
+  report::Figure figure{
+      .title = "Friction as a describing function",
+      .caption =
+          "The linear gain limit with friction as a damper 4 f / (pi V), over the velocity amplitude V "
+          "of the ringing. Left of the curve a ringing dies, right of it it grows: at a gain above the "
+          "limit without friction, what friction holds is small motion only.",
+      .columns = 1,
+      .panels = {}};
+  figure.panels.push_back({"",
+                           {.label = "velocity amplitude", .unit = "m/s", .scale = logarithmic},
+                           {.label = "force gain", .scale = logarithmic},
+                           {{"linear limit with friction", curve.speed_m_per_s, curve.limit}},
+                           {}});
+  const auto rule = [&figure](double at, const char* label) {
+    if (at > 0.0 && std::isfinite(at)) figure.panels[0].rules.push_back({.at = at, .label = label});
+  };
+  rule(frictionless, "without friction");
+  if (!taps.beyond_search) rule(taps.gain, "taps of the file");
+  return figure;
 }
 
-/// Friction and hysteresis off in devices and model, sensors ideal; the wall, the person and the limits as they are.
-simulation::TappingParams frictionless(simulation::TappingParams params) {
-  const simulation::TappingParams file = params;
-  static_cast<simulation::Teleoperator::Params&>(params) = linear_version(params);
-  params.environment = file.environment;
-  params.person = file.person;
-  params.channel = file.channel;
-  params.control.model.hand.quintic_stiffness_N_per_m5 = file.control.model.hand.quintic_stiffness_N_per_m5;
-  return params;
+/// The rung that moves the limit most; none where nothing does.
+const LimitRung* farthest(const std::vector<LimitRung>& rungs) {
+  const LimitRung* found = nullptr;
+  double most = std::log(1.05);
+  for (std::size_t i = 1; i < rungs.size(); ++i) {
+    const double before = rungs[i - 1].limit.gain, after = rungs[i].limit.gain;
+    const double gap = before > 0.0 && after > 0.0 ? std::fabs(std::log(after / before)) : before == after ? 0.0 : 1e9;
+    if (gap > most) {
+      most = gap;
+      found = &rungs[i];
+    }
+  }
+  return found;
+}
+
+nlohmann::ordered_json json_of(const simulation::GainLimit& limit) {
+  return {{"force_gain", limit.gain}, {"beyond_search", limit.beyond_search}};
 }
 
 }  // namespace
@@ -57,79 +136,46 @@ Result<simulation::Outcome> report_limit(const simulation::Request& request, con
   if (!params) return params.error();
   const auto loop = make_loop(*params, options.linearisation);
   if (!loop) return request.document.locate(loop.error());
-  const simulation::TappingParams ideal = frictionless(*params);
-  for (const simulation::TappingParams& taps : {*params, ideal}) {
-    if (const auto ensemble = simulation::TappingEnsemble::make(taps); !ensemble) {
-      return request.document.locate(ensemble.error());
-    }
-  }
-  const simulation::Teleoperator::Params bonded = linear_version(*params, options.linearisation.preload_N);
-  if (const auto teleoperator = simulation::Teleoperator::make(bonded, 0.0); !teleoperator) {
-    return request.document.locate(teleoperator.error());
-  }
+  const auto rungs = limit_ladder(*params, options.linearisation, progress);
+  if (!rungs) return request.document.locate(rungs.error());
+  const auto curve = friction_curve(*params, options.linearisation);
+  if (!curve) return request.document.locate(curve.error());
 
-  const auto wrong = uncertain_limit(*params, options.linearisation, params->task.model_error);
-  if (!wrong) return request.document.locate(wrong.error());
   const GainLimit linear = gain_limit(*loop);
-  const bool endless = std::isinf(linear.force_gain);
-  std::vector<Rung> rungs;
-  rungs.push_back({"linear",
-                   "linear loop, sampled",
-                   "",
-                   {.gain = endless ? highest_gain : linear.force_gain, .beyond_search = endless}});
-  rungs.push_back({"bonded", "the same in time, tip glued on", "plants stepped, not solved",
-                   bisect_linear_limit(bonded, lowest_gain, highest_gain)});
-  rungs.push_back(
-      {"wrong_models",
-       "linear loop, worst model",
-       "a model that does not fit",
-       {.gain = std::min(wrong->smallest_limit, highest_gain), .beyond_search = wrong->smallest_limit > highest_gain}});
-  if (progress) progress(0.1);
-  rungs.push_back(
-      {"taps_without_friction", "taps without friction", "contact that breaks, saturation, the judge", tapped(ideal)});
-  if (progress) progress(0.5);
-  rungs.push_back({"taps", "taps as in the file", "friction, hysteresis, noise, quantisation", tapped(*params)});
-  if (progress) progress(1.0);
-
-  report::Table table({{"gain limit of", "", report::Column::Align::left},
-                       {"force gain"},
-                       {"over the one above"},
-                       {"what comes in", "", report::Column::Align::left}},
-                      "Gain limit, linear and in time");
   nlohmann::ordered_json document{{"experiment", request.name},
                                   {"linear_frequency_Hz", linear.frequency_rad_per_s / (2.0 * std::numbers::pi)},
                                   {"limits", nlohmann::ordered_json::array()}};
-  for (std::size_t i = 0; i < rungs.size(); ++i) {
-    const double ratio = i > 0 ? rungs[i].limit.gain / rungs[i - 1].limit.gain : 1.0;
-    table.add_row(
-        {rungs[i].words, shown(rungs[i].limit),
-         i > 0 && std::isfinite(ratio) ? (rungs[i].limit.beyond_search ? "> " : "") + report::number(ratio, 4) : "",
-         rungs[i].adds});
-    document["limits"].push_back(
-        {{"of", rungs[i].key}, {"force_gain", rungs[i].limit.gain}, {"beyond_search", rungs[i].limit.beyond_search}});
+  for (const LimitRung& rung : *rungs) {
+    nlohmann::ordered_json entry{{"of", rung.key}};
+    entry.update(json_of(rung.limit));
+    if (rung.without) entry["file_without"] = json_of(*rung.without);
+    document["limits"].push_back(std::move(entry));
   }
-  const auto farthest = std::max_element(rungs.begin() + 1, rungs.end(), [](const Rung& a, const Rung& b) {
-    const auto gap = [](const Rung& rung) {
-      const double before = (&rung - 1)->limit.gain;
-      return before > 0.0 && rung.limit.gain > 0.0 ? std::fabs(std::log(rung.limit.gain / before)) : 1e9;
-    };
-    return gap(a) < gap(b);
-  });
-  const std::string reason =
-      "Most of the gap comes in with: " + farthest->adds +
-      ".\nWorst model: of 27 wrong by task.model_error. Taps without friction: nor hysteresis, with "
-      "ideal sensors. The judge: settled within 100 ms.\n";
-  document["largest_gap"] = farthest->key;
+  const LimitRung* cause = farthest(*rungs);
+  document["largest_gap"] = cause != nullptr ? nlohmann::ordered_json(cause->key) : nlohmann::ordered_json(nullptr);
+  document["friction"] = {{"speed_m_per_s", curve->speed_m_per_s}, {"gain_limit", curve->limit}};
 
+  const report::Table table = ladder_table(*rungs), taken_out = without_table(*rungs);
+  const std::string reason = cause != nullptr ? "The largest step of the first table comes in with: " + cause->adds +
+                                                    ". A step depends on the order; the second table does not.\n"
+                                              : "No step moves the limit by more than 5 %.\n";
+  std::vector<report::Figure> figures{ladder_figure(*rungs),
+                                      friction_figure(*curve, linear.force_gain, rungs->back().limit)};
   report::Page page(request.name + ": gain limit");
   page.paragraph(
-      "The largest force gain up to which the contact calms down, from the linear loop to the taps of the file. "
-      "Each row adds something that the row above does not have. A > marks the end of the search.");
+      "The largest force gain up to which the contact calms down, from the linear loop to the taps of the file. Each "
+      "row "
+      "adds one thing. Taps count as settled when 95 % of them settle and half of them within 100 ms and two round "
+      "trips.");
   page.table(table);
   page.paragraph(reason);
+  page.table(taken_out);
+  for (const report::Figure& figure : figures) page.figure(figure);
   simulation::add_provenance(page, request, configuration::to_toml(*params));
-  return simulation::Outcome{
-      .text = table.to_text() + reason, .json = document.dump(2) + "\n", .html = page.to_html(), .figures = {}};
+  return simulation::Outcome{.text = table.to_text() + reason + taken_out.to_text(),
+                             .json = document.dump(2) + "\n",
+                             .html = page.to_html(),
+                             .figures = std::move(figures)};
 }
 
 }  // namespace tactus::stability

@@ -62,11 +62,74 @@ Result<StateSpace> probe(int order, const std::function<double(double)>& step) {
   return system;
 }
 
-Result<StateSpace> probe_model(control::InducedMotionModel::Params params, Seconds dt) {
+namespace {
+
+/// Slope from tip to tip of the closed loop of amplitude `amplitude_m` that the spring goes through.
+double chord_N_per_m(const mechanics::BoucWenSpring::Params& params, double amplitude_m) {
+  auto spring = mechanics::BoucWenSpring::make(params, Seconds{1e-5});
+  if (!spring) return params.stiffness_N_per_m;
+  double up_N = 0.0, down_N = 0.0;
+  // A loop closes within a few cycles; its sides are exact in one step each.
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    up_N = spring->step({.deflection_m = amplitude_m});
+    down_N = spring->step({.deflection_m = -amplitude_m});
+  }
+  return (up_N - down_N) / (2.0 * amplitude_m);
+}
+
+/// The continuous system that `held`, sampled every `tick_s`, is of: the logarithm of its matrices, by the series of
+/// 2 artanh((M − 1)/(M + 1)), which a tick far below a radian of every mode makes short.
+StateSpace continuous(const StateSpace& held, double tick_s) {
+  const Eigen::Index n = held.states(), whole = n + 1;
+  Eigen::MatrixXd tick = Eigen::MatrixXd::Identity(whole, whole);
+  tick.topLeftCorner(n, n) = held.a;
+  tick.topRightCorner(n, 1) = held.b;
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(whole, whole);
+  const Eigen::MatrixXd ratio = (tick + one).partialPivLu().solve(tick - one);
+  const Eigen::MatrixXd square = ratio * ratio;
+  Eigen::MatrixXd power = ratio, rate = Eigen::MatrixXd::Zero(whole, whole);
+  for (int i = 1; i < 40; i += 2) {
+    rate += (2.0 / (i * tick_s)) * power;
+    power = (power * square).eval();
+  }
+  return {.a = rate.topLeftCorner(n, n), .b = rate.topRightCorner(n, 1), .c = held.c, .d = held.d};
+}
+
+/// The model with a damper from motor and from drum to the ground.
+Result<StateSpace> probe_rubbing_model(const control::InducedMotionModel::Params& params,
+                                       const Linearisation& linearisation, Seconds dt) {
+  constexpr Eigen::Index velocities = 3;
+  constexpr double parts = 16.0;
+  control::InducedMotionModel::Params exact = params;
+  exact.step = control::CancellationStep::exact;
+  const auto fine = probe_model(exact, Seconds{dt.value / parts});
+  if (!fine) return fine.error();
+  StateSpace model = continuous(*fine, dt.value / parts);
+  const auto rub = [&](Eigen::Index body, const mechanics::RubbingMass& mass) {
+    model.a(velocities + body, velocities + body) -= linearisation.rubbing_N_s_per_m(mass.friction_N) / mass.mass_kg;
+  };
+  rub(0, params.master.motor);
+  rub(1, params.master.drum);
+  return sampled(model, dt.value, 0.0);
+}
+
+}  // namespace
+
+Result<StateSpace> probe_model(control::InducedMotionModel::Params params, Seconds dt,
+                               const Linearisation& linearisation) {
+  const control::InducedMotionModel::Params file = params;
   params.master.motor.friction_N = 0.0;
   params.master.drum.friction_N = 0.0;
   params.master.linkage.hysteretic_fraction = 0.0;
+  if (linearisation.linkage_amplitude_m > 0.0 && params.fidelity == control::ModelFidelity::sixth_order) {
+    params.master.linkage.stiffness_N_per_m = chord_N_per_m(file.master.linkage, linearisation.linkage_amplitude_m);
+  }
   params.master.hand.quintic_stiffness_N_per_m5 = 0.0;
+  if (linearisation.friction_speed_m_per_s > 0.0 && params.fidelity == control::ModelFidelity::sixth_order) {
+    control::InducedMotionModel::Params rubbing = file;
+    rubbing.master.linkage = params.master.linkage;
+    return probe_rubbing_model(rubbing, linearisation, dt);
+  }
   auto model = control::InducedMotionModel::make(params, dt);
   if (!model) return model.error();
 

@@ -3,6 +3,7 @@
 #include <tactus/control/induced_motion_model.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/core/units.hpp>
+#include <tactus/stability/linearisation.hpp>
 #include <tactus/stability/state_space.hpp>
 
 #include <functional>
@@ -23,8 +24,11 @@ Result<StateSpace> probe(int order, const std::function<double(double)>& step);
 /// at its start. Its six states are those that the model shows; A and B are fitted to what it does under a random
 /// force, and the fit must hold to 1e-9.
 ///
-/// Without what is not linear: friction and quintic spring are left out, the linkage has its average stiffness.
+/// The quintic spring is left out. Friction and the linkage are as `linearisation` says, as those of the devices are:
+/// friction, in the one model that has it, becomes dampers in the continuous form that the model's exact step over a
+/// part of the tick has; the linkage has the chord that its law goes through when it is cycled.
 /// Errors: those of `InducedMotionModel::make`; `failed` as in `probe`.
-Result<StateSpace> probe_model(control::InducedMotionModel::Params params, Seconds dt);
+Result<StateSpace> probe_model(control::InducedMotionModel::Params params, Seconds dt,
+                               const Linearisation& linearisation = {});
 
 }  // namespace tactus::stability

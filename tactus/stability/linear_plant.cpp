@@ -31,6 +31,8 @@ TipLoad wall_load(const mechanics::Environment::Params& params, double preload_N
 
 namespace {
 
+constexpr Eigen::Index tip_velocity_state = 5;
+
 double linkage_stiffness_N_per_m(const mechanics::ElastoSlipSpring::Params& params, double amplitude_m) {
   if (amplitude_m == 0.0) return params.stiffness_N_per_m;
   const auto spring = mechanics::ElastoSlipSpring::make(params, Seconds{1e-5});
@@ -49,10 +51,6 @@ StateSpace linear_device(const mechanics::CableChain::Params& mechanism,
                          const mechanics::CurrentAmplifier::Params& amplifier, double sensor_bandwidth_Hz,
                          const TipLoad& load, const Linearisation& linearisation) {
   const double linkage = linkage_stiffness_N_per_m(mechanism.linkage, linearisation.linkage_amplitude_m);
-  const double speed = linearisation.friction_speed_m_per_s;
-  const auto rubbing = [speed](double friction_N) {
-    return speed > 0.0 ? 4.0 * friction_N / (std::numbers::pi * speed) : 0.0;
-  };
   const auto coupling = [](double cable_, double linkage_, double tip) {
     Eigen::Matrix3d matrix;
     matrix << cable_, -cable_, 0.0, -cable_, cable_ + linkage_, -linkage_, 0.0, -linkage_, linkage_ + tip;
@@ -61,14 +59,15 @@ StateSpace linear_device(const mechanics::CableChain::Params& mechanism,
   const Eigen::Matrix3d stiffness = coupling(mechanism.cable.stiffness_N_per_m, linkage, load.stiffness_N_per_m);
   Eigen::Matrix3d damping =
       coupling(mechanism.cable.damping_N_s_per_m, mechanism.linkage.damping_N_s_per_m, load.damping_N_s_per_m);
-  damping(0, 0) += rubbing(mechanism.motor.friction_N);
-  damping(1, 1) += rubbing(mechanism.drum.friction_N);
+  damping(0, 0) += linearisation.rubbing_N_s_per_m(mechanism.motor.friction_N);
+  damping(1, 1) += linearisation.rubbing_N_s_per_m(mechanism.drum.friction_N);
   const Eigen::Vector3d per_mass{1.0 / mechanism.motor.mass_kg, 1.0 / mechanism.drum.mass_kg,
                                  1.0 / mechanism.tip.mass_kg};
 
   // Positions of motor, drum and tip, their velocities, the applied force, the sensor's output and its rate over its
   // corner.
   constexpr Eigen::Index x = 0, v = 3, applied = 6, reading = 7, reading_rate = 8, states = 9;
+  static_assert(v + 2 == tip_velocity_state);
   StateSpace device{.a = Eigen::MatrixXd::Zero(states, states),
                     .b = Eigen::MatrixXd::Zero(states, device_inputs),
                     .c = Eigen::MatrixXd::Zero(device_outputs, states),
@@ -96,6 +95,34 @@ StateSpace linear_device(const mechanics::CableChain::Params& mechanism,
   device.c(tip_velocity_out, v + 2) = 1.0;
   device.c(sensor_out, reading) = 1.0;
   return device;
+}
+
+StateSpace linear_master(const mechanics::CableDrivenMaster::Params& master, const TipLoad& load,
+                         const Linearisation& linearisation) {
+  const StateSpace device =
+      linear_device(master.mechanism, master.amplifier, master.force_sensor.bandwidth_Hz, load, linearisation);
+  const Eigen::Index n = device.states();
+  StateSpace whole{.a = Eigen::MatrixXd::Zero(n + 1, n + 1),
+                   .b = Eigen::MatrixXd::Zero(n + 1, device_inputs + 1),
+                   .c = Eigen::MatrixXd::Zero(device_outputs, n + 1),
+                   .d = Eigen::MatrixXd::Zero(device_outputs, device_inputs + 1)};
+  whole.a.topLeftCorner(n, n) = device.a;
+  whole.b.topLeftCorner(n, device_inputs) = device.b;
+  whole.c.leftCols(n) = device.c;
+  const double lag = 2.0 * std::numbers::pi * master.handle_actuator.bandwidth_Hz;
+  whole.a(tip_velocity_state, n) = 1.0 / master.mechanism.tip.mass_kg;
+  whole.a(n, n) = -lag;
+  whole.b(n, tip_command_in) = lag * master.handle_actuator.gain;
+  return whole;
+}
+
+StateSpace driven(const StateSpace& master) {
+  StateSpace system{.a = master.a,
+                    .b = Eigen::MatrixXd(master.states(), 2),
+                    .c = master.c.row(motor_out),
+                    .d = Eigen::MatrixXd::Zero(1, 2)};
+  system.b << master.b.col(command_in), master.b.col(tip_command_in);
+  return system;
 }
 
 }  // namespace tactus::stability

@@ -22,10 +22,20 @@ enum DeviceInput : Eigen::Index { command_in, tip_force_in, device_inputs };
 /// with which the hand pushes it forward, which is the same with the other sign. Here: pushes back.
 enum DeviceOutput : Eigen::Index { motor_out, tip_out, tip_velocity_out, sensor_out, device_outputs };
 
+/// The place of a further input of a device with an actuator on its tip: the actuator's command in N, same sign.
+inline constexpr Eigen::Index tip_command_in = device_inputs;
+
 /// Amplifier, motor, cable, drum, linkage and tip; the sensor as the analogue second-order low-pass that its sampled
 /// form stands for. Saturation, quantisation, noise and offset are left out.
 StateSpace linear_device(const mechanics::CableChain::Params& mechanism,
                          const mechanics::CurrentAmplifier::Params& amplifier, double sensor_bandwidth_Hz,
                          const TipLoad& load, const Linearisation& linearisation);
+
+/// A master with the actuator on its handle: `linear_device` with the input `tip_command_in`.
+StateSpace linear_master(const mechanics::CableDrivenMaster::Params& master, const TipLoad& load,
+                         const Linearisation& linearisation);
+
+/// From the commands of both actuators of such a master, that of the motor first, to the motor's position.
+StateSpace driven(const StateSpace& master);
 
 }  // namespace tactus::stability

@@ -2,6 +2,8 @@
 
 #include <tactus/core/parameters.hpp>
 
+#include <numbers>
+
 namespace tactus::stability {
 
 /// What of the nonlinear device a linear model stands for.
@@ -22,6 +24,11 @@ struct Linearisation {
               "Deflection amplitude whose chord is the linkage's stiffness; 0 is the reference deflection."),
         field("preload_N", &Linearisation::preload_N, units::newton, positive,
               "Contact force about which the wall is linearised.")};
+  }
+
+  /// The damper to the ground that stands for Coulomb friction of `friction_N`, in N s/m.
+  [[nodiscard]] constexpr double rubbing_N_s_per_m(double friction_N) const noexcept {
+    return friction_speed_m_per_s > 0.0 ? 4.0 * friction_N / (std::numbers::pi * friction_speed_m_per_s) : 0.0;
   }
 };
 

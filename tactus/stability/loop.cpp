@@ -15,17 +15,18 @@ Error unsupported(std::string parameter, const char* message) {
 
 Check check_supported(const control::ControlParams& control) {
   if (control.architecture != "position-force") {
-    return unsupported("control.architecture", "linear analysis knows position-force alone: choose it");
+    return unsupported(
+        "control.architecture",
+        "the loop of induced motion is that of position-force: choose it, or judge others by tactus run");
   }
-  const control::Crossover::Params defaults;
-  if (control.crossover.frequency_Hz != defaults.frequency_Hz) {
-    return unsupported("control.crossover.frequency_Hz", "linear analysis knows no actuator on the handle: leave it 0");
-  }
-  if (control.hand_compensation_Hz != 0.0) {
-    return unsupported("control.hand_compensation_Hz", "linear analysis knows no hand compensation: leave it 0");
+  if (control.slave_force.source != control::SlaveForceSource::sensor) {
+    return unsupported("control.slave_force.source",
+                       "linear analysis has no model of the estimators, whose friction is not linear: choose sensor");
   }
   if (control.operator_estimate == control::OperatorEstimate::online) {
-    return unsupported("control.operator_estimate", "linear analysis knows no estimate that adapts: choose off");
+    return unsupported(
+        "control.operator_estimate",
+        "an estimate that adapts to the loop is not linear: choose off, and try hands with operator.grip");
   }
   return std::nullopt;
 }
@@ -43,11 +44,15 @@ struct Part {
   }
 };
 
+double output_of(double output) { return output; }
+/// What goes to the handle is the rest.
+double output_of(const control::Crossover::Output& parts) { return parts.below_N; }
+
 template <class Element>
 Result<StateSpace> probe_element(int order, const typename Element::Params& params, Seconds dt) {
   auto element = Element::make(params, dt);
   if (!element) return element.error();
-  return probe(order, [&element](double input) { return element->step(input); });
+  return probe(order, [&element](double input) { return output_of(element->step(input)); });
 }
 
 }  // namespace
@@ -56,7 +61,7 @@ Eigen::Index ticks_of(const simulation::Channel::Params& channel, double tick_s)
   return static_cast<Eigen::Index>(std::lround(channel.delay_s / tick_s));
 }
 
-Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params) {
+Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params, const Linearisation& linearisation) {
   // What cannot be simulated is not analysed either, so that both refuse alike.
   if (const auto teleoperator = simulation::Teleoperator::make(params, 0.0); !teleoperator) return teleoperator.error();
   const control::ControlParams& control = params.control;
@@ -67,12 +72,17 @@ Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params)
                                   .fidelity = control.cancellation_model,
                                   .step = control.cancellation_step,
                                   .friction = control.cancellation_friction},
-                                 tick);
+                                 tick, linearisation);
   if (!model) return model.error();
   const auto force_filter = probe_element<control::ShapingFilter>(2, control.force_filter, tick);
   if (!force_filter) return force_filter.error();
   const auto command_filter = probe_element<control::ShapingFilter>(2, control.command_filter, tick);
   if (!command_filter) return command_filter.error();
+  const auto crossover = probe_element<control::Crossover>(2, control.crossover, tick);
+  if (!crossover) return crossover.error();
+  const auto compensation = probe_element<control::HandForceCompensation>(
+      2, {.master = control.model, .band_Hz = control.hand_compensation_Hz}, tick);
+  if (!compensation) return compensation.error();
   const auto damping = probe_element<control::LocalDamping>(1, control.damping, tick);
   if (!damping) return damping.error();
   auto servo = probe_element<control::ServoPd>(1, control.slave, tick);
@@ -80,7 +90,9 @@ Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params)
 
   const bool cancels = control.cancellation == control::CancellationMode::on;
   const Part force{*force_filter, 0};
-  const Part rate{*damping, force.at + force.system.states()};
+  const Part below{*crossover, force.at + force.system.states()};
+  const Part compensated{*compensation, below.at + below.system.states()};
+  const Part rate{*damping, compensated.at + compensated.system.states()};
   const Part command{*command_filter, rate.at + rate.system.states()};
   const Part belief{*model, command.at + command.system.states()};
   const Eigen::Index states = belief.at + (cancels ? belief.system.states() : 0);
@@ -88,12 +100,17 @@ Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params)
   sites.master =
       assemble(states, site_inputs, site_outputs, [&](const auto& state, const auto& input, auto& next, auto& output) {
         // Damping's force counts as displayed, so it drives the model too.
-        const double motor_N = rate.output(state, input[measured_in]) - force.output(state, input[arrived_force_in]);
+        const double wanted_N = force.output(state, input[arrived_force_in]);
+        const double below_N = below.output(state, wanted_N);
+        const double motor_N = rate.output(state, input[measured_in]) - compensated.output(state, below_N);
         const double induced_m = cancels ? belief.output(state, 0.0) : 0.0;
         const double intended_m = input[measured_in] - induced_m;
         output[motor_force_out] = motor_N;
         output[message_out] = control.position_scale * command.output(state, intended_m);
+        output[handle_force_out] = below_N - wanted_N;
         force.advance(state, input[arrived_force_in], next);
+        below.advance(state, wanted_N, next);
+        compensated.advance(state, below_N, next);
         rate.advance(state, input[measured_in], next);
         command.advance(state, intended_m, next);
         if (cancels) belief.advance(state, motor_N, next);
@@ -105,17 +122,16 @@ Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params)
 
 Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Linearisation& linearisation) {
   if (auto error = validate(linearisation)) return *std::move(error);
-  const auto sites = linear_sites(params);
+  const auto sites = linear_sites(params, linearisation);
   if (!sites) return sites.error();
   const auto clock = simulation::Clock::make(params.servo, params.plant);
   const double late_s = clock->late_substeps * clock->substep_s;
 
-  const StateSpace master = linear_device(params.master.mechanism, params.master.amplifier,
-                                          params.master.force_sensor.bandwidth_Hz, params.person.grip, linearisation);
+  const StateSpace master = linear_master(params.master, params.person.grip, linearisation);
   const StateSpace slave =
       linear_device(params.slave.mechanism, params.slave.amplifier, params.slave.force_sensor.bandwidth_Hz,
                     wall_load(params.environment, linearisation.preload_N), linearisation);
-  const StateSpace master_plant = sampled(one_channel(master, command_in, motor_out), clock->tick_s, late_s);
+  const StateSpace master_plant = sampled(driven(master), clock->tick_s, late_s);
   const StateSpace slave_plant = sampled(
       {.a = slave.a, .b = slave.b.col(command_in), .c = slave.c, .d = slave.d.col(command_in)}, clock->tick_s, late_s);
 
@@ -133,7 +149,8 @@ Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Lin
     const Eigen::Vector2d seen{(master_plant.c * plant)(0), input[0]};
     const Eigen::VectorXd said = sites->master.c * site + sites->master.d * seen;
     output[0] = said[message_out];
-    next.head(motors) = master_plant.a * plant + master_plant.b.col(0) * said[motor_force_out];
+    next.head(motors) =
+        master_plant.a * plant + master_plant.b * Eigen::Vector2d{said[motor_force_out], said[handle_force_out]};
     next.tail(sited) = sites->master.a * site + sites->master.b * seen;
   });
   const Part feedback{sites->slave, slave_plant.states()};
@@ -147,7 +164,7 @@ Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Lin
                               slave_plant.a * plant + slave_plant.b.col(0) * feedback.output(state, error_m);
                           feedback.advance(state, error_m, next);
                         });
-  loop.induced = master_plant;
+  loop.induced = one_channel(master_plant, 0, 0);
   loop.modelled = sites->modelled;
   return loop;
 }

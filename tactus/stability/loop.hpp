@@ -18,7 +18,7 @@ namespace tactus::stability {
 /// model of it (zero with cancellation off), G_se the servoed slave on the wall from command to tip force. Sampled
 /// exactly: plants behind hold and computation delay by matrix exponentials, elements of the sites by stepping them,
 /// delays as whole ticks (never Padé). Left out: quantisation, noise, saturation, gates, jitter and loss of the
-/// channel, the person's slow correction, and all friction of the controller's model.
+/// channel, the person's slow correction. What the actuator on the handle does, with a crossover, moves the motor too.
 struct Loop {
   double tick_s = 0.0;
   double force_gain = 1.0;       ///< μ
@@ -36,14 +36,15 @@ struct Loop {
 };
 
 /// The loop that `params` describe, the slave's tip on the wall. Errors: parameters that no teleoperator can be made
-/// of; `inconsistent` for an architecture or a stage that is not analysed here (crossover, hand compensation, an online
-/// estimate of the grip); `failed` as in `probe`. Not real-time safe.
+/// of; `inconsistent` for what has no linear model here, with the reason: other architectures, an estimate in place of
+/// the slave's force sensor, an estimate of the grip that adapts; `failed` as in `probe`. Not real-time safe.
 Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Linearisation& linearisation = {});
 
 /// Inputs and outputs of the master's site alone: the measured motor position in m and the arriving force times μ in N
-/// make the motor force in N, positive toward the environment, and the command times λ in m.
+/// make the motor force in N and that of the actuator on the handle, both positive toward the environment, and the
+/// command times λ in m.
 enum SiteInput : Eigen::Index { measured_in, arrived_force_in, site_inputs };
-enum SiteOutput : Eigen::Index { motor_force_out, message_out, site_outputs };
+enum SiteOutput : Eigen::Index { motor_force_out, message_out, handle_force_out, site_outputs };
 
 /// The controllers of both sites, without plants and delays.
 struct LinearSites {
@@ -53,7 +54,8 @@ struct LinearSites {
 };
 
 /// The sites that `params` describe. Errors: those of `make_loop`.
-Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params);
+Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params,
+                                 const Linearisation& linearisation = {});
 
 /// Whole ticks that a message takes, jitter left out.
 Eigen::Index ticks_of(const simulation::Channel::Params& channel, double tick_s);

@@ -46,16 +46,20 @@ struct PointRunner {
   LanePlan plan;
   const LaneRunner& lanes;
 
-  /// The points of the grid with these indices, as many lanes at once as there are. Returns the loop ticks that it
-  /// took.
-  Result<double> run(std::span<const std::size_t> indices, PointResult* results) const {
+  struct Effort {
+    double ticks = 0.0;
+    double lane_ticks = 0.0;
+  };
+
+  /// The points of the grid with these indices, as many lanes at once as there are.
+  Result<Effort> run(std::span<const std::size_t> indices, PointResult* results) const {
     PointParams params(request.base, request.axes);
     const std::size_t width = lanes.lanes;
     std::vector<LanePoint> points;
     std::vector<const LanePoint*> pointers(width);
     std::vector<LaneResult> runs(width);
     std::vector<double> force_N(plan.longest() * width), one_N;
-    double ticks = 0.0;
+    Effort effort;
     for (std::size_t first = 0; first < indices.size(); first += width) {
       const std::size_t count = std::min(width, indices.size() - first);
       points.clear();
@@ -68,14 +72,17 @@ struct PointRunner {
       for (std::size_t i = 0; i < width; ++i) pointers[i] = &points[std::min(i, count - 1)];
       LaneMemory lines(lane_room(points.data(), count, width));
       lanes.run(pointers.data(), plan, lines.numbers(), force_N.data(), runs.data());
+      std::size_t longest = 0;
       for (std::size_t i = 0; i < count; ++i) {
         one_N.resize(runs[i].ticks);
         for (std::size_t n = 0; n < one_N.size(); ++n) one_N[n] = force_N[n * width + i];
         results[first + i] = judge(runs[i], one_N, plan.clock.tick_s);
-        ticks += static_cast<double>(runs[i].ticks);
+        effort.ticks += static_cast<double>(runs[i].ticks);
+        longest = std::max(longest, runs[i].ticks);
       }
+      effort.lane_ticks += static_cast<double>(longest * width);
     }
-    return ticks;
+    return effort;
   }
 };
 
@@ -134,13 +141,14 @@ Check run_pass(Pass& pass, const MapRequest& request, const PointRunner& runner,
       [&](std::size_t i) {
         if (failed) return;
         const std::size_t block = mine[i], first = block * block_points, count = pass.size_of(block);
-        const auto ticks = runner.run(std::span(pass.indices).subspan(first, count), pass.results.data() + first);
+        const auto effort = runner.run(std::span(pass.indices).subspan(first, count), pass.results.data() + first);
         const std::lock_guard lock(guard);
-        if (!ticks) {
-          if (!failed.exchange(true)) failure = ticks.error();
+        if (!effort) {
+          if (!failed.exchange(true)) failure = effort.error();
           return;
         }
-        result.ticks += *ticks;
+        result.ticks += effort->ticks;
+        result.lane_ticks += effort->lane_ticks;
         pass.done[block] = 1;
         if (!store) return;
         if (auto error = store->append(pass.first_number + block, pass.results.data() + first, count)) {

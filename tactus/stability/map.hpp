@@ -39,6 +39,7 @@ struct MapResult {
   std::size_t resumed = 0;          ///< points that an earlier run had left
   std::size_t redone = 0;           ///< points of a float map that were run again in double
   double ticks = 0.0;               ///< loop ticks that this process ran
+  double lane_ticks = 0.0;          ///< and as many as there would be without lanes that wait for the last of a block
   std::string instruction_set;
 };
 

@@ -72,22 +72,30 @@ Result<Analysis> analyse(const simulation::TappingParams& params, const ReportOp
   const DiskMargin disk = disk_margin(curve);
   const bool alone = stable_without_force(loop);
   const int unstable = unstable_poles(curve);
+  const bool stable = alone && unstable == 0;
+  // Of an unstable loop none of the other margins says how far it is from anything.
+  const auto margin = [stable](double value) { return stable ? value : std::nan(""); };
+  const auto where = [stable](double frequency_rad_per_s) {
+    return stable ? in_Hz(frequency_rad_per_s) : std::nullopt;
+  };
   auto& q = analysis.quantities;
   q.push_back({"force_gain", "force gain", "", loop.force_gain, loop.force_gain});
   q.push_back({"gain_limit", "gain limit", "", limit.force_gain, limit.force_gain, in_Hz(limit.frequency_rad_per_s)});
-  q.push_back(
-      {"stable", "stable (1 yes, 0 no)", "", alone && unstable == 0 ? 1.0 : 0.0, alone && unstable == 0 ? 1.0 : 0.0});
+  q.push_back({"stable", "stable (1 yes, 0 no)", "", stable ? 1.0 : 0.0, stable ? 1.0 : 0.0});
   if (alone) q.push_back({"unstable_poles", "unstable poles", "", double(unstable), double(unstable)});
   q.push_back({"gain_margin", "gain margin, a factor", "", gain.factor, gain.factor, in_Hz(gain.frequency_rad_per_s)});
-  q.push_back({"phase_margin_rad", "phase margin", "degrees", phase.phase_rad, degree * phase.phase_rad,
-               in_Hz(phase.phase_frequency_rad_per_s)});
-  q.push_back({"delay_margin_s", "delay margin", "ms", phase.delay_s, 1e3 * phase.delay_s,
-               in_Hz(phase.delay_frequency_rad_per_s)});
-  q.push_back(
-      {"modulus_margin", "modulus margin", "", modulus.distance, modulus.distance, in_Hz(modulus.frequency_rad_per_s)});
-  q.push_back({"disk_margin", "disk margin alpha", "", disk.alpha, disk.alpha, in_Hz(disk.frequency_rad_per_s)});
-  q.push_back({"disk_gain_factor", "gain that it allows, a factor", "", disk.gain_factor(), disk.gain_factor()});
-  q.push_back({"disk_phase_rad", "phase that it allows", "degrees", disk.phase_rad(), degree * disk.phase_rad()});
+  q.push_back({"phase_margin_rad", "phase margin", "degrees", margin(phase.phase_rad), margin(degree * phase.phase_rad),
+               where(phase.phase_frequency_rad_per_s)});
+  q.push_back({"delay_margin_s", "delay margin", "ms", margin(phase.delay_s), margin(1e3 * phase.delay_s),
+               where(phase.delay_frequency_rad_per_s)});
+  q.push_back({"modulus_margin", "modulus margin", "", margin(modulus.distance), margin(modulus.distance),
+               where(modulus.frequency_rad_per_s)});
+  q.push_back({"disk_margin", "disk margin alpha", "", margin(disk.alpha), margin(disk.alpha),
+               where(disk.frequency_rad_per_s)});
+  q.push_back({"disk_gain_factor", "gain that it allows, a factor", "", margin(disk.gain_factor()),
+               margin(disk.gain_factor())});
+  q.push_back({"disk_phase_rad", "phase that it allows", "degrees", margin(disk.phase_rad()),
+               margin(degree * disk.phase_rad())});
   const double mass_limit = mass_ratio(params) / loop.position_scale;
   q.push_back({"daniel_mcaree_limit", "Daniel and McAree: mass ratio over lambda", "", mass_limit, mass_limit});
   q.push_back({"small_gain_limit", "small-gain limit, model wrong by the share", "", uncertain->small_gain,

@@ -3,6 +3,7 @@
 #include <tactus/simulation/tapping.hpp>
 #include <tactus/stability/scorecard.hpp>
 #include <tactus/stability/scorecard_report.hpp>
+#include <tactus/stability/two_port_sweep.hpp>
 #include <tactus/stability/z_width.hpp>
 
 #include <algorithm>
@@ -19,6 +20,26 @@ constexpr double turn = 2.0 * std::numbers::pi;
 
 std::string number_or_none(double value) { return std::isfinite(value) ? report::number(value, 4) : "none"; }
 
+/// The stiffest walls in N/m that the closed forms allow the master alone to display, in the hand of the file.
+struct VirtualWalls {
+  double passive_N_per_m, quantised_N_per_m, stable_N_per_m, rest_N_per_m, small_rest_N_per_m;
+};
+
+VirtualWalls virtual_walls(const simulation::Teleoperator::Params& params) {
+  const auto& chain = params.master.mechanism;
+  const SampledWall wall{.damping_N_s_per_m = params.person.grip.damping_N_s_per_m,
+                         .friction_N = chain.motor.friction_N + chain.drum.friction_N,
+                         .resolution_m = params.master.encoder.resolution_m,
+                         .tick_s = 1.0 / params.servo.rate_Hz,
+                         .delay_s = params.servo.computation_delay_s};
+  return {.passive_N_per_m = passive_stiffness_N_per_m(wall.damping_N_s_per_m, 0.0, wall.tick_s),
+          .quantised_N_per_m =
+              quantised_stiffness_N_per_m(wall.damping_N_s_per_m, wall.tick_s, wall.friction_N, wall.resolution_m),
+          .stable_N_per_m = stable_stiffness_N_per_m(wall.damping_N_s_per_m, 0.0, wall.tick_s, wall.delay_s),
+          .rest_N_per_m = wall.stiffest_at_rest_N_per_m(),
+          .small_rest_N_per_m = wall.stiffest_held_N_per_m()};
+}
+
 report::Table card_table(const Scorecard& card, const simulation::Teleoperator::Params& params) {
   report::Table table(
       {{"what", "", report::Column::Align::left}, {"value"}, {"unit", "", report::Column::Align::left}, {"at", "Hz"}},
@@ -33,17 +54,12 @@ report::Table card_table(const Scorecard& card, const simulation::Teleoperator::
   row("largest hand force over motor force", card.force_peak, "", card.force_peak_Hz);
   row("effort in free motion", card.effort_2_Hz_N_s_per_m, "N s/m", 2.0);
   row("effort in free motion", card.effort_10_Hz_N_s_per_m, "N s/m", 10.0);
-  const double tick_s = 1.0 / params.servo.rate_Hz;
-  const auto& chain = params.master.mechanism;
-  row("virtual wall that damping of the hand makes passive (Colgate, Brown)",
-      passive_stiffness_N_per_m(params.person.grip.damping_N_s_per_m, 0.0, tick_s), "N/m");
-  row("virtual wall that friction lets the encoder hide (Abbott, Okamura)",
-      quantised_stiffness_N_per_m(params.person.grip.damping_N_s_per_m, tick_s,
-                                  chain.motor.friction_N + chain.drum.friction_N, params.master.encoder.resolution_m),
-      "N/m");
-  row("virtual wall that is stable with the computation delay (Gil, Hulin)",
-      stable_stiffness_N_per_m(params.person.grip.damping_N_s_per_m, 0.0, tick_s, params.servo.computation_delay_s),
-      "N/m");
+  const VirtualWalls walls = virtual_walls(params);
+  row("virtual wall that damping of the hand makes passive (Colgate, Brown)", walls.passive_N_per_m, "N/m");
+  row("virtual wall that friction lets the encoder hide (Abbott, Okamura)", walls.quantised_N_per_m, "N/m");
+  row("virtual wall that is stable with the computation delay (Gil, Hulin)", walls.stable_N_per_m, "N/m");
+  row("virtual wall that comes to rest, whatever the motion (after Diolaiti)", walls.rest_N_per_m, "N/m");
+  row("virtual wall on which small motion comes to rest (after Diolaiti)", walls.small_rest_N_per_m, "N/m");
   return table;
 }
 
@@ -67,51 +83,6 @@ std::string limited_by(const Scorecard& card) {
   return text + ".\n";
 }
 
-report::Figure two_port_figure(const TwoPort& port, const simulation::Teleoperator::Params& params,
-                               const Linearisation& linearisation) {
-  const TipLoad wall = wall_load(params.environment, linearisation.preload_N);
-  std::vector<double> hertz, free, contact, itself, llewellyn, scattering;
-  const double highest_Hz = 0.45 * params.servo.rate_Hz;
-  for (double f = 0.5; f < highest_Hz; f *= 1.015) {
-    const HybridMatrix h = port.at(turn * f);
-    const std::complex<double> environment =
-        wall.damping_N_s_per_m + wall.stiffness_N_per_m / std::complex<double>(0.0, turn * f);
-    hertz.push_back(f);
-    free.push_back(std::abs(transmitted_impedance(h, 0.0)));
-    contact.push_back(std::abs(transmitted_impedance(h, environment)));
-    itself.push_back(std::abs(environment));
-    llewellyn.push_back(llewellyn_index(h));
-    scattering.push_back(scattering_norm(h, std::max(params.person.grip.damping_N_s_per_m, 1.0)));
-  }
-  const auto logarithmic = report::Axis::Scale::logarithmic;
-  const report::Axis frequency{.label = "frequency", .unit = "Hz", .scale = logarithmic};
-  report::Figure figure{.title = "Two-port",
-                        .caption =
-                            "What the hand feels in free motion and on the wall, beside the wall itself: "
-                            "transparent is where they agree. Stable between all passive ends where "
-                            "Llewellyn's index is at least 1, passive where the scattering norm is at most 1.",
-                        .columns = 1,
-                        .panels = {}};
-  figure.panels.push_back({"Transmitted impedance",
-                           frequency,
-                           {.label = "impedance", .unit = "N s/m", .scale = logarithmic},
-                           {{"free", hertz, free, 0},
-                            {"on the wall", hertz, contact, 1},
-                            {"the wall", hertz, itself, 2, report::Dash::dashed}},
-                           {}});
-  figure.panels.push_back({"Absolute stability",
-                           frequency,
-                           {.label = "Llewellyn's index", .lower = -1.5, .upper = 3.0},
-                           {{"", hertz, llewellyn, 3}},
-                           {{.at = 1.0, .label = "bound"}}});
-  figure.panels.push_back({"Passivity",
-                           frequency,
-                           {.label = "scattering norm", .scale = logarithmic},
-                           {{"", hertz, scattering, 4}},
-                           {{.at = 1.0, .label = "bound"}}});
-  return figure;
-}
-
 }  // namespace
 
 Result<simulation::Outcome> report_scorecard(const simulation::Request& request, const ReportOptions& options,
@@ -120,11 +91,11 @@ Result<simulation::Outcome> report_scorecard(const simulation::Request& request,
   if (!params) return params.error();
   const auto card = score(*params, options.linearisation, progress);
   if (!card) return request.document.locate(card.error());
-  const auto port = TwoPort::make(*params, options.linearisation);
-  if (!port) return request.document.locate(port.error());
+  const auto sweep = sweep_two_port(*params, options.linearisation);
+  if (!sweep) return request.document.locate(sweep.error());
 
   const report::Table table = card_table(*card, *params), changes = sensitivity_table(*card);
-  const report::Figure figure = two_port_figure(*port, *params, options.linearisation);
+  const report::Figure figure = two_port_figure(*sweep);
   const std::string limited = limited_by(*card);
   const auto number = [](double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -140,6 +111,12 @@ Result<simulation::Outcome> report_scorecard(const simulation::Request& request,
                                   {"effort_2_Hz_N_s_per_m", card->effort_2_Hz_N_s_per_m},
                                   {"effort_10_Hz_N_s_per_m", card->effort_10_Hz_N_s_per_m},
                                   {"sensitivities", nlohmann::ordered_json::object()}};
+  const VirtualWalls walls = virtual_walls(*params);
+  document["virtual_walls_N_per_m"] = {{"passive", number(walls.passive_N_per_m)},
+                                       {"passive_quantised", number(walls.quantised_N_per_m)},
+                                       {"stable_with_delay", number(walls.stable_N_per_m)},
+                                       {"comes_to_rest", number(walls.rest_N_per_m)},
+                                       {"small_motion_comes_to_rest", number(walls.small_rest_N_per_m)}};
   for (const Sensitivity& s : card->sensitivities) document["sensitivities"][s.key] = number(s.limit_change);
 
   report::Page page(request.name + ": scorecard of the master");

@@ -47,6 +47,11 @@ double llewellyn_index(const HybridMatrix& h);
 /// 1989.
 double scattering_norm(const HybridMatrix& h, double reference_N_s_per_m);
 
+/// Smallest eigenvalue of the Hermitian part of H, in the same waves: at least 0 at every frequency means passive, and
+/// how much damping at both ports a loop lacks or has to spare, in units of the reference impedance.
+/// Source: Bao and Lee, Process Control: The Passive Systems Approach, 2007, section 2.3 (input feedforward passivity).
+double passivity_index(const HybridMatrix& h, double reference_N_s_per_m);
+
 /// What the hand feels, F_h / v_m in N s/m, with an environment of the impedance `environment_N_s_per_m` at the tip: 0
 /// in free motion, b + k / (jω) on a wall.
 std::complex<double> transmitted_impedance(const HybridMatrix& h, std::complex<double> environment_N_s_per_m);

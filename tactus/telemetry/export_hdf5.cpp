@@ -2,6 +2,7 @@
 #include <tactus/telemetry/export.hpp>
 #include <tactus/telemetry/export_parts.hpp>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -36,11 +37,14 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-/// A text of fixed length in UTF-8, the empty one as a single null.
+/// A text of fixed length, the empty one as a single null. Called UTF-8 only where it is more than ASCII: HDF5 converts
+/// between the two names for the same bytes in neither direction, and Octave reads into ASCII.
 Handle text_type(const std::string& content) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), content.empty() ? 1 : content.size());
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  const bool ascii =
+      std::all_of(content.begin(), content.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  H5Tset_cset(type.get(), ascii ? H5T_CSET_ASCII : H5T_CSET_UTF8);
   H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
   return type;
 }

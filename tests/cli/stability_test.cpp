@@ -31,6 +31,8 @@ TEST_F(Stability, a_gain_beyond_the_limit_has_two_unstable_poles) {
   const Json found = Json::parse(outcome.out);
   EXPECT_LT(found["gain_limit"].get<double>(), 0.5);
   EXPECT_EQ(found["unstable_poles"], 2.0);
+  EXPECT_EQ(found["stable"], 0.0);
+  EXPECT_TRUE(found["phase_margin_rad"].is_null()) << "an unstable loop has no margins";
 }
 
 TEST_F(Stability, the_limit_in_time_of_the_bonded_rig_stands_beside_the_linear_one) {
@@ -38,9 +40,30 @@ TEST_F(Stability, the_limit_in_time_of_the_bonded_rig_stands_beside_the_linear_o
       tactus({"stability", "limit", tapping, "--set", "control.cancellation=off", "--set", "task.taps=1", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json limits = Json::parse(outcome.out)["limits"];
-  ASSERT_EQ(limits.size(), 5U);
+  ASSERT_GE(limits.size(), 8U);
   const double linear = limits[0]["force_gain"], bonded = limits[1]["force_gain"];
   EXPECT_NEAR(bonded, linear, 0.02 * linear);
+  EXPECT_EQ(limits.back()["of"], "noise");
+  const auto friction =
+      std::find_if(limits.begin(), limits.end(), [](const Json& rung) { return rung["of"] == "friction"; });
+  ASSERT_NE(friction, limits.end());
+  EXPECT_TRUE(friction->contains("file_without"));
+}
+
+TEST_F(Stability, the_two_port_over_frequency_stands_in_the_document_and_a_report_is_left) {
+  const Outcome outcome = tactus({"stability", "two-port", tapping, "--set", "control.force_gain=0.2", "--set",
+                                  "control.cancellation=off", "--json", "--out", "results"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json found = Json::parse(outcome.out);
+  const std::size_t points = found["frequency_Hz"].size();
+  EXPECT_GT(points, 100U);
+  for (const char* key : {"h11_N_s_per_m", "h12", "h21", "h22_m_per_N_s", "transparency"}) {
+    EXPECT_EQ(found[key]["re"].size(), points) << key;
+  }
+  EXPECT_EQ(found["llewellyn_index"].size(), points);
+  EXPECT_EQ(found["passivity_index"].size(), points);
+  const auto left = files();
+  EXPECT_NE(std::find(left.begin(), left.end(), "results/report.html"), left.end());
 }
 
 TEST_F(Stability, a_scorecard_says_what_changes_the_limit) {
@@ -55,7 +78,7 @@ TEST_F(Stability, a_scorecard_says_what_changes_the_limit) {
 TEST_F(Stability, what_cannot_be_judged_is_refused_at_its_place) {
   const std::string file =
       write("wave.toml", "[task]\nkind = \"tapping\"\n[control]\narchitecture = \"wave-variables\"\n");
-  for (const std::string verb : {"margins", "limit", "scorecard"}) {
+  for (const std::string verb : {"margins", "limit", "scorecard", "two-port"}) {
     const Outcome outcome = tactus({"stability", verb, file, "--out", "results"});
     EXPECT_EQ(outcome.status, 2) << verb;
     EXPECT_NE(outcome.err.find("wave.toml:4"), std::string::npos) << outcome.err;

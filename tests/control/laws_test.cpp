@@ -16,7 +16,6 @@
 #include <tactus/control/position_force.hpp>
 #include <tactus/control/position_position.hpp>
 #include <tactus/control/projection.hpp>
-#include <tactus/control/safety_gate.hpp>
 #include <tactus/control/servo_pd.hpp>
 #include <tactus/control/shaping_filter.hpp>
 #include <tactus/control/shared_compliant.hpp>
@@ -256,8 +255,8 @@ struct Subject<control::PassivitySlave> {
 using ControlElements = ::testing::Types<
     control::InducedMotionModel, control::InverseModelEstimator, control::DisturbanceObserver,
     control::MomentumObserver, control::KalmanForceEstimator, control::NarxForceEstimator, control::Cancellation,
-    control::GripCancellation, control::PositionForceMaster, control::PositionForceSlave, control::SafetyGate,
-    control::ServoPd, control::LocalDamping, control::ShapingFilter, control::Crossover, control::HandForceCompensation,
+    control::GripCancellation, control::PositionForceMaster, control::PositionForceSlave, control::ServoPd,
+    control::LocalDamping, control::ShapingFilter, control::Crossover, control::HandForceCompensation,
     control::HandForceObserver, control::PositionPositionMaster, control::PositionPositionSlave,
     control::ProjectionMaster, control::SharedCompliantSlave, control::SlaveForce, control::FourChannelMaster,
     control::FourChannelSlave, control::CancellingSlave, control::WaveMaster, control::WaveSlave,

@@ -128,7 +128,7 @@ TEST(Rivals, TheModelOfCancellationIsDrivenByTheDampingAndNotByTheHandle) {
   EXPECT_GT(largest_m, 1e-4);
 }
 
-MasterSite gated(const Params& params, const SafetyGate::Params& handle = {}) {
+MasterSite gated(const Params& params, const ForceGate::Params& handle = {}) {
   ControlParams control;
   static_cast<Params&>(control) = params;
   control.handle_gate = handle;

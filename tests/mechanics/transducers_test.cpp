@@ -46,9 +46,13 @@ TEST(CurrentAmplifier, AnswersAStepExactlyAsTheFirstOrderLagAtAnyStepSize) {
   for (const double dt_s : {1e-6, 40e-6, 200e-6, 5e-3}) {
     auto amplifier =
         CurrentAmplifier::make({.gain = 0.98, .bandwidth_Hz = bandwidth_Hz, .limit_N = 5.0}, Seconds{dt_s}).value();
+    const double rate = 2.0 * std::numbers::pi * bandwidth_Hz;
     for (int n = 1; n <= 200; ++n) {
-      const double decay = std::exp(-2.0 * std::numbers::pi * bandwidth_Hz * dt_s * n);
-      ASSERT_NEAR(amplifier.step(2.0), 0.98 * 2.0 * (1.0 - decay), 1e-12) << dt_s << " s, step " << n;
+      // The mean over the step, from the integral of the exponential, and the force at its end.
+      const double before = std::exp(-rate * dt_s * (n - 1)), after = std::exp(-rate * dt_s * n);
+      const double mean_N = 0.98 * 2.0 * (1.0 - (before - after) / (rate * dt_s));
+      ASSERT_NEAR(amplifier.step(2.0), mean_N, 1e-12) << dt_s << " s, step " << n;
+      ASSERT_NEAR(amplifier.applied_force_N(), 0.98 * 2.0 * (1.0 - after), 1e-12) << dt_s << " s, step " << n;
     }
   }
 }
@@ -59,7 +63,8 @@ TEST(CurrentAmplifier, NeverAppliesMoreThanItsLimitAndRecoversAtOnce) {
   for (int n = 0; n < 1000; ++n) ASSERT_LE(std::fabs(amplifier.step(n < 500 ? 100.0 : 2.0)), 1.5);
   EXPECT_NEAR(amplifier.step(2.0), 1.5, 1e-12);
   const double decay = std::exp(-2.0 * std::numbers::pi * 1000.0 * 40e-6);
-  EXPECT_NEAR(amplifier.step(0.0), 1.5 * decay, 1e-12) << "no wind-up beyond the limit";
+  amplifier.step(0.0);
+  EXPECT_NEAR(amplifier.applied_force_N(), 1.5 * decay, 1e-12) << "no wind-up beyond the limit";
   for (int n = 0; n < 1000; ++n) amplifier.step(-100.0);
   EXPECT_NEAR(amplifier.step(-100.0), -1.5, 1e-12);
 }

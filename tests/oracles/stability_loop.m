@@ -23,6 +23,29 @@ function device = chain(tip, amplifier_Hz, sensor_Hz, linkage_scale, mass_scale)
   device = mechanics;
 end
 
+function w = way_of_handle(tip, actuator_Hz)
+  % [command of the actuator on the handle] to [motor position].
+  M = diag([0.0075, 0.01075, 0.014]);
+  K = [39500, -39500, 0; -39500, 39500 + 3950, -3950; 0, -3950, 3950 + tip(1)];
+  B = [3.6, -3.6, 0; -3.6, 3.6 + 0.02, -0.02; 0, -0.02, 0.02 + tip(2)];
+  o = 2 * pi * actuator_Hz;
+  w = ss([zeros(3), eye(3); -M \ K, -M \ B], [zeros(5, 1); 1 / 0.014], [1, 0, 0, 0, 0, 0], 0) * ss(-o, o, 1, 0);
+end
+
+function c = compensation(mass, band_Hz, T)
+  % Zeros on the mode of motor and drum on the linkage, the handle in the hand; well damped poles at the band's edge.
+  M = mass * diag([0.0075 + 0.01075, 0.014]);
+  K = [3950, -3950; -3950, 3950 + 40];
+  B = [0.02, -0.02; -0.02, 0.02 + 23];
+  s = eig([zeros(2), eye(2); -M \ K, -M \ B]);
+  s = s(imag(s) > 0);
+  zero = exp(s(1) * T);
+  p = exp(2 * pi * band_Hz * (-1 + 1i) / sqrt(2) * T);
+  top = [1, -2 * real(zero), abs(zero)^2];
+  bottom = [1, -2 * real(p), abs(p)^2];
+  c = ss(tf(sum(bottom) / sum(top) * top, bottom, T));
+end
+
 function d = hold(p, T, late)
   % Zero-order hold whose input changes `late` after the sample.
   [a, b, c] = ssdata(p);
@@ -47,16 +70,27 @@ late = 20e-6;
 z = tf([1, 0], 1, T);
 frequencies_Hz = [0.5, 20, 74, 200, 900];
 printf("# stability_loop.m, octave %s, control %s\n", version(), pkg("list", "control"){1}.version);
-printf("delay_ticks,cancellation,mass,filter_Hz,mu,gain_factor,gain_Hz,phase_rad,phase_Hz,delay_s,modulus,disk,pole_re,pole_im,pole2_re,pole2_im");
+printf("delay_ticks,cancellation,mass,filter_Hz,mu,crossover_Hz,compensation_Hz,gain_factor,gain_Hz,phase_rad,phase_Hz,delay_s,modulus,disk,pole_re,pole_im,pole2_re,pole2_im");
 printf(",re%d,im%d", [1:5; 1:5]);
 printf("\n");
-for setting = [0, 0, 1, 0, 0.36; 12, 0, 1, 0, 0.32; 0, 1, 1.2, 0, 1.6; 12, 1, 1.2, 0, 0.85; 0, 1, 0.8, 120, 1.7; 37, 1, 0.9, 0, 2.3]'
-  [d, cancels, mass, filter_Hz, mu] = num2cell(setting){:};
+for setting = [0, 0, 1, 0, 0.36, 0, 0; 12, 0, 1, 0, 0.32, 0, 0; 0, 1, 1.2, 0, 1.6, 0, 0; 12, 1, 1.2, 0, 0.85, 0, 0; ...
+               0, 1, 0.8, 120, 1.7, 0, 0; 37, 1, 0.9, 0, 2.3, 0, 0; 0, 0, 1, 0, 2.7, 0, 200; ...
+               7, 1, 0.9, 0, 1.2, 40, 150]'
+  [d, cancels, mass, filter_Hz, mu, crossover_Hz, compensation_Hz] = num2cell(setting){:};
   master = hold(chain([40, 23], 5000, 1000, 1, 1)(1, 1), T, late);
   induced = master;
   if cancels
     model = c2d(chain([40, 23], 0, 0, 1, mass)(1, 1), T);
     induced = parallel(master, -model);
+  end
+  if compensation_Hz > 0
+    induced = induced * compensation(mass, compensation_Hz, T);
+  end
+  if crossover_Hz > 0
+    % One filter for both parts, or its poles would be there twice.
+    below = low_pass(crossover_Hz, T);
+    split = ss(below.a, below.b, [below.c; -below.c], [below.d; 1 - below.d], T);
+    induced = [induced, hold(way_of_handle([40, 23], 1000), T, late)] * split;
   end
   if filter_Hz > 0
     induced = induced * low_pass(filter_Hz, T);
@@ -102,7 +136,7 @@ for setting = [0, 0, 1, 0, 0.36; 12, 0, 1, 0, 0.32; 0, 1, 1.2, 0, 1.6; 12, 1, 1.
   p = p(arg(p) > 2 * pi * 20 * T);
   [~, order] = sort(abs(p), "descend");
   p = p(order);
-  printf("%d,%d,%g,%g,%g", d, cancels, mass, filter_Hz, mu);
+  printf("%d,%d,%g,%g,%g,%g,%g", d, cancels, mass, filter_Hz, mu, crossover_Hz, compensation_Hz);
   printf(",%.15g", best(1), best(2) / (2 * pi), phase(1), phase(2) / (2 * pi), lag, modulus, disk, ...
          real(p(1)), imag(p(1)), real(p(2)), imag(p(2)));
   g = at(L, 2 * pi * frequencies_Hz)(:).';

@@ -48,6 +48,8 @@ TEST(Loop, AgreesWithOctaveControlOnResponsesMarginsAndPolesToOneInAMillion) {
     if (value("filter_Hz") > 0.0) {
       params.control.force_filter = {.kind = control::Shaping::low_pass, .frequency_Hz = value("filter_Hz")};
     }
+    params.control.crossover.frequency_Hz = value("crossover_Hz");
+    params.control.hand_compensation_Hz = value("compensation_Hz");
     const auto loop = make_loop(params);
     ASSERT_TRUE(loop) << describe(loop.error());
     const LoopCurve curve = trace(*loop);
@@ -103,11 +105,8 @@ TEST(Loop, RefusesWhatItCannotSeeAndNamesIt) {
   params.control.architecture = "wave-variables";
   EXPECT_EQ(make_loop(params).error().parameter, "control.architecture");
   params = linear_rig();
-  params.control.crossover.frequency_Hz = 30.0;
-  EXPECT_EQ(make_loop(params).error().parameter, "control.crossover.frequency_Hz");
-  params = linear_rig();
-  params.control.hand_compensation_Hz = 100.0;
-  EXPECT_EQ(make_loop(params).error().parameter, "control.hand_compensation_Hz");
+  params.control.slave_force.source = control::SlaveForceSource::kalman;
+  EXPECT_EQ(make_loop(params).error().parameter, "control.slave_force.source");
   params = linear_rig();
   params.control.operator_estimate = control::OperatorEstimate::online;
   EXPECT_EQ(make_loop(params).error().parameter, "control.operator_estimate");

@@ -1,3 +1,4 @@
+#include <tactus/signal/random.hpp>
 #include <tactus/stability/two_port.hpp>
 
 #include <cmath>
@@ -98,6 +99,38 @@ TEST(TwoPort, LlewellynAndScatteringOfNetworksThatAreKnown) {
   const std::complex<double> late = std::polar(1.0, -0.3);
   EXPECT_LT(llewellyn_index({.h11 = 0.0, .h12 = late, .h21 = -late, .h22 = 0.0}), 1.0);
   EXPECT_EQ(llewellyn_index({.h11 = -0.1, .h12 = 1.0, .h21 = -1.0, .h22 = 1.0}), -1.0);
+}
+
+TEST(TwoPort, PassivityIndexAndScatteringNormAgreeOnWhatIsPassive) {
+  signal::Random random(3);
+  int passive = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto entry = [&random] { return std::complex<double>(random.normal(), random.normal()); };
+    HybridMatrix h{.h11 = 2.0 + entry(), .h12 = entry(), .h21 = entry(), .h22 = 2.0 + entry()};
+    const double reference = std::exp(random.normal());
+    const double index = passivity_index(h, reference);
+    if (std::fabs(index) < 1e-9) continue;
+    EXPECT_EQ(index > 0.0, scattering_norm(h, reference) < 1.0) << index;
+    passive += index > 0.0 ? 1 : 0;
+    // A damper at each port, one reference impedance large, adds just as much.
+    h.h11 += reference;
+    h.h22 += 1.0 / reference;
+    EXPECT_NEAR(passivity_index(h, reference), index + 1.0, 1e-9);
+  }
+  EXPECT_GT(passive, 100);
+  EXPECT_LT(passive, 1900);
+}
+
+TEST(TwoPort, ActuatorOnTheHandleBringsTheForceBackWhereTheMotorNoLongerDoes) {
+  simulation::Teleoperator::Params params = uncancelled();
+  params.control.crossover.frequency_Hz = 30.0;
+  const TwoPort port = *TwoPort::make(params);
+  // Slow force comes through the motor as before; the actuator pushes the handle in its place at high frequency.
+  EXPECT_NEAR(std::abs(port.at(turn * 0.2).h12 - params.control.force_gain), 0.0, 0.02);
+  params.control.crossover.frequency_Hz = 0.0;
+  const TwoPort plain = *TwoPort::make(params);
+  const double frequency = turn * 250.0;
+  EXPECT_GT(std::abs(port.at(frequency).h12), 3.0 * std::abs(plain.at(frequency).h12));
 }
 
 TEST(TwoPort, HandFeelsTheEnvironmentItselfThroughAnIdealOne) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -70,6 +71,80 @@ TEST(ZWidth, GilAndHulinsBoundIsWhereAHeavyBodyOnASampledSpringBecomesUnstable) 
     EXPECT_TRUE(stable(mass, damping, 0.98 * bound, tick_s, delay)) << delay;
     EXPECT_FALSE(stable(mass, damping, 1.02 * bound, tick_s, delay)) << delay;
   }
+}
+
+/// Half of what is swept in the last tenth of a run by a body on a sampled, quantised spring with
+/// Coulomb friction, over the deflection that it began with. The hand's constant push holds it about `rest_m`.
+double left_over(const SampledWall& wall, double mass_kg, double rest_m, double start_m, double duration_s) {
+  const int substeps = 50;
+  const double h = wall.tick_s / substeps;
+  const auto ticks = static_cast<long>(duration_s / wall.tick_s);
+  const auto late = static_cast<long>(std::lround(wall.delay_s / wall.tick_s));
+  const double push_N = wall.stiffness_N_per_m * rest_m;
+  std::vector<double> spring_N(static_cast<std::size_t>(late) + 1, push_N);
+  double x = rest_m + start_m, v = 0.0, highest = -1.0, lowest = 1.0;
+  for (long tick = 0; tick < ticks; ++tick) {
+    const double read_m = wall.resolution_m > 0.0 ? wall.resolution_m * std::round(x / wall.resolution_m) : x;
+    std::rotate(spring_N.begin(), spring_N.begin() + 1, spring_N.end());
+    spring_N.back() = wall.stiffness_N_per_m * read_m;
+    for (int i = 0; i < substeps; ++i) {
+      const double v_before = v;
+      v += h / mass_kg * (push_N - spring_N.front() - wall.damping_N_s_per_m * v);
+      const double stop = h / mass_kg * wall.friction_N;
+      v = std::copysign(std::max(0.0, std::fabs(v) - stop), v);
+      // With the new velocity alone the spring would act half a step early, which is 2 % of the lag at stake.
+      x += 0.5 * h * (v_before + v);
+    }
+    if (10 * tick >= 9 * ticks) {
+      highest = std::max(highest, x);
+      lowest = std::min(lowest, x);
+    }
+    if (std::fabs(x - rest_m) > 100.0 * start_m) return std::fabs(x - rest_m) / start_m;
+  }
+  return 0.5 * (highest - lowest) / start_m;
+}
+
+TEST(ZWidth, MotionGrowsFromTheAmplitudeAtWhichFrictionNoLongerTakesWhatTheLateSpringPutsIn) {
+  for (const double delay_s : {0.0, 1e-3}) {
+    const double mass_kg = 0.2;
+    const SampledWall wall{.stiffness_N_per_m = 1000.0,
+                           .damping_N_s_per_m = 0.6 * 1000.0 * (0.5e-3 + delay_s),
+                           .friction_N = 0.05,
+                           .tick_s = 1e-3,
+                           .delay_s = delay_s};
+    ASSERT_EQ(wall.behaviour(), WallBehaviour::holds_small_motion);
+    const double amplitude_m = wall.growing_from_m(mass_kg);
+    EXPECT_LT(left_over(wall, mass_kg, 0.0, 0.95 * amplitude_m, 6.0), 0.9) << delay_s;
+    EXPECT_GT(left_over(wall, mass_kg, 0.0, 1.05 * amplitude_m, 6.0), 1.2) << delay_s;
+  }
+}
+
+TEST(ZWidth, OnTheEdgeOfAStepFrictionOfHalfItsForceMakesTheDifferenceBetweenRestAndBuzz) {
+  const double step_m = 1e-4, mass_kg = 0.2;
+  SampledWall wall{.stiffness_N_per_m = 1000.0, .damping_N_s_per_m = 0.8, .resolution_m = step_m};
+  const double half_N = 0.5 * wall.stiffness_N_per_m * step_m;
+  const double edge_m = 0.5 * step_m;
+  wall.friction_N = 1.05 * half_N;
+  ASSERT_EQ(wall.behaviour(), WallBehaviour::rests);
+  EXPECT_EQ(left_over(wall, mass_kg, edge_m, 20.0 * step_m, 3.0), 0.0);
+  wall.friction_N = 0.2 * half_N;
+  ASSERT_EQ(wall.behaviour(), WallBehaviour::buzzes);
+  const double buzz_steps = 20.0 * left_over(wall, mass_kg, edge_m, 20.0 * step_m, 6.0);
+  EXPECT_GT(buzz_steps, 0.01);
+  EXPECT_LT(buzz_steps, 2.0);
+}
+
+TEST(ZWidth, WithoutDampingOrFrictionThatWouldDoEvenSmallMotionGrows) {
+  const SampledWall wall{
+      .stiffness_N_per_m = 1000.0, .damping_N_s_per_m = 0.2, .friction_N = 0.005, .resolution_m = 1e-4};
+  EXPECT_EQ(wall.behaviour(), WallBehaviour::grows);
+  EXPECT_GT(left_over(wall, 0.2, 0.5e-4, 2e-3, 6.0), 10.0);
+}
+
+TEST(ZWidth, FourRegionsMeetWhereTheBoundsOfGilAndOfAbbottAndOkamuraDo) {
+  const SampledWall wall{.damping_N_s_per_m = 0.8, .friction_N = 0.02, .resolution_m = 1e-4, .tick_s = 1e-3};
+  EXPECT_DOUBLE_EQ(wall.stiffest_bounded_N_per_m(), stable_stiffness_N_per_m(0.8, 0.0, 1e-3, 0.0));
+  EXPECT_DOUBLE_EQ(wall.stiffest_at_rest_N_per_m(), quantised_stiffness_N_per_m(0.8, 1e-3, 0.02, 1e-4));
 }
 
 }  // namespace

@@ -1,0 +1,93 @@
+#include <tactus/cli/servo_options.hpp>
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/verbs.hpp>
+#include <tactus/report/table.hpp>
+#include <tactus/runtime/doctor.hpp>
+#include <tactus/runtime/servo_presentation.hpp>
+
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+using runtime::Finding;
+
+struct DoctorOptions {
+  runtime::ServoThreadParams servo;
+  double duration_s = 3.0;
+  bool json = false;
+};
+
+std::string text_of(const std::vector<Finding>& findings) {
+  using Align = report::Column::Align;
+  report::Table table({{"looked at", "", Align::left}, {"verdict", "", Align::left}, {"found", "", Align::left}},
+                      "Can this machine keep time?");
+  std::string explained;
+  for (const Finding& finding : findings) {
+    table.add_row({finding.name, name_of(finding.verdict), finding.found});
+    explained += finding.name + ": " + finding.means + ".\n";
+    if (!finding.remedy.empty()) explained += "    remedy: " + finding.remedy + "\n";
+  }
+  const bool can = runtime::can_keep_time(findings);
+  return table.to_text() + "\n" + explained +
+         (can ? "\nYes: a loop can be run here, as well as the verdicts say.\n"
+              : "\nNo: mend what is bad. A loop runs here all the same, and counts its late ticks.\n");
+}
+
+std::string json_of(const std::vector<Finding>& findings, const runtime::Measurement& measurement) {
+  nlohmann::ordered_json document{{"can_keep_time", runtime::can_keep_time(findings)},
+                                  {"findings", nlohmann::ordered_json::array()}};
+  for (const Finding& finding : findings) {
+    document["findings"].push_back({{"name", finding.name},
+                                    {"verdict", name_of(finding.verdict)},
+                                    {"found", finding.found},
+                                    {"means", finding.means},
+                                    {"remedy", finding.remedy}});
+  }
+  document["servo"] = nlohmann::ordered_json::parse(runtime::servo_json(measurement.report));
+  return document.dump(2) + "\n";
+}
+
+/// Whether the machine can keep time.
+Result<bool> examine(const DoctorOptions& options) {
+  constexpr Bounds durations = between(0.1, 3600.0);
+  if (!durations.contain(options.duration_s)) {
+    Error error = out_of_bounds({}, options.duration_s, durations, units::second);
+    error.place = "--duration-s";
+    return error;
+  }
+  const auto measurement = runtime::measure_lateness(options.servo, options.duration_s);
+  if (!measurement) return measurement.error();
+  const auto findings =
+      runtime::diagnose(runtime::read_machine_facts(static_cast<int>(options.servo.priority)), *measurement);
+  std::cout << (options.json ? json_of(findings, *measurement) : text_of(findings));
+  if (auto error = flush_standard_output()) return *std::move(error);
+  return runtime::can_keep_time(findings);
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, int& status) {
+  auto options = std::make_shared<DoctorOptions>();
+  CLI::App* verb = app.add_subcommand("doctor", "Can this machine keep time? What is missing, and what mends it");
+  verb->add_option("--rate-Hz", options->servo.rate_Hz, "Ticks per second to measure at")
+      ->type_name("HZ")
+      ->capture_default_str();
+  verb->add_option("--duration-s", options->duration_s, "How long to measure")->type_name("S")->capture_default_str();
+  add_servo_options(*verb, options->servo);
+  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  verb->callback([options, &app, &status] {
+    const auto can = examine(*options);
+    if (!can) std::cerr << app.get_name() << ": " << describe(can.error()) << "\n";
+    status = !can ? exit_status(can.error()) : (*can ? 0 : 1);
+  });
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,75 @@
+#include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/verbs.hpp>
+#include <tactus/configuration/document.hpp>
+#include <tactus/simulation/fault_experiment.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+struct Options {
+  std::optional<std::string> file;
+  std::vector<std::string> set;
+  std::optional<std::int64_t> seeds;
+  std::optional<std::string> out;
+  bool json = false;
+};
+
+Check run(const Options& options, const std::string& command) {
+  auto document = options.file ? configuration::Document::load(*options.file)
+                               : configuration::Document::parse("[task]\nkind = \"faults\"\n", "built in");
+  if (!document) return document.error();
+  for (const std::string& assignment : options.set) {
+    if (auto error = document->set(assignment)) return error;
+  }
+  if (options.seeds) {
+    if (auto error = document->set("task.seeds=" + std::to_string(*options.seeds))) return error;
+  }
+  if (options.out) {
+    if (auto error = check_writable(*options.out)) return error;
+  }
+  const simulation::Request request{
+      .document = *std::move(document),
+      .variations = {},
+      .name = options.file ? std::filesystem::path(*options.file).stem().string() : std::string("faults"),
+      .command = command};
+  const auto outcome = [&] {
+    ProgressLine line(request.name);
+    return simulation::FaultExperiment().run(request, [&line](double done) { line.update(done); });
+  }();
+  if (!outcome) return outcome.error();
+  return write_outcome(options.out, *outcome, options.json);
+}
+
+}  // namespace
+
+void add_faults(CLI::App& app, const std::string& command, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* faults = app.add_subcommand("faults", "Faults on purpose in virtual time: how many are survived, and how");
+  faults->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind faults; else the built-in one");
+  faults->add_option("--set", options->set, "Override one value: key=value")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  faults->add_option("--seeds", options->seeds, "Runs of each fault");
+  faults->add_option("--out", options->out, "Folder for report.html, results.json and the figure")->type_name("DIR");
+  faults->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  faults->callback([options, name = app.get_name(), &command, &status] {
+    if (const auto error = run(*options, command)) {
+      std::cerr << name << ": " << describe(*error) << "\n";
+      status = exit_status(*error);
+    }
+  });
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/mechanics/minimum_jerk.hpp>
+#include <tactus/runtime/servo_thread.hpp>
+#include <tactus/simulation/experiment.hpp>
+#include <tactus/simulation/tapping.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::cli {
+
+/// The taps of a `tapping` experiment one after another without a break, for a teleoperator that is not set back in
+/// between: rest, reach, press for `observation_s`, return. All have the mean depth; the speeds go evenly from the
+/// slowest to the fastest.
+class TapScript {
+ public:
+  explicit TapScript(const simulation::TappingParams& params);
+  [[nodiscard]] double duration_s() const { return duration_s_; }
+  /// Where the hand is meant to be; before and after, where it begins.
+  [[nodiscard]] double position_m(double time_s) const;
+
+ private:
+  struct Tap {
+    mechanics::MinimumJerk reach;
+    mechanics::MinimumJerk back;
+  };
+  std::vector<Tap> taps_;
+  double duration_s_ = 0.0;
+};
+
+struct Ros2Options {
+  std::string name_space = "tactus";
+  runtime::ServoThreadParams servo = {};  ///< the rate is that of the experiment
+  std::optional<std::filesystem::path> log_folder = {};
+};
+
+/// Runs the teleoperator of a `tapping` experiment among ROS 2 nodes, on a servo thread, for as long as the taps of
+/// `TapScript` take or until it is interrupted. Deadlines that are missed are made up for, so that its time keeps to
+/// the real one. Returns a table, or one JSON document. Errors: those of the experiment's file, of the network and of
+/// the log; `failed` once a safety gate has closed or the devices have left their workspace.
+Result<std::string> run_ros2_session(const simulation::Request& request, const Ros2Options& options, bool json);
+
+}  // namespace tactus::cli

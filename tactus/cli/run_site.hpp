@@ -1,0 +1,40 @@
+#pragma once
+
+#include <tactus/configuration/document.hpp>
+#include <tactus/core/result.hpp>
+#include <tactus/link/following.hpp>
+#include <tactus/runtime/servo_thread.hpp>
+
+#include <optional>
+#include <string>
+
+// Only declared: headers are installed, and a user of the package need not have CLI11.
+namespace CLI {  // NOLINT: the name is not ours
+class App;
+}
+
+namespace tactus::cli {
+
+/// What `tactus run EXPERIMENT --site ...` was asked for.
+struct SiteOptions {
+  std::string site;  ///< master or slave; empty where both sites run in one program
+  std::string peer;
+  std::optional<std::string> listen;
+  std::optional<std::string> key;
+  bool unencrypted = false;
+  bool arm = false;
+  double duration_s = 0.0;
+  double longest_age_s = 0.5;
+  link::Following::Params following;
+};
+
+/// Adds these options to the verb.
+void add_site_options(CLI::App& verb, SiteOptions& options);
+
+/// Runs one site of the experiment in real time until it ends or is interrupted: a line a second, then tables. With
+/// `json` the lines go to standard error and one document to standard output. SIGUSR1 or a line on standard input arms.
+/// Of `servo`, the rate is the experiment's.
+Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo, const configuration::Document& document,
+               bool json);
+
+}  // namespace tactus::cli

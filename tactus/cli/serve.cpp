@@ -1,0 +1,158 @@
+#include <tactus/cli/verbs.hpp>
+#include <tactus/core/version.hpp>
+#include <tactus/live/live_view.hpp>
+#include <tactus/live/server.hpp>
+#include <tactus/report/files.hpp>
+#include <tactus/telemetry/recorder.hpp>
+
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+/// The experiment that is served where none is named: experiments/tapping.toml as it was when this was built.
+constexpr std::string_view default_experiment =
+#include "default_experiment.inc"
+    ;
+
+volatile std::sig_atomic_t interrupted = 0;
+
+struct ServeOptions {
+  std::string experiment;
+  std::vector<std::string> set;
+  live::ServerOptions server;
+  bool allow_tuning = false;
+  std::string page;
+  std::string out;
+  double duration_s = 0.0;
+};
+
+/// Where an installed tactus, or else one that was built in its source tree, has the page.
+std::filesystem::path usual_page() {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const char* folder : {"../share/tactus/page", "../../../web/dist"}) {
+    if (fs::exists(program / folder / "index.html", error)) return (program / folder).lexically_normal();
+  }
+  return {};
+}
+
+Result<configuration::Document> experiment_of(const ServeOptions& options) {
+  auto document = options.experiment.empty() ? configuration::Document::parse(default_experiment, "tapping.toml")
+                                             : configuration::Document::load(options.experiment);
+  if (!document) return document.error();
+  for (const std::string& assignment : options.set) {
+    if (auto error = document->set(assignment)) return *std::move(error);
+  }
+  return document;
+}
+
+Check serve(const ServeOptions& options) {
+  const auto document = experiment_of(options);
+  if (!document) return document.error();
+  const auto settings = live::Settings::make(*document);
+  if (!settings) return document->locate(settings.error());
+  const std::string name =
+      options.experiment.empty() ? "tapping" : std::filesystem::path(options.experiment).stem().string();
+  const auto view = live::LiveView::make(*settings, {.allow_tuning = options.allow_tuning, .experiment = name});
+  if (!view) return document->locate(view.error());
+
+  live::StaticFiles page;
+  const std::filesystem::path folder = options.page.empty() ? usual_page() : std::filesystem::path(options.page);
+  if (!folder.empty()) {
+    auto loaded = live::StaticFiles::load(folder);
+    if (!loaded) return loaded.error();
+    page = *std::move(loaded);
+  }
+  const bool has_page = !page.empty();
+
+  std::optional<telemetry::Recorder> log;
+  std::filesystem::path log_file;
+  if (!options.out.empty()) {
+    log_file = std::filesystem::path(options.out) / "log.mcap";
+    if (auto error = report::prepare_directory(options.out)) return error;
+    auto recorder = telemetry::Recorder::create(log_file);
+    if (!recorder) return recorder.error();
+    log.emplace(*std::move(recorder));
+    log->add_metadata("tactus", {{"version", std::string(version())}, {"experiment", name}});
+    (*view)->engine().log_to(*log);
+    log->start();
+  }
+
+  Check failure;
+  {
+    const auto server = live::Server::start(options.server, std::move(page), **view);
+    if (!server) return server.error();
+    std::cout << server->url() << "\n"
+              << "Foxglove and PlotJuggler: ws" << server->url().substr(4) << "\n";
+    if (!has_page) std::cout << "No page: it is not built. `make live` builds it, --page names its folder.\n";
+    if (!options.allow_tuning) std::cout << "Parameters are read-only; --allow-tuning lets clients change them.\n";
+    std::cout << std::flush;
+
+    interrupted = 0;
+    std::signal(SIGINT, [](int) { interrupted = 1; });
+    std::signal(SIGTERM, [](int) { interrupted = 1; });
+    const auto start = std::chrono::steady_clock::now();
+    (*view)->engine().run([&] {
+      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+      return interrupted == 0 && (options.duration_s == 0.0 || elapsed.count() < options.duration_s);
+    });
+    const live::ServerCounts counts = server->counts();
+    std::cout << "Connections: " << counts.accepted << " taken, " << counts.turned_away << " turned away, "
+              << counts.refused << " refused. Messages dropped for slow clients: " << counts.dropped << ".\n";
+  }
+  if (log) {
+    if (auto error = log->stop()) return error;
+    std::uint64_t dropped = 0;
+    for (const std::uint64_t count : log->dropped()) dropped += count;
+    std::cout << "Log: " << log_file.string() << ", " << log->log().acknowledged() << " records, " << dropped
+              << " dropped\n";
+    return telemetry::write_bag_metadata(log_file, log->log());
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void add_serve(CLI::App& app, int& status) {
+  auto options = std::make_shared<ServeOptions>();
+  CLI::App* verb = app.add_subcommand("serve", "Serve the live page: be the operator in a browser");
+  verb->add_option("EXPERIMENT", options->experiment,
+                   "Experiment file of the kind tapping; its own, where none is named");
+  verb->add_option("--set", options->set, "Override one value: key=value")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  verb->add_option("--port", options->server.port, "Port to listen on; 0 takes any that is free")
+      ->capture_default_str();
+  verb->add_option("--listen", options->server.address, "Address of this machine to listen on")
+      ->type_name("ADDRESS")
+      ->capture_default_str();
+  verb->add_flag("--allow-tuning", options->allow_tuning, "Let clients change parameters, within their bounds");
+  verb->add_option("--page", options->page, "Folder of the built page")->type_name("DIR");
+  verb->add_option("--out", options->out, "Folder for a log of every tick")->type_name("DIR");
+  verb->add_option("--duration", options->duration_s, "Seconds to serve; 0 is until interrupted")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  verb->callback([options, &app, &status] {
+    if (const auto error = serve(*options)) {
+      std::cerr << app.get_name() << ": " << describe(*error) << "\n";
+      status = exit_status(*error);
+    }
+  });
+}
+
+}  // namespace tactus::cli

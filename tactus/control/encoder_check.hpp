@@ -1,0 +1,99 @@
+#pragma once
+
+#include <tactus/core/element.hpp>
+#include <tactus/core/parameters.hpp>
+#include <tactus/signal/checks.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace tactus::control {
+
+/// What is wrong with a measured position.
+enum class EncoderFault { none, jump, frozen };
+constexpr auto enumerators(EncoderFault) {
+  return std::array{Enumerator{EncoderFault::none, "none"}, Enumerator{EncoderFault::jump, "jump"},
+                    Enumerator{EncoderFault::frozen, "frozen"}};
+}
+
+/// Whether a measured position can be true.
+///
+/// A jump: |x(k) − x(k−1)| > v_max · T. A spike is one, a counter that wraps is one, and so is the way back.
+/// A freeze: not one count has changed while the motor's force went through a range of `frozen_force_N` or more, for
+/// `frozen_after_s` at least. A device that rests, or presses with a steady force, is not frozen, so a freeze shows
+/// only once the force works; until then it does no harm to the force.
+///
+/// Without model or controller: it knows the readings and the force that the gate let through. Range: v_max · T should
+/// be well above one count.
+class EncoderCheck {
+ public:
+  struct Params {
+    double fastest_m_per_s = 100.0;
+    double frozen_force_N = 20.0;
+    double frozen_after_s = 0.01;
+    static constexpr auto fields() {
+      return std::tuple{
+          field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
+                "Fastest motion that can be true; a reading farther from the one before is a jump."),
+          field("frozen_force_N", &Params::frozen_force_N, units::newton, positive_up_to(200.0),
+                "Change of the motor's force that must move the encoder by a count."),
+          field("frozen_after_s", &Params::frozen_after_s, units::second, positive_up_to(1.0),
+                "How long it may take to do so.")};
+    }
+  };
+  struct Input {
+    double position_m = 0.0;
+    double acted_N = 0.0;  ///< on the motor since the reading before
+  };
+  using Output = EncoderFault;
+
+  static Result<EncoderCheck> make(const Params& params, Seconds dt) {
+    if (auto error = signal::check(params, dt)) return *std::move(error);
+    return EncoderCheck(params, dt);
+  }
+
+  /// One reading, which must be finite. After a jump the reading before stays the measure. Real-time safe.
+  EncoderFault step(const Input& input) noexcept {
+    if (!started_ || input.position_m != position_m_) {
+      const bool jump = started_ && std::fabs(input.position_m - position_m_) > farthest_m_;
+      if (jump) return EncoderFault::jump;
+      started_ = true;
+      position_m_ = input.position_m;
+      least_N_ = most_N_ = input.acted_N;
+      still_s_ = 0.0;
+      return EncoderFault::none;
+    }
+    least_N_ = std::min(least_N_, input.acted_N);
+    most_N_ = std::max(most_N_, input.acted_N);
+    still_s_ = most_N_ - least_N_ >= frozen_force_N_ ? still_s_ + dt_s_ : 0.0;
+    return still_s_ >= frozen_after_s_ ? EncoderFault::frozen : EncoderFault::none;
+  }
+
+  /// The next reading is believed.
+  void reset() noexcept {
+    started_ = false;
+    position_m_ = 0.0;
+    least_N_ = most_N_ = still_s_ = 0.0;
+  }
+
+ private:
+  EncoderCheck(const Params& params, Seconds dt)
+      : farthest_m_(params.fastest_m_per_s * dt.value),
+        frozen_force_N_(params.frozen_force_N),
+        frozen_after_s_(params.frozen_after_s),
+        dt_s_(dt.value) {}
+
+  double farthest_m_;
+  double frozen_force_N_;
+  double frozen_after_s_;
+  double dt_s_;
+  bool started_ = false;
+  double position_m_ = 0.0;
+  double least_N_ = 0.0;
+  double most_N_ = 0.0;
+  double still_s_ = 0.0;  ///< since the force has changed that much
+};
+
+}  // namespace tactus::control

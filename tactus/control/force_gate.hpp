@@ -1,0 +1,99 @@
+#pragma once
+
+#include <tactus/core/element.hpp>
+#include <tactus/core/parameters.hpp>
+#include <tactus/signal/checks.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tactus::control {
+
+/// What made a gate close. A fault is latched; a limit that merely clips is not a fault.
+enum class GateFault { none, not_finite, encoder_jump, encoder_frozen, workspace, velocity, energy };
+constexpr auto enumerators(GateFault) {
+  return std::array{Enumerator{GateFault::none, "none"},
+                    Enumerator{GateFault::not_finite, "not-finite"},
+                    Enumerator{GateFault::encoder_jump, "encoder-jump"},
+                    Enumerator{GateFault::encoder_frozen, "encoder-frozen"},
+                    Enumerator{GateFault::workspace, "workspace"},
+                    Enumerator{GateFault::velocity, "velocity"},
+                    Enumerator{GateFault::energy, "energy"}};
+}
+
+/// What changes the command right now: a different thing from a fault. Where several do, the first in this order.
+enum class ActiveLimit { none, energy, workspace, velocity, force, rate };
+constexpr auto enumerators(ActiveLimit) {
+  return std::array{Enumerator{ActiveLimit::none, "none"},           Enumerator{ActiveLimit::energy, "energy"},
+                    Enumerator{ActiveLimit::workspace, "workspace"}, Enumerator{ActiveLimit::velocity, "velocity"},
+                    Enumerator{ActiveLimit::force, "force"},         Enumerator{ActiveLimit::rate, "rate"}};
+}
+
+/// The very last stage before an actuator: a finite force, within its limit, that changes no faster than its rate
+/// limit.
+///
+/// The order matters: a command that is not finite is caught before any limiter could turn it into a number, latches
+/// the fault, and from then on the output falls to zero at the rate limit and stays there until `reset`. There is no
+/// parameter that switches the gate off: both limits have an upper bound, so a configuration can only tighten it.
+class ForceGate {
+ public:
+  struct Params {
+    double force_limit_N = 10.0;
+    double rate_limit_N_per_s = 1e5;
+    static constexpr auto fields() {
+      return std::tuple{field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
+                              "Largest force either way that reaches the motor."),
+                        field("rate_limit_N_per_s", &Params::rate_limit_N_per_s, units::newton_per_second,
+                              positive_up_to(1e6), "Fastest change of the force that reaches the motor.")};
+    }
+  };
+  using Input = double;
+  using Output = double;
+
+  static Result<ForceGate> make(const Params& params, Seconds dt) {
+    if (auto error = signal::check(params, dt)) return *std::move(error);
+    return ForceGate(params.force_limit_N, params.rate_limit_N_per_s * dt.value);
+  }
+
+  /// The force in N that may reach the motor instead of `command_N`. Always finite. Real-time safe.
+  double step(double command_N) noexcept {
+    if (!std::isfinite(command_N)) fault_ = GateFault::not_finite;
+    const double wanted = fault_ == GateFault::none ? std::clamp(command_N, -force_limit_N_, force_limit_N_) : 0.0;
+    const double allowed = std::clamp(wanted, passed_N_ - largest_step_N_, passed_N_ + largest_step_N_);
+    limit_ = ActiveLimit::none;
+    if (fault_ == GateFault::none) {
+      if (allowed != wanted) limit_ = ActiveLimit::rate;
+      if (wanted != command_N) limit_ = ActiveLimit::force;
+    }
+    return passed_N_ = allowed;
+  }
+
+  /// No fault and no force, as made.
+  void reset() noexcept {
+    passed_N_ = 0.0;
+    rearm();
+  }
+  /// No fault any more; the force goes on from where it is, so re-arming makes no step above the rate limit.
+  void rearm() noexcept {
+    fault_ = GateFault::none;
+    limit_ = ActiveLimit::none;
+  }
+
+  [[nodiscard]] GateFault fault() const noexcept { return fault_; }
+  [[nodiscard]] ActiveLimit limit() const noexcept { return limit_; }
+  /// What passed last.
+  [[nodiscard]] double passed_N() const noexcept { return passed_N_; }
+
+ private:
+  ForceGate(double force_limit_N, double largest_step_N)
+      : force_limit_N_(force_limit_N), largest_step_N_(largest_step_N) {}
+
+  double force_limit_N_;
+  double largest_step_N_;
+  double passed_N_ = 0.0;
+  GateFault fault_ = GateFault::none;
+  ActiveLimit limit_ = ActiveLimit::none;
+};
+
+}  // namespace tactus::control

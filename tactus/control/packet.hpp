@@ -1,0 +1,111 @@
+#pragma once
+
+#include <tactus/control/site.hpp>
+#include <tactus/core/parameters.hpp>
+
+#include <array>
+#include <cstdint>
+
+/// What one site tells the other besides the message of the architecture, and what becomes of it.
+namespace tactus::control {
+
+/// What a site does. In `configure` its motor is free; in `align`, `armed` and `hold` a slave stands where it is and a
+/// master gives no force; in `active` it follows; in `fault` the safety gate has let go.
+enum class SiteState { configure, align, armed, active, hold, fault };
+constexpr auto enumerators(SiteState) {
+  return std::array{Enumerator{SiteState::configure, "configure"}, Enumerator{SiteState::align, "align"},
+                    Enumerator{SiteState::armed, "armed"},         Enumerator{SiteState::active, "active"},
+                    Enumerator{SiteState::hold, "hold"},           Enumerator{SiteState::fault, "fault"}};
+}
+
+/// One message with all that its receiver needs to judge it, without a clock.
+struct Packet {
+  std::int64_t session = 0;   ///< drawn by the sender at its start, never 0
+  std::int64_t sequence = 0;  ///< from 1, one more for each packet of a session
+  double age_s = 0.0;         ///< since it was sent, as well as the receiver knows
+  SiteState state = SiteState::configure;
+  std::int64_t armings = 0;  ///< how often the master was armed; a slave repeats the one that it follows
+  Message message{};
+};
+
+/// What becomes of a packet.
+enum class PacketVerdict { applied, late, stale, left_session, not_finite, implausible };
+constexpr auto enumerators(PacketVerdict) {
+  return std::array{
+      Enumerator{PacketVerdict::applied, "applied"},       Enumerator{PacketVerdict::late, "late"},
+      Enumerator{PacketVerdict::stale, "stale"},           Enumerator{PacketVerdict::left_session, "left-session"},
+      Enumerator{PacketVerdict::not_finite, "not-finite"}, Enumerator{PacketVerdict::implausible, "implausible"}};
+}
+
+/// Decides which packets count: of a session the newest wins, a late or repeated one changes nothing, one that is too
+/// old is not applied at all, and a session that was left is never taken up again. A message with a number that is
+/// none, or one that no site could mean, is refused.
+class PacketJudge {
+ public:
+  struct Params {
+    double longest_age_s = 0.2;
+    double position_limit_m = 10.0;
+    double force_limit_N = 1000.0;
+    static constexpr auto fields() {
+      return std::tuple{field("longest_age_s", &Params::longest_age_s, units::second, positive_up_to(10.0),
+                              "Age beyond which a message is not applied, however new."),
+                        field("position_limit_m", &Params::position_limit_m, units::metre, positive_up_to(1000.0),
+                              "A told position beyond it is refused."),
+                        field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(1e5),
+                              "A told force beyond it is refused.")};
+    }
+  };
+  using Input = Packet;
+  using Output = PacketVerdict;
+
+  /// Velocities, waves and energies beyond this are refused, in their units.
+  static constexpr double largest_other = 1e6;
+
+  static Result<PacketJudge> make(const Params& params, Seconds dt) {
+    if (auto error = signal::check(params, dt)) return *std::move(error);
+    return PacketJudge(params);
+  }
+
+  /// Judges one packet; what it says counts only where this is `applied`. Real-time safe.
+  PacketVerdict step(const Packet& packet) noexcept {
+    if (was_left(packet.session)) return PacketVerdict::left_session;
+    if (packet.session == session_ && packet.sequence <= sequence_) return PacketVerdict::late;
+    if (!(packet.age_s <= params_.longest_age_s)) return PacketVerdict::stale;
+    if (!is_finite(packet.message)) return PacketVerdict::not_finite;
+    if (!is_plausible(packet.message)) return PacketVerdict::implausible;
+    if (packet.session != session_) {
+      left_[next_left_] = session_;
+      next_left_ = (next_left_ + 1) % left_.size();
+      session_ = packet.session;
+    }
+    sequence_ = packet.sequence;
+    return PacketVerdict::applied;
+  }
+  /// As made: no session.
+  void reset() noexcept { *this = PacketJudge(params_); }
+
+ private:
+  explicit PacketJudge(const Params& params) : params_(params) {}
+
+  [[nodiscard]] bool was_left(std::int64_t session) const noexcept {
+    if (session == 0) return true;
+    for (const std::int64_t left : left_) {
+      if (session == left) return true;
+    }
+    return false;
+  }
+  [[nodiscard]] bool is_plausible(const Message& message) const noexcept {
+    return std::fabs(message.position_m) <= params_.position_limit_m &&
+           std::fabs(message.force_N) <= params_.force_limit_N &&
+           std::fabs(message.velocity_m_per_s) <= largest_other && std::fabs(message.wave) <= largest_other &&
+           std::fabs(message.energy_J) <= largest_other;
+  }
+
+  Params params_;
+  std::int64_t session_ = 0;
+  std::int64_t sequence_ = 0;
+  std::array<std::int64_t, 16> left_{};  ///< the last sessions that were left; 0 is none
+  std::size_t next_left_ = 0;
+};
+
+}  // namespace tactus::control

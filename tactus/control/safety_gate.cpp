@@ -1,0 +1,83 @@
+#include <tactus/control/safety_gate.hpp>
+
+#include <algorithm>
+
+namespace tactus::control {
+
+namespace {
+
+/// What of a force that pushes on may pass, `value` being how far it went: all up to the limit, none at the fault.
+double share_beyond(double value, double limit) {
+  return std::clamp((SafetyGate::fault_factor - value / limit) / (SafetyGate::fault_factor - 1.0), 0.0, 1.0);
+}
+
+}  // namespace
+
+double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks) noexcept {
+  if (!std::isfinite(position_m)) {
+    latch(GateFault::not_finite);
+    velocity_m_per_s_ = 0.0;
+    return believed_m_;
+  }
+  if (elapsed_ticks != 1) {
+    encoder_.reset();
+    derivative_.reset();
+    energy_.skip();
+  }
+  const double acted_N = force_.passed_N();
+  const EncoderFault wrong = encoder_.step({.position_m = position_m, .acted_N = acted_N});
+  if (wrong == EncoderFault::frozen) latch(GateFault::encoder_frozen);
+  if (wrong == EncoderFault::jump) {
+    latch(GateFault::encoder_jump);
+    velocity_m_per_s_ = 0.0;
+    return believed_m_;
+  }
+  believed_m_ = position_m;
+  velocity_m_per_s_ = derivative_.step(position_m);
+  damping_N_s_per_m_ = energy_.step({.acted_N = acted_N, .position_m = position_m});
+  if (std::fabs(position_m) >= fault_factor * position_limit_m_) latch(GateFault::workspace);
+  if (std::fabs(velocity_m_per_s_) >= fault_factor * velocity_limit_m_per_s_) latch(GateFault::velocity);
+  if (energy_.held()) latch(GateFault::energy);
+  return believed_m_;
+}
+
+double SafetyGate::pass(double command_N) noexcept {
+  const bool finite = std::isfinite(command_N);
+  if (!finite) latch(GateFault::not_finite);
+  limit_ = ActiveLimit::none;
+  double wanted_N = fault() == GateFault::none ? command_N : 0.0;
+  const bool damps = damping_N_s_per_m_ > 0.0 && (fault() == GateFault::none || fault() == GateFault::energy);
+  if (fault() == GateFault::none) {
+    const double position_share = share_beyond(std::fabs(believed_m_), position_limit_m_);
+    const double velocity_share = share_beyond(std::fabs(velocity_m_per_s_), velocity_limit_m_per_s_);
+    if (velocity_share < 1.0 && wanted_N * velocity_m_per_s_ > 0.0) {
+      wanted_N *= velocity_share;
+      limit_ = ActiveLimit::velocity;
+    }
+    if (position_share < 1.0 && wanted_N * believed_m_ > 0.0) {
+      wanted_N *= position_share;
+      limit_ = ActiveLimit::workspace;
+    }
+  }
+  if (damps) {
+    wanted_N -= damping_N_s_per_m_ * velocity_m_per_s_;
+    limit_ = ActiveLimit::energy;
+  }
+  const double passed_N = force_.step(wanted_N);
+  if (limit_ == ActiveLimit::none) limit_ = force_.limit();
+  return passed_N;
+}
+
+void SafetyGate::rearm() noexcept {
+  force_.rearm();
+  encoder_.reset();
+  energy_.reset();
+  derivative_.reset();
+  believed_m_ = 0.0;
+  velocity_m_per_s_ = 0.0;
+  damping_N_s_per_m_ = 0.0;
+  fault_ = GateFault::none;
+  limit_ = ActiveLimit::none;
+}
+
+}  // namespace tactus::control

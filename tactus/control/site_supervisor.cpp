@@ -1,0 +1,80 @@
+#include <tactus/control/site_supervisor.hpp>
+
+namespace tactus::control {
+
+SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
+  if (input.energy) return SiteCause::energy;
+  if (input.force_sensor) return SiteCause::force_sensor;
+  if (input.stalled) return SiteCause::stalled;
+  if (input.silent) return SiteCause::silent;
+  const bool stands = input.peer != SiteState::armed && input.peer != SiteState::active;
+  return stands && input.peer_armings == armings_ ? SiteCause::peer : SiteCause::none;
+}
+
+void SiteSupervisor::go(SiteState state, SiteCause cause, const Input& input) noexcept {
+  state_ = state;
+  cause_ = cause;
+  over_ = input.peer_armings;
+  pressed_ = false;
+}
+
+void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
+  const bool master = role_ == SiteRole::master;
+  // An energy latch is no obstacle: arming empties the account.
+  const bool may = input.heard && !input.silent && !input.stalled;
+  if (!may || !(master ? asked : input.peer_armings != over_ && input.peer == SiteState::armed)) return;
+  armings_ = master ? armings_ + 1 : input.peer_armings;
+  state_ = SiteState::armed;
+  pressed_ = false;
+}
+
+void SiteSupervisor::become_active_where_ready(const Input& input) noexcept {
+  const bool same = input.peer_armings == armings_;
+  const bool master = role_ == SiteRole::master;
+  if (master) {
+    pressed_ = input.requests.dead_man && (pressed_ || !before_.dead_man);
+    if (!pressed_ || !same || (input.peer != SiteState::armed && input.peer != SiteState::active)) return;
+  } else if (!same || input.peer != SiteState::active) {
+    return;
+  }
+  state_ = SiteState::active;
+  cause_ = SiteCause::none;
+}
+
+SiteState SiteSupervisor::step(const Input& input) noexcept {
+  const bool align = input.requests.align && !before_.align;
+  const bool arm = input.requests.arm && !before_.arm;
+  const bool clear = input.requests.clear && !before_.clear;
+  const bool other_session = input.heard && input.session != session_;
+  if (other_session) {
+    session_ = input.session;
+    over_ = input.peer_armings;
+    // A master that starts anew counts anew.
+    if (role_ == SiteRole::slave) armings_ = 0;
+  }
+  if (input.fault && state_ != SiteState::fault) {
+    go(SiteState::fault, SiteCause::gate, input);
+  } else if (state_ == SiteState::configure) {
+    if (align) state_ = SiteState::align;
+  } else if (state_ == SiteState::align || state_ == SiteState::hold) {
+    arm_where_asked(input, arm);
+  } else if (state_ == SiteState::fault) {
+    // The gate is re-armed on the way out; a cause that is still there closes it again.
+    if (clear) go(SiteState::align, cause_, input);
+  } else if (const SiteCause cause = other_session ? SiteCause::other_session : reason_to_hold(input);
+             cause != SiteCause::none) {
+    go(SiteState::hold, cause, input);
+  } else if (state_ == SiteState::armed) {
+    // Armed anew, for a slave that was not ready the first time.
+    arm_where_asked(input, arm);
+    become_active_where_ready(input);
+  } else if (role_ == SiteRole::master ? !input.requests.dead_man : input.peer == SiteState::armed) {
+    state_ = SiteState::armed;
+    cause_ = SiteCause::dead_man;
+    pressed_ = false;
+  }
+  before_ = input.requests;
+  return state_;
+}
+
+}  // namespace tactus::control

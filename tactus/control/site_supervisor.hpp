@@ -1,0 +1,102 @@
+#pragma once
+
+#include <tactus/control/packet.hpp>
+#include <tactus/core/element.hpp>
+#include <tactus/core/parameters.hpp>
+
+#include <array>
+#include <cstdint>
+
+namespace tactus::control {
+
+/// Why a site does not follow: a different thing from its state, and from the limit that clips a force right now.
+enum class SiteCause { none, started, dead_man, silent, stalled, other_session, peer, force_sensor, energy, gate };
+constexpr auto enumerators(SiteCause) {
+  return std::array{Enumerator{SiteCause::none, "none"},         Enumerator{SiteCause::started, "started"},
+                    Enumerator{SiteCause::dead_man, "dead-man"}, Enumerator{SiteCause::silent, "silent"},
+                    Enumerator{SiteCause::stalled, "stalled"},   Enumerator{SiteCause::other_session, "other-session"},
+                    Enumerator{SiteCause::peer, "peer"},         Enumerator{SiteCause::force_sensor, "force-sensor"},
+                    Enumerator{SiteCause::energy, "energy"},     Enumerator{SiteCause::gate, "gate"}};
+}
+
+enum class SiteRole { master, slave };
+constexpr auto enumerators(SiteRole) {
+  return std::array{Enumerator{SiteRole::master, "master"}, Enumerator{SiteRole::slave, "slave"}};
+}
+
+/// What a person asks of a site. `align`, `arm` and `clear` are heard when they rise, so a button that is stuck arms
+/// nothing. The dead-man switch must be pressed after arming and as long as the site shall follow.
+struct SiteRequests {
+  bool align = false;     ///< leave `configure`
+  bool arm = false;       ///< leave `align` or `hold`; at the master, for both sites
+  bool clear = false;     ///< leave `fault`, to `align`
+  bool dead_man = false;  ///< pressed; at the master
+  bool clutch = false;    ///< pressed: the hand moves and the slave does not; at the master
+};
+
+/// The state of one site, and why.
+///
+///     configure –align→ align –arm→ armed –dead-man, and the other site armed→ active
+///     active –dead-man let go→ armed      armed, active –silence, stall, other site, sensor, energy→ hold –arm→ armed
+///     any –safety gate→ fault –clear→ align
+///
+/// Arming is a number that the master counts up and every packet carries. The slave is armed when it sees the number
+/// rise, repeats it, and the master becomes active only once the slave does. Either site falls into hold when the other
+/// holds under the same number, or was restarted; so one that was cut off alone does not come back with an arming that
+/// is over, and nothing but a new one leads out.
+class SiteSupervisor {
+ public:
+  struct Params {
+    SiteRole role = SiteRole::master;
+    static constexpr auto fields() {
+      return std::tuple{field("role", &Params::role, "Which of the two sites this is.")};
+    }
+  };
+  struct Input {
+    SiteRequests requests{};
+    bool heard = false;        ///< the other site, ever
+    std::int64_t session = 0;  ///< of the other site
+    SiteState peer = SiteState::configure;
+    std::int64_t peer_armings = 0;
+    bool silent = false;        ///< the watchdog barks
+    bool stalled = false;       ///< this site was not stepped for too long
+    bool force_sensor = false;  ///< the force sensor cannot be right
+    bool energy = false;        ///< the passivity monitor has latched
+    bool fault = false;         ///< the safety gate has, for any other reason
+  };
+  using Output = SiteState;
+
+  static Result<SiteSupervisor> make(const Params& params, Seconds dt) {
+    if (auto error = signal::check(params, dt)) return *std::move(error);
+    return SiteSupervisor(params.role);
+  }
+
+  /// One tick. Real-time safe.
+  SiteState step(const Input& input) noexcept;
+  /// As made: in `configure`.
+  void reset() noexcept { *this = SiteSupervisor(role_); }
+
+  [[nodiscard]] SiteState state() const noexcept { return state_; }
+  [[nodiscard]] SiteCause cause() const noexcept { return cause_; }
+  /// What every packet carries.
+  [[nodiscard]] std::int64_t armings() const noexcept { return armings_; }
+
+ private:
+  explicit SiteSupervisor(SiteRole role) : role_(role) {}
+
+  [[nodiscard]] SiteCause reason_to_hold(const Input& input) const noexcept;
+  void go(SiteState state, SiteCause cause, const Input& input) noexcept;
+  void arm_where_asked(const Input& input, bool asked) noexcept;
+  void become_active_where_ready(const Input& input) noexcept;
+
+  SiteRole role_;
+  SiteState state_ = SiteState::configure;
+  SiteCause cause_ = SiteCause::started;
+  SiteRequests before_{true, true, true, true, true};  ///< what is pressed at the start is not heard
+  std::int64_t session_ = 0;
+  std::int64_t armings_ = 0;
+  std::int64_t over_ = 0;  ///< the peer's arming that a slave no longer follows
+  bool pressed_ = false;   ///< the dead-man switch, since arming
+};
+
+}  // namespace tactus::control

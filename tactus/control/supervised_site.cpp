@@ -1,0 +1,83 @@
+#include <tactus/control/supervised_site.hpp>
+
+#include <cmath>
+
+namespace tactus::control {
+
+namespace {
+
+template <class Site>
+void fill(SiteRecord& record, const Site& site) noexcept {
+  record.limit = static_cast<std::int64_t>(site.limit());
+  record.fault = static_cast<std::int64_t>(site.fault());
+  record.given_J = site.gate().given_J();
+}
+
+}  // namespace
+
+SupervisedMaster::Output SupervisedMaster::step(const Input& input) noexcept {
+  const SiteState state =
+      supervision_.decide({.requests = input.requests, .elapsed_ticks = input.elapsed_ticks, .fault = site_.fault()});
+  if (supervision_.rearms()) site_.rearm();
+  const bool follows = state == SiteState::active && !input.requests.clutch;
+
+  MasterInput sensors = input.sensors;
+  sensors.arrival = supervision_.arrival(offset_m_);
+  Output output{.site = site_.step(sensors, supervision_.blend(follows), input.elapsed_ticks),
+                .packet = {},
+                .record = supervision_.record()};
+  const double position_m = output.site.message.position_m;
+  if (follows || state == SiteState::configure) {
+    told_m_ = position_m + offset_m_;
+  } else {
+    offset_m_ = told_m_ - position_m;
+  }
+  Message message = output.site.message;
+  message.position_m = told_m_;
+  output.packet = supervision_.packet(message);
+  fill(output.record, site_);
+  output.record.offset_m = offset_m_;
+  return output;
+}
+
+SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
+  const bool finite = std::isfinite(input.sensors.tip_force_N);
+  const bool implausible =
+      finite && force_sensor_.step({.acted_N = site_.gate().passed_N(), .tip_force_N = input.sensors.tip_force_N});
+  const SiteState state = supervision_.decide({.requests = input.requests,
+                                               .elapsed_ticks = input.elapsed_ticks,
+                                               .fault = site_.fault(),
+                                               .force_sensor = implausible});
+  if (supervision_.rearms()) {
+    site_.rearm();
+    force_sensor_.reset();
+    if (state == SiteState::align) supervision_.stand(input.sensors.motor_position_m);
+  }
+  SlaveInput sensors = input.sensors;
+  sensors.arrival = supervision_.arrival(0.0);
+  const double share = supervision_.blend(state != SiteState::configure && state != SiteState::fault);
+  Output output{.site = site_.step(sensors, share, input.elapsed_ticks), .packet = {}, .record = supervision_.record()};
+  output.packet = supervision_.packet(output.site.message);
+  fill(output.record, site_);
+  return output;
+}
+
+Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt) {
+  auto sites = make_sites(params, dt);
+  if (!sites) return sites.error();
+  const auto supervision = Supervision::make(params.supervision, SiteRole::master, session, dt);
+  if (!supervision) return under("supervision", supervision.error());
+  return SupervisedMaster(std::move(sites->master), *supervision);
+}
+
+Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt) {
+  auto sites = make_sites(params, dt);
+  if (!sites) return sites.error();
+  const auto supervision = Supervision::make(params.supervision, SiteRole::slave, session, dt);
+  if (!supervision) return under("supervision", supervision.error());
+  const auto force_sensor = ForceSensorCheck::make(params.supervision.force_sensor, dt);
+  if (!force_sensor) return under("supervision.force_sensor", force_sensor.error());
+  return SupervisedSlave(std::move(sites->slave), *supervision, *force_sensor);
+}
+
+}  // namespace tactus::control

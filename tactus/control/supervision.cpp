@@ -1,0 +1,98 @@
+#include <tactus/control/supervision.hpp>
+
+#include <algorithm>
+
+namespace tactus::control {
+
+Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole role, std::int64_t session,
+                                      Seconds dt) {
+  if (auto error = signal::check(params, dt)) return *std::move(error);
+  if (session == 0) {
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = "session",
+                 .message = "0 stands for no session: draw another number",
+                 .place = {}};
+  }
+  const auto judge = PacketJudge::make(params.packets, dt);
+  if (!judge) return under("packets", judge.error());
+  const auto follower = MessageFollower::make(params.silence, dt);
+  if (!follower) return under("silence", follower.error());
+  const auto watchdog = Watchdog::make(params.watchdog, dt);
+  if (!watchdog) return under("watchdog", watchdog.error());
+  const auto supervisor = SiteSupervisor::make({.role = role}, dt);
+  if (!supervisor) return supervisor.error();
+  return Supervision(*judge, *follower, *watchdog, *supervisor, params, session, dt);
+}
+
+PacketVerdict Supervision::take(const Packet& packet) noexcept {
+  const PacketVerdict verdict = judge_.step(packet);
+  if (verdict == PacketVerdict::applied) {
+    newest_ = packet;
+    arrived_ = true;
+  } else {
+    ++refused_;
+  }
+  return verdict;
+}
+
+SiteState Supervision::decide(const Sight& sight) noexcept {
+  before_ = supervisor_.state();
+  elapsed_ticks_ = std::max<std::int64_t>(sight.elapsed_ticks, 1);
+  fresh_ = arrived_;
+  arrived_ = false;
+  const bool guards = before_ == SiteState::armed || before_ == SiteState::active;
+  // Where a site does not follow, its state is the latch.
+  if (!guards && fresh_) watchdog_.reset();
+  const bool silent = watchdog_.step({.heard = fresh_, .elapsed_ticks = elapsed_ticks_});
+  return supervisor_.step({.requests = sight.requests,
+                           .heard = newest_.session != 0,
+                           .session = newest_.session,
+                           .peer = newest_.state,
+                           .peer_armings = newest_.armings,
+                           .silent = silent,
+                           .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
+                           .force_sensor = sight.force_sensor,
+                           .energy = sight.fault == GateFault::energy,
+                           .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
+}
+
+bool Supervision::rearms() const noexcept {
+  const bool entered = state() != before_;
+  const bool from_rest = before_ == SiteState::align || before_ == SiteState::hold;
+  return entered && (state() == SiteState::align || (state() == SiteState::armed && from_rest));
+}
+
+Arrival Supervision::arrival(double offset_m) noexcept {
+  Arrival told{.message = newest_.message, .fresh = fresh_};
+  told.message.position_m -= offset_m;
+  return follower_.step({.arrival = told, .following = state() == SiteState::active, .elapsed_ticks = elapsed_ticks_});
+}
+
+double Supervision::blend(bool in) noexcept {
+  const double target = in ? 1.0 : 0.0;
+  return share_ = std::clamp(target, share_ - blend_step_, share_ + blend_step_);
+}
+
+Packet Supervision::packet(const Message& message) noexcept {
+  return {.session = session_,
+          .sequence = ++sequence_,
+          .age_s = 0.0,
+          .state = state(),
+          .armings = supervisor_.armings(),
+          .message = message};
+}
+
+SiteRecord Supervision::record() const noexcept {
+  return {.state = static_cast<std::int64_t>(state()),
+          .cause = static_cast<std::int64_t>(supervisor_.cause()),
+          .armings = supervisor_.armings(),
+          .applied_session = newest_.session,
+          .applied_sequence = newest_.sequence,
+          .refused = refused_,
+          .fresh = fresh_,
+          .silence_s = watchdog_.silence_s(),
+          .share = share_,
+          .gap_m = follower_.gap_m()};
+}
+
+}  // namespace tactus::control

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <tactus/control/force_sensor_check.hpp>
+#include <tactus/control/message_follower.hpp>
+#include <tactus/control/packet.hpp>
+#include <tactus/control/site_supervisor.hpp>
+#include <tactus/control/watchdog.hpp>
+#include <tactus/core/signals.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus::control {
+
+/// The group `[control.supervision]`: what a site makes of the other one and of its own state.
+struct SupervisionParams {
+  PacketJudge::Params packets;
+  MessageFollower::Params silence;
+  Watchdog::Params watchdog;
+  ForceSensorCheck::Params force_sensor;
+  double longest_stall_s = 0.02;
+  double blend_s = 0.1;
+  static constexpr auto fields() {
+    return std::tuple{
+        field("packets", &SupervisionParams::packets, "Which packets of the other site count."),
+        field("silence", &SupervisionParams::silence, "What stands in their place when none come."),
+        field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
+        field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
+        field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
+              "Time without a step after which the site holds."),
+        field("blend_s", &SupervisionParams::blend_s, units::second, positive_up_to(10.0),
+              "How long a force takes to come in when a site becomes active, and to go.")};
+  }
+};
+
+/// What supervision shows of a tick. State, cause, limit and fault are four different things: what the site does, why
+/// it does not follow, what changes the force right now, and what made the gate let go.
+struct SiteRecord {
+  std::int64_t state = 0;
+  std::int64_t cause = 0;
+  std::int64_t limit = 0;
+  std::int64_t fault = 0;
+  std::int64_t armings = 0;
+  std::int64_t applied_session = 0;
+  std::int64_t applied_sequence = 0;
+  std::int64_t refused = 0;
+  bool fresh = false;
+  double silence_s = 0.0;
+  double share = 0.0;
+  double offset_m = 0.0;
+  double gap_m = 0.0;
+  double given_J = 0.0;
+  static constexpr auto signals() {
+    return std::tuple{
+        observed("state", &SiteRecord::state, units::none, "", "", "",
+                 "0 configure, 1 align, 2 armed, 3 active, 4 hold, 5 fault."),
+        observed("cause", &SiteRecord::cause, units::none, "", "", "",
+                 "Why the site does not follow: 0 none, 1 started, 2 dead-man, 3 silent, 4 stalled, 5 other-session, "
+                 "6 peer, 7 force-sensor, 8 energy, 9 gate."),
+        observed("limit", &SiteRecord::limit, units::none, "", "", "",
+                 "What changes the force right now: 0 none, 1 energy, 2 workspace, 3 velocity, 4 force, 5 rate."),
+        observed("fault", &SiteRecord::fault, units::none, "", "", "",
+                 "What the gate latched: 0 none, 1 not-finite, 2 encoder-jump, 3 encoder-frozen, 4 workspace, "
+                 "5 velocity, 6 energy."),
+        observed("armings", &SiteRecord::armings, units::none, "", "", "", "The arming that is followed."),
+        observed("applied_session", &SiteRecord::applied_session, units::none, "", "", "",
+                 "Session of the packet that was applied last."),
+        observed("applied_sequence", &SiteRecord::applied_sequence, units::none, "", "", "", "Its sequence."),
+        observed("refused", &SiteRecord::refused, units::none, "", "", "", "Packets so far that were not applied."),
+        observed("fresh", &SiteRecord::fresh, units::none, "", "", "", "A packet was applied at this tick."),
+        observed("silence_s", &SiteRecord::silence_s, units::second, "", "", "", "Since a packet was applied."),
+        observed("share", &SiteRecord::share, units::none, "", "", "", "Of the controller's force that is let in."),
+        observed("offset_m", &SiteRecord::offset_m, units::metre, "", "slave", "toward the environment",
+                 "Workspace offset: the told position less the controller's."),
+        observed("gap_m", &SiteRecord::gap_m, units::metre, "", "", "toward the environment",
+                 "What is still to be caught up of the other's position."),
+        observed("given_J", &SiteRecord::given_J, units::joule, "", "", "the motor gave it",
+                 "Account of the passivity monitor.")};
+  }
+};
+
+/// One site's half of the link, its watchdog and its state: what both sites have in common.
+class Supervision {
+ public:
+  static Result<Supervision> make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt);
+
+  /// What the site itself saw, for `decide`.
+  struct Sight {
+    SiteRequests requests{};
+    std::int64_t elapsed_ticks = 1;
+    GateFault fault = GateFault::none;
+    bool force_sensor = false;
+  };
+
+  /// A packet that has come; any number of them before `decide`. Real-time safe.
+  PacketVerdict take(const Packet& packet) noexcept;
+  /// The state for this tick. Real-time safe.
+  SiteState decide(const Sight& sight) noexcept;
+  /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
+  Arrival arrival(double offset_m) noexcept;
+  /// The share of the controller's force, on its way to 1 or 0. Once, after `decide`.
+  double blend(bool in) noexcept;
+  /// The packet that says `message`. Once a tick.
+  Packet packet(const Message& message) noexcept;
+  /// A slave's command is `position_m` until it follows.
+  void stand(double position_m) noexcept { follower_.settle(position_m); }
+
+  [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
+  [[nodiscard]] SiteState before() const noexcept { return before_; }
+  /// Whether the site leaves what its gate or its controller latched, at this tick.
+  [[nodiscard]] bool rearms() const noexcept;
+  /// Everything that supervision itself knows; the rest is the site's to fill in.
+  [[nodiscard]] SiteRecord record() const noexcept;
+
+ private:
+  Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
+              const SiteSupervisor& supervisor, const SupervisionParams& params, std::int64_t session, Seconds dt)
+      : judge_(judge),
+        follower_(follower),
+        watchdog_(watchdog),
+        supervisor_(supervisor),
+        dt_s_(dt.value),
+        longest_stall_s_(params.longest_stall_s),
+        blend_step_(dt.value / params.blend_s),
+        session_(session) {}
+
+  PacketJudge judge_;
+  MessageFollower follower_;
+  Watchdog watchdog_;
+  SiteSupervisor supervisor_;
+  double dt_s_;
+  double longest_stall_s_;
+  double blend_step_;
+  std::int64_t session_;
+  std::int64_t sequence_ = 0;
+  Packet newest_;
+  bool arrived_ = false;
+  bool fresh_ = false;
+  std::int64_t elapsed_ticks_ = 1;
+  std::int64_t refused_ = 0;
+  double share_ = 0.0;
+  SiteState before_ = SiteState::configure;
+};
+
+}  // namespace tactus::control

@@ -1,0 +1,83 @@
+#include <tactus/core/parameters.hpp>
+#include <tactus/live/contact_judge.hpp>
+#include <tactus/simulation/contact_metrics.hpp>
+#include <tactus/simulation/tapping.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus::live {
+
+namespace {
+
+constexpr double apart_s = 0.25;
+constexpr double calm_again_s = 0.5;
+constexpr double verdict_stays_s = 1.5;
+constexpr double too_gentle_N = 0.01;
+
+}  // namespace
+
+Result<ContactJudge> ContactJudge::make(Seconds dt) {
+  const auto high_pass = signal::SecondOrderFilter::make(
+      {.kind = signal::FilterKind::high_pass, .frequency_Hz = simulation::transient_cutoff_Hz}, dt);
+  if (!high_pass) return high_pass.error();
+  return ContactJudge(*high_pass, dt);
+}
+
+void ContactJudge::reset() {
+  high_pass_.reset();
+  *this = ContactJudge(high_pass_, Seconds{dt_s_});
+}
+
+bool ContactJudge::after(std::int64_t tick, double duration_s) const {
+  return static_cast<double>(tick_ - tick) * dt_s_ >= duration_s;
+}
+
+void ContactJudge::step(double contact_force_N, bool touched) {
+  level_N_ = std::fabs(high_pass_.step(contact_force_N));
+  in_contact_ = contact_force_N > 0.0;
+  has_begun_ = touched && (touched_last_ < 0 || after(touched_last_, apart_s));
+  if (touched || in_contact_) touched_last_ = tick_;
+  if (has_begun_) {
+    onset_ = tick_;
+    loud_until_ = tick_;
+    peak_N_ = 0.0;
+    verdict_ = LiveVerdict::contact;
+  }
+  if (verdict_ != LiveVerdict::free) {
+    peak_N_ = std::max(peak_N_, level_N_);
+    const bool loud = level_N_ > std::max(simulation::settled_share * peak_N_, too_gentle_N);
+    if (loud && verdict_ == LiveVerdict::settled && in_contact_) {
+      onset_ = tick_;
+      verdict_ = LiveVerdict::contact;
+    }
+    if (loud) loud_until_ = tick_ + 1;
+    const bool quiet = after(loud_until_, simulation::quiet_time_s);
+    if (verdict_ == LiveVerdict::contact && quiet) {
+      verdict_ = LiveVerdict::settled;
+    } else if (verdict_ == LiveVerdict::contact &&
+               after(onset_, simulation::settled_within_s + simulation::quiet_time_s)) {
+      verdict_ = LiveVerdict::rings;
+    } else if (verdict_ == LiveVerdict::rings && in_contact_ && after(loud_until_, calm_again_s)) {
+      verdict_ = LiveVerdict::settled;
+    }
+    if (after(touched_last_, verdict_stays_s)) verdict_ = LiveVerdict::free;
+  }
+  ++tick_;
+}
+
+std::string ContactJudge::cause() const {
+  const std::string time_ms = format_number(std::round(1e3 * settling_time_s()));
+  switch (verdict_) {
+    case LiveVerdict::settled:
+      return "The contact force above 15 Hz fell below a tenth of its peak " + time_ms + " ms after the touch.";
+    case LiveVerdict::rings:
+      return "The contact force above 15 Hz was still above a tenth of its peak " + time_ms + " ms after the touch.";
+    case LiveVerdict::contact:
+    case LiveVerdict::free:
+      break;
+  }
+  return {};
+}
+
+}  // namespace tactus::live

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/core/units.hpp>
+#include <tactus/signal/second_order_filter.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace tactus::live {
+
+/// What a loop is doing at its wall.
+enum class LiveVerdict { free, contact, settled, rings };
+
+/// Judges contacts while they happen, by the measure of the tapping experiment (`simulation::judge_contact`): the
+/// contact force above 15 Hz, from the first touch on, must fall below a tenth of its peak and stay there.
+///
+/// A touch after 0.25 s without one begins a contact. `settled` once the force has been that small for 50 ms and fell
+/// there within 100 ms of the touch, the limit of the experiment; `rings` where it did not. What rings and has been
+/// calm for half a second is settled again; what is settled and becomes loud again is judged anew from there. A contact
+/// too gentle to feel, below 10 mN, counts as calm. The verdict stays for 1.5 s after the contact has ended.
+class ContactJudge {
+ public:
+  static Result<ContactJudge> make(Seconds dt);
+
+  /// One tick: the mean contact force in N, and whether the tip met the wall in it.
+  void step(double contact_force_N, bool touched);
+  void reset();
+
+  [[nodiscard]] LiveVerdict verdict() const { return verdict_; }
+  [[nodiscard]] bool in_contact() const { return in_contact_; }
+  /// True in the tick of a first touch.
+  [[nodiscard]] bool has_begun() const { return has_begun_; }
+  /// From the touch, or from what began anew, to the last time that the force was loud.
+  [[nodiscard]] double settling_time_s() const { return static_cast<double>(loud_until_ - onset_) * dt_s_; }
+  /// Why, in one sentence; empty while there is nothing to say.
+  [[nodiscard]] std::string cause() const;
+
+ private:
+  ContactJudge(const signal::SecondOrderFilter& high_pass, Seconds dt) : high_pass_(high_pass), dt_s_(dt.value) {}
+  [[nodiscard]] bool after(std::int64_t tick, double duration_s) const;
+
+  signal::SecondOrderFilter high_pass_;
+  double dt_s_;
+  std::int64_t tick_ = 0;
+  std::int64_t onset_ = 0;
+  std::int64_t loud_until_ = 0;  ///< the tick after the last loud one
+  std::int64_t touched_last_ = -1;
+  double peak_N_ = 0.0;
+  double level_N_ = 0.0;
+  bool in_contact_ = false;
+  bool has_begun_ = false;
+  LiveVerdict verdict_ = LiveVerdict::free;
+};
+
+}  // namespace tactus::live

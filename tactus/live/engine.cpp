@@ -1,0 +1,137 @@
+#include <tactus/live/engine.hpp>
+
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace tactus::live {
+
+Result<std::unique_ptr<Engine>> Engine::make(Setup setup) {
+  const double tick_s = setup.teleoperators[0].tick_s();
+  auto hand = Hand::make(Seconds{tick_s});
+  if (!hand) return hand.error();
+  return std::unique_ptr<Engine>(new Engine(std::move(setup), *hand));
+}
+
+Engine::Engine(Setup setup, const Hand& hand)
+    : setup_(std::move(setup)), tick_s_(setup_.teleoperators[0].tick_s()), hand_(hand) {}
+
+Engine::~Engine() {
+  Order order;
+  while (orders_.try_pop(order)) delete order.change;
+  destroy_returned();
+}
+
+void Engine::log_to(telemetry::Recorder& recorder) {
+  for (std::size_t i = 0; i < loops; ++i) {
+    log_[i] =
+        &recorder.add<Record>(std::string("/") + loop_names[i] + "/teleoperator", "tactus_msgs/msg/TeleoperatorRecord");
+  }
+}
+
+bool Engine::aim(double target_m) noexcept { return orders_.try_push({.target_m = target_m}); }
+
+bool Engine::change(std::unique_ptr<Change> change) {
+  destroy_returned();
+  if (!orders_.try_push({.change = change.get()})) return false;
+  static_cast<void>(change.release());
+  return true;
+}
+
+void Engine::destroy_returned() {
+  Change* change = nullptr;
+  while (returned_.try_pop(change)) delete change;
+}
+
+void Engine::take_orders() noexcept {
+  Order order;
+  while (orders_.try_pop(order)) {
+    if (order.change == nullptr) {
+      hand_.aim(order.target_m);
+      continue;
+    }
+    apply(*order.change);
+    // There are never more changes under way than there is room for: each was an order first.
+    returned_.try_push(order.change);
+  }
+}
+
+void Engine::apply(Change& change) noexcept {
+  for (std::size_t i = 0; i < loops; ++i) {
+    Change::Loop& loop = change.loop[i];
+    if (loop.made && loop.parts) {
+      setup_.teleoperators[i].exchange(*loop.made, *loop.parts);
+    } else if (loop.made) {
+      std::swap(setup_.teleoperators[i], *loop.made);
+      stopped_[i] = false;
+      ++starts_[i];
+    }
+    setup_.runs[i] = change.runs[i].value_or(setup_.runs[i]);
+  }
+  if (change.reset_hand) hand_.reset();
+  if (change.tap) hand_.begin(*change.tap);
+}
+
+void Engine::step() noexcept {
+  take_orders();
+  const double time_s = static_cast<double>(ticks_done_) * tick_s_;
+  const auto time_ns = static_cast<std::uint64_t>(std::llround(1e9 * time_s));
+  const double target_m = hand_.target_m();
+  const auto [path_m, path_at_next_tick_m] = hand_.step();
+  ++ticks_done_;
+  for (std::size_t i = 0; i < loops; ++i) {
+    if (!setup_.runs[i]) continue;
+    Record& record = records_[i];
+    if (!stopped_[i]) {
+      record = setup_.teleoperators[i].step(path_m, path_at_next_tick_m);
+      // Written so that a NaN counts as outside.
+      const bool inside = std::fabs(record.master_position_m) < setup_.reach_m[i] &&
+                          std::fabs(record.tip_position_m) < setup_.reach_m[i];
+      stopped_[i] = !inside || !setup_.teleoperators[i].healthy();
+      // A loop that started over counts from zero; the log and the view do not.
+      if (record.touched) record.touched_at_s += time_s - record.time_s;
+    }
+    record.time_s = time_s;
+    if (log_[i] != nullptr) log_[i]->push(time_ns, record);
+    ticks_[i].try_push({.time_ns = time_ns,
+                        .record = record,
+                        .hand_position_m = target_m,
+                        .wall_position_m = setup_.wall_m,
+                        .real_time_ratio = real_time_ratio_,
+                        .run = starts_[i],
+                        .stopped = stopped_[i]});
+  }
+}
+
+void Engine::run(const std::function<bool()>& keep_going) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::milliseconds pause{1};
+  constexpr double most_behind_s = 0.1;
+  constexpr double window_s = 1.0;
+  const auto seconds_since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
+  Clock::time_point start = Clock::now();
+  Clock::time_point window_start = start;
+  std::uint64_t done = 0;
+  std::uint64_t window_done = 0;
+  while (keep_going()) {
+    double due_s = seconds_since(start);
+    const double behind_s = due_s - static_cast<double>(done) * tick_s_;
+    if (behind_s > most_behind_s) {
+      start += std::chrono::nanoseconds(std::llround(1e9 * behind_s));
+      due_s -= behind_s;
+    }
+    for (; static_cast<double>(done) * tick_s_ < due_s; ++done) step();
+    if (const double window = seconds_since(window_start); window >= window_s) {
+      real_time_ratio_ = static_cast<double>(done - window_done) * tick_s_ / window;
+      window_start = Clock::now();
+      window_done = done;
+    }
+    std::this_thread::sleep_for(pause);
+  }
+}
+
+}  // namespace tactus::live

@@ -1,0 +1,286 @@
+#include <tactus/core/version.hpp>
+#include <tactus/live/live_view.hpp>
+#include <tactus/telemetry/cdr.hpp>
+#include <tactus/telemetry/description.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus::live {
+
+namespace {
+
+constexpr double state_every_s = 1.0 / 60.0;
+/// Beyond this a device has left its workspace, as in the tapping experiment.
+constexpr double device_reach_m = 1.0;
+
+Payload shared(std::string bytes) { return std::make_shared<const std::string>(std::move(bytes)); }
+
+Status problem(const Error& error) { return {StatusLevel::error, describe(error)}; }
+
+Status nonsense(std::string_view topic, const char* expected) {
+  return {StatusLevel::error, std::string(topic) + ": expected JSON like " + expected};
+}
+
+/// An object, or null for all else.
+nlohmann::json object_in(std::string_view bytes) {
+  constexpr std::size_t longest = 1024;
+  if (bytes.size() > longest) return nullptr;
+  nlohmann::json value = nlohmann::json::parse(bytes, nullptr, false);
+  return value.is_object() ? value : nlohmann::json(nullptr);
+}
+
+const char* word_of(LiveVerdict verdict) {
+  constexpr std::array words{"free", "contact", "settled", "rings"};
+  return words[static_cast<std::size_t>(verdict)];
+}
+
+Result<std::array<simulation::Teleoperator, loops>> made_of(
+    const std::array<simulation::Teleoperator::Params, loops>& params, const std::array<double, loops>& start_m) {
+  auto left = simulation::Teleoperator::make(params[0], start_m[0]);
+  if (!left) return left.error();
+  auto right = simulation::Teleoperator::make(params[1], start_m[1]);
+  if (!right) return right.error();
+  return std::array<simulation::Teleoperator, loops>{*std::move(left), *std::move(right)};
+}
+
+}  // namespace
+
+Result<LiveView::LoopParams> LiveView::params_of(const Settings& settings) {
+  LoopParams all;
+  for (std::size_t i = 0; i < loops; ++i) {
+    auto params = settings.of_loop(i);
+    if (!params) return params.error();
+    all[i] = *std::move(params);
+  }
+  return all;
+}
+
+Result<std::unique_ptr<LiveView>> LiveView::make(const Settings& settings, const Options& options) {
+  auto params = params_of(settings);
+  if (!params) return params.error();
+  auto teleoperators = made_of(*params, {});
+  if (!teleoperators) return teleoperators.error();
+  auto judge = ContactJudge::make(Seconds{(*teleoperators)[0].tick_s()});
+  if (!judge) return judge.error();
+  std::array<double, loops> reach_m{};
+  for (std::size_t i = 0; i < loops; ++i) {
+    reach_m[i] = device_reach_m * std::max(1.0, (*params)[i].control.position_scale);
+  }
+  auto engine = Engine::make({.teleoperators = *std::move(teleoperators),
+                              .runs = {settings.runs(0), settings.runs(1)},
+                              .wall_m = Settings::wall_m,
+                              .reach_m = reach_m});
+  if (!engine) return engine.error();
+  return std::unique_ptr<LiveView>(new LiveView(settings, options, *std::move(params), *std::move(engine), *judge));
+}
+
+LiveView::LiveView(const Settings& settings, const Options& options, LoopParams params, std::unique_ptr<Engine> engine,
+                   const ContactJudge& judge)
+    : settings_(settings), options_(options), params_(std::move(params)), engine_(std::move(engine)) {
+  const std::string package = "tactus_msgs/msg/";
+  for (const char* loop : loop_names) {
+    const std::string prefix = std::string("/") + loop + "/";
+    // In the order of `TopicOf`.
+    topics_.push_back({prefix + "block", package + "LiveBlock", live_block_definition()});
+    topics_.push_back({prefix + "hand_force", package + "HandForce", hand_force_definition()});
+    topics_.push_back({prefix + "state", package + "LiveState", live_state_definition()});
+    topics_.push_back({prefix + "teleoperator", package + "TeleoperatorRecord",
+                       telemetry::ros2msg(telemetry::columns_of<Engine::Record>())});
+    watched_.push_back({.block = BlockBuilder(engine_->tick_s()), .judge = judge, .state = {}});
+  }
+}
+
+std::map<std::string, std::string> LiveView::metadata() const {
+  constexpr std::array kinds{"number", "choice", "flag"};
+  nlohmann::json list = nlohmann::json::array();
+  for (const ParameterDescription& description : settings_.descriptions()) {
+    nlohmann::json item{{"name", description.name},
+                        {"label", description.label},
+                        {"unit", description.unit.symbol},
+                        {"kind", kinds[static_cast<std::size_t>(description.kind)]},
+                        {"logarithmic", description.logarithmic},
+                        {"tunable", options_.allow_tuning}};
+    if (description.kind == ParameterDescription::Kind::number) {
+      item["minimum"] = description.bounds.lower;
+      item["maximum"] = description.bounds.upper;
+    }
+    if (description.kind == ParameterDescription::Kind::choice) item["choices"] = description.choices;
+    list.push_back(std::move(item));
+  }
+  return {{"tactus.parameters", list.dump()},
+          {"tactus.version", std::string(version())},
+          {"tactus.experiment", options_.experiment}};
+}
+
+std::vector<Status> LiveView::set_parameters(const std::vector<Parameter>& wanted) {
+  if (!options_.allow_tuning) {
+    return {{StatusLevel::error, wanted.front().name.substr(0, 80) +
+                                     ": parameters cannot be changed here: start with `tactus serve --allow-tuning`"}};
+  }
+  std::vector<Status> refused;
+  Settings tried = settings_;
+  for (const Parameter& parameter : wanted) {
+    // One after the other, so that one that is refused does not take the others with it.
+    Settings with_this = tried;
+    auto error = with_this.set(parameter);
+    if (!error) {
+      if (const auto params = params_of(with_this); !params) error = params.error();
+    }
+    if (error) {
+      refused.push_back(problem(*error));
+    } else {
+      tried = std::move(with_this);
+    }
+  }
+  if (const auto error = apply(tried)) refused.push_back(problem(*error));
+  return refused;
+}
+
+Check LiveView::apply(const Settings& settings) {
+  auto params = params_of(settings);
+  if (!params) return params.error();
+  auto change = std::make_unique<Change>();
+  for (std::size_t i = 0; i < loops; ++i) {
+    Change::Loop& loop = change->loop[i];
+    loop.parts = difference(params_[i], (*params)[i]);
+    const bool starts = settings.runs(i) && !settings_.runs(i);
+    if (starts) loop.parts.reset();
+    if (loop.parts && *loop.parts == simulation::Teleoperator::Parts{}) continue;
+    // What starts over begins before the wall, wherever the hand is by now; the hand takes it along smoothly.
+    const double start_m = std::clamp(watched_[i].state.master_position_m, -workspace_m, 0.9 * Settings::wall_m);
+    auto made = simulation::Teleoperator::make((*params)[i], loop.parts ? 0.0 : start_m);
+    if (!made) return made.error();
+    loop.made = *std::move(made);
+  }
+  for (std::size_t i = 0; i < loops; ++i) change->runs[i] = settings.runs(i);
+  if (!engine_->change(std::move(change))) {
+    return Error{.code = ErrorCode::failed, .parameter = {}, .message = "the loop is busy: try again", .place = {}};
+  }
+  settings_ = settings;
+  params_ = *std::move(params);
+  return std::nullopt;
+}
+
+std::optional<Status> LiveView::receive(ClientId client, std::string_view topic, std::string_view encoding,
+                                        std::string_view bytes) {
+  const bool is_hand = topic == "/operator/hand";
+  if (!is_hand && topic != "/operator/command") {
+    return Status{StatusLevel::error, std::string(topic.substr(0, 80)) +
+                                          ": nobody listens; there are /operator/hand and /operator/command"};
+  }
+  if (encoding != "json") return Status{StatusLevel::error, std::string(topic) + ": the encoding must be json"};
+  return is_hand ? move_hand(client, bytes) : command(bytes);
+}
+
+std::optional<Status> LiveView::move_hand(ClientId client, std::string_view bytes) {
+  const nlohmann::json message = object_in(bytes);
+  const auto position = message.is_object() ? message.find("position_m") : message.end();
+  const auto engaged = message.is_object() ? message.find("engaged") : message.end();
+  if (position == message.end() || engaged == message.end() || !position->is_number() || !engaged->is_boolean()) {
+    return nonsense("/operator/hand", R"({"position_m": 0.005, "engaged": true})");
+  }
+  if (holder_ && *holder_ != client) {
+    return Status{StatusLevel::warning, "another client holds the handle; it is free when that lets go"};
+  }
+  if (!engaged->get<bool>()) {
+    if (holder_) leave(client);
+    return std::nullopt;
+  }
+  holder_ = client;
+  const auto asked_m = position->get<double>();
+  const double target_m = std::clamp(asked_m, -workspace_m, workspace_m);
+  if (!engine_->aim(target_m)) return Status{StatusLevel::warning, "the loop is busy: the hand was not moved"};
+  if (target_m == asked_m) return std::nullopt;
+  return Status{StatusLevel::warning, "position_m = " + format_number(asked_m) + " m is outside the workspace: it " +
+                                          describe_bounds(between(-workspace_m, workspace_m), units::metre)};
+}
+
+std::optional<Status> LiveView::command(std::string_view bytes) {
+  const nlohmann::json message = object_in(bytes);
+  const auto word = message.is_object() ? message.find("command") : message.end();
+  if (word == message.end() || (*word != "tap" && *word != "reset")) {
+    return nonsense("/operator/command", R"({"command": "tap"} or {"command": "reset"})");
+  }
+  return start_over(*word == "tap" ? std::optional<ScriptedTap>(ScriptedTap{.wall_m = Settings::wall_m})
+                                   : std::nullopt);
+}
+
+std::optional<Status> LiveView::start_over(const std::optional<ScriptedTap>& tap) {
+  const double start_m = tap ? tap->start_m() : 0.0;
+  auto made = made_of(params_, {start_m, start_m});
+  if (!made) return problem(made.error());
+  auto change = std::make_unique<Change>();
+  for (std::size_t i = 0; i < loops; ++i) change->loop[i].made = std::move((*made)[i]);
+  change->reset_hand = true;
+  change->tap = tap;
+  if (!engine_->change(std::move(change))) return Status{StatusLevel::warning, "the loop is busy: try again"};
+  return std::nullopt;
+}
+
+void LiveView::leave(ClientId client) {
+  if (holder_ != client) return;
+  holder_.reset();
+  // Where the loop has no room for this, it has not moved for long either.
+  static_cast<void>(engine_->aim(0.0));
+}
+
+void LiveView::collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) {
+  const auto state_ticks = static_cast<std::size_t>(std::max(1L, std::lround(state_every_s / engine_->tick_s())));
+  for (std::size_t i = 0; i < loops; ++i) {
+    Watched& watched = watched_[i];
+    const std::size_t first_topic = i * topics_of_loop;
+    const bool wants_all = is_wanted(first_topic + full_rate);
+    LoopTick tick;
+    while (engine_->next(i, tick)) {
+      watch(watched, tick);
+      if (wants_all) {
+        const auto bytes = telemetry::to_cdr(tick.record);
+        publish(first_topic + full_rate, tick.time_ns, shared(std::string(bytes.begin(), bytes.end())));
+      }
+      if (watched.block.add(tick)) {
+        BlockBuilder::Block built = watched.block.take();
+        publish(first_topic + block, built.time_ns, shared(std::move(built.live_block)));
+        publish(first_topic + hand_force, built.time_ns, shared(std::move(built.hand_force)));
+      }
+      if (++watched.ticks_to_state >= state_ticks) {
+        watched.ticks_to_state = 0;
+        watched.state.dropped = engine_->dropped(i);
+        watched.state.verdict = tick.stopped ? "stopped" : word_of(watched.judge.verdict());
+        watched.state.cause = tick.stopped ? "A safety gate closed or a device left its workspace; reset starts over."
+                                           : watched.judge.cause();
+        publish(first_topic + state, tick.time_ns, shared(to_cdr(watched.state)));
+      }
+    }
+  }
+}
+
+void LiveView::watch(Watched& watched, const LoopTick& tick) {
+  const Engine::Record& record = tick.record;
+  LiveState& shown = watched.state;
+  if (tick.run != watched.run) {
+    watched.run = tick.run;
+    watched.judge.reset();
+    shown.energy_J = 0.0;
+  } else {
+    // The hand gives what it pushes along the way; what it gets has the other sign.
+    shown.energy_J -= watched.hand_force_N * (record.master_position_m - shown.master_position_m);
+  }
+  watched.judge.step(record.contact_force_N, record.touched);
+  if (watched.judge.has_begun()) shown.energy_J = 0.0;
+  watched.hand_force_N = record.hand_force_N;
+  shown.time_s = record.time_s;
+  shown.hand_position_m = tick.hand_position_m;
+  shown.master_position_m = record.master_position_m;
+  shown.slave_position_m = record.slave_position_m;
+  shown.wall_position_m = tick.wall_position_m;
+  shown.slave_force_N = record.contact_force_N;
+  shown.displayed_force_N = record.displayed_force_N;
+  shown.in_contact = watched.judge.in_contact();
+  shown.real_time_ratio = tick.real_time_ratio;
+}
+
+}  // namespace tactus::live

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <tactus/live/application.hpp>
+#include <tactus/live/contact_judge.hpp>
+#include <tactus/live/engine.hpp>
+#include <tactus/live/messages.hpp>
+#include <tactus/live/settings.hpp>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::live {
+
+/// The live view of an engine: what its loops do as topics, what a visitor does as hand and parameters.
+///
+/// For each loop `/left/...` and `/right/...`: `block` and `hand_force` at 50 Hz, `state` at about 60 Hz, and
+/// `teleoperator`, the record of every tick as in the log. A client publishes JSON to `/operator/hand`
+/// (`{"position_m": x, "engaged": true}`) and `/operator/command` (`{"command": "tap"}` or `"reset"`). The first client
+/// that engages holds the handle until it lets go or leaves; then the hand goes to rest.
+class LiveView final : public Application {
+ public:
+  struct Options {
+    bool allow_tuning = false;
+    std::string experiment;  ///< its name
+  };
+
+  /// How far to either side of rest the hand may go.
+  static constexpr double workspace_m = 0.05;
+
+  static Result<std::unique_ptr<LiveView>> make(const Settings& settings, const Options& options);
+
+  /// The loops. `Engine::run` is for another thread than the server's.
+  [[nodiscard]] Engine& engine() { return *engine_; }
+
+  [[nodiscard]] const std::vector<Topic>& topics() const override { return topics_; }
+  [[nodiscard]] std::map<std::string, std::string> metadata() const override;
+  [[nodiscard]] std::vector<Parameter> parameters() const override { return settings_.parameters(); }
+  std::vector<Status> set_parameters(const std::vector<Parameter>& wanted) override;
+  std::optional<Status> receive(ClientId client, std::string_view topic, std::string_view encoding,
+                                std::string_view bytes) override;
+  void leave(ClientId client) override;
+  void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) override;
+
+ private:
+  using LoopParams = std::array<simulation::Teleoperator::Params, loops>;
+  enum TopicOf : std::size_t { block, hand_force, state, full_rate, topics_of_loop };
+
+  /// What is known of one loop.
+  struct Watched {
+    BlockBuilder block;
+    ContactJudge judge;
+    LiveState state;
+    std::uint32_t run = 0;
+    std::size_t ticks_to_state = 0;
+    double hand_force_N = 0.0;
+  };
+
+  LiveView(const Settings& settings, const Options& options, LoopParams params, std::unique_ptr<Engine> engine,
+           const ContactJudge& judge);
+  static Result<LoopParams> params_of(const Settings& settings);
+  std::optional<Status> move_hand(ClientId client, std::string_view bytes);
+  std::optional<Status> command(std::string_view bytes);
+  std::optional<Status> start_over(const std::optional<ScriptedTap>& tap);
+  Check apply(const Settings& settings);
+  void watch(Watched& watched, const LoopTick& tick);
+
+  Settings settings_;
+  Options options_;
+  LoopParams params_;
+  std::unique_ptr<Engine> engine_;
+  std::vector<Topic> topics_;
+  std::vector<Watched> watched_;
+  std::optional<ClientId> holder_;
+};
+
+}  // namespace tactus::live

@@ -1,0 +1,111 @@
+#include <tactus/live/cdr_writer.hpp>
+#include <tactus/live/messages.hpp>
+#include <tactus/telemetry/description.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus::live {
+
+namespace {
+
+std::string line(const std::string& type, const std::string& name, const std::string& doc) {
+  const Unit unit = unit_at_end_of(name);
+  const std::string with_unit = unit.symbol[0] == '\0' ? doc : doc + " Unit: " + unit.symbol + ".";
+  return "# " + with_unit + "\n" + type + " " + telemetry::ros_name(name) + "\n";
+}
+
+}  // namespace
+
+std::string live_block_definition() {
+  std::string text = line("float64", "start_s", "Virtual time of the first tick.") +
+                     line("float64", "column_s", "Duration of a column.");
+  for (const BlockSignal& signal : block_signals) {
+    const std::string name = telemetry::ros_name(signal.name);
+    text += "# " + std::string(signal.doc) + " Unit: " + unit_at_end_of(signal.name).symbol +
+            ". The least and the largest value of each column.\n";
+    text += "float32[] " + name + "_min\nfloat32[] " + name + "_max\n";
+  }
+  return text;
+}
+
+std::string hand_force_definition() {
+  return line("float64", "start_s", "Virtual time of the first tick.") +
+         line("float64", "period_s", "From tick to tick.") +
+         line("float32[]", "force_N", "Measured force of the hand on the handle at each tick, toward the environment.");
+}
+
+std::string live_state_definition() {
+  return line("float64", "time_s", "Virtual time of the tick.") +
+         line("float64", "hand_position_m", "Where the visitor, or the script, wants the hand.") +
+         line("float64", "master_position_m", "Measured, at the master's motor.") +
+         line("float64", "slave_position_m", "Measured, at the slave's motor.") +
+         line("float64", "wall_position_m", "The wall's surface, over the position scale.") +
+         line("float64", "slave_force_N", "True force on the slave's tip.") +
+         line("float64", "displayed_force_N", "At the master's motor, positive where it pushes the hand back.") +
+         line("float64", "energy_J", "Net energy given to the hand since the contact began.") +
+         line("bool", "in_contact", "The slave touches the wall.") +
+         line("string", "verdict", "free, contact, settled, rings or stopped.") +
+         line("string", "cause", "Why, in one sentence; may be empty.") +
+         line("float64", "real_time_ratio", "Virtual time over real time, over the last second.") +
+         line("uint64", "dropped", "Ticks of this loop that were lost on the way to the view, since the start.");
+}
+
+BlockBuilder::BlockBuilder(double tick_s)
+    : tick_s_(tick_s), column_ticks_(static_cast<std::size_t>(std::max(1L, std::lround(column_s / tick_s)))) {}
+
+bool BlockBuilder::add(const LoopTick& tick) {
+  if (ticks_ == 0) {
+    start_ns_ = tick.time_ns;
+    start_s_ = tick.record.time_s;
+  }
+  const bool new_column = ticks_ % column_ticks_ == 0;
+  for (std::size_t i = 0; i < block_signals.size(); ++i) {
+    const auto value = static_cast<float>(block_signals[i].value(tick));
+    if (new_column) {
+      least_[i].push_back(value);
+      largest_[i].push_back(value);
+    } else {
+      least_[i].back() = std::min(least_[i].back(), value);
+      largest_[i].back() = std::max(largest_[i].back(), value);
+    }
+  }
+  hand_force_N_.push_back(static_cast<float>(tick.record.hand_force_N));
+  return ++ticks_ == columns * column_ticks_;
+}
+
+BlockBuilder::Block BlockBuilder::take() {
+  CdrWriter block;
+  block.add(start_s_);
+  block.add(static_cast<double>(column_ticks_) * tick_s_);
+  for (std::size_t i = 0; i < block_signals.size(); ++i) {
+    block.add(std::span<const float>(least_[i]));
+    block.add(std::span<const float>(largest_[i]));
+    least_[i].clear();
+    largest_[i].clear();
+  }
+  CdrWriter force;
+  force.add(start_s_);
+  force.add(tick_s_);
+  force.add(std::span<const float>(hand_force_N_));
+  hand_force_N_.clear();
+  ticks_ = 0;
+  return {.time_ns = start_ns_, .live_block = std::move(block).take(), .hand_force = std::move(force).take()};
+}
+
+std::string to_cdr(const LiveState& state) {
+  CdrWriter writer;
+  for (const double value : {state.time_s, state.hand_position_m, state.master_position_m, state.slave_position_m,
+                             state.wall_position_m, state.slave_force_N, state.displayed_force_N, state.energy_J}) {
+    writer.add(value);
+  }
+  writer.add(state.in_contact);
+  writer.add(std::string_view(state.verdict));
+  writer.add(std::string_view(state.cause));
+  writer.add(state.real_time_ratio);
+  writer.add(state.dropped);
+  return std::move(writer).take();
+}
+
+}  // namespace tactus::live

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <tactus/core/units.hpp>
+#include <tactus/simulation/teleoperator.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// The messages of the live view beside the full-rate records.
+namespace tactus::live {
+
+/// What one loop did in one tick, on its way from the loop's thread to the view.
+struct LoopTick {
+  std::uint64_t time_ns = 0;
+  simulation::Teleoperator::Record record;
+  double hand_position_m = 0.0;  ///< where the visitor, or the script, wants the hand
+  double wall_position_m = 0.0;  ///< as the master's hand sees it
+  double real_time_ratio = 0.0;  ///< virtual time over real time, over the last second
+  std::uint32_t run = 0;         ///< grows each time the loop starts over
+  bool stopped = false;          ///< a safety gate latched, or a device left its workspace
+};
+
+/// The signals of a block, each with its place in a tick.
+struct BlockSignal {
+  const char* name;
+  double (*value)(const LoopTick& tick);
+  const char* doc;
+};
+inline constexpr std::array block_signals{
+    BlockSignal{"master_position_m", [](const LoopTick& tick) { return tick.record.master_position_m; },
+                "Measured, at the master's motor, toward the environment."},
+    BlockSignal{"slave_position_m", [](const LoopTick& tick) { return tick.record.slave_position_m; },
+                "Measured, at the slave's motor, toward the environment."},
+    BlockSignal{"intended_motion_m",
+                [](const LoopTick& tick) { return tick.record.master_position_m - tick.record.induced_position_m; },
+                "Measured master position less the induced motion."},
+    BlockSignal{"induced_motion_m", [](const LoopTick& tick) { return tick.record.induced_position_m; },
+                "The model's estimate of what the displayed force did to the master."},
+    BlockSignal{"command_m", [](const LoopTick& tick) { return tick.record.command_m; },
+                "Position command that left the master."},
+    BlockSignal{"slave_force_N", [](const LoopTick& tick) { return tick.record.contact_force_N; },
+                "True force on the slave's tip, positive where the wall is pressed."},
+    BlockSignal{"displayed_force_N", [](const LoopTick& tick) { return tick.record.displayed_force_N; },
+                "Force at the master's motor, positive where it pushes the hand back."},
+    BlockSignal{"hand_force_N", [](const LoopTick& tick) { return tick.record.hand_force_N; },
+                "Measured force of the hand on the handle, toward the environment."}};
+
+/// A number of columns, each with the least and the largest value of every signal over its ticks.
+std::string live_block_definition();
+/// The force of the hand at every tick.
+std::string hand_force_definition();
+std::string live_state_definition();
+
+/// Gathers ticks of one loop and turns them into `LiveBlock` and `HandForce` messages.
+class BlockBuilder {
+ public:
+  static constexpr std::size_t columns = 5;
+  static constexpr double column_s = 0.004;
+
+  explicit BlockBuilder(double tick_s);
+
+  /// True where the tick completed a block, which `take` then must fetch.
+  bool add(const LoopTick& tick);
+  struct Block {
+    std::uint64_t time_ns;  ///< of its first tick
+    std::string live_block;
+    std::string hand_force;
+  };
+  Block take();
+
+ private:
+  double tick_s_;
+  std::size_t column_ticks_;
+  std::size_t ticks_ = 0;
+  std::uint64_t start_ns_ = 0;
+  double start_s_ = 0.0;
+  std::array<std::vector<float>, block_signals.size()> least_, largest_;
+  std::vector<float> hand_force_N_;
+};
+
+/// What a page shows of a loop as numbers and words.
+struct LiveState {
+  double time_s = 0.0;
+  double hand_position_m = 0.0;
+  double master_position_m = 0.0;
+  double slave_position_m = 0.0;
+  double wall_position_m = 0.0;
+  double slave_force_N = 0.0;
+  double displayed_force_N = 0.0;
+  double energy_J = 0.0;  ///< net, given to the hand since the contact began
+  bool in_contact = false;
+  std::string verdict;
+  std::string cause;
+  double real_time_ratio = 0.0;
+  std::uint64_t dropped = 0;  ///< ticks of this loop that the view lost
+};
+std::string to_cdr(const LiveState& state);
+
+}  // namespace tactus::live

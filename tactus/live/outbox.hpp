@@ -1,0 +1,75 @@
+#pragma once
+
+#include <tactus/live/application.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <utility>
+
+namespace tactus::live {
+
+/// A frame on its way to a client: a head of its own before bytes that it may share with others.
+struct Frame {
+  bool binary = false;
+  bool may_be_dropped = false;
+  std::string head;
+  Payload payload = {};  ///< may be null
+  [[nodiscard]] std::size_t size() const { return head.size() + (payload ? payload->size() : 0); }
+};
+
+/// What waits to be sent to one client: never more than so many frames and bytes. A client that does not keep up loses
+/// the oldest of what may be dropped (samples, never answers), and the loss is counted.
+class Outbox {
+ public:
+  struct Limits {
+    std::size_t frames = 8192;
+    std::size_t bytes = std::size_t{8} * 1024 * 1024;
+  };
+
+  explicit Outbox(const Limits& limits) : limits_(limits) {}
+
+  /// False where the frame may not be dropped and there is no room even without all that may be: a client that asks and
+  /// never reads the answers. The frame in front stays where it is while it is being sent.
+  [[nodiscard]] bool push(Frame frame) {
+    bytes_ += frame.size();
+    frames_.push_back(std::move(frame));
+    std::size_t next = sending_ ? 1 : 0;
+    while (frames_.size() > limits_.frames || bytes_ > limits_.bytes) {
+      while (next < frames_.size() && !frames_[next].may_be_dropped) ++next;
+      if (next == frames_.size()) return false;
+      bytes_ -= frames_[next].size();
+      frames_.erase(frames_.begin() + static_cast<std::ptrdiff_t>(next));
+      ++dropped_;
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool empty() const { return frames_.empty(); }
+  [[nodiscard]] bool is_sending() const { return sending_; }
+  [[nodiscard]] std::size_t size() const { return frames_.size(); }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+  /// Frames lost so far.
+  [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
+
+  /// The oldest frame, which stays in place until `sent`. There must be one.
+  const Frame& begin_sending() {
+    sending_ = true;
+    return frames_.front();
+  }
+  void sent() {
+    bytes_ -= frames_.front().size();
+    frames_.pop_front();
+    sending_ = false;
+  }
+
+ private:
+  Limits limits_;
+  std::deque<Frame> frames_;
+  std::size_t bytes_ = 0;
+  std::uint64_t dropped_ = 0;
+  bool sending_ = false;
+};
+
+}  // namespace tactus::live

@@ -1,0 +1,196 @@
+#include <tactus/ros2/bridge.hpp>
+#include <tactus/ros2/participant.hpp>
+#include <tactus/telemetry/ring.hpp>
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+namespace tactus::ros2 {
+
+namespace {
+
+/// How long the thread waits for a command before it looks for snapshots.
+constexpr Seconds look_every{0.001};
+/// The state is told when it changes and this often, for those who come late.
+constexpr std::int64_t state_every_ns = 100'000'000;
+
+JointState joint_state(const Snapshot& at, const char* device) {
+  return {.stamp_ns = at.stamp_ns, .frame_id = device, .name = {device}, .position = {}, .velocity = {}, .effort = {}};
+}
+
+WrenchStamped wrench(const Snapshot& at, const char* device, double force_N) {
+  return {.stamp_ns = at.stamp_ns, .frame_id = device, .force_N = {force_N, 0.0, 0.0}, .torque_Nm = {}};
+}
+
+/// The topics of one device.
+struct DeviceWriters {
+  Writer<JointState> measured_js;
+  Writer<JointState> setpoint_js;
+  Writer<WrenchStamped> measured_cf;
+};
+
+Result<DeviceWriters> open_writers(Participant& participant, const std::string& name_space, const std::string& device) {
+  const auto topic = [&](const char* name) { return dds_topic(name_space, device + "/" + name); };
+  auto measured_js = participant.writer<JointState>(topic("measured_js"));
+  if (!measured_js) return measured_js.error();
+  auto setpoint_js = participant.writer<JointState>(topic("setpoint_js"));
+  if (!setpoint_js) return setpoint_js.error();
+  auto measured_cf = participant.writer<WrenchStamped>(topic("measured_cf"));
+  if (!measured_cf) return measured_cf.error();
+  return DeviceWriters{*measured_js, *setpoint_js, *measured_cf};
+}
+
+/// All that is open.
+struct Endpoints {
+  Participant participant;
+  DeviceWriters master;
+  DeviceWriters slave;
+  Writer<Text> state;
+  Reader<JointState> servo_jp;
+};
+
+Result<Endpoints> open(const Bridge::Params& params) {
+  auto participant = Participant::create(params.network);
+  if (!participant) return participant.error();
+  auto master = open_writers(*participant, params.name_space, "master");
+  if (!master) return master.error();
+  auto slave = open_writers(*participant, params.name_space, "slave");
+  if (!slave) return slave.error();
+  auto state = participant->writer<Text>(dds_topic(params.name_space, "state"));
+  if (!state) return state.error();
+  auto servo_jp = participant->reader<JointState>(dds_topic(params.name_space, "operator/servo_jp"));
+  if (!servo_jp) return servo_jp.error();
+  return Endpoints{*std::move(participant), *master, *slave, *state, *servo_jp};
+}
+
+}  // namespace
+
+struct Bridge::State {
+  State(Endpoints opened, double rate_Hz) : dds(std::move(opened)), period_ns(std::llround(1e9 / rate_Hz)) {}
+
+  Endpoints dds;
+  std::int64_t period_ns;
+
+  telemetry::Ring<Snapshot, 4096> snapshots;
+  telemetry::Ring<double, 64> wished_m;
+  std::atomic<std::uint64_t> published{0};
+  std::atomic<std::uint64_t> lost{0};
+  std::atomic<std::uint64_t> wishes{0};
+  std::atomic<std::uint64_t> refused{0};
+  std::atomic<bool> stop{false};
+  std::thread thread;
+
+  // Of the thread alone.
+  std::int64_t due_ns = 0;
+  std::int64_t state_due_ns = 0;
+  bool told_healthy = true;
+
+  template <class Message>
+  void send(Writer<Message>& writer, const Message& message) {
+    if (writer.write(message)) lost.fetch_add(1, std::memory_order_relaxed);
+  }
+
+  void tell(const Snapshot& at) {
+    const bool clock_was_set_back = at.stamp_ns < due_ns - period_ns;
+    if (at.stamp_ns >= due_ns || clock_was_set_back) {
+      // Counted from when it was due, so that the mean rate is kept; a gap is not made up for.
+      const bool in_time = !clock_was_set_back && at.stamp_ns < due_ns + period_ns;
+      due_ns = (in_time ? due_ns : at.stamp_ns) + period_ns;
+      JointState measured = joint_state(at, "master");
+      measured.position = {at.master_position_m};
+      send(dds.master.measured_js, measured);
+      JointState setpoint = joint_state(at, "master");
+      setpoint.effort = {at.master_force_N};
+      send(dds.master.setpoint_js, setpoint);
+      send(dds.master.measured_cf, wrench(at, "master", at.hand_force_N));
+      measured = joint_state(at, "slave");
+      measured.position = {at.slave_position_m};
+      send(dds.slave.measured_js, measured);
+      setpoint = joint_state(at, "slave");
+      setpoint.position = {at.slave_command_m};
+      send(dds.slave.setpoint_js, setpoint);
+      send(dds.slave.measured_cf, wrench(at, "slave", -at.environment_force_N));
+      published.fetch_add(1, std::memory_order_relaxed);
+    }
+    if (at.stamp_ns >= state_due_ns || clock_was_set_back || at.healthy != told_healthy) {
+      state_due_ns = at.stamp_ns + state_every_ns;
+      told_healthy = at.healthy;
+      send(dds.state, {at.healthy ? "ENABLED" : "FAULT"});
+    }
+  }
+
+  void drain() {
+    Snapshot at;
+    while (snapshots.try_pop(at)) tell(at);
+  }
+
+  void listen() {
+    for (const JointState& command : dds.servo_jp.take()) {
+      if (command.position.size() == 1 && std::isfinite(command.position.front())) {
+        wishes.fetch_add(1, std::memory_order_relaxed);
+        wished_m.try_push(command.position.front());
+      } else {
+        refused.fetch_add(1, std::memory_order_relaxed);
+      }
+    }
+  }
+
+  void run() {
+    while (!stop.load(std::memory_order_acquire)) {
+      dds.servo_jp.wait(look_every);
+      listen();
+      drain();
+    }
+    drain();
+    send(dds.state, {"DISABLED"});
+  }
+};
+
+Bridge::Bridge(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Bridge::Bridge(Bridge&&) noexcept = default;
+Bridge::~Bridge() {
+  if (state_) close();
+}
+
+Result<Bridge> Bridge::create(const Params& params) {
+  if (auto error = check_namespace(params.name_space)) return *std::move(error);
+  if (!(params.rate_Hz > 0.0) || params.rate_Hz > 1e4) {
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = "rate_Hz",
+                 .message = std::to_string(params.rate_Hz) + " Hz is out of bounds: write one above 0, up to 10000 Hz",
+                 .place = {}};
+  }
+  auto opened = open(params);
+  if (!opened) return opened.error();
+  // Its rings are large and stay where they are.
+  auto state = std::make_unique<State>(*std::move(opened), params.rate_Hz);
+  state->thread = std::thread([self = state.get()] { self->run(); });
+  return Bridge(std::move(state));
+}
+
+void Bridge::publish(const Snapshot& snapshot) noexcept { state_->snapshots.try_push(snapshot); }
+
+std::optional<double> Bridge::take_wish() noexcept {
+  std::optional<double> newest;
+  double wished_m = 0.0;
+  while (state_->wished_m.try_pop(wished_m)) newest = wished_m;
+  return newest;
+}
+
+void Bridge::close() {
+  if (!state_->thread.joinable()) return;
+  state_->stop.store(true, std::memory_order_release);
+  state_->thread.join();
+}
+
+Bridge::Counts Bridge::counts() const {
+  return {.published = state_->published.load(std::memory_order_relaxed),
+          .lost = state_->lost.load(std::memory_order_relaxed),
+          .dropped = state_->snapshots.dropped(),
+          .wishes = state_->wishes.load(std::memory_order_relaxed),
+          .refused = state_->refused.load(std::memory_order_relaxed)};
+}
+
+}  // namespace tactus::ros2

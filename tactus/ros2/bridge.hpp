@@ -1,0 +1,72 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/ros2/names.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace tactus::ros2 {
+
+/// What the other programs are told about one tick of a one-axis teleoperator. Positions and forces are positive toward
+/// the environment, unless said otherwise.
+struct Snapshot {
+  std::int64_t stamp_ns = 0;         ///< since 1970
+  double master_position_m = 0.0;    ///< measured, at the motor
+  double master_force_N = 0.0;       ///< commanded to the motor, behind the safety gate
+  double hand_force_N = 0.0;         ///< measured, of the hand on the handle
+  double slave_position_m = 0.0;     ///< measured, at the motor
+  double slave_command_m = 0.0;      ///< position command as it left the master
+  double environment_force_N = 0.0;  ///< as the slave told it, positive when the environment pushes it back
+  bool healthy = true;               ///< no safety gate has latched a fault
+};
+
+/// A teleoperator among ROS 2 nodes. Under the namespace, by default `tactus`, it publishes the topics of `topics()`
+/// and subscribes to `operator/servo_jp` (`sensor_msgs/msg/JointState` with one position in m): where another program
+/// means the operator's hand to be.
+///
+/// The thread that steps the teleoperator calls `publish` and `take_wish`, which touch two wait-free rings and nothing
+/// else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and counted.
+class Bridge {
+ public:
+  struct Params {
+    Network network = {};
+    std::string name_space = "tactus";
+    double rate_Hz = 500.0;  ///< of the measured signals, at most; positive, up to 10 kHz
+  };
+  struct Counts {
+    std::uint64_t published = 0;  ///< snapshots, each a message on every topic of a device
+    std::uint64_t lost = 0;       ///< messages that DDS did not take
+    std::uint64_t dropped = 0;    ///< snapshots that found the ring full
+    std::uint64_t wishes = 0;     ///< that could be used
+    std::uint64_t refused = 0;    ///< commands that could not: not exactly one finite position
+  };
+
+  /// Opens everything and starts the thread. Errors: those of `check_namespace` and `Participant::create`;
+  /// `out_of_bounds` for the rate.
+  static Result<Bridge> create(const Params& params);
+  Bridge(Bridge&&) noexcept;
+  Bridge& operator=(Bridge&&) = delete;
+  ~Bridge();  ///< closes
+
+  /// One thread only. Real-time safe: wait-free, no allocation, no system call.
+  void publish(const Snapshot& snapshot) noexcept;
+  /// The newest position in m that another program wished since the last call, always finite and not bounded otherwise.
+  /// The same thread. Real-time safe.
+  std::optional<double> take_wish() noexcept;
+
+  /// Publishes what is waiting, says that the teleoperator is disabled, ends the thread and leaves DDS.
+  void close();
+
+  /// Any thread.
+  [[nodiscard]] Counts counts() const;
+
+ private:
+  struct State;
+  explicit Bridge(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace tactus::ros2

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <tactus/core/parameters.hpp>
+#include <tactus/runtime/servo_thread.hpp>
+
+#include <array>
+
+namespace tactus::runtime {
+
+/// What a device can do. Positions and forces as in `tactus/control/site.hpp`: positive toward the environment,
+/// translated to the point where the person, or the environment, touches it.
+struct DeviceLimits {
+  double force_N = 0.0;         ///< largest force of the motor, either way
+  double handle_force_N = 0.0;  ///< of a second actuator on the handle; 0 where there is none
+};
+
+/// Whether a device can be trusted with the next tick.
+enum class DeviceHealth {
+  good,
+  degraded,  ///< the reading is an old one
+  lost       ///< nothing it says or does can be relied on
+};
+constexpr auto enumerators(DeviceHealth) {
+  return std::array{Enumerator{DeviceHealth::good, "good"}, Enumerator{DeviceHealth::degraded, "degraded"},
+                    Enumerator{DeviceHealth::lost, "lost"}};
+}
+
+struct DeviceReading {
+  double position_m = 0.0;  ///< at the motor
+  double force_N = 0.0;     ///< master: hand on the handle, positive toward the environment; slave: environment on the
+                            ///< tip, positive when it pushes the slave back
+  double grip = 1.0;        ///< master: how firmly the person holds, over nominal, where a sensor tells
+};
+
+struct DeviceCommand {
+  double force_N = 0.0;         ///< of the motor, positive toward the environment
+  double handle_force_N = 0.0;  ///< of the second actuator, same sign
+};
+
+/// One axis of hardware, or what stands for it: where a user plugs in. Once a tick `read` and then `write` are called,
+/// on the servo thread; both and `health` must not allocate, lock, throw or block. The command holds until the next
+/// one.
+class Device {
+ public:
+  virtual ~Device() = default;
+  /// Not real-time safe.
+  [[nodiscard]] virtual DeviceLimits limits() const = 0;
+  /// What the sensors read at this tick. A device that has nothing new gives its last reading and is `degraded`.
+  virtual DeviceReading read(const Tick& tick) noexcept = 0;
+  /// To the actuators.
+  virtual void write(const DeviceCommand& command) noexcept = 0;
+  [[nodiscard]] virtual DeviceHealth health() const noexcept = 0;
+};
+
+}  // namespace tactus::runtime

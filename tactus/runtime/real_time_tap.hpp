@@ -1,0 +1,84 @@
+#pragma once
+
+#include <tactus/core/signals.hpp>
+#include <tactus/runtime/local_teleoperator.hpp>
+#include <tactus/runtime/simulated_devices.hpp>
+#include <tactus/simulation/tap_observer.hpp>
+#include <tactus/telemetry/recorder.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace tactus::runtime {
+
+/// How the clock of the servo went, for the log: one record for each step.
+struct ServoRecord {
+  std::int64_t tick = 0;
+  std::int64_t missed = 0;
+  double lateness_s = 0.0;
+  double previous_duration_s = 0.0;
+  std::int64_t previous_cause = 0;
+  static constexpr auto signals() {
+    return std::tuple{
+        observed("tick", &ServoRecord::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
+        observed("missed", &ServoRecord::missed, units::none, "", "", "", "Deadlines missed right before this one."),
+        observed("lateness_s", &ServoRecord::lateness_s, units::second, "", "", "", "From the deadline to the step."),
+        observed("previous_duration_s", &ServoRecord::previous_duration_s, units::second, "", "", "",
+                 "How long the step before took."),
+        observed(
+            "previous_cause", &ServoRecord::previous_cause, units::none, "", "", "",
+            "Why the step before was late: 0 it was not, 1 computing, 2 blocking, 3 paging, 4 waking, 5 preempted, "
+            "6 stalled.")};
+  }
+};
+
+/// Where a run in real time goes while it runs.
+struct RealTimeStreams {
+  using Teleoperator = telemetry::RecordStream<simulation::Teleoperator::Record>;
+  using Servo = telemetry::RecordStream<ServoRecord>;
+  Teleoperator* teleoperator = nullptr;
+  Servo* servo = nullptr;
+  std::int64_t origin_ns = 0;  ///< of the times in the log, on CLOCK_MONOTONIC
+};
+
+/// One tap through simulated devices in real time: the step of a servo thread. It owns both devices.
+///
+/// The record of a tick is complete when the plants have been advanced to the next. Ticks that were missed have a
+/// record too, with the readings and commands that held. With none missed, the records are bit for bit those of virtual
+/// time.
+class RealTimeTap {
+ public:
+  /// Errors: those of plants and sites.
+  static Result<std::unique_ptr<RealTimeTap>> make(const simulation::Tap& tap, double observation_s,
+                                                   const RealTimeStreams& streams = {});
+  RealTimeTap(const RealTimeTap&) = delete;
+  RealTimeTap& operator=(const RealTimeTap&) = delete;
+
+  /// One tick; false once the tap is over. Real-time safe.
+  bool step(const Tick& tick) noexcept;
+
+  [[nodiscard]] simulation::TapResult result() const { return observer_.result(); }
+  /// Every tick.
+  [[nodiscard]] const std::vector<simulation::Teleoperator::Record>& trace() const { return trace_; }
+
+ private:
+  RealTimeTap(const simulation::Tap& tap, double observation_s, const RealTimeStreams& streams,
+              const simulation::Clock& clock, const simulation::MasterPlant& master,
+              const simulation::SlavePlant& slave);
+  /// Ends the open record with what the plants did, and hands it on; false once the tap is over.
+  bool complete() noexcept;
+
+  simulation::Clock clock_;
+  SimulatedMaster master_;
+  SimulatedSlave slave_;
+  std::unique_ptr<LocalTeleoperator> loop_;
+  simulation::TapObserver observer_;
+  RealTimeStreams streams_;
+  simulation::Teleoperator::Record record_;
+  std::vector<simulation::Teleoperator::Record> trace_;
+  std::int64_t first_tick_ = -1;
+  std::int64_t start_ns_ = 0;  ///< of the first tick, after the origin
+};
+
+}  // namespace tactus::runtime

@@ -1,0 +1,221 @@
+#include <tactus/report/files.hpp>
+#include <tactus/runtime/real_time_tap.hpp>
+#include <tactus/runtime/real_time_tapping.hpp>
+#include <tactus/runtime/servo_presentation.hpp>
+#include <tactus/simulation/presentation.hpp>
+#include <tactus/simulation/tapping.hpp>
+#include <tactus/simulation/tapping_presentation.hpp>
+#include <tactus/telemetry/log_writer.hpp>
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus::runtime {
+
+namespace {
+
+using simulation::TappingEnsemble;
+using simulation::TappingParams;
+using simulation::TappingRun;
+using simulation::TapResult;
+
+struct Prepared {
+  TappingEnsemble ensemble;
+  double observation_s;
+  ServoThreadParams servo;
+};
+using Cases = simulation::Cases<Prepared>;
+
+Check refuse_other_kinds(const simulation::Request& request) {
+  const auto experiment = simulation::choose_experiment(request.document);
+  if (!experiment) return experiment.error();
+  if ((*experiment)->kind() == "tapping") return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "task.kind",
+               .message = "'" + std::string((*experiment)->kind()) +
+                          "' has no form in real time: run it in virtual time, without --realtime, or write tapping",
+               .place = {}};
+}
+
+Check refuse_long_runs(const Cases& cases) {
+  std::size_t taps = 0;
+  for (const auto& one : cases.all) taps += one.prepared.ensemble.size();
+  if (taps > most_real_time_taps) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "task.taps",
+                 .message = std::to_string(taps) + " taps in real time are more than " +
+                            std::to_string(most_real_time_taps) + ": ask for fewer, or for virtual time",
+                 .place = {}};
+  }
+  if (cases.all.size() > most_real_time_runs) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = std::to_string(cases.all.size()) + " combinations in real time are more than " +
+                            std::to_string(most_real_time_runs) + ": vary fewer values",
+                 .place = "--vary"};
+  }
+  return std::nullopt;
+}
+
+/// The recorder with two streams for each run.
+struct Log {
+  telemetry::Recorder recorder;
+  std::vector<RealTimeStreams> streams;
+};
+
+Result<std::unique_ptr<Log>> open_log(const simulation::Request& request, const RealTimeOptions& options,
+                                      const Cases& cases) {
+  if (auto error = report::prepare_directory(options.log->parent_path())) return *std::move(error);
+  auto recorder = telemetry::Recorder::create(*options.log);
+  if (!recorder) return recorder.error();
+  auto log = std::make_unique<Log>(Log{*std::move(recorder), {}});
+  auto about = options.about;
+  about["experiment"] = request.name;
+  about["configuration"] = cases.first_configuration;
+  about["clock"] = "real";
+  log->recorder.add_metadata("tactus", about);
+  for (std::size_t i = 0; i < cases.all.size(); ++i) {
+    const std::string name = "run_" + std::to_string(i + 1);
+    const simulation::Settings& settings = cases.all[i].settings;
+    if (!settings.empty()) log->recorder.add_metadata(name, {settings.begin(), settings.end()});
+    const std::string prefix = cases.all.size() > 1 ? "/" + name : "";
+    log->streams.push_back({.teleoperator = &log->recorder.add<simulation::Teleoperator::Record>(
+                                prefix + "/teleoperator", "tactus_msgs/msg/TeleoperatorRecord"),
+                            .servo = &log->recorder.add<ServoRecord>(prefix + "/servo", "tactus_msgs/msg/ServoRecord"),
+                            .origin_ns = monotonic_ns()});
+  }
+  log->recorder.start();
+  return log;
+}
+
+Check close_log(Log& log, const std::filesystem::path& file) {
+  if (auto error = log.recorder.stop()) return error;
+  return telemetry::write_bag_metadata(file, log.recorder.log());
+}
+
+/// Taps of a run whose every tick is kept in memory, one of them to be shown; the log has all.
+constexpr std::size_t most_traces = 64;
+
+/// One run as it went, and how time was kept in it.
+struct RealTimeRun {
+  TappingRun run;
+  ServoReport servo;
+};
+
+Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, const RealTimeStreams& streams,
+                             const std::function<void()>& tap_done) {
+  const auto& [settings, prepared] = one;
+  RealTimeRun done;
+  std::vector<TapResult> results;
+  std::vector<std::vector<simulation::Teleoperator::Record>> traces;
+  for (std::size_t tap = 0; tap < prepared.ensemble.size(); ++tap) {
+    auto made = RealTimeTap::make(prepared.ensemble.tap(tap), prepared.observation_s, streams);
+    if (!made) return made.error();
+    RealTimeTap& running = **made;
+    const auto report = run_servo(prepared.servo, [&running](const Tick& tick) noexcept { return running.step(tick); });
+    if (!report) return report.error();
+    done.servo.add(*report);
+    results.push_back(running.result());
+    if (traces.size() < most_traces) traces.push_back(running.trace());
+    tap_done();
+  }
+  const std::vector<TapResult> kept(results.begin(), results.begin() + static_cast<std::ptrdiff_t>(traces.size()));
+  const std::size_t shown = simulation::median_tap(kept);
+  done.run = {.settings = settings,
+              .metrics = simulation::summarise(results),
+              .observation_s = prepared.observation_s,
+              .first_touch_s = results[shown].first_touch_s,
+              .trace = std::move(traces[shown])};
+  return done;
+}
+
+std::string json_of(const simulation::Request& request, const std::vector<TappingRun>& runs,
+                    const std::vector<ServoReport>& servos) {
+  auto document = nlohmann::ordered_json::parse(simulation::tapping_json(request, runs));
+  document["clock"] = "real";
+  for (std::size_t i = 0; i < servos.size(); ++i) {
+    document["runs"][i]["servo"] = nlohmann::ordered_json::parse(servo_json(servos[i]));
+  }
+  return document.dump(2) + "\n";
+}
+
+/// What the system refused, in words.
+std::string losses_of(const ServoReport& report) {
+  std::string text;
+  for (const Right& right : report.rights) {
+    if (right.held) continue;
+    text +=
+        "Not granted: " + right.what + " (" + right.why + "): " + right.means + ".\n    remedy: " + right.remedy + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, const RealTimeOptions& options,
+                                         const simulation::Progress& progress) {
+  if (auto error = refuse_other_kinds(request)) return *std::move(error);
+  const auto cases = simulation::prepare_cases<TappingParams, Prepared>(
+      request, [&options](const TappingParams& params) -> Result<Prepared> {
+        ServoThreadParams servo = options.servo;
+        servo.rate_Hz = params.servo.rate_Hz;
+        if (auto error = check_servo_thread(servo)) return *std::move(error);
+        auto ensemble = TappingEnsemble::make(params);
+        if (!ensemble) return ensemble.error();
+        return Prepared{*std::move(ensemble), params.task.observation_s, servo};
+      });
+  if (!cases) return cases.error();
+  if (auto error = refuse_long_runs(*cases)) return *std::move(error);
+
+  std::unique_ptr<Log> log;
+  if (options.log) {
+    auto opened = open_log(request, options, *cases);
+    if (!opened) return opened.error();
+    log = *std::move(opened);
+  }
+
+  std::size_t taps = 0;
+  for (const auto& one : cases->all) taps += one.prepared.ensemble.size();
+  std::size_t taps_done = 0;
+  const auto tap_done = [&] { progress(static_cast<double>(++taps_done) / static_cast<double>(taps)); };
+  const ProcessRights process;  // once for all taps
+  std::vector<TappingRun> runs;
+  std::vector<ServoReport> servos;
+  ServoReport all;
+  for (std::size_t i = 0; i < cases->all.size(); ++i) {
+    auto done = run_taps(cases->all[i], log ? log->streams[i] : RealTimeStreams{}, tap_done);
+    if (!done) return done.error();
+    all.add(done->servo);
+    runs.push_back(std::move(done->run));
+    servos.push_back(std::move(done->servo));
+  }
+  Check log_error;
+  if (log) log_error = close_log(*log, *options.log);
+
+  const report::Table table = simulation::tapping_table(runs);
+  const report::Table timing = timing_table(all);
+  const report::Table late = late_ticks_table(all);
+  std::vector<report::Figure> figures = simulation::tapping_figures(runs);
+  figures.push_back(timing_figure(all));
+  report::Page page = simulation::tapping_page(request, table, figures);
+  page.heading("How time was kept");
+  page.paragraph(
+      "The sites ran on a servo thread at deadlines of the real clock, the devices were simulated beside them.");
+  page.table(timing);
+  page.table(late);
+  page.table(rights_table(all));
+  simulation::add_provenance(page, request, cases->first_configuration);
+  std::string text = table.to_text() + "\n" + timing.to_text() + "\n" + late.to_text() + losses_of(all);
+  return RealTimeOutcome{.outcome = {.text = std::move(text),
+                                     .json = json_of(request, runs, servos),
+                                     .html = page.to_html(),
+                                     .figures = std::move(figures),
+                                     .traces = {},
+                                     .configuration = cases->first_configuration},
+                         .log = std::move(log_error)};
+}
+
+}  // namespace tactus::runtime

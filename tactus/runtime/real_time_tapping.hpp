@@ -1,0 +1,41 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/runtime/servo_thread.hpp>
+#include <tactus/simulation/experiment.hpp>
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace tactus::runtime {
+
+/// How an experiment is to be run in real time.
+struct RealTimeOptions {
+  ServoThreadParams servo;                   ///< the rate is that of the experiment
+  std::optional<std::filesystem::path> log;  ///< file that takes every tick while it runs; its folder is made
+  std::map<std::string, std::string> about;  ///< for the log, beside the configuration
+};
+
+/// What came out, and what became of the log.
+struct RealTimeOutcome {
+  simulation::Outcome outcome;
+  Check log;  ///< why it is not whole, where it is not
+};
+
+/// Most taps of one run, and most runs, in real time: each tap takes the better part of a second.
+inline constexpr std::size_t most_real_time_taps = 1000;
+inline constexpr std::size_t most_real_time_runs = 64;
+
+/// The experiment `tapping` in real time, through a servo thread and simulated devices: the table and report that
+/// virtual time makes, and how time was kept. The outcome has no traces: the log has every tick of every tap, on the
+/// topics
+/// `/teleoperator` and `/servo`, with several runs `/run_1/teleoperator` and so on.
+///
+/// Errors: another kind of experiment, more taps or runs than the limits, those of the experiment and of the log. A log
+/// that fails on the way stops nothing.
+Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, const RealTimeOptions& options,
+                                         const simulation::Progress& progress);
+
+}  // namespace tactus::runtime

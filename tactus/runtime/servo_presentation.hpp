@@ -1,0 +1,27 @@
+#pragma once
+
+#include <tactus/report/figure.hpp>
+#include <tactus/report/table.hpp>
+#include <tactus/runtime/servo_thread.hpp>
+
+#include <string>
+
+/// How a servo thread kept time, for every reader.
+namespace tactus::runtime {
+
+/// Lateness and duration in us: median, p90, p99, p99.9, worst.
+report::Table timing_table(const ServoReport& report);
+
+/// Late ticks by cause, ours and the machine's.
+report::Table late_ticks_table(const ServoReport& report);
+
+/// What was asked of the system, and what is lost where it was refused.
+report::Table rights_table(const ServoReport& report);
+
+/// How many ticks began, and how many steps took, how long: both histograms on logarithmic axes.
+report::Figure timing_figure(const ServoReport& report);
+
+/// All of it as one JSON object.
+std::string servo_json(const ServoReport& report);
+
+}  // namespace tactus::runtime

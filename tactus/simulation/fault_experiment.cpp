@@ -1,0 +1,194 @@
+#include <tactus/configuration/json_schema.hpp>
+#include <tactus/configuration/reference.hpp>
+#include <tactus/configuration/toml_writer.hpp>
+#include <tactus/simulation/fault_experiment.hpp>
+#include <tactus/simulation/fault_table.hpp>
+#include <tactus/simulation/presentation.hpp>
+
+#include <algorithm>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus::simulation {
+
+namespace {
+
+constexpr std::string_view title = "Faults survived";
+
+std::string of(std::int64_t part, std::int64_t whole) { return std::to_string(part) + " of " + std::to_string(whole); }
+
+/// What a loose monitor is there to show is that the runs diverge.
+bool as_expected(const FaultTally& tally) {
+  return tally.row.monitored ? tally.survived == tally.tried : tally.diverged == tally.tried;
+}
+
+report::Table outcome_table(const std::vector<FaultTally>& tallies) {
+  using Align = report::Column::Align;
+  report::Table table({{"fault", "", Align::left},
+                       {"survived"},
+                       {"diverged"},
+                       {"peak force", "N"},
+                       {"energy given", "J"},
+                       {"stopped"},
+                       {"time to stop, most", "ms"},
+                       {"step on resuming", "N"},
+                       {"detected"},
+                       {"after", "ticks"}},
+                      std::string(title) + " (virtual time)");
+  for (const FaultTally& tally : tallies) {
+    table.add_row({std::string(tally.row.name), of(tally.survived, tally.tried), std::to_string(tally.diverged),
+                   report::number(tally.worst.peak_force_N, 3), report::number(tally.worst.given_J, 3),
+                   std::to_string(tally.stopped),
+                   tally.stopped > 0 ? report::number(1e3 * tally.time_to_stop_most_s, 4) : "-",
+                   report::number(tally.worst.resume_step_N, 3), std::to_string(tally.detected),
+                   tally.detected > 0 ? report::number(tally.detection_ticks_median, 4) : "-"});
+  }
+  return table;
+}
+
+report::Table rule_table(const std::vector<FaultTally>& tallies) {
+  using Align = report::Column::Align;
+  report::Table table({{"fault", "", Align::left},
+                       {"not finite"},
+                       {"stale applied"},
+                       {"steps above rate"},
+                       {"above force limit"},
+                       {"active without arming"}},
+                      "What must never happen, counted over all runs");
+  for (const FaultTally& tally : tallies) {
+    const FaultOutcome& worst = tally.worst;
+    table.add_row({std::string(tally.row.name), std::to_string(worst.not_finite), std::to_string(worst.stale_applied),
+                   std::to_string(worst.steps_above_rate), std::to_string(worst.forces_above_limit),
+                   std::to_string(worst.active_without_arming)});
+  }
+  return table;
+}
+
+std::string summary(const FaultsParams& params, const std::vector<FaultTally>& tallies) {
+  std::int64_t survived = 0, tried = 0;
+  std::string text;
+  for (const FaultTally& tally : tallies) {
+    if (!tally.row.monitored) {
+      text += std::string(tally.row.name) + ": must diverge; " + of(tally.diverged, tally.tried) + " did.\n";
+      continue;
+    }
+    survived += tally.survived;
+    tried += tally.tried;
+  }
+  const FaultTally& clean = tallies.front();
+  return "Survived " + of(survived, tried) + " runs. Rate limit a tick: " +
+         report::number(params.control.gate.rate_limit_N_per_s / params.servo.rate_Hz, 3) +
+         " N. Clean data: " + std::to_string(clean.detected) + " trips in " +
+         report::number(clean.simulated_s / 3600.0, 3) + " h of virtual time.\n" + text;
+}
+
+std::string json_of(const Request& request, const FaultsParams& params, const std::vector<FaultTally>& tallies) {
+  using Json = nlohmann::ordered_json;
+  Json document{{"experiment", request.name},
+                {"kind", "faults"},
+                {"command", request.command},
+                {"time", "virtual"},
+                {"seeds", params.task.seeds},
+                {"rate_limit_N_per_tick", params.control.gate.rate_limit_N_per_s / params.servo.rate_Hz},
+                {"rows", Json::array()}};
+  for (const FaultTally& tally : tallies) {
+    const FaultOutcome& worst = tally.worst;
+    document["rows"].push_back({{"fault", tally.row.name},
+                                {"injected", tally.row.injected},
+                                {"expected", tally.row.expected},
+                                {"monitor", tally.row.monitored ? "on" : "as loose as its bounds allow"},
+                                {"as_expected", as_expected(tally)},
+                                {"tried", tally.tried},
+                                {"survived", tally.survived},
+                                {"diverged", tally.diverged},
+                                {"peak_force_N", worst.peak_force_N},
+                                {"energy_given_J", worst.given_J},
+                                {"stopped", tally.stopped},
+                                {"time_to_stop_median_s", tally.time_to_stop_median_s},
+                                {"time_to_stop_most_s", tally.time_to_stop_most_s},
+                                {"step_on_resuming_N", worst.resume_step_N},
+                                {"detected", tally.detected},
+                                {"detection_median_ticks", tally.detection_ticks_median},
+                                {"detection_most_ticks", tally.detection_ticks_most},
+                                {"simulated_s", tally.simulated_s},
+                                {"not_finite_outputs", worst.not_finite},
+                                {"stale_applied", worst.stale_applied},
+                                {"steps_above_rate_limit", worst.steps_above_rate},
+                                {"forces_above_limit", worst.forces_above_limit},
+                                {"active_without_arming", worst.active_without_arming}});
+  }
+  return document.dump(2) + "\n";
+}
+
+/// Survived runs by fault, in percent.
+report::Figure figure_of(const std::vector<FaultTally>& tallies) {
+  report::Panel panel{.title = {},
+                      .x = {.label = "share of runs", .unit = "%", .lower = 0.0, .upper = 100.0},
+                      .y = {.label = "fault"},
+                      .lines = {},
+                      .rules = {}};
+  report::Bars survived{.name = "survived", .lengths = {}}, diverged{.name = "diverged", .lengths = {}, .colour = 1};
+  for (const FaultTally& tally : tallies) {
+    const auto percent = [&tally](std::int64_t part) {
+      return 100.0 * static_cast<double>(part) / static_cast<double>(tally.tried);
+    };
+    panel.y.categories.emplace_back(tally.row.name);
+    survived.lengths.push_back(percent(tally.survived));
+    diverged.lengths.push_back(percent(tally.diverged));
+  }
+  panel.bars = {survived, diverged};
+  return {.title = std::string(title),
+          .caption =
+              "Share of the runs of each fault in which everything that the table asks for was kept, and in "
+              "which the master's motor gave more energy than a passive one could.",
+          .columns = 1,
+          .panels = {panel}};
+}
+
+}  // namespace
+
+std::string FaultExperiment::schema() const {
+  return configuration::json_schema<FaultsParams>("tactus experiment: faults");
+}
+
+std::string FaultExperiment::reference() const {
+  return configuration::reference_markdown<FaultsParams>("Experiment `faults`");
+}
+
+Result<Outcome> FaultExperiment::run(const Request& request, const Progress& progress) const {
+  if (!request.variations.empty()) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = request.variations.front().key,
+                 .message = "the table of faults varies the faults only: use --set for a key",
+                 .place = "--vary"};
+  }
+  const auto params = request.document.read<FaultsParams>();
+  if (!params) return params.error();
+  const auto tallies = run_faults(*params, progress);
+  if (!tallies) return request.document.locate(tallies.error());
+
+  const report::Table outcomes = outcome_table(*tallies), rules = rule_table(*tallies);
+  const std::string said = summary(*params, *tallies);
+  std::vector<report::Figure> figures{figure_of(*tallies)};
+  report::Page page(request.name + ": " + std::string(title));
+  page.paragraph(
+      "Two supervised sites in virtual time, a person who taps a stiff wall, and one fault in each run, drawn by its "
+      "seed. A witness outside of the sites reads what reaches the motors and what was sent when.");
+  page.paragraph(said);
+  page.table(outcomes);
+  page.table(rules);
+  page.figure(figures.front());
+  std::vector<std::pair<std::string, std::string>> expected;
+  for (const FaultTally& tally : *tallies) {
+    expected.emplace_back(tally.row.name, std::string(tally.row.injected) + ": " + std::string(tally.row.expected));
+  }
+  page.definitions(expected);
+  add_provenance(page, request, configuration::to_toml(*params));
+  return Outcome{.text = outcomes.to_text() + "\n" + rules.to_text() + "\n" + said,
+                 .json = json_of(request, *params, *tallies),
+                 .html = page.to_html(),
+                 .figures = std::move(figures)};
+}
+
+}  // namespace tactus::simulation

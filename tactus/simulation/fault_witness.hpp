@@ -1,0 +1,99 @@
+#pragma once
+
+#include <tactus/simulation/fault_run.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace tactus::simulation {
+
+/// Watches the force at one motor. It knows the limits from the file and nothing of the gate.
+class ForceWitness {
+ public:
+  ForceWitness(double limit_N, double rate_N_per_s, double tick_s)
+      : limit_N_(limit_N), most_N_(rate_N_per_s * tick_s) {}
+
+  /// The force of this tick; `excused` where a process just died or started, which no gate can smooth.
+  void see(double force_N, bool excused, FaultOutcome& outcome) {
+    if (!std::isfinite(force_N)) {
+      ++outcome.not_finite;
+      return;
+    }
+    step_N_ = excused ? 0.0 : std::fabs(force_N - before_N_);
+    // A difference of two sums of steps: the last digits of the largest force.
+    if (step_N_ > most_N_ + 1e-12 * limit_N_) ++outcome.steps_above_rate;
+    if (std::fabs(force_N) > limit_N_) ++outcome.forces_above_limit;
+    outcome.peak_force_N = std::max(outcome.peak_force_N, std::fabs(force_N));
+    before_N_ = force_N;
+  }
+  [[nodiscard]] double step_N() const { return step_N_; }
+
+ private:
+  double limit_N_;
+  double most_N_;
+  double before_N_ = 0.0;
+  double step_N_ = 0.0;
+};
+
+/// Watches what one site applies of the packets of the other: remembers when each was sent.
+class PacketWitness {
+ public:
+  explicit PacketWitness(double longest_age_s, double tick_s)
+      : longest_ticks_(static_cast<std::int64_t>(longest_age_s / tick_s) + 1) {}
+
+  void sent(const control::Packet& packet, std::int64_t tick) {
+    if (packet.session != session_) {
+      session_ = packet.session;
+      starts_.push_back({packet.session, {}});
+    }
+    starts_.back().ticks.push_back(tick);
+  }
+  void applied(const control::SiteRecord& record, std::int64_t tick, FaultOutcome& outcome) {
+    if (!record.fresh) return;
+    const std::int64_t sent_tick = find(record.applied_session, record.applied_sequence);
+    if (sent_tick <= newest_ || tick - sent_tick > longest_ticks_) ++outcome.stale_applied;
+    newest_ = std::max(newest_, sent_tick);
+  }
+  /// The receiver starts anew, and with it what it may apply.
+  void restart() { newest_ = -1; }
+
+ private:
+  struct Session {
+    std::int64_t session;
+    std::vector<std::int64_t> ticks;  ///< of each sequence number, from 1
+  };
+  [[nodiscard]] std::int64_t find(std::int64_t session, std::int64_t sequence) const {
+    for (const Session& one : starts_) {
+      const bool there = sequence >= 1 && static_cast<std::size_t>(sequence) <= one.ticks.size();
+      if (one.session == session && there) return one.ticks[static_cast<std::size_t>(sequence) - 1];
+    }
+    return -1;  // applied what nobody sent
+  }
+
+  std::int64_t longest_ticks_;
+  std::int64_t session_ = 0;
+  std::int64_t newest_ = -1;
+  std::vector<Session> starts_;
+};
+
+/// Counts the energy that a motor really gave, from its true position, and its largest rise.
+class EnergyWitness {
+ public:
+  void see(double force_N, double position_m, FaultOutcome& outcome) {
+    if (started_) given_J_ += force_N * (position_m - before_m_);
+    started_ = true;
+    before_m_ = position_m;
+    least_J_ = std::min(least_J_, given_J_);
+    outcome.given_J = std::max(outcome.given_J, given_J_ - least_J_);
+  }
+
+ private:
+  bool started_ = false;
+  double before_m_ = 0.0;
+  double given_J_ = 0.0;
+  double least_J_ = 0.0;
+};
+
+}  // namespace tactus::simulation

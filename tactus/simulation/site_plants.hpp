@@ -1,0 +1,130 @@
+#pragma once
+
+#include <tactus/mechanics/cable_driven_master.hpp>
+#include <tactus/mechanics/electric_slave.hpp>
+#include <tactus/mechanics/operator.hpp>
+#include <tactus/simulation/clock.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+/// What stands at each site of a simulated teleoperator. A tick of a plant: `measure`, then `begin_tick` with the
+/// command that follows, then its substeps in order. A command acts after the computation delay; until then the one
+/// before it does. All of it is real-time safe but `make`.
+namespace tactus::simulation {
+
+/// The master device and the person who holds it.
+class MasterPlant {
+ public:
+  struct Reading {
+    double motor_position_m = 0.0;
+    double hand_force_N = 0.0;  ///< positive when the hand pushes the handle toward the environment
+    double grip = 1.0;          ///< how firmly the person holds, over nominal
+  };
+  struct Command {
+    double motor_force_N = 0.0;   ///< positive toward the environment
+    double handle_force_N = 0.0;  ///< of the actuator on the handle, same sign
+  };
+
+  /// At rest with every mass at `start_m`. Errors name `master` and `operator`.
+  static Result<MasterPlant> make(const mechanics::CableDrivenMaster::Params& device,
+                                  const mechanics::Operator::Params& person, const Clock& clock, double start_m);
+
+  /// What the sensors read at this tick. The person changes the grip here.
+  Reading measure() noexcept;
+  /// The person intends to be at `path_m` now and at `path_at_next_tick_m` then.
+  void begin_tick(const Command& command, double path_m, double path_at_next_tick_m) noexcept {
+    next_ = command;
+    aim_ = person_.step({.path_m = path_m,
+                         .path_at_next_tick_m = path_at_next_tick_m,
+                         .handle_position_m = device_.mechanism().tip_position_m()});
+    ++ticks_;
+  }
+  /// The person holds the handle as that of `other` is held, from the next substep on, and the other way round.
+  void exchange_grip(MasterPlant& other) noexcept {
+    std::swap(grip_, other.grip_);
+    device_.hold(mechanics::scaled(grip_, grip_factor_));
+  }
+  void substep(int index) noexcept {
+    if (index == clock_.late_substeps) command_ = next_;
+    const double middle_s = (index + 0.5) * clock_.substep_s;
+    device_.step({.commanded_force_N = command_.motor_force_N,
+                  .commanded_handle_force_N = command_.handle_force_N,
+                  .grip_position_m = aim_.position_m + middle_s * aim_.velocity_m_per_s,
+                  .grip_velocity_m_per_s = aim_.velocity_m_per_s});
+  }
+
+ private:
+  MasterPlant(const mechanics::CableDrivenMaster& device, const mechanics::Operator& person,
+              const mechanics::Operator::Params& params, const Clock& clock)
+      : device_(device), person_(person), clock_(clock), grip_(params.grip), grip_change_(params.grip_change) {}
+
+  mechanics::CableDrivenMaster device_;
+  mechanics::Operator person_;
+  Clock clock_;
+  mechanics::LinearSpring::Params grip_;  ///< before any change
+  mechanics::Operator::GripChange grip_change_;
+  double grip_factor_ = 1.0;
+  std::int64_t ticks_ = 0;
+  Command command_;
+  Command next_;
+  mechanics::Operator::Output aim_;
+};
+
+/// The slave device before its wall.
+class SlavePlant {
+ public:
+  using Reading = mechanics::ElectricSlave::Reading;
+  /// What happened at the tip in a tick.
+  struct Contact {
+    double sum_N = 0.0;            ///< of the true force over the substeps so far
+    double peak_N = 0.0;           ///< of the largest substep
+    bool touched = false;          ///< the tip met the wall
+    int touched_substep = 0;       ///< in which substep first
+    double touched_after_s = 0.0;  ///< when, from the begin of that substep
+  };
+
+  /// At rest with every mass at `start_m`. Errors name `slave` and `environment`.
+  static Result<SlavePlant> make(const mechanics::ElectricSlave::Params& device,
+                                 const mechanics::Environment::Params& environment, const Clock& clock, double start_m);
+
+  /// What the sensors read at this tick.
+  Reading measure() noexcept { return device_.measure(); }
+  /// `command_N` is positive toward the environment.
+  void begin_tick(double command_N) noexcept {
+    next_N_ = command_N;
+    contact_ = {};
+  }
+  void substep(int index) noexcept {
+    if (index == clock_.late_substeps) command_N_ = next_N_;
+    const auto contact = device_.step(command_N_);
+    contact_.sum_N += contact.contact_force_N;
+    contact_.peak_N = std::max(contact_.peak_N, contact.contact_force_N);
+    if (contact.touched && !contact_.touched) {
+      contact_.touched = true;
+      contact_.touched_substep = index;
+      contact_.touched_after_s = contact.touched_after_s;
+    }
+  }
+  /// Faces the wall of `other` from the next substep on, and the other way round.
+  void exchange_wall(SlavePlant& other) noexcept {
+    const mechanics::Environment wall = device_.environment();
+    device_.face(other.device_.environment());
+    other.device_.face(wall);
+  }
+  /// Since `begin_tick`.
+  [[nodiscard]] const Contact& contact() const noexcept { return contact_; }
+  [[nodiscard]] double tip_position_m() const noexcept { return device_.mechanism().tip_position_m(); }
+
+ private:
+  SlavePlant(const mechanics::ElectricSlave& device, const Clock& clock) : device_(device), clock_(clock) {}
+
+  mechanics::ElectricSlave device_;
+  Clock clock_;
+  double command_N_ = 0.0;
+  double next_N_ = 0.0;
+  Contact contact_;
+};
+
+}  // namespace tactus::simulation

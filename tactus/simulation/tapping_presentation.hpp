@@ -1,0 +1,23 @@
+#pragma once
+
+#include <tactus/report/page.hpp>
+#include <tactus/report/table.hpp>
+#include <tactus/simulation/tapping_figures.hpp>
+
+#include <string>
+#include <vector>
+
+/// Taps for every reader, whatever clock they ran on.
+namespace tactus::simulation {
+
+/// A row for each run.
+report::Table tapping_table(const std::vector<TappingRun>& runs);
+
+/// `{"experiment": ..., "runs": [{"set": ..., "metrics": ...}]}`
+std::string tapping_json(const Request& request, const std::vector<TappingRun>& runs);
+
+/// The report but for its end, `add_provenance`.
+report::Page tapping_page(const Request& request, const report::Table& table,
+                          const std::vector<report::Figure>& figures);
+
+}  // namespace tactus::simulation

@@ -1,0 +1,72 @@
+#include <string>
+#include <vector>
+
+#include "tests/cli/command.hpp"
+#include <nlohmann/json.hpp>
+
+namespace tactus::cli {
+namespace {
+
+using RealTime = Command;
+using Words = std::vector<std::string>;
+using Json = nlohmann::json;
+
+/// Two taps, well under a second each.
+const Words short_taps{"--realtime", "--set", "task.taps=2", "--set", "task.observation_s=0.15", "--priority", "10"};
+
+Words run(const std::string& file, const Words& more) {
+  Words all{"run", file};
+  all.insert(all.end(), more.begin(), more.end());
+  all.insert(all.end(), short_taps.begin(), short_taps.end());
+  return all;
+}
+
+TEST_F(RealTime, TheTappingExperimentGivesItsTableAndHowTimeWasKept) {
+  const Outcome outcome = tactus(run(quick_experiment(), {}));
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* word : {"verdict", "lateness, from deadline to begin", "duration of the step", "late ticks", "ours",
+                           "the machine's", "stalled"}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  }
+  EXPECT_EQ(files(), Words{"quick.toml"}) << "nothing is left behind without --out";
+}
+
+TEST_F(RealTime, EveryTickOfEveryTapIsInTheLogWhichOtherVerbsRead) {
+  const Outcome outcome = tactus(run(quick_experiment(), {"--out", "results", "--json"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json document = Json::parse(outcome.out);
+  EXPECT_EQ(document["clock"], "real");
+  const Json& servo = document["runs"][0]["servo"];
+  EXPECT_EQ(document["runs"][0]["metrics"]["taps"], 2);
+  const Outcome log = tactus({"export", "results/log", "--to", "mat", "--json"});
+  ASSERT_EQ(log.status, 0) << log.err;
+  for (const Json& topic : Json::parse(log.out)["topics"]) {
+    EXPECT_EQ(topic["missing"], 0);
+    if (topic["topic"] == "/servo") {
+      EXPECT_EQ(topic["messages"].get<int>(), servo["ticks"].get<int>() - 2) << "the last step of a tap has no record";
+    }
+  }
+  EXPECT_NE(content("results/report.html").find("How time was kept"), std::string::npos);
+}
+
+TEST_F(RealTime, OnlyTappingAndOnlyAShortOneRunsInRealTime) {
+  const std::string contest = std::string(TACTUS_EXPERIMENT_FOLDER) + "/contest.toml";
+  const Outcome other = tactus({"run", contest, "--realtime"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("task.kind"), std::string::npos) << other.err;
+  const Outcome endless =
+      tactus({"run", quick_experiment(), "--realtime", "--set", "task.taps=1001", "--out", "results"});
+  EXPECT_EQ(endless.status, 2);
+  EXPECT_NE(endless.err.find("task.taps"), std::string::npos) << endless.err;
+  EXPECT_EQ(files(), Words{"quick.toml"});
+}
+
+TEST_F(RealTime, HowToKeepTimeIsNoQuestionInVirtualTime) {
+  EXPECT_EQ(tactus({"run", quick_experiment(), "--core", "0"}).status, 2);
+  const Outcome spin = tactus(run(quick_experiment(), {"--spin-s", "0.0004"}));
+  EXPECT_EQ(spin.status, 2);
+  EXPECT_NE(spin.err.find("spin_s"), std::string::npos) << spin.err;
+}
+
+}  // namespace
+}  // namespace tactus::cli

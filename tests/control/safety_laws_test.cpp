@@ -1,0 +1,87 @@
+#include <tactus/control/force_sensor_check.hpp>
+#include <tactus/control/message_follower.hpp>
+#include <tactus/control/safety_gate.hpp>
+#include <tactus/control/site_supervisor.hpp>
+#include <tactus/control/watchdog.hpp>
+
+#include "tests/laws.hpp"
+
+namespace tactus::laws {
+
+/// An output that is a word or a yes.
+template <class Word>
+struct WordAsDouble {
+  using Row = std::array<double, 1>;
+  static Row to(const Word& word) { return {static_cast<double>(word)}; }
+};
+template <>
+struct Doubles<bool> : WordAsDouble<bool> {};
+template <>
+struct Doubles<control::EncoderFault> : WordAsDouble<control::EncoderFault> {};
+template <>
+struct Doubles<control::PacketVerdict> : WordAsDouble<control::PacketVerdict> {};
+template <>
+struct Doubles<control::SiteState> : WordAsDouble<control::SiteState> {};
+
+template <>
+struct Doubles<control::Watchdog::Input> {
+  using Row = std::array<double, 2>;
+  static control::Watchdog::Input from(const Row& row) {
+    return {.heard = row[0] > 0.9, .elapsed_ticks = row[1] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::Packet> {
+  using Row = std::array<double, 4>;
+  static control::Packet from(const Row& row) {
+    return {.session = row[0] > 0.9 ? 2 : 1,
+            .sequence = row[1] > 0.0 ? 5 : 7,
+            .age_s = row[2],
+            .message = {.position_m = row[3]}};
+  }
+};
+template <>
+struct Doubles<control::Arrival> {
+  using Row = std::array<double, 6>;
+  static Row to(const control::Arrival& arrival) {
+    const auto& message = arrival.message;
+    return {message.position_m, message.velocity_m_per_s, message.force_N,
+            message.wave,       message.energy_J,         arrival.fresh ? 1.0 : 0.0};
+  }
+};
+template <>
+struct Doubles<control::MessageFollower::Input> {
+  using Row = std::array<double, 7>;
+  static control::MessageFollower::Input from(const Row& row) {
+    return {.arrival = {.message = {row[0], row[1], row[2], row[3], row[4]}, .fresh = row[5] > -0.5},
+            .following = row[6] > -0.9};
+  }
+};
+template <>
+struct Doubles<control::SiteSupervisor::Input> {
+  using Row = std::array<double, 6>;
+  static control::SiteSupervisor::Input from(const Row& row) {
+    return {.requests = {.align = row[0] > 0.5, .arm = row[1] > 0.5, .clear = row[1]<-0.5, .dead_man = row[2]> 0.0},
+            .heard = true,
+            .session = 1,
+            .peer = row[3] > 0.0 ? control::SiteState::armed : control::SiteState::active,
+            .peer_armings = row[4] > 0.0 ? 1 : 2,
+            .silent = row[5] > 0.95,
+            .fault = row[5] < -0.98};
+  }
+};
+template <>
+struct Subject<control::SiteSupervisor> {
+  static constexpr double dt_s = 200e-6;
+  static std::vector<control::SiteSupervisor::Params> parameters() {
+    return {{control::SiteRole::master}, {control::SiteRole::slave}};
+  }
+  static void admit(control::SiteSupervisor::Input&) {}
+};
+
+using SafetyElements = ::testing::Types<control::ForceGate, control::EncoderCheck, control::ForceSensorCheck,
+                                        control::PassivityMonitor, control::Watchdog, control::SafetyGate,
+                                        control::PacketJudge, control::MessageFollower, control::SiteSupervisor>;
+INSTANTIATE_TYPED_TEST_SUITE_P(Safety, ElementLaws, SafetyElements);
+
+}  // namespace tactus::laws

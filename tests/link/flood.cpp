@@ -1,0 +1,133 @@
+// flood_link [PACKETS [PER_SECOND]]: an encrypted link of two sites at 5 kHz, and an attacker on the way who sends so
+// many hostile packets to the slave, in windows of a second that alternate with quiet ones. Prints what was accepted,
+// the slave's time for receiving and sending in a tick, and its memory. Status 1 where anything was accepted, the link
+// did not go on, or memory grew.
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+#include <vector>
+
+#include <malloc.h>
+#include <tests/link/between.hpp>
+
+namespace {
+
+using namespace tactus::link;
+
+constexpr std::int64_t tick_ns = 200'000;
+constexpr std::int64_t window_ns = 1'000'000'000;
+
+/// Quantiles of the time of a tick in us.
+void print_times(const char* name, std::vector<double> times_us) {
+  if (times_us.empty()) return;
+  std::sort(times_us.begin(), times_us.end());
+  const auto at = [&](double share) {
+    return times_us[static_cast<std::size_t>(share * static_cast<double>(times_us.size() - 1))];
+  };
+  std::printf("%-12s %9zu ticks   p50 %7.2f   p99 %7.2f   p99.9 %7.2f us\n", name, times_us.size(), at(0.5), at(0.99),
+              at(0.999));
+}
+
+/// A site that ticks until it is told to stop.
+class TickingSite {
+ public:
+  TickingSite(Endpoint& endpoint, const std::atomic<bool>& flooded, std::size_t most_ticks)
+      : endpoint_(endpoint), flooded_(flooded) {
+    for (auto* times : {&quiet_us, &flooded_us}) times->reserve(most_ticks);
+    thread_ = std::thread([this] { run(); });
+  }
+  void stop() {
+    stop_ = true;
+    thread_.join();
+  }
+  std::vector<double> quiet_us, flooded_us;
+  std::uint64_t wrong = 0;  ///< messages that nobody sent
+
+ private:
+  void run() {
+    std::int64_t deadline_ns = monotonic_ns();
+    while (!stop_) {
+      deadline_ns = std::max(deadline_ns + tick_ns, monotonic_ns());
+      const timespec deadline{.tv_sec = deadline_ns / 1'000'000'000, .tv_nsec = deadline_ns % 1'000'000'000};
+      clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr);
+      const std::int64_t began_ns = monotonic_ns();
+      const auto received = testing::tick(endpoint_, 1.0);
+      const double took_us = static_cast<double>(monotonic_ns() - began_ns) * 1e-3;
+      auto& times = flooded_ ? flooded_us : quiet_us;
+      if (times.size() < times.capacity()) times.push_back(took_us);
+      if (received.heard && received.arrival.message.position_m != 1.0) ++wrong;
+    }
+  }
+  Endpoint& endpoint_;
+  const std::atomic<bool>& flooded_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  const long long packets = count > 1 ? std::atoll(arguments[1]) : 10'000'000;
+  const double per_second = count > 2 ? std::atof(arguments[2]) : 50'000.0;
+  testing::Between between;
+  if (packets <= 0 || !(per_second > 0.0) || !between.meet()) {
+    std::fprintf(stderr, "flood_link: the sites did not meet; use: flood_link [PACKETS [PER_SECOND]]\n");
+    return 2;
+  }
+  const auto most_ticks = static_cast<std::size_t>(static_cast<double>(packets) / per_second * 5000.0 * 1.5) + 10'000;
+  std::atomic<bool> flooded{false};
+  TickingSite slave(*between.slave, flooded, most_ticks);
+  TickingSite master(*between.master, flooded, 1);
+
+  long long sent = 0;
+  std::size_t memory_before = 0;
+  double flooded_s = 0.0;
+  std::int64_t last_ns = monotonic_ns(), window_end_ns = last_ns + 2 * window_ns;
+  while (sent < packets) {
+    between.pass_on();
+    const std::int64_t now_ns = monotonic_ns();
+    if (flooded) flooded_s += static_cast<double>(now_ns - last_ns) * 1e-9;
+    last_ns = now_ns;
+    if (now_ns >= window_end_ns) {
+      if (memory_before == 0) memory_before = mallinfo2().uordblks;
+      flooded = !flooded;
+      window_end_ns = now_ns + window_ns;
+    }
+    int burst = 0;
+    while (flooded && burst < 64 && static_cast<double>(sent) < flooded_s * per_second && sent < packets) {
+      between.attack();
+      ++sent;
+      ++burst;
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  flooded = false;
+  for (int i = 0; i < 10'000; ++i) {
+    between.pass_on();
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
+  }
+  master.stop();
+  slave.stop();
+
+  const auto counters = between.slave->counters();
+  const std::size_t memory = mallinfo2().uordblks;
+  const bool accepted = counters.secure.opened > between.passed_to_slave || counters.malformed > 0 || slave.wrong > 0 ||
+                        counters.inbound.sessions != 1;
+  const bool went_on = counters.secure.handshakes >= 1 && counters.inbound.applied > 1000;
+  const bool grew = memory > memory_before + 1'000'000;
+  std::printf("hostile packets sent %lld, %.0f a second; refused %llu, passed to the hand-shakes %llu, no room %llu\n",
+              sent, static_cast<double>(sent) / flooded_s, static_cast<unsigned long long>(counters.secure.refused),
+              static_cast<unsigned long long>(counters.secure.handshake_packets),
+              static_cast<unsigned long long>(counters.secure.overflowed));
+  std::printf("accepted: %s; authentic %llu of %llu passed on; sessions %llu, hand-shakes %llu\n",
+              accepted ? "SOME" : "0", static_cast<unsigned long long>(counters.secure.opened),
+              static_cast<unsigned long long>(between.passed_to_slave),
+              static_cast<unsigned long long>(counters.inbound.sessions),
+              static_cast<unsigned long long>(counters.secure.handshakes));
+  std::printf("heap: %zu bytes before, %zu after\n", memory_before, memory);
+  print_times("quiet", slave.quiet_us);
+  print_times("flooded", slave.flooded_us);
+  return accepted || !went_on || grew ? 1 : 0;
+}

@@ -1,0 +1,74 @@
+#include <tactus/link/endpoint.hpp>
+
+#include <cstdint>
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <malloc.h>
+#include <tests/allocation_counter.hpp>
+#include <tests/link/between.hpp>
+
+namespace tactus::link {
+namespace {
+
+class Between : public testing::Between, public ::testing::Test {};
+
+TEST_F(Between, OfAHundredThousandHostilePacketsNoneIsAcceptedAndTheLinkGoesOn) {
+  ASSERT_TRUE(meet());
+  for (int i = 0; i < 4000; ++i) {
+    tick_both();
+    for (int k = 0; k < 25; ++k) attack();
+    slave->receive(monotonic_ns());
+    ASSERT_EQ(last.arrival.message.position_m, 1.0);
+  }
+  const auto counters = slave->counters();
+  EXPECT_LE(counters.secure.opened, passed_to_slave);
+  EXPECT_EQ(counters.malformed, 0U);
+  EXPECT_EQ(counters.inbound.sessions, 1U);
+  EXPECT_EQ(last.session, master->session());
+  EXPECT_GT(counters.secure.refused, 50'000U);
+  const auto applied = counters.inbound.applied;
+  for (int i = 0; i < 100; ++i) tick_both();
+  EXPECT_GT(slave->counters().inbound.applied, applied + 50);
+  // A busy machine may make the master begin another; the attacker completes none.
+  EXPECT_LE(slave->counters().secure.handshakes, master->counters().secure.handshakes);
+}
+
+TEST_F(Between, HostileRecordsOfTheRightTypeCostNoMemory) {
+  ASSERT_TRUE(meet());
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the thread of the hand-shakes comes to rest
+  for (const int kind : {0, 1, 4}) {
+    const auto heard = slave->counters().secure;
+    std::uint64_t allocating = 0;
+    for (int i = 0; i < 1000; ++i) {
+      attack(kind);
+      const std::uint64_t before = laws::allocation_count();
+      slave->receive(monotonic_ns());
+      if (laws::allocation_count() != before) ++allocating;
+    }
+    // The thread of the hand-shakes is counted too, but does not work every time.
+    EXPECT_LT(allocating, 100U) << "kind " << kind;
+    const auto now = slave->counters().secure;
+    EXPECT_GT(now.refused + now.handshake_packets, heard.refused + heard.handshake_packets);
+    EXPECT_EQ(now.opened, heard.opened);
+  }
+}
+
+TEST_F(Between, BeginningsOfHandshakesLeaveNoMemoryBehind) {
+  ASSERT_TRUE(meet());
+  const auto burst = [&] {
+    for (int i = 0; i < 500; ++i) {
+      tick_both();
+      for (int k = 0; k < 4; ++k) attack(5);
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  };
+  burst();
+  const std::size_t before = mallinfo2().uordblks;
+  burst();
+  EXPECT_LT(mallinfo2().uordblks, before + 1'000'000);  // a connection that stayed would cost 50,000
+  EXPECT_LE(slave->counters().secure.handshakes, master->counters().secure.handshakes);
+}
+
+}  // namespace
+}  // namespace tactus::link

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <tactus/link/endpoint.hpp>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace tactus::link::testing {
+
+/// A port of the loopback that was free a moment ago.
+inline std::uint16_t free_port() {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in any{};
+  any.sin_family = AF_INET;
+  any.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(any);
+  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&any), size) != 0 ||
+      getsockname(descriptor, reinterpret_cast<sockaddr*>(&any), &size) != 0) {
+    throw std::runtime_error("no free port");
+  }
+  close(descriptor);
+  return ntohs(any.sin_port);
+}
+
+inline Address loopback(std::uint16_t port) { return Address::parse("127.0.0.1:" + std::to_string(port)).value(); }
+
+inline Key test_key(unsigned char first = 1) {
+  Key key;
+  for (std::size_t i = 0; i < Key::bytes; ++i) key.secret[i] = static_cast<unsigned char>(first + i);
+  return key;
+}
+
+/// Two ends of a link on the loopback, and the ports they use.
+struct Ports {
+  std::uint16_t master = free_port();
+  std::uint16_t slave = free_port();
+};
+
+inline Endpoint open(SiteName site, const Ports& ports, const std::optional<Key>& key) {
+  const bool master = site == SiteName::master;
+  auto endpoint = Endpoint::make({.site = site,
+                                  .peer = loopback(master ? ports.slave : ports.master),
+                                  .listen = loopback(master ? ports.master : ports.slave),
+                                  .key = key});
+  if (!endpoint) throw std::runtime_error(describe(endpoint.error()));
+  return *std::move(endpoint);
+}
+
+/// One tick of a site that tells `position_m`.
+inline Endpoint::Received tick(Endpoint& endpoint, double position_m) {
+  const std::int64_t now_ns = monotonic_ns();
+  const auto received = endpoint.receive(now_ns);
+  endpoint.send({.position_m = position_m}, Standing::active, 1, now_ns);
+  return received;
+}
+
+/// Ticks both ends every 200 µs until `done` says so. False after `longest_s`.
+inline bool tick_until(Endpoint& master, Endpoint& slave, const std::function<bool()>& done, double longest_s = 10.0) {
+  const std::int64_t end_ns = monotonic_ns() + static_cast<std::int64_t>(longest_s * 1e9);
+  while (monotonic_ns() < end_ns) {
+    tick(master, 1.0);
+    tick(slave, 2.0);
+    if (done()) return true;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  return false;
+}
+
+inline bool meet(Endpoint& master, Endpoint& slave) {
+  return tick_until(master, slave,
+                    [&] { return master.counters().inbound.applied > 3 && slave.counters().inbound.applied > 3; });
+}
+
+}  // namespace tactus::link::testing

@@ -1,0 +1,196 @@
+#include <tactus/runtime/real_time_tap.hpp>
+#include <tactus/simulation/tapping.hpp>
+#include <tactus/telemetry/log_reader.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+#include <vector>
+
+#include "tests/scratch_path.hpp"
+#include <gtest/gtest.h>
+
+namespace tactus::runtime {
+namespace {
+
+using simulation::TappingEnsemble;
+using simulation::TappingParams;
+using Record = simulation::Teleoperator::Record;
+
+/// The tapping experiment of the repository in short: a firm tap on a stiff wall, with noise, tremor and cancellation.
+TappingParams short_taps(double force_gain) {
+  TappingParams params;
+  params.task.taps = 2;
+  params.task.observation_s = 0.15;
+  params.task.slowest_m_per_s = 0.07;
+  params.control.force_gain = force_gain;
+  params.control.force_limit_N = 1.0;
+  params.slave.force_sensor.noise_rms_N = 0.002;
+  return params;
+}
+
+/// A tick at its deadline, as a clock that is never late gives it.
+Tick tick(std::int64_t number, std::int64_t missed = 0) {
+  const std::int64_t deadline_ns = 200'000 * number;
+  return {.number = number, .missed = missed, .deadline_ns = deadline_ns, .began_ns = deadline_ns};
+}
+
+/// Member by member: there may be holes between them.
+std::vector<std::uint64_t> bits(const Record& record) {
+  std::vector<std::uint64_t> all;
+  for_each_signal<Record>([&](const auto& signal) {
+    if constexpr (sizeof(record.*signal.member) == sizeof(std::uint64_t)) {
+      all.push_back(std::bit_cast<std::uint64_t>(record.*signal.member));
+    } else {
+      all.push_back(record.*signal.member ? 1 : 0);
+    }
+  });
+  return all;
+}
+
+TEST(RealTimeTap, WithoutAMissedTickItIsBitForBitTheTapInVirtualTime) {
+  for (const double gain : {1.0, 10.0}) {
+    const auto ensemble = TappingEnsemble::make(short_taps(gain));
+    ASSERT_TRUE(ensemble);
+    for (std::size_t tap = 0; tap < ensemble->size(); ++tap) {
+      std::vector<Record> virtual_time;
+      const auto expected = ensemble->run(tap, &virtual_time);
+      auto real_time = RealTimeTap::make(ensemble->tap(tap), 0.15);
+      ASSERT_TRUE(real_time);
+      // The thread would count from anywhere.
+      for (std::int64_t number = 17; (*real_time)->step(tick(number)); ++number) {
+      }
+      const auto& trace = (*real_time)->trace();
+      ASSERT_EQ(trace.size(), virtual_time.size());
+      for (std::size_t i = 0; i < trace.size(); ++i) ASSERT_EQ(bits(trace[i]), bits(virtual_time[i])) << "tick " << i;
+      const auto result = (*real_time)->result();
+      EXPECT_TRUE(result.touched);
+      EXPECT_EQ(result.metrics.settling_time_s, expected.metrics.settling_time_s);
+      EXPECT_EQ(result.metrics.peak_force_N, expected.metrics.peak_force_N);
+      EXPECT_EQ(result.metrics.contacts, expected.metrics.contacts);
+    }
+  }
+}
+
+TEST(RealTimeTap, WhileTicksAreMissedThePlantsGoOnUnderTheCommandThatHolds) {
+  const auto ensemble = TappingEnsemble::make(short_taps(1.0));
+  ASSERT_TRUE(ensemble);
+  std::vector<Record> virtual_time;
+  (void)ensemble->run(0, &virtual_time);
+  auto tap = RealTimeTap::make(ensemble->tap(0), 0.15);
+  ASSERT_TRUE(tap);
+  constexpr std::int64_t before = 500;
+  constexpr std::int64_t missed = 25;
+  for (std::int64_t number = 0; number < before; ++number) ASSERT_TRUE((*tap)->step(tick(number)));
+  ASSERT_TRUE((*tap)->step(tick(before + missed, missed)));
+  const auto& trace = (*tap)->trace();
+  ASSERT_EQ(trace.size(), static_cast<std::size_t>(before + missed));
+  for (std::int64_t i = 0; i < before; ++i) {
+    ASSERT_EQ(bits(trace[static_cast<std::size_t>(i)]), bits(virtual_time[static_cast<std::size_t>(i)]));
+  }
+  const Record& last = trace[before - 1];
+  for (std::size_t i = before; i < trace.size(); ++i) {
+    EXPECT_DOUBLE_EQ(trace[i].time_s, 200e-6 * static_cast<double>(i));
+    EXPECT_EQ(trace[i].displayed_force_N, last.displayed_force_N) << "no site has stepped";
+    EXPECT_EQ(trace[i].master_position_m, last.master_position_m) << "no sensor was read";
+  }
+  EXPECT_NE(trace.back().tip_position_m, last.tip_position_m) << "the slave stood still";
+}
+
+TEST(RealTimeTap, OnAServoThreadItRunsToItsEndAndIsLoggedToTheLastTick) {
+  const auto ensemble = TappingEnsemble::make(short_taps(1.0));
+  ASSERT_TRUE(ensemble);
+  const auto file = scratch_path().concat(".mcap");
+  std::vector<Record> trace;
+  ServoReport report;
+  {
+    auto recorder = telemetry::Recorder::create(file);
+    ASSERT_TRUE(recorder);
+    RealTimeStreams streams{
+        .teleoperator = &recorder->add<Record>("/teleoperator", "tactus_msgs/msg/TeleoperatorRecord"),
+        .servo = &recorder->add<ServoRecord>("/servo", "tactus_msgs/msg/ServoRecord"),
+        .origin_ns = monotonic_ns()};
+    recorder->start();
+    auto tap = RealTimeTap::make(ensemble->tap(0), 0.15, streams);
+    ASSERT_TRUE(tap);
+    RealTimeTap& running = **tap;
+    const auto ran = run_servo({.rate_Hz = 5000.0, .priority = 10},
+                               [&running](const Tick& now) noexcept { return running.step(now); });
+    ASSERT_TRUE(ran);
+    report = *ran;
+    trace = running.trace();
+    ASSERT_FALSE(recorder->stop());
+    EXPECT_EQ(recorder->dropped(), (std::vector<std::uint64_t>{0, 0}));
+  }
+  const auto log = telemetry::read_log(file);
+  std::filesystem::remove(file);
+  ASSERT_TRUE(log);
+  ASSERT_EQ(log->tables.size(), 2U);
+  EXPECT_EQ(log->tables[0].times_ns.size(), trace.size());
+  // The last step of the thread finds the tap over and has no record.
+  EXPECT_EQ(log->tables[1].times_ns.size(), static_cast<std::size_t>(report.ticks - 1));
+  std::vector<Record> virtual_time;
+  (void)ensemble->run(0, &virtual_time);
+  const std::vector<double>& missed = log->tables[1].values[1];
+  const auto agreed = static_cast<std::size_t>(
+      std::find_if(missed.begin() + 1, missed.end(), [](double n) { return n > 0.0; }) - missed.begin());
+  ASSERT_LE(agreed, std::min(trace.size(), virtual_time.size()));
+  for (std::size_t i = 0; i + 1 < agreed; ++i) {
+    ASSERT_EQ(bits(trace[i]), bits(virtual_time[i])) << "tick " << i << ", denormals flushed and none missed";
+  }
+  for (std::size_t i = 1; i < log->tables[0].times_ns.size(); ++i) {
+    ASSERT_NEAR(static_cast<double>(log->tables[0].times_ns[i] - log->tables[0].times_ns[i - 1]), 200'000.0, 1.0);
+  }
+}
+
+/// A device that says what it is told to say.
+class ScriptedDevice final : public Device {
+ public:
+  [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  DeviceReading read(const Tick&) noexcept override { return reading; }
+  void write(const DeviceCommand& given) noexcept override { command = given; }
+  [[nodiscard]] DeviceHealth health() const noexcept override { return state; }
+
+  explicit ScriptedDevice(const DeviceLimits& limits) : limits_(limits) {}
+  DeviceReading reading;
+  DeviceCommand command;
+  DeviceHealth state = DeviceHealth::good;
+
+ private:
+  DeviceLimits limits_;
+};
+
+TEST(LocalTeleoperator, TheGateIsTightenedToWhatTheDeviceCanDo) {
+  ScriptedDevice master({.force_N = 0.25});
+  ScriptedDevice slave({.force_N = 3.0});
+  control::ControlParams control;
+  control.force_limit_N = 5.0;
+  control.force_gain = 1.0;
+  auto loop = LocalTeleoperator::make(control, {}, Seconds{200e-6}, 0.0, master, slave);
+  ASSERT_TRUE(loop);
+  slave.reading.force_N = 4.0;
+  slave.reading.position_m = -1.0;
+  for (std::int64_t number = 0; number < 100; ++number) loop->step(tick(number));
+  EXPECT_DOUBLE_EQ(master.command.force_N, -0.25);
+  EXPECT_DOUBLE_EQ(slave.command.force_N, 3.0);
+  loop->release();
+  EXPECT_EQ(master.command.force_N, 0.0);
+  EXPECT_EQ(slave.command.force_N, 0.0);
+}
+
+TEST(LocalTeleoperator, ASiteWhoseDeviceIsLostLetsGo) {
+  ScriptedDevice master({.force_N = 5.0});
+  ScriptedDevice slave({.force_N = 5.0});
+  auto loop = LocalTeleoperator::make({}, {}, Seconds{200e-6}, 0.0, master, slave);
+  ASSERT_TRUE(loop);
+  slave.reading.position_m = -0.01;
+  for (std::int64_t number = 0; number < 50; ++number) loop->step(tick(number));
+  EXPECT_GT(slave.command.force_N, 0.1);
+  slave.state = DeviceHealth::lost;
+  for (std::int64_t number = 50; number < 2000; ++number) loop->step(tick(number));
+  EXPECT_EQ(slave.command.force_N, 0.0);
+  EXPECT_FALSE(loop->healthy());
+}
+
+}  // namespace
+}  // namespace tactus::runtime

@@ -1,0 +1,117 @@
+#include <tactus/simulation/bad_number.hpp>
+#include <tactus/simulation/fault_table.hpp>
+#include <tactus/simulation/fault_witness.hpp>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+namespace tactus::simulation {
+namespace {
+
+TEST(Faults, EveryRowButAFrozenEncoderSurvivesAndWithALooseMonitorTheSameRunsDiverge) {
+  FaultsParams params;
+  params.task.seeds = 2;
+  params.task.longest_cut_s = 0.3;
+  const auto tallies = run_faults(params, [](double) {});
+  ASSERT_TRUE(tallies) << describe(tallies.error());
+  ASSERT_EQ(tallies->size(), fault_rows().size());
+  for (const FaultTally& tally : *tallies) {
+    EXPECT_EQ(tally.tried, 2);
+    if (tally.row.monitored) {
+      // A slave whose encoder froze may have left its workspace, and then stays in fault: docs/theory/safety.md.
+      if (tally.row.kind != FaultKind::encoder_freeze) {
+        EXPECT_EQ(tally.survived, 2) << tally.row.name;
+      }
+      EXPECT_EQ(tally.diverged, 0) << tally.row.name;
+    } else {
+      EXPECT_EQ(tally.diverged, 2) << tally.row.name;
+    }
+    EXPECT_EQ(tally.worst.not_finite, 0) << tally.row.name;
+    EXPECT_EQ(tally.worst.stale_applied, 0) << tally.row.name;
+    EXPECT_EQ(tally.worst.steps_above_rate, 0) << tally.row.name;
+    EXPECT_GT(tally.worst.peak_force_N, 0.5) << tally.row.name << ": the wall is felt";
+  }
+}
+
+TEST(Faults, EqualPlansGiveEqualOutcomes) {
+  const FaultsParams params;
+  const FaultPlan plan = draw_plan(FaultKind::loss_bursts, 3, 1, 1.0),
+                  same = draw_plan(FaultKind::loss_bursts, 3, 1, 1.0);
+  EXPECT_EQ(plan.seed, same.seed);
+  EXPECT_NE(plan.seed, draw_plan(FaultKind::loss_bursts, 4, 1, 1.0).seed);
+  const auto left = run_fault(params, plan), right = run_fault(params, same);
+  ASSERT_TRUE(left && right);
+  EXPECT_EQ(left->peak_force_N, right->peak_force_N);
+  EXPECT_EQ(left->given_J, right->given_J);
+}
+
+TEST(Faults, BadNumbersGoThroughEveryInputValueStateAndSiteOnce) {
+  std::set<std::tuple<bool, int, std::size_t, int>> seen;
+  for (std::int64_t choice = 0; choice < BadNumber::choices; ++choice) {
+    const BadNumber bad = BadNumber::of(choice);
+    std::size_t value = 0;
+    while (value < BadNumber::values.size() && !(BadNumber::values[value] == bad.value) &&
+           !(std::isnan(BadNumber::values[value]) && std::isnan(bad.value))) {
+      ++value;
+    }
+    seen.insert({bad.at_master, static_cast<int>(bad.input), value, static_cast<int>(bad.state)});
+  }
+  EXPECT_EQ(static_cast<std::int64_t>(seen.size()), BadNumber::choices);
+  EXPECT_LE(BadNumber::choices, 1000) << "a thousand seeds try all of them";
+}
+
+/// The share of lost packets of a chain of two states is known in closed form: begins / (begins + ends) · loss.
+TEST(ImpairedLink, LosesTheShareOfGilbertAndElliottAndInBurstsOfTheirMeanLength) {
+  const Impairment impairment{.burst_begins_fraction = 0.01, .burst_ends_fraction = 0.1, .burst_loss_fraction = 1.0};
+  ImpairedLink link(impairment, signal::Random(5));
+  constexpr int packets = 400000;
+  int lost = 0, bursts = 0;
+  bool before = false;
+  for (int i = 0; i < packets; ++i) {
+    const bool gone = link.next().copies == 0;
+    lost += gone;
+    bursts += gone && !before;
+    before = gone;
+  }
+  EXPECT_NEAR(static_cast<double>(lost) / packets, 0.01 / 0.11, 0.004);
+  EXPECT_NEAR(static_cast<double>(lost) / bursts, 1.0 / 0.1, 0.4);
+}
+
+/// A judge that finds nothing wrong must be one that would.
+TEST(FaultWitnesses, SeeWhatTheyAreThereFor) {
+  FaultOutcome outcome;
+  ForceWitness force(2.0, 500.0, 1e-3);
+  for (const double force_N : {0.5, 1.0, 1.500001, 1.4}) force.see(force_N, false, outcome);
+  EXPECT_EQ(outcome.steps_above_rate, 1);
+  force.see(std::numeric_limits<double>::quiet_NaN(), false, outcome);
+  EXPECT_EQ(outcome.not_finite, 1);
+  for (const double force_N : {1.8, 2.1}) force.see(force_N, false, outcome);
+  EXPECT_EQ(outcome.forces_above_limit, 1);
+  EXPECT_EQ(outcome.peak_force_N, 2.1);
+
+  PacketWitness packets(0.01, 1e-3);
+  for (std::int64_t i = 1; i <= 30; ++i) packets.sent({.session = 9, .sequence = i}, i);
+  const auto apply = [&](std::int64_t sequence, std::int64_t tick) {
+    packets.applied({.applied_session = 9, .applied_sequence = sequence, .fresh = true}, tick, outcome);
+  };
+  apply(5, 6);
+  apply(9, 10);
+  EXPECT_EQ(outcome.stale_applied, 0);
+  apply(8, 11);
+  EXPECT_EQ(outcome.stale_applied, 1) << "older than one before";
+  apply(10, 30);
+  EXPECT_EQ(outcome.stale_applied, 2) << "too old";
+  apply(31, 31);
+  EXPECT_EQ(outcome.stale_applied, 3) << "never sent";
+
+  EnergyWitness energy;
+  for (const double position_m : {0.0, -0.5, 0.25, 0.0}) energy.see(2.0, position_m, outcome);
+  EXPECT_DOUBLE_EQ(outcome.given_J, 1.5) << "the rise from the lowest";
+}
+
+}  // namespace
+}  // namespace tactus::simulation

@@ -1,0 +1,100 @@
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, test, vi } from 'vitest';
+import { launch, open, parameter, switchMethod, type Watched } from './browser';
+import { expectSixtyHertz, machineIsBusy, measureRate } from './rate';
+import { served, TactusServer } from './tactus';
+
+/** What the live page promises, with the real loops behind it; read from the page itself. */
+describe.skipIf(!served)('the page before tactus serve', () => {
+  let browser: Browser;
+  let server: TactusServer;
+  let watched: Watched;
+  let page: Page;
+
+  const until = (check: () => Promise<void>) => vi.waitFor(check, { timeout: 20_000, interval: 25 });
+  const verdict = (side: string) => page.getAttribute(`.loop[data-side=${side}]`, 'data-verdict');
+
+  /** Chooses as a visitor does, and waits until the server has confirmed it. */
+  async function choose(name: string, value: string): Promise<void> {
+    await page.selectOption(`${parameter(name)} select`, value);
+    await page.waitForSelector(`${parameter(name)}[data-value="${value}"]`);
+  }
+
+  /** Taps, and returns the first verdict on the contact. */
+  async function tapped(side: string): Promise<string | null> {
+    await until(async () => expect(await verdict(side)).toBe('free'));
+    await page.click('#tap');
+    let seen: string | null = null;
+    await until(async () => {
+      seen = await verdict(side);
+      expect(['settled', 'rings', 'stopped']).toContain(seen);
+    });
+    return seen;
+  }
+
+  beforeAll(async () => {
+    browser = await launch();
+  });
+  afterAll(() => browser.close());
+  beforeEach(async () => {
+    server = await TactusServer.start('--set', 'control.force_gain=10');
+    watched = await open(browser, server.url);
+    page = watched.page;
+  });
+  afterEach(async () => {
+    await watched.close();
+    await server.stop();
+    expect(watched.complaints).toEqual([]);
+    expect(watched.foreign).toEqual([]);
+  });
+
+  test('a scripted tap at gain 10 rings without cancellation and settles with it', async () => {
+    expect(await page.getAttribute(parameter('control.force_gain'), 'data-value')).toBe('10');
+    await choose('left.method', 'none');
+    expect(await tapped('left')).toBe('rings');
+    expect(await page.textContent('.loop[data-side=left] .verdict')).toContain('Rings');
+    await choose('left.method', 'cancellation');
+    expect(await tapped('left')).toBe('settled');
+    expect(await page.textContent('.loop[data-side=left] .verdict')).toContain('Settled');
+  });
+
+  test('side by side, the same tap rings on one side and settles on the other', async () => {
+    await page.setChecked(`${parameter('side_by_side')} input`, true);
+    await choose('left.method', 'cancellation');
+    await choose('right.method', 'none');
+    await page.click('#tap');
+    await until(async () => expect([await verdict('left'), await verdict('right')]).toEqual(['settled', 'rings']));
+  });
+
+  test('a visitor who presses into the wall by keys feels it, and everything goes on', async () => {
+    await choose('left.method', 'cancellation');
+    await page.focus('#handle-left');
+    await page.keyboard.press('End');
+    await until(async () => expect(await verdict('left')).toBe('settled'));
+    await until(async () => {
+      const force_N = Number(await page.getAttribute('.loop[data-side=left] .meter', 'aria-valuenow'));
+      expect(force_N).toBeGreaterThan(0.2);
+    });
+    await page.keyboard.press('Escape');
+    await until(async () => expect(await verdict('left')).toBe('free'));
+  });
+
+  describe('while everything moves', { retry: 2 }, () => {
+    test('a switch takes effect within 200 ms', async () => {
+      await choose('left.method', 'none');
+      await page.click('#tap');
+      await until(async () => expect(await verdict('left')).toBe('rings'));
+      const took_ms = await page.evaluate(switchMethod, ['left.method', 'cancellation'] as const);
+      console.log(`confirmed after ${took_ms.toFixed(0)} ms`);
+      expect(took_ms).toBeLessThan(machineIsBusy() ? 2000 : 200);
+    });
+
+    test('the page draws sixty pictures a second', async () => {
+      await page.setChecked(`${parameter('side_by_side')} input`, true);
+      await choose('right.method', 'none');
+      await page.waitForTimeout(1500);
+      await page.click('#tap');
+      expectSixtyHertz(await measureRate(page, 3));
+    });
+  });
+});
