@@ -21,12 +21,10 @@
 
 namespace tactus::cli {
 
-namespace {
-
 /// The experiment that is served where none is named: experiments/tapping.toml as it was when this was built.
-constexpr std::string_view default_experiment =
-#include "default_experiment.inc"
-    ;
+extern const std::string_view default_experiment;
+
+namespace {
 
 volatile std::sig_atomic_t interrupted = 0;
 

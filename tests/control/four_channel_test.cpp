@@ -309,7 +309,7 @@ TEST(FourChannel, AParameterOutOfBoundsIsNamedAsTheFileNamesIt) {
   EXPECT_EQ(refused.error().parameter, "four_channel.acceleration.cutoff_Hz");
 }
 
-TEST(FourChannel, AHandForceThatIsNoNumberClosesTheGatesOfBothSites) {
+TEST(FourChannel, AHandForceThatIsNoNumberClosesTheMastersGateAndNothingBrokenIsSent) {
   ControlParams params;
   params.architecture = "four-channel";
   params.four_channel.master_force_loop_gain = 0.5;
@@ -319,7 +319,17 @@ TEST(FourChannel, AHandForceThatIsNoNumberClosesTheGatesOfBothSites) {
   const auto output = sites.master.step(broken);
   EXPECT_EQ(output.motor_force_N, 0.0);
   EXPECT_EQ(sites.master.fault(), GateFault::not_finite);
-  EXPECT_EQ(sites.slave.step({.arrival = {.message = output.message, .fresh = true}}).motor_force_N, 0.0);
+  ASSERT_TRUE(is_finite(output.message));
+  EXPECT_TRUE(std::isfinite(sites.slave.step({.arrival = {.message = output.message, .fresh = true}}).motor_force_N));
+  EXPECT_EQ(sites.slave.fault(), GateFault::none);
+}
+
+TEST(FourChannel, AMessageThatIsNoNumberClosesTheSlavesGate) {
+  ControlParams params;
+  params.architecture = "four-channel";
+  auto sites = make_sites(params, Seconds{tick_s}).value();
+  const Message broken{.force_N = std::numeric_limits<double>::quiet_NaN()};
+  EXPECT_EQ(sites.slave.step({.arrival = {.message = broken, .fresh = true}}).motor_force_N, 0.0);
   EXPECT_EQ(sites.slave.fault(), GateFault::not_finite);
 }
 

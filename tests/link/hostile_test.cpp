@@ -39,6 +39,7 @@ TEST_F(Between, HostileRecordsOfTheRightTypeCostNoMemory) {
   std::this_thread::sleep_for(std::chrono::milliseconds(20));  // the thread of the hand-shakes comes to rest
   for (const int kind : {0, 1, 4}) {
     const auto heard = slave->counters().secure;
+    const std::uint64_t applied = slave->counters().inbound.applied;
     std::uint64_t allocating = 0;
     for (int i = 0; i < 1000; ++i) {
       attack(kind);
@@ -50,7 +51,14 @@ TEST_F(Between, HostileRecordsOfTheRightTypeCostNoMemory) {
     EXPECT_LT(allocating, 100U) << "kind " << kind;
     const auto now = slave->counters().secure;
     EXPECT_GT(now.refused + now.handshake_packets, heard.refused + heard.handshake_packets);
-    EXPECT_EQ(now.opened, heard.opened);
+    // What the master sealed before the slave had its keys was never opened, and is once when the attacker sends it
+    // again: a message that came late. It is too old to be applied.
+    if (kind == 0) {
+      EXPECT_LE(now.opened, passed_to_slave);
+    } else {
+      EXPECT_EQ(now.opened, heard.opened);
+    }
+    EXPECT_EQ(slave->counters().inbound.applied, applied);
   }
 }
 

@@ -79,12 +79,11 @@ TEST(Contest, CancellationSettlesAtFiveTimesTheGainOfPlainPositionForceAndDullsN
 }
 
 TEST(Contest, CompensationOfTheWayToTheHandBringsMoreOfTheTouchAndAllowsMoreGain) {
-  TappingParams params = taps_at(10.0, 10.0, 6);
-  const GainScore without = score_taps(params);
+  TappingParams params = taps_at(10.0, 10.0, 32);
+  const double without = score_taps(params).metrics.settled_fraction;
   params.control.hand_compensation_Hz = 200.0;
-  const GainScore with = score_taps(params);
-  EXPECT_NE(without.metrics.verdict, Verdict::settled);
-  EXPECT_EQ(with.metrics.verdict, Verdict::settled);
+  EXPECT_LT(without, 0.7);
+  EXPECT_GE(score_taps(params).metrics.settled_fraction, 0.9);
 
   params = taps_at(1.0, 10.0, 6);
   const double before = score_taps(params).spectral_error.value();

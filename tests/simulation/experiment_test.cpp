@@ -176,7 +176,7 @@ TEST(ChooseExperiment, KnowsItsKindsAndListsThemForAnother) {
   EXPECT_EQ(describe(unknown.error()),
             "test.toml:2:8: task.kind: 'grasping' is no kind of experiment: write one of "
             "tapping, force-display, contest, inverse-model-chirp, prediction-block, "
-            "force-estimators, hydraulic-chirp, hydraulic-rigid-contact, sensorless");
+            "force-estimators, hydraulic-chirp, hydraulic-rigid-contact, sensorless, faults");
   const auto missing = chosen("[control]\nforce_gain = 1.0");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, ErrorCode::missing);

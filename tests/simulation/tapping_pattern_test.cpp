@@ -65,22 +65,22 @@ struct Halving {
   TappingMetrics as_is, halved;
 };
 
-Halving halving(double force_gain, CancellationMode cancellation) {
+Halving halving(double force_gain, CancellationMode cancellation, int taps) {
   TappingParams params = condition(force_gain, cancellation);
+  params.task.taps = taps;
   const TappingMetrics as_is = metrics_of(params);
   params.plant.longest_step_s *= 0.5;
   return {.as_is = as_is, .halved = metrics_of(params)};
 }
 
 TEST(DefaultTapping, HalvingThePlantsStepsChangesNoFigureOfASettlingConditionByMoreThanAPercent) {
-  // This holds for the experiment as it is. A settling time is the last crossing of a threshold, so it jumps by up to
-  // half a period of the ringing, some milliseconds, when a peak of one tap passes under the threshold; over other
-  // seeds and ensembles the median moved by up to 0.7 % and the 90th percentile by up to 2.4 %. Should this fail where
-  // the test of the trajectories holds, then such a jump has been met, and the step is not at fault.
+  // A settling time is the last crossing of a threshold, so it jumps by up to half a period of the ringing, some
+  // milliseconds, when a peak of one tap passes under the threshold. Among the 32 taps of the file one such jump moves
+  // the 90th percentile by 6 % at gain 3 (back again at steps of 0.6 us); among 128 it does not show.
   constexpr double percent = 0.01;
   for (const auto& [gain, mode] : {std::pair{1.0, CancellationMode::off}, std::pair{1.0, CancellationMode::on},
                                    std::pair{3.0, CancellationMode::on}, std::pair{15.0, CancellationMode::on}}) {
-    const auto [as_is, halved] = halving(gain, mode);
+    const auto [as_is, halved] = halving(gain, mode, 128);
     SCOPED_TRACE("gain " + std::to_string(gain) + " " + name_of(mode));
     EXPECT_NEAR(halved.settled_fraction, as_is.settled_fraction, percent);
     EXPECT_NEAR(halved.settling_time_median_s / as_is.settling_time_median_s, 1.0, percent);
@@ -102,7 +102,7 @@ TEST(DefaultTapping, HalvingThePlantsStepsChangesAnUnstableConditionAsLittleAsAn
   // stiffness by one part in 10,000 does to these figures bounds what a finer step may do: over six seeds two taps,
   // 7 % of the contacts, 2 % of the peak, 5 % of the residual.
   for (const double gain : {3.0, 15.0}) {
-    const auto [as_is, halved] = halving(gain, CancellationMode::off);
+    const auto [as_is, halved] = halving(gain, CancellationMode::off, 32);
     SCOPED_TRACE("gain " + std::to_string(gain));
     EXPECT_NEAR(halved.settled_fraction, as_is.settled_fraction, 2.0 / 32.0);
     EXPECT_NEAR(halved.settling_time_median_s / as_is.settling_time_median_s, 1.0, 0.01);
