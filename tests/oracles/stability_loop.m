@@ -23,13 +23,15 @@ function device = chain(tip, amplifier_Hz, sensor_Hz, linkage_scale, mass_scale)
   device = mechanics;
 end
 
-function w = way_of_handle(tip, actuator_Hz)
-  % [command of the actuator on the handle] to [motor position].
+function m = two_actuators(tip, amplifier_Hz, actuator_Hz)
+  % [motor command, command of the actuator on the handle] to [motor position], of one mechanism: two that are equal
+  % would leave modes in the loop that no force reaches.
   M = diag([0.0075, 0.01075, 0.014]);
   K = [39500, -39500, 0; -39500, 39500 + 3950, -3950; 0, -3950, 3950 + tip(1)];
   B = [3.6, -3.6, 0; -3.6, 3.6 + 0.02, -0.02; 0, -0.02, 0.02 + tip(2)];
-  o = 2 * pi * actuator_Hz;
-  w = ss([zeros(3), eye(3); -M \ K, -M \ B], [zeros(5, 1); 1 / 0.014], [1, 0, 0, 0, 0, 0], 0) * ss(-o, o, 1, 0);
+  o = 2 * pi * [amplifier_Hz, actuator_Hz];
+  m = ss([zeros(3), eye(3); -M \ K, -M \ B], [zeros(3, 2); M \ [1, 0; 0, 0; 0, 1]], [1, 0, 0, 0, 0, 0], [0, 0]) * ...
+      ss(-diag(o), diag(o), eye(2), zeros(2));
 end
 
 function c = compensation(mass, band_Hz, T)
@@ -51,9 +53,9 @@ function d = hold(p, T, late)
   [a, b, c] = ssdata(p);
   early = c2d(ss(a, b, c, 0 * c * b), late);
   rest = c2d(ss(a, b, c, 0 * c * b), T - late);
-  n = rows(a);
-  d = ss([rest.a * early.a, rest.a * early.b; zeros(1, n + 1)], [rest.b; 1], [c, zeros(rows(c), 1)], ...
-         zeros(rows(c), 1), T);
+  [n, m] = size(b);
+  d = ss([rest.a * early.a, rest.a * early.b; zeros(m, n + m)], [rest.b; eye(m)], [c, zeros(rows(c), m)], ...
+         zeros(rows(c), m), T);
 end
 
 function f = low_pass(Hz, T)
@@ -75,22 +77,28 @@ printf(",re%d,im%d", [1:5; 1:5]);
 printf("\n");
 for setting = [0, 0, 1, 0, 0.36, 0, 0; 12, 0, 1, 0, 0.32, 0, 0; 0, 1, 1.2, 0, 1.6, 0, 0; 12, 1, 1.2, 0, 0.85, 0, 0; ...
                0, 1, 0.8, 120, 1.7, 0, 0; 37, 1, 0.9, 0, 2.3, 0, 0; 0, 0, 1, 0, 2.7, 0, 200; ...
-               7, 1, 0.9, 0, 1.2, 40, 150]'
+               0, 0, 1, 0, 1.2, 60, 0;                7, 1, 0.9, 0, 1.2, 40, 150]'
   [d, cancels, mass, filter_Hz, mu, crossover_Hz, compensation_Hz] = num2cell(setting){:};
-  master = hold(chain([40, 23], 5000, 1000, 1, 1)(1, 1), T, late);
-  induced = master;
+  if crossover_Hz > 0
+    induced = hold(two_actuators([40, 23], 5000, 1000), T, late);
+  else
+    induced = hold(chain([40, 23], 5000, 1000, 1, 1)(1, 1), T, late);
+  end
+  actuators = columns(induced);
   if cancels
     model = c2d(chain([40, 23], 0, 0, 1, mass)(1, 1), T);
-    induced = parallel(master, -model);
+    induced = parallel(induced, -model * ss(eye(1, actuators), "tsam", T));
   end
   if compensation_Hz > 0
-    induced = induced * compensation(mass, compensation_Hz, T);
+    before = compensation(mass, compensation_Hz, T);
+    if actuators == 2, before = append(before, ss(1, "tsam", T)); end
+    induced = induced * before;
   end
   if crossover_Hz > 0
     % One filter for both parts, or its poles would be there twice.
     below = low_pass(crossover_Hz, T);
     split = ss(below.a, below.b, [below.c; -below.c], [below.d; 1 - below.d], T);
-    induced = [induced, hold(way_of_handle([40, 23], 1000), T, late)] * split;
+    induced = induced * split;
   end
   if filter_Hz > 0
     induced = induced * low_pass(filter_Hz, T);
