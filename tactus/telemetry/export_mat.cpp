@@ -3,6 +3,10 @@
 #include <tactus/telemetry/export_parts.hpp>
 
 #include <array>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -61,6 +65,22 @@ bool write(mat_t* file, const Struct& content) {
   return content.sound() && Mat_VarWrite(file, content.get(), MAT_COMPRESSION_ZLIB) == 0;
 }
 
+/// Whether the elements of a MATLAB v5 file fill it: each begins with its type and its size. matio does not tell when a
+/// disk is full.
+bool is_whole(const std::string& name) {
+  std::ifstream file(name, std::ios::binary);
+  const auto size = static_cast<std::uint64_t>(std::filesystem::file_size(name));
+  std::uint64_t at = 128;
+  while (at < size) {
+    std::array<char, 8> tag{};
+    std::uint32_t bytes = 0;
+    if (!file.seekg(static_cast<std::streamoff>(at)) || !file.read(tag.data(), tag.size())) return false;
+    std::memcpy(&bytes, tag.data() + 4, sizeof bytes);
+    at += tag.size() + bytes;
+  }
+  return at == size;
+}
+
 }  // namespace
 
 Check export_mat(const LogContent& content, const std::filesystem::path& file) {
@@ -86,7 +106,8 @@ Check export_mat(const LogContent& content, const std::filesystem::path& file) {
       for (const auto& [key, value] : run) about_run.add(key, text(value));
       done = done && write(mat.get(), about_run);
     }
-    return Mat_Close(mat.release()) == 0 && done;  // a full disk may show only now
+    mat.reset();
+    return done && is_whole(temporary);
   });
 }
 

@@ -71,6 +71,21 @@ TEST_F(Files, ADiskThatRefusesHalfwayLeavesTheOldFileAndNothingElse) {
   EXPECT_EQ(entries(), 1);
 }
 
+TEST_F(Files, WhatALibraryWritesByNameReplacesTheFileOnlyIfItCouldWriteAll) {
+  const fs::path path = folder_ / "map.h5";
+  const auto write = [](const std::string& name, const char* text) {
+    EXPECT_TRUE(fs::is_empty(name)) << "it is there for the library to open";
+    std::ofstream(name) << text;
+  };
+  ASSERT_FALSE(replace_file(path, [&](const std::string& name) { return write(name, "whole"), true; }));
+  EXPECT_EQ(content(path), "whole");
+  const Check error = replace_file(path, [&](const std::string& name) { return write(name, "ha"), false; });
+  ASSERT_TRUE(error.has_value());
+  EXPECT_EQ(error->code, ErrorCode::unwritable);
+  EXPECT_EQ(content(path), "whole");
+  EXPECT_EQ(entries(), 1);
+}
+
 TEST_F(Files, AMissingFolderIsNamedWithTheRemedy) {
   const fs::path path = folder_ / "missing" / "report.html";
   const Check error = write_file(path, "x");

@@ -2,12 +2,14 @@
 #include <tactus/telemetry/export.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
+#include <csignal>
 #include <filesystem>
 #include <string>
 
 #include "tests/scratch_path.hpp"
 #include "tests/telemetry/sample.hpp"
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 namespace tactus::telemetry {
 namespace {
@@ -62,6 +64,27 @@ TEST_F(Export, APlaceThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
     const Check error = ending == ".csv"   ? export_csv(content_.tables[0], file)
                         : ending == ".mat" ? export_mat(content_, file)
                                            : export_hdf5(content_, file);
+    ASSERT_TRUE(error) << name;
+    EXPECT_EQ(error->code, ErrorCode::unwritable);
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Export, ADiskThatFillsHalfwayIsAnErrorAndLeavesNothing) {
+  for (const char* name : {"log.csv", "log.mat", "log.h5"}) {
+    const auto file = folder_ / name;
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+    rlimit small = before;
+    small.rlim_cur = 4096;
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    const std::string ending = file.extension();
+    const Check error = ending == ".csv"   ? export_csv(content_.tables[0], file)
+                        : ending == ".mat" ? export_mat(content_, file)
+                                           : export_hdf5(content_, file);
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+    std::signal(SIGXFSZ, handler);
     ASSERT_TRUE(error) << name;
     EXPECT_EQ(error->code, ErrorCode::unwritable);
   }
