@@ -53,13 +53,12 @@ void ContactJudge::step(double contact_force_N, bool touched) {
     }
     if (loud) loud_until_ = tick_ + 1;
     const bool quiet = after(loud_until_, simulation::quiet_time_s);
-    if (verdict_ == LiveVerdict::contact && quiet) {
+    const bool calm_again = verdict_ == LiveVerdict::rings && in_contact_ && after(loud_until_, calm_again_s);
+    if ((verdict_ == LiveVerdict::contact && quiet) || calm_again) {
       verdict_ = LiveVerdict::settled;
     } else if (verdict_ == LiveVerdict::contact &&
                after(onset_, simulation::settled_within_s + simulation::quiet_time_s)) {
       verdict_ = LiveVerdict::rings;
-    } else if (verdict_ == LiveVerdict::rings && in_contact_ && after(loud_until_, calm_again_s)) {
-      verdict_ = LiveVerdict::settled;
     }
     if (after(touched_last_, verdict_stays_s)) verdict_ = LiveVerdict::free;
   }

@@ -13,7 +13,7 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   if (!slave) return slave.error();
   auto sites = SitePair::make(params.control, params.channel, Seconds{clock->tick_s}, slave_start_m);
   if (!sites) return sites.error();
-  return Teleoperator(*std::move(master), *std::move(slave), *std::move(sites), *clock);
+  return Teleoperator(*master, *slave, *std::move(sites), *clock);
 }
 
 Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {

@@ -123,8 +123,8 @@ class Teleoperator {
   [[nodiscard]] bool healthy() const noexcept { return sites_.healthy(); }
 
  private:
-  Teleoperator(MasterPlant master, SlavePlant slave, SitePair sites, const Clock& clock)
-      : master_(std::move(master)), slave_(std::move(slave)), sites_(std::move(sites)), clock_(clock) {}
+  Teleoperator(const MasterPlant& master, const SlavePlant& slave, SitePair sites, const Clock& clock)
+      : master_(master), slave_(slave), sites_(std::move(sites)), clock_(clock) {}
 
   MasterPlant master_;
   SlavePlant slave_;
