@@ -140,7 +140,7 @@ Check write_file(const fs::path& path, std::string_view content) {
 
 Check replace_file(const fs::path& path, const std::function<bool(const std::string& temporary)>& write) {
   return guarded(path, [&] {
-    return replace_unguarded(path, [&write](TemporaryFile& file) { return file.write({}) && write(file.name()); });
+    return replace_unguarded(path, [&write](TemporaryFile& file) { return file.write("") && write(file.name()); });
   });
 }
 
