@@ -40,7 +40,8 @@ TEST_F(RealTime, EveryTickOfEveryTapIsInTheLogWhichOtherVerbsRead) {
   EXPECT_EQ(document["runs"][0]["metrics"]["taps"], 2);
   const Outcome log = tactus({"export", "results/log", "--to", "mat", "--json"});
   ASSERT_EQ(log.status, 0) << log.err;
-  for (const Json& topic : Json::parse(log.out)["topics"]) {
+  const Json told = Json::parse(log.out);
+  for (const Json& topic : told["topics"]) {
     EXPECT_EQ(topic["missing"], 0);
     if (topic["topic"] == "/servo") {
       EXPECT_EQ(topic["messages"].get<int>(), servo["ticks"].get<int>() - 2) << "the last step of a tap has no record";
