@@ -126,8 +126,8 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
     beast::error_code ignored;
     auto& socket = beast::get_lowest_layer(stream_).socket();
     socket.set_option(Tcp::no_delay(true), ignored);
-    // What waits in the kernel cannot be dropped any more, and a live view wants what is new: seconds of a slow client's
-    // past wait there otherwise. The kernel doubles the figure.
+    // What waits in the kernel cannot be dropped any more, and a live view wants what is new: seconds of a slow
+    // client's past wait there otherwise. The kernel doubles the figure.
     socket.set_option(asio::socket_base::send_buffer_size(32768), ignored);
     stream_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
       if (error) return;

@@ -133,9 +133,8 @@ Check guarded(const fs::path& path, Job&& job) {
 }  // namespace
 
 Check write_file(const fs::path& path, std::string_view content) {
-  return guarded(path, [&] {
-    return replace_unguarded(path, [content](TemporaryFile& file) { return file.write(content); });
-  });
+  return guarded(
+      path, [&] { return replace_unguarded(path, [content](TemporaryFile& file) { return file.write(content); }); });
 }
 
 Check replace_file(const fs::path& path, const std::function<bool(const std::string& temporary)>& write) {
