@@ -96,10 +96,21 @@ void leave_signals_to_others() {
   pthread_sigmask(SIG_BLOCK, &all, nullptr);
 }
 
+/// The system takes its part of the stack first, thread-local storage for instance, so what is left is asked for.
 [[gnu::noinline]] void touch_stack() {
   constexpr std::size_t page_bytes = 4096;
-  volatile char pages[servo_stack_bytes / 4 * 3];
-  for (std::size_t i = 0; i < sizeof(pages); i += page_bytes) pages[i] = 0;
+  pthread_attr_t attributes;
+  if (pthread_getattr_np(pthread_self(), &attributes) != 0) return;
+  void* lowest = nullptr;
+  std::size_t size = 0;
+  pthread_attr_getstack(&attributes, &lowest, &size);
+  pthread_attr_destroy(&attributes);
+  const auto here = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
+  const std::uintptr_t end = reinterpret_cast<std::uintptr_t>(lowest) + servo_stack_bytes / 4;
+  if (here <= end) return;
+  const std::size_t bytes = std::min(here - end, servo_stack_bytes / 4 * 3);
+  auto* pages = static_cast<volatile char*>(__builtin_alloca(bytes));
+  for (std::size_t i = 0; i < bytes; i += page_bytes) pages[i] = 0;
 }
 
 /// What the process has taken, for all who asked.

@@ -33,7 +33,7 @@ class ProcessRights {
 };
 
 /// Makes the calling thread a servo thread: SCHED_FIFO, on `core` unless that is negative, timers without slack,
-/// denormals flushed to zero, signals left to other threads, `stack_bytes` of stack touched. Returns what was granted
+/// denormals flushed to zero, signals left to other threads, its stack touched. Returns what was granted
 /// and what was not. Not real-time safe.
 std::vector<Right> take_thread_rights(int priority, int core);
 
