@@ -153,7 +153,7 @@ export class Plot {
           splits: (_chart, _axis, min, max) => marks(min, max, xStep, this.description.xText ? latest() : 0),
           values: (_chart, splits) => splits.map((value) => xText(value, latest())),
         },
-        { ...axis, size: 42, label: yLabel, values: (_chart, splits) => splits.map(minusSign) },
+        { ...axis, size: 42, space: 24, label: yLabel, values: (_chart, splits) => splits.map(minusSign) },
       ],
       series: [
         {},

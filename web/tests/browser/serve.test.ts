@@ -65,7 +65,18 @@ describe.skipIf(leftOut)('the page before tactus serve', () => {
     await choose('right.method', 'none');
     await page.click('#tap');
     await until(async () => expect([await verdict('left'), await verdict('right')]).toEqual(['settled', 'rings']));
-    if (process.env.PICTURE) await page.screenshot({ path: process.env.PICTURE, fullPage: true });
+    if (process.env.PICTURE) {
+      await page.click('#dismiss');
+      await page.waitForTimeout(400);
+      await page.screenshot({ path: process.env.PICTURE });
+    }
+  });
+
+  test('of 390 px it shows both loops without scrolling sideways', async () => {
+    await page.setViewportSize({ width: 390, height: 844 });
+    await page.setChecked(`${parameter('side_by_side')} input`, true);
+    await page.waitForSelector('.loop[data-side=right]:not([hidden])');
+    expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(390);
   });
 
   test('a visitor who presses into the wall by keys feels it, and everything goes on', async () => {
