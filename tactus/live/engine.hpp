@@ -72,6 +72,8 @@ class Engine {
   /// Ticks that found the view behind. Any thread.
   [[nodiscard]] std::uint64_t dropped(std::size_t loop) const noexcept { return ticks_[loop].dropped(); }
 
+  /// What a loop did in its newest tick. The loop's thread.
+  [[nodiscard]] const Record& newest(std::size_t loop) const noexcept { return records_[loop]; }
   [[nodiscard]] double tick_s() const noexcept { return tick_s_; }
   [[nodiscard]] double wall_m() const noexcept { return setup_.wall_m; }
 

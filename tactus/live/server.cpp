@@ -32,6 +32,11 @@ namespace {
 /// How often losses are counted and told: about once a second.
 constexpr std::uint64_t collections_between_counts = 200;
 
+/// From the end of the handshake to the first message. Clients of others (mcap-record, for one) listen only some turns
+/// of their event loop after the connection stands, and for ever miss what came in one piece with the handshake.
+constexpr std::chrono::milliseconds before_first_word{50};
+
+using Clock = std::chrono::steady_clock;
 using FileResponse = http::response<http::string_body>;
 using Request = http::request<http::empty_body>;
 
@@ -132,8 +137,8 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
     stream_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
       if (error) return;
       self->open_ = true;
+      self->speaks_from_ = Clock::now() + before_first_word;
       self->read();
-      self->write();
     });
   }
 
@@ -150,11 +155,11 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
     conversation_.tell_losses();
   }
 
-  /// Sends what waits, and ends a client that cannot be helped.
+  /// Sends what waits, and ends a client that cannot be helped. Each collection calls it, the first ones too early.
   void write() {
     Outbox& outbox = conversation_.outbox();
     if (conversation_.is_hopeless()) return close();
-    if (!open_ || outbox.is_sending() || outbox.empty()) return;
+    if (!open_ || Clock::now() < speaks_from_ || outbox.is_sending() || outbox.empty()) return;
     const Frame& frame = outbox.begin_sending();
     stream_.binary(frame.binary);
     const std::array<asio::const_buffer, 2> bytes{asio::buffer(frame.head),
@@ -198,6 +203,7 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
   Conversation conversation_;
   std::uint64_t counted_ = 0;
   bool open_ = false;
+  Clock::time_point speaks_from_;
 };
 
 /// A connection until it is known what it wants: one request, one answer, or the way into the Foxglove protocol.

@@ -2,6 +2,7 @@
 #include <tactus/signal/random.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "raw_client.hpp"
 #include "sample_view.hpp"
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <tests/scratch_path.hpp>
 
 namespace tactus::live {
@@ -203,6 +205,18 @@ TEST(Server, MoreClientsThanAllowedAreTurnedAwayAndTheOthersServed) {
   EXPECT_TRUE(again);
 }
 
+/// Every tick of a loop is in the log, and is what the loop does alone, to the last bit: nobody moved the hand.
+void expect_the_log_of_a_loop_alone(const std::filesystem::path& file) {
+  auto alone = simulation::Teleoperator::make(sample_settings().of_loop(0).value(), 0.0).value();
+  const auto content = telemetry::read_log(file, "/left/teleoperator").value();
+  ASSERT_EQ(content.tables.size(), 1U);
+  const auto& table = content.tables.front();
+  EXPECT_EQ(table.missing, 0U);
+  const auto& master_m = table.values[1];
+  ASSERT_GT(master_m.size(), 100U);
+  for (const double position_m : master_m) ASSERT_EQ(alone.step(0.0, 0.0).master_position_m, position_m);
+}
+
 TEST(Server, SlowAndDeadClientsCostTheLoopNothingAndTheirLossesAreCounted) {
   const auto file = scratch_path();
   const auto view = sample_view();
@@ -231,15 +245,50 @@ TEST(Server, SlowAndDeadClientsCostTheLoopNothingAndTheirLossesAreCounted) {
   }
   EXPECT_FALSE(log.stop());
   for (const std::uint64_t dropped : log.dropped()) EXPECT_EQ(dropped, 0U);
-  // Nobody moved the hand, so the loop must have done what it does alone, to the last bit.
-  auto alone = simulation::Teleoperator::make(sample_settings().of_loop(0).value(), 0.0).value();
-  const auto content = telemetry::read_log(file, "/left/teleoperator").value();
-  ASSERT_EQ(content.tables.size(), 1U);
-  const auto& table = content.tables.front();
-  EXPECT_EQ(table.missing, 0U);
-  const auto& master_m = table.values[1];
-  ASSERT_GT(master_m.size(), 100U);
-  for (const double position_m : master_m) ASSERT_EQ(alone.step(0.0, 0.0).master_position_m, position_m);
+  expect_the_log_of_a_loop_alone(file);
+}
+
+TEST(Server, AThousandClientsCostTheLoopNothingAndSixtyFourOfThemAreServed) {
+  constexpr std::size_t room = 64;
+  rlimit descriptors{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &descriptors), 0);
+  // Both ends of each connection are in this process.
+  descriptors.rlim_cur = std::max<rlim_t>(descriptors.rlim_cur, 2200);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &descriptors), 0) << "open files are limited to less: ulimit -Hn";
+  const auto file = scratch_path();
+  const auto view = sample_view();
+  auto log = telemetry::Recorder::create(file).value();
+  view->engine().log_to(log);
+  log.start();
+  {
+    // So long that nobody is closed for silence while all are held.
+    const Server server =
+        Server::start({.port = 0, .clients = room, .silence_s = 120.0, .conversation = {}}, {}, *view).value();
+    std::atomic<bool> stop{false};
+    std::thread loop([&] { view->engine().run([&stop] { return !stop; }); });
+    std::vector<RawClient> clients;
+    clients.reserve(1000);
+    std::size_t turned_away = 0;
+    for (std::size_t i = 0; i < 1000; ++i) {
+      RawClient& client = clients.emplace_back(server.port());
+      if (i < room) {
+        EXPECT_TRUE(client.open(server.port())) << i;
+        client.say(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":4}]})");
+      } else {
+        turned_away += client.receive_all(10000).starts_with("HTTP/1.1 503 ") ? 1U : 0U;
+      }
+    }
+    EXPECT_EQ(turned_away, 1000 - room);
+    EXPECT_EQ(server.counts().turned_away, 1000 - room);
+    EXPECT_EQ(server.counts().clients, room);
+    // All are held for a while.
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    stop = true;
+    loop.join();
+  }
+  EXPECT_FALSE(log.stop());
+  for (const std::uint64_t dropped : log.dropped()) EXPECT_EQ(dropped, 0U);
+  expect_the_log_of_a_loop_alone(file);
 }
 
 TEST(Server, LongHeadsLongFramesAndSilenceAreCutOff) {

@@ -123,7 +123,7 @@ export class HealthLine {
       `server at ${this.session.loops.left.state.realTimeRatio.toFixed(2)} × real time`,
       dropped === 0 ? 'nothing dropped' : `⚠ ${dropped} messages dropped by the server, for this page was too slow`,
     ];
-    if (missing > 0) texts.push(`⚠ ${missing} gaps in the plots`);
+    if (missing > 0) texts.push(`⚠ ${missing} ${missing === 1 ? 'gap' : 'gaps'} in the plots`);
     if (this.undecodable() > 0) texts.push(`⚠ ${this.undecodable()} messages could not be read`);
     this.line.textContent = texts.join(' · ');
   }

@@ -64,7 +64,7 @@ export const closeUp: PlotDescription = {
 export const energy: PlotDescription = {
   ...overTime,
   title: 'Energy given to your hand',
-  note: 'Since the contact began. A real wall never gives; a line that keeps climbing is the buzz at work.',
+  note: 'Since the contact began. Above zero, more came back than you put in: no real wall does that.',
   yLabel: 'mJ',
   base: [-2, 2],
   height: 190,

@@ -146,12 +146,14 @@ export class Plot {
       axes: [
         {
           ...axis,
-          size: 26,
+          size: 32,
+          // Clear of the lowest mark of the other axis.
+          gap: 10,
           label: xLabel,
           splits: (_chart, _axis, min, max) => marks(min, max, xStep, this.description.xText ? latest() : 0),
           values: (_chart, splits) => splits.map((value) => xText(value, latest())),
         },
-        { ...axis, size: 42, label: yLabel, values: (_chart, splits) => splits.map(minusSign) },
+        { ...axis, size: 42, space: 24, label: yLabel, values: (_chart, splits) => splits.map(minusSign) },
       ],
       series: [
         {},

@@ -17,7 +17,7 @@ export interface SceneContent {
 }
 
 export const sceneHeight = 236;
-const masterLane = 66;
+const masterLane = 72;
 const slaveLane = 152;
 const axisTop = 200;
 const font = '13px system-ui, sans-serif';
@@ -153,7 +153,7 @@ function drawForce(context: Context, x: number, y: number, force_N: number): voi
 
 function drawMaster(context: Context, width: number, scale: Scale, content: SceneContent): void {
   drawRail(context, width, masterLane);
-  label(context, 'your hand on the master', 8, 12, palette.muted, 'left');
+  label(context, 'your hand on the master', 8, 10, palette.muted, 'left');
   const [low, high] = content.master_mm;
   const x = scale.x((low + high) / 2);
   drawForce(context, x - 20, masterLane + 16, content.displayed_N);

@@ -2,7 +2,7 @@ import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, test, vi } from 'vitest';
 import { MockServer } from '../mock/server';
 import { launch, open, parameter, switchMethod, type Watched } from './browser';
-import { expectSixtyHertz, machineIsBusy, measureRate } from './rate';
+import { judge, judgeSixtyHertz, measureRate } from './rate';
 
 /** The page in a real Chromium, against the mock. */
 
@@ -122,7 +122,7 @@ describe('the page', () => {
   test('says what was dropped', async () => {
     server.skipBlocks = 5;
     await until(async () => expect(await page.textContent('#health')).toContain('dropped by the server'));
-    expect(await page.textContent('#health')).toContain('gaps in the plots');
+    expect(await page.textContent('#health')).toMatch(/[1-9]\d* gaps? in the plots/);
   });
 });
 
@@ -166,17 +166,16 @@ describe('a server without tuning', () => {
 });
 
 describe('with both loops, all plots and a ringing contact', { retry: 2 }, () => {
-  test('the page draws sixty pictures a second', async () => {
+  test('the page draws sixty pictures a second', async (context) => {
     await page.check(`${parameter('side_by_side')} input`);
     await page.waitForTimeout(1500);
     await page.click('#tap');
-    expectSixtyHertz(await measureRate(page, 3));
+    judgeSixtyHertz(context, await measureRate(page, 3));
   });
 
-  test('a switch reaches the server and comes back within 200 ms', async () => {
+  test('a switch reaches the server and comes back within 200 ms', async (context) => {
     await page.check(`${parameter('side_by_side')} input`);
     const took_ms = await page.evaluate(switchMethod, ['left.method', 'cancellation'] as const);
-    console.log(`confirmed after ${took_ms.toFixed(0)} ms`);
-    expect(took_ms).toBeLessThan(machineIsBusy() ? 2000 : 200);
+    judge(context, 'ms until confirmed', took_ms, 200);
   });
 });

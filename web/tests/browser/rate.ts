@@ -1,6 +1,6 @@
 import { cpus, loadavg } from 'node:os';
 import type { Page } from 'playwright-core';
-import { expect } from 'vitest';
+import { expect, type TestContext } from 'vitest';
 
 /** What the page costs while everything moves. */
 export interface Rate {
@@ -44,20 +44,26 @@ export async function measureRate(page: Page, seconds: number): Promise<Rate> {
   };
 }
 
-/** Whether so much else runs that times say nothing of the page. */
-export function machineIsBusy(): boolean {
-  return loadavg()[0]! > 2.5 * cpus().length;
+/** Why times say nothing of the page here and now, or an empty text where they do. */
+export function excuse(): string {
+  const [load, cores] = [loadavg()[0]!, cpus().length];
+  return load > cores ? `the load is ${load.toFixed(1)} on ${cores} cores` : '';
 }
 
-/** Not judged on a machine that is busy with other work; it says so then. */
-export function expectSixtyHertz(rate: Rate): void {
-  const busy = machineIsBusy();
-  console.log(
-    `${rate.picturesPerSecond.toFixed(1)} pictures a second, median interval ${rate.medianInterval_ms.toFixed(1)} ms, ` +
-      `${rate.work_ms.toFixed(1)} ms of work each` +
-      (busy ? '; the machine is busy with other work, so this is not judged' : ''),
-  );
-  if (busy) return;
-  expect(rate.medianInterval_ms).toBeLessThan(17.5);
-  expect(rate.work_ms).toBeLessThan(1000 / 60);
+/**
+ * Judges what was measured against its bound. What is within counts, whatever else runs. What is beyond fails the test,
+ * but on a machine with more load than cores the test is skipped and says why.
+ */
+export function judge(context: TestContext, what: string, measured: number, bound: number): void {
+  const finding = `${what}: ${measured.toFixed(1)}, bound ${bound.toFixed(1)}`;
+  console.log(finding);
+  const why = excuse();
+  if (measured >= bound && why !== '') context.skip(`not judged, as ${why}; ${finding}`);
+  expect(measured, finding).toBeLessThan(bound);
+}
+
+export function judgeSixtyHertz(context: TestContext, rate: Rate): void {
+  console.log(`${rate.picturesPerSecond.toFixed(1)} pictures a second`);
+  judge(context, 'median ms between pictures', rate.medianInterval_ms, 17.5);
+  judge(context, 'ms of work for a picture', rate.work_ms, 1000 / 60);
 }

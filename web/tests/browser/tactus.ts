@@ -2,10 +2,18 @@ import { spawn, spawnSync, type ChildProcess } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { resolve } from 'node:path';
 
-/** `tactus serve` itself, as `make live` builds it, or as the variable TACTUS names it. */
+/** `tactus serve` itself, as `make live` builds it, or as the variable TACTUS names it; TACTUS=none leaves it out. */
+export const leftOut = process.env.TACTUS === 'none';
 const program = resolve(process.env.TACTUS ?? '../build/release/bin/tactus');
 
-export const served = existsSync(program) && spawnSync(program, ['serve', '--help']).status === 0;
+/** Without the program these tests would show nothing, so that it is missing is a failure. */
+export function demandProgram(): void {
+  if (existsSync(program) && spawnSync(program, ['serve', '--help']).status === 0) return;
+  throw new Error(
+    `${program} does not run: build it (make live), name another with the variable TACTUS, ` +
+      'or leave the tests against it out with TACTUS=none',
+  );
+}
 
 export class TactusServer {
   private constructor(
