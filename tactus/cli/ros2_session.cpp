@@ -2,11 +2,13 @@
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/report/files.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/ros2/bridge.hpp>
 #include <tactus/ros2/remote_path.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
+#include <tactus/simulation/presentation.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
 #include <algorithm>
@@ -143,8 +145,7 @@ std::string json_of(const simulation::Request& request, const Ros2Options& optio
          "\n";
 }
 
-std::string text_of(const Ros2Options& options, const Session& session, const ros2::Bridge::Counts& counts,
-                    const runtime::ServoReport& servo) {
+report::Table table_of(const Ros2Options& options, const Session& session, const ros2::Bridge::Counts& counts) {
   report::Table table({{.title = "quantity", .align = report::Column::Align::left}, {.title = "value"}},
                       "Among ROS 2 nodes, namespace " + options.name_space);
   const auto count = [](std::uint64_t value) { return std::to_string(value); };
@@ -156,8 +157,29 @@ std::string text_of(const Ros2Options& options, const Session& session, const ro
   table.add_row({"messages lost", count(counts.lost)});
   table.add_row({"wishes for the hand", count(counts.wishes)});
   table.add_row({"commands refused", count(counts.refused)});
-  return table.to_text() + "\n" + runtime::timing_table(servo).to_text() + "\n" +
-         runtime::late_ticks_table(servo).to_text();
+  return table;
+}
+
+simulation::Outcome outcome_of(const simulation::Request& request, const Ros2Options& options, const Session& session,
+                               const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo,
+                               const std::string& configuration) {
+  const report::Table table = table_of(options, session, counts);
+  const report::Table timing = runtime::timing_table(servo);
+  const report::Table late = runtime::late_ticks_table(servo);
+  const report::Figure figure = runtime::timing_figure(servo);
+  report::Page page(request.name + " among ROS 2 nodes");
+  page.paragraph("The teleoperator ran in real time and published under the namespace " + options.name_space + ".");
+  page.table(table);
+  page.heading("How time was kept");
+  page.table(timing);
+  page.table(late);
+  page.table(runtime::rights_table(servo));
+  page.figure(figure);
+  simulation::add_provenance(page, request, configuration);
+  return {.text = table.to_text() + "\n" + timing.to_text() + "\n" + late.to_text(),
+          .json = json_of(request, options, session, counts, servo),
+          .html = page.to_html(),
+          .figures = {figure}};
 }
 
 }  // namespace
@@ -186,7 +208,7 @@ double TapScript::position_m(double time_s) const {
   return time_s < tap.back.start_time_s ? tap.reach.position_m(time_s) : tap.back.position_m(time_s);
 }
 
-Result<std::string> run_ros2_session(const simulation::Request& request, const Ros2Options& options, bool json) {
+Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options) {
   const auto params = request.document.read<simulation::TappingParams>();
   if (!params) return params.error();
   auto parts = make_parts(*params);
@@ -237,8 +259,7 @@ Result<std::string> run_ros2_session(const simulation::Request& request, const R
                             "control.force_gain, or switch cancellation on",
                  .place = {}};
   }
-  const ros2::Bridge::Counts counts = bridge->counts();
-  return json ? json_of(request, options, session, counts, *report) : text_of(options, session, counts, *report);
+  return outcome_of(request, options, session, bridge->counts(), *report, configuration::to_toml(*params));
 }
 
 }  // namespace tactus::cli

@@ -40,8 +40,8 @@ struct Ros2Options {
 
 /// Runs the teleoperator of a `tapping` experiment among ROS 2 nodes, on a servo thread, for as long as the taps of
 /// `TapScript` take or until it is interrupted. Deadlines that are missed are made up for, so that its time keeps to
-/// the real one. Returns a table, or one JSON document. Errors: those of the experiment's file, of the network and of
-/// the log; `failed` once a safety gate has closed or the devices have left their workspace.
-Result<std::string> run_ros2_session(const simulation::Request& request, const Ros2Options& options, bool json);
+/// the real one. Errors: those of the experiment's file, of the network and of the log; `failed`
+/// once a safety gate has closed or the devices have left their workspace.
+Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options);
 
 }  // namespace tactus::cli

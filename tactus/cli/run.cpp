@@ -93,10 +93,9 @@ Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request&
   }
   Ros2Options session{.name_space = options.name_space, .servo = options.servo};
   if (options.out) session.log_folder = std::filesystem::path(*options.out) / "log";
-  const auto output = run_ros2_session(request, session, options.json);
-  if (!output) return output.error();
-  std::cout << *output;
-  if (auto error = flush_standard_output()) return error;
+  const auto outcome = run_ros2_session(request, session);
+  if (!outcome) return outcome.error();
+  if (auto error = write_outcome(options.out, *outcome, options.json)) return error;
   if (session.log_folder) say_log(options, *session.log_folder);
   return std::nullopt;
 }

@@ -69,6 +69,8 @@ TEST_F(RunAmongRos2Nodes, AnotherVendorDrivesTheHandAndSeesMasterAndSlaveFollow)
   EXPECT_EQ(told.at("dropped"), 0);
   EXPECT_EQ(told.at("commands_refused"), 0);
 
+  EXPECT_NE(content("out/report.html").find("How time was kept"), std::string::npos);
+
   // The log has every tick: 5 kHz, a head and a line for each.
   ASSERT_EQ(tactus({"export", "out/log", "--to", "csv"}).status, 0);
   const std::string table = content("out/log/log.csv");
