@@ -122,7 +122,7 @@ describe('the page', () => {
   test('says what was dropped', async () => {
     server.skipBlocks = 5;
     await until(async () => expect(await page.textContent('#health')).toContain('dropped by the server'));
-    expect(await page.textContent('#health')).toMatch(/[1-9]\d* gaps? in the plots/);
+    await until(async () => expect(await page.textContent('#health')).toMatch(/[1-9]\d* gaps? in the plots/));
   });
 });
 
