@@ -8,7 +8,7 @@ import { judge, judgeSixtyHertz, measureRate } from './rate';
 
 let browser: Browser;
 let server: MockServer;
-let watched: Watched;
+let watched: Watched | undefined;
 let page: Page;
 
 const until = (check: () => void | Promise<void>) => vi.waitFor(check, { timeout: 20_000, interval: 25 });
@@ -25,9 +25,9 @@ beforeEach(async () => {
   page = watched.page;
 });
 afterEach(async () => {
-  await watched.close();
+  await watched?.close();
   await server.stop();
-  expect(watched.foreign).toEqual([]);
+  expect(watched?.foreign).toEqual([]);
 });
 
 describe('the page', () => {
@@ -41,7 +41,7 @@ describe('the page', () => {
     await page.click('#pause');
     await page.click('#sound');
     await until(async () => expect(await page.textContent('#sound')).toContain('on'));
-    expect(watched.complaints).toEqual([]);
+    expect(watched?.complaints).toEqual([]);
   });
 
   test('explains itself in three sentences on the first visit only', async () => {

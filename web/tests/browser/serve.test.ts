@@ -8,7 +8,7 @@ import { demandProgram, leftOut, TactusServer } from './tactus';
 describe.skipIf(leftOut)('the page before tactus serve', () => {
   let browser: Browser | undefined;
   let server: TactusServer;
-  let watched: Watched;
+  let watched: Watched | undefined;
   let page: Page;
 
   const until = (check: () => Promise<void>) => vi.waitFor(check, { timeout: 20_000, interval: 25 });
@@ -43,10 +43,10 @@ describe.skipIf(leftOut)('the page before tactus serve', () => {
     page = watched.page;
   });
   afterEach(async () => {
-    await watched.close();
+    await watched?.close();
     await server.stop();
-    expect(watched.complaints).toEqual([]);
-    expect(watched.foreign).toEqual([]);
+    expect(watched?.complaints).toEqual([]);
+    expect(watched?.foreign).toEqual([]);
   });
 
   test('a scripted tap at gain 10 rings without cancellation and settles with it', async () => {
