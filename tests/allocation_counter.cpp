@@ -19,11 +19,16 @@
 
 namespace {
 std::atomic<std::uint64_t> count{0};
-void note() noexcept { count.fetch_add(1, std::memory_order_relaxed); }
+thread_local constinit std::uint64_t own_count = 0;
+void note() noexcept {
+  count.fetch_add(1, std::memory_order_relaxed);
+  ++own_count;
+}
 }  // namespace
 
 namespace tactus::laws {
 std::uint64_t allocation_count() noexcept { return count.load(std::memory_order_relaxed); }
+std::uint64_t own_allocation_count() noexcept { return own_count; }
 }  // namespace tactus::laws
 
 #if TACTUS_SANITIZED_HEAP

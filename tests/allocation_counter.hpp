@@ -8,5 +8,7 @@ namespace tactus::laws {
 ///
 /// Counts only in a program that has `tests/allocation_counter.cpp` among its sources.
 std::uint64_t allocation_count() noexcept;
+/// Those of the calling thread alone.
+std::uint64_t own_allocation_count() noexcept;
 
 }  // namespace tactus::laws
