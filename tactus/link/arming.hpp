@@ -59,7 +59,8 @@ class Arming {
     } else if (standing_ == Standing::hold && may_follow(input) && asked(input)) {
       standing_ = Standing::active;
       cause_ = HoldCause::none;
-      // A restarted master goes on from what the slave has followed, so that no number comes twice.
+      // A restarted master goes on from what it heard that the slave has followed. Should it not have heard yet, the
+      // number comes again, under another session: to the slave that is another arming.
       armings_ = site_ == SiteName::master ? std::max(armings_, input.peer_armings) + 1 : input.peer_armings;
       unanswered_s_ = 0.0;
       answered_ = site_ == SiteName::slave;

@@ -60,7 +60,7 @@ class RawClient {
          "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: " +
          subprotocol + "\r\n" + more + "\r\n");
     std::size_t end = std::string::npos;
-    while ((end = bytes_.find("\r\n\r\n")) == std::string::npos && receive_some(5000)) {
+    while ((end = bytes_.find("\r\n\r\n")) == std::string::npos && receive_some(30000)) {
     }
     if (end == std::string::npos) return false;
     const std::string head = bytes_.substr(0, end);
