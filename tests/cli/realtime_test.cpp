@@ -61,6 +61,18 @@ TEST_F(RealTime, OnlyTappingAndOnlyAShortOneRunsInRealTime) {
   EXPECT_EQ(files(), Words{"quick.toml"});
 }
 
+TEST_F(RealTime, ALogReplaysBitForBit) {
+  ASSERT_EQ(tactus(run(quick_experiment(), {"--out", "results"})).status, 0);
+  const Outcome replayed = tactus({"replay", "results/log", "--check", "--json"});
+  EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
+  EXPECT_EQ(Json::parse(replayed.out)["equal"], true);
+  EXPECT_EQ(Json::parse(replayed.out)["taps"], 2);
+  ASSERT_EQ(tactus({"run", quick_experiment(), "--out", "virtual"}).status, 0);
+  const Outcome other = tactus({"replay", "virtual/log", "--check"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("/sites"), std::string::npos) << other.err;
+}
+
 TEST_F(RealTime, HowToKeepTimeIsNoQuestionInVirtualTime) {
   EXPECT_EQ(tactus({"run", quick_experiment(), "--core", "0"}).status, 2);
   const Outcome spin = tactus(run(quick_experiment(), {"--spin-s", "0.0004"}));
