@@ -56,6 +56,7 @@ int run_command(int argc, char** argv) {
   add_export(app, status);
   add_key(app, status);
   add_relay(app, status);
+  add_replay(app, status);
   add_faults(app, command, status);
   add_stability(app, command, status);
   add_doctor(app, status);

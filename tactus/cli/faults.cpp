@@ -1,7 +1,9 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/runtime/real_time_faults.hpp>
 #include <tactus/simulation/fault_experiment.hpp>
 
 #include <cstdint>
@@ -24,6 +26,8 @@ struct Options {
   std::optional<std::int64_t> seeds;
   std::optional<std::string> out;
   bool json = false;
+  bool real_time = false;
+  runtime::ServoThreadParams servo;
 };
 
 Check run(const Options& options, const std::string& command) {
@@ -46,7 +50,9 @@ Check run(const Options& options, const std::string& command) {
       .command = command};
   const auto outcome = [&] {
     ProgressLine line(request.name);
-    return simulation::FaultExperiment().run(request, [&line](double done) { line.update(done); });
+    const auto progress = [&line](double done) { line.update(done); };
+    return options.real_time ? runtime::run_faults_in_real_time(request, options.servo, progress)
+                             : simulation::FaultExperiment().run(request, progress);
   }();
   if (!outcome) return outcome.error();
   return write_outcome(options.out, *outcome, options.json);
@@ -56,7 +62,7 @@ Check run(const Options& options, const std::string& command) {
 
 void add_faults(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* faults = app.add_subcommand("faults", "Faults on purpose in virtual time: how many are survived, and how");
+  CLI::App* faults = app.add_subcommand("faults", "Faults on purpose: how many are survived, and how");
   faults->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind faults; else the built-in one");
   faults->add_option("--set", options->set, "Override one value: key=value")
       ->type_name("KEY=VALUE")
@@ -64,6 +70,10 @@ void add_faults(CLI::App& app, const std::string& command, int& status) {
   faults->add_option("--seeds", options->seeds, "Runs of each fault");
   faults->add_option("--out", options->out, "Folder for report.html, results.json and the figure")->type_name("DIR");
   faults->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  CLI::Option* real_time = faults->add_flag("--realtime", options->real_time,
+                                            "After that some of them again at the real clock, on a servo thread");
+  add_servo_options(*faults, options->servo);
+  for (const char* name : {"--priority", "--core", "--spin-s"}) faults->get_option(name)->needs(real_time);
   faults->callback([options, name = app.get_name(), &command, &status] {
     if (const auto error = run(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

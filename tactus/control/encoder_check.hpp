@@ -4,7 +4,6 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/checks.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -21,9 +20,10 @@ constexpr auto enumerators(EncoderFault) {
 /// Whether a measured position can be true.
 ///
 /// A jump: |x(k) − x(k−1)| > v_max · T. A spike is one, a counter that wraps is one, and so is the way back.
-/// A freeze: not one count has changed while the motor's force went through a range of `frozen_force_N` or more, for
-/// `frozen_after_s` at least. A device that rests, or presses with a steady force, is not frozen, so a freeze shows
-/// only once the force works; until then it does no harm to the force.
+/// A freeze: for `frozen_after_s` without a break the motor's force has been `frozen_force_N` or more away from what it
+/// was at the last count, and not one more came. A device that rests, or presses with a steady force, is not frozen, so
+/// a freeze shows only once the force works. The force must stay away: a hand that turns around holds a device still
+/// through the short pulses of a chattering contact.
 ///
 /// Without model or controller: it knows the readings and the force that the gate let through. Range: v_max · T should
 /// be well above one count.
@@ -38,7 +38,7 @@ class EncoderCheck {
           field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
                 "Fastest motion that can be true; a reading farther from the one before is a jump."),
           field("frozen_force_N", &Params::frozen_force_N, units::newton, positive_up_to(200.0),
-                "Change of the motor's force that must move the encoder by a count."),
+                "Lasting change of the motor's force that must move the encoder by a count."),
           field("frozen_after_s", &Params::frozen_after_s, units::second, positive_up_to(1.0),
                 "How long it may take to do so.")};
     }
@@ -61,13 +61,11 @@ class EncoderCheck {
       if (jump) return EncoderFault::jump;
       started_ = true;
       position_m_ = input.position_m;
-      least_N_ = most_N_ = input.acted_N;
+      counted_N_ = input.acted_N;
       still_s_ = 0.0;
       return EncoderFault::none;
     }
-    least_N_ = std::min(least_N_, input.acted_N);
-    most_N_ = std::max(most_N_, input.acted_N);
-    still_s_ = most_N_ - least_N_ >= frozen_force_N_ ? still_s_ + dt_s_ : 0.0;
+    still_s_ = std::fabs(input.acted_N - counted_N_) >= frozen_force_N_ ? still_s_ + dt_s_ : 0.0;
     return still_s_ >= frozen_after_s_ ? EncoderFault::frozen : EncoderFault::none;
   }
 
@@ -75,7 +73,7 @@ class EncoderCheck {
   void reset() noexcept {
     started_ = false;
     position_m_ = 0.0;
-    least_N_ = most_N_ = still_s_ = 0.0;
+    counted_N_ = still_s_ = 0.0;
   }
 
  private:
@@ -91,9 +89,8 @@ class EncoderCheck {
   double dt_s_;
   bool started_ = false;
   double position_m_ = 0.0;
-  double least_N_ = 0.0;
-  double most_N_ = 0.0;
-  double still_s_ = 0.0;  ///< since the force has changed that much
+  double counted_N_ = 0.0;  ///< the force at the last count
+  double still_s_ = 0.0;    ///< since the force has been that far from it
 };
 
 }  // namespace tactus::control

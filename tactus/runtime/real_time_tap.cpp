@@ -75,13 +75,14 @@ bool RealTimeTap::step(const Tick& tick) noexcept {
       {.motor_position_m = output.master.position_m, .hand_force_N = output.master.force_N, .grip = output.master.grip},
       {.motor_position_m = output.slave.position_m, .tip_force_N = output.slave.force_N}, output.sites);
   record_.tip_position_m = slave_.plant().tip_position_m();
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - streams_.origin_ns);
+  if (streams_.sites != nullptr) streams_.sites->push(due_ns, recorded(streams_.tap, own, output));
   if (streams_.servo != nullptr) {
-    streams_.servo->push(static_cast<std::uint64_t>(tick.deadline_ns - streams_.origin_ns),
-                         {.tick = own.number,
-                          .missed = tick.missed,
-                          .lateness_s = 1e-9 * static_cast<double>(tick.began_ns - tick.deadline_ns),
-                          .previous_duration_s = 1e-9 * static_cast<double>(tick.previous_duration_ns),
-                          .previous_cause = static_cast<std::int64_t>(tick.previous_cause)});
+    streams_.servo->push(due_ns, {.tick = own.number,
+                                  .missed = tick.missed,
+                                  .lateness_s = 1e-9 * static_cast<double>(tick.began_ns - tick.deadline_ns),
+                                  .previous_duration_s = 1e-9 * static_cast<double>(tick.previous_duration_ns),
+                                  .previous_cause = static_cast<std::int64_t>(tick.previous_cause)});
   }
   return true;
 }

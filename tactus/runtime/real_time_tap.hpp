@@ -3,6 +3,7 @@
 #include <tactus/core/signals.hpp>
 #include <tactus/runtime/local_teleoperator.hpp>
 #include <tactus/runtime/simulated_devices.hpp>
+#include <tactus/runtime/sites_record.hpp>
 #include <tactus/simulation/tap_observer.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
@@ -37,8 +38,11 @@ struct ServoRecord {
 struct RealTimeStreams {
   using Teleoperator = telemetry::RecordStream<simulation::Teleoperator::Record>;
   using Servo = telemetry::RecordStream<ServoRecord>;
+  using Sites = telemetry::RecordStream<SitesRecord>;
   Teleoperator* teleoperator = nullptr;
   Servo* servo = nullptr;
+  Sites* sites = nullptr;      ///< what `replay` needs
+  std::int64_t tap = 0;        ///< number of the tap, for the log
   std::int64_t origin_ns = 0;  ///< of the times in the log, on CLOCK_MONOTONIC
 };
 

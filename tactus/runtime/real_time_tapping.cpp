@@ -60,7 +60,7 @@ Check refuse_long_runs(const Cases& cases) {
   return std::nullopt;
 }
 
-/// The recorder with two streams for each run.
+/// The recorder with three streams for each run.
 struct Log {
   telemetry::Recorder recorder;
   std::vector<RealTimeStreams> streams;
@@ -85,6 +85,7 @@ Result<std::unique_ptr<Log>> open_log(const simulation::Request& request, const 
     log->streams.push_back({.teleoperator = &log->recorder.add<simulation::Teleoperator::Record>(
                                 prefix + "/teleoperator", "tactus_msgs/msg/TeleoperatorRecord"),
                             .servo = &log->recorder.add<ServoRecord>(prefix + "/servo", "tactus_msgs/msg/ServoRecord"),
+                            .sites = &log->recorder.add<SitesRecord>(prefix + "/sites", "tactus_msgs/msg/SitesRecord"),
                             .origin_ns = monotonic_ns()});
   }
   log->recorder.start();
@@ -105,13 +106,14 @@ struct RealTimeRun {
   ServoReport servo;
 };
 
-Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, const RealTimeStreams& streams,
+Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, RealTimeStreams streams,
                              const std::function<void()>& tap_done) {
   const auto& [settings, prepared] = one;
   RealTimeRun done;
   std::vector<TapResult> results;
   std::vector<std::vector<simulation::Teleoperator::Record>> traces;
   for (std::size_t tap = 0; tap < prepared.ensemble.size(); ++tap) {
+    streams.tap = static_cast<std::int64_t>(tap);
     auto made = RealTimeTap::make(prepared.ensemble.tap(tap), prepared.observation_s, streams);
     if (!made) return made.error();
     RealTimeTap& running = **made;

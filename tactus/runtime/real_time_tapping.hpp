@@ -31,7 +31,7 @@ inline constexpr std::size_t most_real_time_runs = 64;
 /// The experiment `tapping` in real time, through a servo thread and simulated devices: the table and report that
 /// virtual time makes, and how time was kept. The outcome has no traces: the log has every tick of every tap, on the
 /// topics
-/// `/teleoperator` and `/servo`, with several runs `/run_1/teleoperator` and so on.
+/// `/teleoperator`, `/sites` and `/servo`, with several runs `/run_1/teleoperator` and so on.
 ///
 /// Errors: another kind of experiment, more taps or runs than the limits, those of the experiment and of the log. A log
 /// that fails on the way stops nothing.

@@ -69,25 +69,6 @@ Right remove_timer_slack() {
                  "run Linux 2.6.28 or later");
 }
 
-Right flush_denormals() {
-  const std::string what = "denormals flushed to zero";
-#if defined(__SSE2__)
-  constexpr unsigned int flush_to_zero = 0x8000;
-  constexpr unsigned int denormals_are_zero = 0x0040;
-  _mm_setcsr(_mm_getcsr() | flush_to_zero | denormals_are_zero);
-  return granted(what);
-#elif defined(__aarch64__)
-  constexpr std::uint64_t flush_to_zero = std::uint64_t{1} << 24;
-  std::uint64_t control = 0;
-  asm volatile("mrs %0, fpcr" : "=r"(control));
-  asm volatile("msr fpcr, %0" : : "r"(control | flush_to_zero));
-  return granted(what);
-#else
-  return refused(what, ENOTSUP, "a filter that decays into denormals can become a hundred times slower",
-                 "run on x86-64 or ARM64");
-#endif
-}
-
 /// Those that a thread causes itself, or that a tracer or a tool of the kernel sends it, stay.
 void leave_signals_to_others() {
   sigset_t all;
@@ -149,6 +130,25 @@ Right hold_idle_states_off(int& descriptor) {
 }
 
 }  // namespace
+
+Right flush_denormals() {
+  const std::string what = "denormals flushed to zero";
+#if defined(__SSE2__)
+  constexpr unsigned int flush_to_zero = 0x8000;
+  constexpr unsigned int denormals_are_zero = 0x0040;
+  _mm_setcsr(_mm_getcsr() | flush_to_zero | denormals_are_zero);
+  return granted(what);
+#elif defined(__aarch64__)
+  constexpr std::uint64_t flush_to_zero = std::uint64_t{1} << 24;
+  std::uint64_t control = 0;
+  asm volatile("mrs %0, fpcr" : "=r"(control));
+  asm volatile("msr fpcr, %0" : : "r"(control | flush_to_zero));
+  return granted(what);
+#else
+  return refused(what, ENOTSUP, "a filter that decays into denormals can become a hundred times slower",
+                 "run on x86-64 or ARM64");
+#endif
+}
 
 ProcessRights::ProcessRights() {
   Taken& all = taken();

@@ -6,6 +6,10 @@
 
 namespace tactus::runtime {
 
+struct Right;
+/// The calling thread takes denormal numbers for zero, as a servo thread does.
+Right flush_denormals();
+
 /// One thing that a servo thread asks of the system.
 struct Right {
   std::string what;    ///< `SCHED_FIFO priority 80`

@@ -5,8 +5,9 @@
 #include <tactus/simulation/fault_table.hpp>
 #include <tactus/simulation/presentation.hpp>
 
-#include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -23,7 +24,7 @@ bool as_expected(const FaultTally& tally) {
   return tally.row.monitored ? tally.survived == tally.tried : tally.diverged == tally.tried;
 }
 
-report::Table outcome_table(const std::vector<FaultTally>& tallies) {
+report::Table outcome_table(const std::vector<FaultTally>& tallies, const std::string& time) {
   using Align = report::Column::Align;
   report::Table table({{"fault", "", Align::left},
                        {"survived"},
@@ -35,7 +36,7 @@ report::Table outcome_table(const std::vector<FaultTally>& tallies) {
                        {"step on resuming", "N"},
                        {"detected"},
                        {"after", "ticks"}},
-                      std::string(title) + " (virtual time)");
+                      std::string(title) + " (" + time + " time)");
   for (const FaultTally& tally : tallies) {
     table.add_row({std::string(tally.row.name), of(tally.survived, tally.tried), std::to_string(tally.diverged),
                    report::number(tally.worst.peak_force_N, 3), report::number(tally.worst.given_J, 3),
@@ -47,7 +48,7 @@ report::Table outcome_table(const std::vector<FaultTally>& tallies) {
   return table;
 }
 
-report::Table rule_table(const std::vector<FaultTally>& tallies) {
+report::Table rule_table(const std::vector<FaultTally>& tallies, const std::string& time) {
   using Align = report::Column::Align;
   report::Table table({{"fault", "", Align::left},
                        {"not finite"},
@@ -55,7 +56,7 @@ report::Table rule_table(const std::vector<FaultTally>& tallies) {
                        {"steps above rate"},
                        {"above force limit"},
                        {"active without arming"}},
-                      "What must never happen, counted over all runs");
+                      "What must never happen, counted over all runs (" + time + " time)");
   for (const FaultTally& tally : tallies) {
     const FaultOutcome& worst = tally.worst;
     table.add_row({std::string(tally.row.name), std::to_string(worst.not_finite), std::to_string(worst.stale_applied),
@@ -65,7 +66,25 @@ report::Table rule_table(const std::vector<FaultTally>& tallies) {
   return table;
 }
 
-std::string summary(const FaultsParams& params, const std::vector<FaultTally>& tallies) {
+/// What the runs that did not survive broke, and the number of the first of them.
+std::string failures_text(const FaultTally& tally) {
+  struct Found {
+    std::int64_t count = 0;
+    std::int64_t first = 0;
+  };
+  std::map<std::string_view, Found> rules;
+  for (const FaultFailure& failure : tally.failures) {
+    ++rules.try_emplace(failure.rule, Found{.first = failure.number}).first->second.count;
+  }
+  std::string text;
+  for (const auto& [rule, found] : rules) {
+    text += std::string(tally.row.name) + ": " + std::to_string(found.count) + " not survived: " + std::string(rule) +
+            " (first: number " + std::to_string(found.first) + ").\n";
+  }
+  return text;
+}
+
+std::string summary(const FaultsParams& params, const std::vector<FaultTally>& tallies, const std::string& time) {
   std::int64_t survived = 0, tried = 0;
   std::string text;
   for (const FaultTally& tally : tallies) {
@@ -75,48 +94,68 @@ std::string summary(const FaultsParams& params, const std::vector<FaultTally>& t
     }
     survived += tally.survived;
     tried += tally.tried;
+    text += failures_text(tally);
   }
   const FaultTally& clean = tallies.front();
   return "Survived " + of(survived, tried) + " runs. Rate limit a tick: " +
          report::number(params.control.gate.rate_limit_N_per_s / params.servo.rate_Hz, 3) +
          " N. Clean data: " + std::to_string(clean.detected) + " trips in " +
-         report::number(clean.simulated_s / 3600.0, 3) + " h of virtual time.\n" + text;
+         report::number(clean.simulated_s / 3600.0, 3) + " h of " + time + " time.\n" + text;
 }
 
-std::string json_of(const Request& request, const FaultsParams& params, const std::vector<FaultTally>& tallies) {
-  using Json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
+
+Json json_of(const std::vector<FaultTally>& tallies) {
+  Json rows = Json::array();
+  for (const FaultTally& tally : tallies) {
+    const FaultOutcome& worst = tally.worst;
+    Json failures = Json::array();
+    for (const FaultFailure& failure : tally.failures) {
+      failures.push_back({{"number", failure.number}, {"rule", failure.rule}});
+    }
+    rows.push_back({{"fault", tally.row.name},
+                    {"injected", tally.row.injected},
+                    {"expected", tally.row.expected},
+                    {"monitor", tally.row.monitored ? "on" : "as loose as its bounds allow"},
+                    {"as_expected", as_expected(tally)},
+                    {"tried", tally.tried},
+                    {"survived", tally.survived},
+                    {"diverged", tally.diverged},
+                    {"peak_force_N", worst.peak_force_N},
+                    {"energy_given_J", worst.given_J},
+                    {"stopped", tally.stopped},
+                    {"time_to_stop_median_s", tally.time_to_stop_median_s},
+                    {"time_to_stop_most_s", tally.time_to_stop_most_s},
+                    {"step_on_resuming_N", worst.resume_step_N},
+                    {"detected", tally.detected},
+                    {"detection_median_ticks", tally.detection_ticks_median},
+                    {"detection_most_ticks", tally.detection_ticks_most},
+                    {"simulated_s", tally.simulated_s},
+                    {"not_finite_outputs", worst.not_finite},
+                    {"stale_applied", worst.stale_applied},
+                    {"steps_above_rate_limit", worst.steps_above_rate},
+                    {"forces_above_limit", worst.forces_above_limit},
+                    {"active_without_arming", worst.active_without_arming},
+                    {"not_survived", std::move(failures)}});
+  }
+  return rows;
+}
+
+std::string json_of(const Request& request, const FaultsParams& params, const std::vector<FaultTally>& tallies,
+                    const std::optional<FaultsInRealTime>& real_time) {
   Json document{{"experiment", request.name},
                 {"kind", "faults"},
                 {"command", request.command},
                 {"time", "virtual"},
+                {"seed", params.task.seed},
                 {"seeds", params.task.seeds},
                 {"rate_limit_N_per_tick", params.control.gate.rate_limit_N_per_s / params.servo.rate_Hz},
-                {"rows", Json::array()}};
-  for (const FaultTally& tally : tallies) {
-    const FaultOutcome& worst = tally.worst;
-    document["rows"].push_back({{"fault", tally.row.name},
-                                {"injected", tally.row.injected},
-                                {"expected", tally.row.expected},
-                                {"monitor", tally.row.monitored ? "on" : "as loose as its bounds allow"},
-                                {"as_expected", as_expected(tally)},
-                                {"tried", tally.tried},
-                                {"survived", tally.survived},
-                                {"diverged", tally.diverged},
-                                {"peak_force_N", worst.peak_force_N},
-                                {"energy_given_J", worst.given_J},
-                                {"stopped", tally.stopped},
-                                {"time_to_stop_median_s", tally.time_to_stop_median_s},
-                                {"time_to_stop_most_s", tally.time_to_stop_most_s},
-                                {"step_on_resuming_N", worst.resume_step_N},
-                                {"detected", tally.detected},
-                                {"detection_median_ticks", tally.detection_ticks_median},
-                                {"detection_most_ticks", tally.detection_ticks_most},
-                                {"simulated_s", tally.simulated_s},
-                                {"not_finite_outputs", worst.not_finite},
-                                {"stale_applied", worst.stale_applied},
-                                {"steps_above_rate_limit", worst.steps_above_rate},
-                                {"forces_above_limit", worst.forces_above_limit},
-                                {"active_without_arming", worst.active_without_arming}});
+                {"rows", json_of(tallies)}};
+  if (real_time) {
+    document["real_time"] = {{"seeds", real_time->params.task.seeds},
+                             {"longest_cut_s", real_time->params.task.longest_cut_s},
+                             {"rows", json_of(real_time->tallies)},
+                             {"servo", Json::parse(real_time->timing_json)}};
   }
   return document.dump(2) + "\n";
 }
@@ -156,37 +195,58 @@ std::string FaultExperiment::reference() const {
   return configuration::reference_markdown<FaultsParams>("Experiment `faults`");
 }
 
+Check refuse_variations(const Request& request) {
+  if (request.variations.empty()) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = request.variations.front().key,
+               .message = "the table of faults varies the faults only: use --set for a key",
+               .place = "--vary"};
+}
+
 Result<Outcome> FaultExperiment::run(const Request& request, const Progress& progress) const {
-  if (!request.variations.empty()) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = request.variations.front().key,
-                 .message = "the table of faults varies the faults only: use --set for a key",
-                 .place = "--vary"};
-  }
+  if (auto error = refuse_variations(request)) return *std::move(error);
   const auto params = request.document.read<FaultsParams>();
   if (!params) return params.error();
   const auto tallies = run_faults(*params, progress);
   if (!tallies) return request.document.locate(tallies.error());
+  return present_faults(request, *params, *tallies, std::nullopt);
+}
 
-  const report::Table outcomes = outcome_table(*tallies), rules = rule_table(*tallies);
-  const std::string said = summary(*params, *tallies);
-  std::vector<report::Figure> figures{figure_of(*tallies)};
+Outcome present_faults(const Request& request, const FaultsParams& params, const std::vector<FaultTally>& tallies,
+                       const std::optional<FaultsInRealTime>& real_time) {
+  std::vector<report::Figure> figures{figure_of(tallies)};
   report::Page page(request.name + ": " + std::string(title));
   page.paragraph(
-      "Two supervised sites in virtual time, a person who taps a stiff wall, and one fault in each run, drawn by its "
-      "seed. A witness outside of the sites reads what reaches the motors and what was sent when.");
-  page.paragraph(said);
-  page.table(outcomes);
-  page.table(rules);
+      "Two supervised sites, a person who taps a stiff wall, and one fault in each run, drawn by its seed. A witness "
+      "outside of the sites reads what reaches the motors and what was sent when.");
+  std::string text;
+  const auto add = [&](const FaultsParams& of, const std::vector<FaultTally>& rows, const std::string& time) {
+    const report::Table outcomes = outcome_table(rows, time), rules = rule_table(rows, time);
+    const std::string said = summary(of, rows, time);
+    page.paragraph(said);
+    page.table(outcomes);
+    page.table(rules);
+    text += outcomes.to_text() + "\n" + rules.to_text() + "\n" + said;
+  };
+  add(params, tallies, "virtual");
   page.figure(figures.front());
+  if (real_time) {
+    page.heading("In real time");
+    text += "\n";
+    add(real_time->params, real_time->tallies, "real");
+    for (const report::Table& table : real_time->timing) {
+      page.table(table);
+      text += "\n" + table.to_text();
+    }
+  }
   std::vector<std::pair<std::string, std::string>> expected;
-  for (const FaultTally& tally : *tallies) {
+  for (const FaultTally& tally : tallies) {
     expected.emplace_back(tally.row.name, std::string(tally.row.injected) + ": " + std::string(tally.row.expected));
   }
   page.definitions(expected);
-  add_provenance(page, request, configuration::to_toml(*params));
-  return Outcome{.text = outcomes.to_text() + "\n" + rules.to_text() + "\n" + said,
-                 .json = json_of(request, *params, *tallies),
+  add_provenance(page, request, configuration::to_toml(params));
+  return Outcome{.text = std::move(text),
+                 .json = json_of(request, params, tallies, real_time),
                  .html = page.to_html(),
                  .figures = std::move(figures)};
 }

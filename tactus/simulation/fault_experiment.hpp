@@ -1,6 +1,12 @@
 #pragma once
 
+#include <tactus/report/table.hpp>
 #include <tactus/simulation/experiment.hpp>
+#include <tactus/simulation/fault_table.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace tactus::simulation {
 
@@ -13,5 +19,20 @@ class FaultExperiment final : public Experiment {
   /// Errors besides those of every experiment: `inconsistent` for a varied key.
   [[nodiscard]] Result<Outcome> run(const Request& request, const Progress& progress) const override;
 };
+
+/// The error for a request that varies keys.
+Check refuse_variations(const Request& request);
+
+/// The same faults at the real clock, and how that was kept.
+struct FaultsInRealTime {
+  FaultsParams params;  ///< of these runs
+  std::vector<FaultTally> tallies;
+  std::vector<report::Table> timing;
+  std::string timing_json;  ///< one document
+};
+
+/// What came of the faults, for every reader.
+Outcome present_faults(const Request& request, const FaultsParams& params, const std::vector<FaultTally>& tallies,
+                       const std::optional<FaultsInRealTime>& real_time);
 
 }  // namespace tactus::simulation

@@ -41,10 +41,13 @@ double bad_number_at_s(SiteState state) {
 }
 constexpr double prelude_s = 0.6, prelude_length_s = 0.15;
 
-class Run {
+}  // namespace
+
+class FaultRun::Run {
  public:
   static Result<Run> make(const Teleoperator::Params& params, const FaultPlan& plan);
-  FaultOutcome play();
+  bool step(std::int64_t missed) noexcept;
+  [[nodiscard]] const FaultOutcome& outcome() const { return outcome_; }
 
  private:
   struct Parts {
@@ -59,8 +62,10 @@ class Run {
   struct Process {
     std::int64_t elapsed_ticks = 1;
     std::int64_t session = 1;
-    bool dead = false;
-    bool born = false;  ///< at this tick
+    bool killed = false;
+    bool born = false;     ///< at this tick
+    bool stalled = false;  ///< by the plan or, in real time, by the machine
+    [[nodiscard]] bool stands_still() const { return killed || stalled; }
     double force_N = 0.0;
     double handle_N = 0.0;
     double frozen_m = 0.0;
@@ -110,6 +115,7 @@ class Run {
   void step_slave();
   void advance();
   void judge();
+  bool tick(bool missed);
 
   Teleoperator::Params params_;
   FaultPlan plan_;
@@ -125,13 +131,15 @@ class Run {
   Process master_, slave_;
   double phase_cycles_ = 0.0, tap_Hz_ = 1.0, depth_m_ = 0.01;
   std::int64_t tick_ = 0;
+  std::int64_t ticks_ = 0;
   std::int64_t fault_tick_ = 0;
+  bool missed_ = false;  ///< at this tick no site is stepped
   double now_s_ = 0.0;
   bool rearming_ = false;
   bool left_[2] = {false, false};
 };
 
-Result<Run> Run::make(const Teleoperator::Params& params, const FaultPlan& plan) {
+Result<FaultRun::Run> FaultRun::Run::make(const Teleoperator::Params& params, const FaultPlan& plan) {
   const auto clock = Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
   const Seconds tick{clock->tick_s}, substep{clock->substep_s};
@@ -153,13 +161,16 @@ Result<Run> Run::make(const Teleoperator::Params& params, const FaultPlan& plan)
   }
   run.fault_tick_ = std::lround(run.plan_.start_s / run.tick_s_);
   run.plan_.start_s = static_cast<double>(run.fault_tick_) * run.tick_s_;
+  run.ticks_ = std::lround((run.end_s_ + end_after_s) / run.tick_s_);
+  run.of_master_.expect(run.ticks_);
+  run.of_slave_.expect(run.ticks_);
   run.parts_.master.reset(run.path_m(0.0));
   run.parts_.slave.reset(params.control.position_scale * run.path_m(0.0));
   return run;
 }
 
 /// Taps as a raised cosine, the wall in the middle of the way; or presses on it and stays.
-double Run::path_m(double time_s) const {
+double FaultRun::Run::path_m(double time_s) const {
   const double wall_m = params_.environment.position_m / params_.control.position_scale;
   if (plan_.kind == FaultKind::delayed_wall) {
     return wall_m - depth_m_ * std::cos(std::numbers::pi * std::clamp(2.0 * (time_s - press_s), 0.0, 1.0));
@@ -167,7 +178,7 @@ double Run::path_m(double time_s) const {
   return wall_m - depth_m_ * std::cos(2.0 * std::numbers::pi * (tap_Hz_ * time_s + 0.1 * phase_cycles_));
 }
 
-control::SiteRequests Run::requests() const {
+control::SiteRequests FaultRun::Run::requests() const {
   control::SiteRequests pressed{.align = within(align_s), .arm = within(arm_s), .dead_man = now_s_ >= press_s};
   if (now_s_ > end_s_ + look_after_s && rearming_) {
     pressed.clear = within(end_s_ + look_after_s + 0.02);
@@ -179,22 +190,17 @@ control::SiteRequests Run::requests() const {
 }
 
 /// Kills, stalls and starts a site's process.
-void Run::fare(Process& process, FaultSite site) {
+void FaultRun::Run::fare(Process& process, FaultSite site) {
   process.born = false;
   const bool here = at(site) && during();
-  if (plan_.kind == FaultKind::stall && here) {
-    if (tick_ != fault_tick_) ++process.elapsed_ticks;
-    process.dead = true;
-  } else if (plan_.kind == FaultKind::restart && here) {
-    process.dead = true;
+  if (plan_.kind == FaultKind::restart && here) {
+    process.killed = true;
+    process.stalled = false;
     process.force_N = process.handle_N = 0.0;
     process.waiting.clear();
-  } else if (process.dead) {
-    process.dead = false;
-    if (plan_.kind == FaultKind::stall) {
-      ++process.elapsed_ticks;
-      return;
-    }
+  } else if (process.killed) {
+    if (missed_) return;
+    process.killed = false;
     process.born = true;
     process.elapsed_ticks = 1;
     ++process.session;
@@ -208,11 +214,13 @@ void Run::fare(Process& process, FaultSite site) {
       of_master_.restart();
     }
   } else {
-    process.elapsed_ticks = 1;
+    // The first step after a stall counts the ticks before it.
+    process.elapsed_ticks = process.stalled ? process.elapsed_ticks + 1 : 1;
+    process.stalled = missed_ || (plan_.kind == FaultKind::stall && here);
   }
 }
 
-double Run::encoder(double position_m, Process& process, FaultSite site) {
+double FaultRun::Run::encoder(double position_m, Process& process, FaultSite site) {
   const bool here = at(site);
   if (tick_ <= fault_tick_) process.frozen_m = position_m;
   if (prelude(SiteState::fault) && (bad_.at_master == (site == FaultSite::master))) {
@@ -225,20 +233,19 @@ double Run::encoder(double position_m, Process& process, FaultSite site) {
   return position_m;
 }
 
-double Run::force_sensor(double force_N) const {
+double FaultRun::Run::force_sensor(double force_N) const {
   if (plan_.kind == FaultKind::force_dropout && during()) return 0.0;
   if (plan_.kind == FaultKind::force_bias && during()) return force_N + plan_.size;
   return force_N;
 }
 
-void Run::receive(PacketRelay& relay, Process& process, bool master) {
-  const bool killed = process.dead && plan_.kind == FaultKind::restart;
+void FaultRun::Run::receive(PacketRelay& relay, Process& process, bool master) {
   relay.deliver(tick_, [&](control::Packet packet) {
-    if (killed) return;
+    if (process.killed) return;
     if (bad_now(master)) bad_.spoil(packet);
     if (process.waiting.size() < process.waiting.capacity()) process.waiting.push_back(packet);
   });
-  if (process.dead) return;
+  if (process.stands_still()) return;
   for (control::Packet& packet : process.waiting) {
     // What waited in the queue of a stalled site has aged there.
     packet.age_s += static_cast<double>(process.elapsed_ticks - 1) * tick_s_;
@@ -247,11 +254,11 @@ void Run::receive(PacketRelay& relay, Process& process, bool master) {
   process.waiting.clear();
 }
 
-void Run::step_master() {
+void FaultRun::Run::step_master() {
   const auto reading = parts_.master.measure();
   fare(master_, FaultSite::master);
   receive(to_master_, master_, true);
-  if (!master_.dead) {
+  if (!master_.stands_still()) {
     control::SupervisedMaster::Input input{
         .sensors = {.motor_position_m = encoder(reading.motor_position_m, master_, FaultSite::master),
                     .hand_force_N = reading.hand_force_N,
@@ -266,16 +273,16 @@ void Run::step_master() {
     of_master_.sent(output.packet, tick_);
     if (!cut_now()) to_slave_.send(output.packet, tick_, during());
   }
-  const bool excused = plan_.kind == FaultKind::restart && at(FaultSite::master) && (master_.dead || master_.born);
+  const bool excused = master_.killed || master_.born;
   at_master_.see(master_.force_N, excused, outcome_);
   at_handle_.see(master_.handle_N, excused, outcome_);
 }
 
-void Run::step_slave() {
+void FaultRun::Run::step_slave() {
   const auto reading = parts_.slave.measure();
   fare(slave_, FaultSite::slave);
   receive(to_slave_, slave_, false);
-  if (!slave_.dead) {
+  if (!slave_.stands_still()) {
     control::SupervisedSlave::Input input{
         .sensors = {.motor_position_m = encoder(reading.motor_position_m, slave_, FaultSite::slave),
                     .tip_force_N = force_sensor(reading.tip_force_N),
@@ -290,11 +297,11 @@ void Run::step_slave() {
     // It arrives at the next tick at the earliest.
     if (!cut_now()) to_master_.send(output.packet, tick_ + 1, during());
   }
-  const bool excused = plan_.kind == FaultKind::restart && at(FaultSite::slave) && (slave_.dead || slave_.born);
+  const bool excused = slave_.killed || slave_.born;
   at_slave_.see(slave_.force_N, excused, outcome_);
 }
 
-void Run::advance() {
+void FaultRun::Run::advance() {
   const double force_N = std::isfinite(master_.force_N) ? master_.force_N : 0.0;
   const double slave_N = std::isfinite(slave_.force_N) ? slave_.force_N : 0.0;
   energy_.see(force_N, parts_.master.mechanism().motor_position_m(), outcome_);
@@ -310,15 +317,21 @@ void Run::advance() {
   }
 }
 
-void Run::judge() {
+void FaultRun::Run::judge() {
   const SiteState states[2] = {parts_.master_site.state(), parts_.slave_site.state()};
-  const bool gone[2] = {master_.dead && plan_.kind == FaultKind::restart,
-                        slave_.dead && plan_.kind == FaultKind::restart};
+  const bool gone[2] = {master_.killed, slave_.killed};
   const bool both = states[0] == SiteState::active && states[1] == SiteState::active;
   if (tick_ < fault_tick_) {
     outcome_.became_active = both;
     return;
   }
+  const control::ControlParams& params = params_.control;
+  const auto beyond = [](double position_m, const control::SafetyGate::Params& gate) {
+    return std::fabs(position_m) >= control::SafetyGate::fault_factor * gate.position_limit_m;
+  };
+  outcome_.left_workspace = outcome_.left_workspace ||
+                            beyond(parts_.master.mechanism().motor_position_m(), params.gate) ||
+                            beyond(parts_.slave.mechanism().motor_position_m(), params.slave_gate);
   const bool before_rearming = now_s_ <= end_s_ + look_after_s;
   bool none_active = true;
   for (int site = 0; site < 2; ++site) {
@@ -342,26 +355,53 @@ void Run::judge() {
   if (now_s_ >= end_s_ + settled_after_s) outcome_.active_at_end = both;
 }
 
-FaultOutcome Run::play() {
-  const auto ticks = std::lround((end_s_ + end_after_s) / tick_s_);
-  for (; tick_ < ticks; ++tick_) {
-    now_s_ = static_cast<double>(tick_) * tick_s_;
-    step_master();
-    step_slave();
-    judge();
-    advance();
+bool FaultRun::Run::tick(bool missed) {
+  if (tick_ >= ticks_) return false;
+  missed_ = missed;
+  // A fault that began while no site is stepped would meet none: it waits for the next step.
+  if (missed && tick_ == fault_tick_) {
+    ++fault_tick_;
+    ++ticks_;
+    plan_.start_s = static_cast<double>(fault_tick_) * tick_s_;
+    end_s_ += tick_s_;
   }
-  return outcome_;
+  now_s_ = static_cast<double>(tick_) * tick_s_;
+  step_master();
+  step_slave();
+  judge();
+  advance();
+  ++tick_;
+  return tick_ < ticks_;
 }
 
-}  // namespace
+bool FaultRun::Run::step(std::int64_t missed) noexcept {
+  for (std::int64_t i = 0; i < missed; ++i) tick(true);
+  return tick(false);
+}
 
-Result<FaultOutcome> run_fault(const Teleoperator::Params& params, const FaultPlan& plan) {
+FaultRun::FaultRun(std::unique_ptr<Run> run) : run_(std::move(run)) {}
+FaultRun::FaultRun(FaultRun&&) noexcept = default;
+FaultRun& FaultRun::operator=(FaultRun&&) noexcept = default;
+FaultRun::~FaultRun() = default;
+
+Result<FaultRun> FaultRun::make(const Teleoperator::Params& params, const FaultPlan& plan) {
   if (auto error = validate(params)) return *std::move(error);
   if (auto error = validate(plan)) return *std::move(error);
   auto run = Run::make(params, plan);
   if (!run) return run.error();
-  return run->play();
+  return FaultRun(std::make_unique<Run>(*std::move(run)));
+}
+
+bool FaultRun::step(std::int64_t missed) noexcept { return run_->step(missed); }
+
+const FaultOutcome& FaultRun::outcome() const { return run_->outcome(); }
+
+Result<FaultOutcome> run_fault(const Teleoperator::Params& params, const FaultPlan& plan) {
+  auto run = FaultRun::make(params, plan);
+  if (!run) return run.error();
+  while (run->step()) {
+  }
+  return run->outcome();
 }
 
 std::int64_t bad_number_choices() { return BadNumber::choices; }

@@ -5,6 +5,7 @@
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <cstdint>
+#include <memory>
 
 /// Two supervised sites in virtual time, a person who taps the wall, and one fault.
 namespace tactus::simulation {
@@ -23,11 +24,32 @@ struct FaultOutcome {
   bool stopped = false;                    ///< a site left `active` after the fault began
   double time_to_stop_s = 0.0;             ///< from the begin of the fault until no site was active
   std::int64_t detection_ticks = -1;       ///< from the begin of the fault to a latched fault or a hold; -1 is never
+  bool left_workspace = false;             ///< a device was beyond where its gate latches a fault, whatever it read
   bool active_at_end = false;              ///< both, after clearing and arming where that was needed
   double resume_step_N = 0.0;  ///< largest change of a force in a tick, from arming to 20 ms after following began
 };
 
-/// Runs one plan. `params` must make a teleoperator; its channel is not used.
+/// One plan, tick by tick, in virtual or in real time.
+class FaultRun {
+ public:
+  /// `params` must make a teleoperator; its channel is not used.
+  static Result<FaultRun> make(const Teleoperator::Params& params, const FaultPlan& plan);
+  FaultRun(FaultRun&&) noexcept;
+  FaultRun& operator=(FaultRun&&) noexcept;
+  ~FaultRun();
+
+  /// One tick; false once there is none left. Before it the machine missed so many: devices, person and packets went on
+  /// and neither site was stepped. Does not block; allocates only where a killed site is started again.
+  bool step(std::int64_t missed = 0) noexcept;
+  [[nodiscard]] const FaultOutcome& outcome() const;
+
+ private:
+  class Run;
+  explicit FaultRun(std::unique_ptr<Run> run);
+  std::unique_ptr<Run> run_;
+};
+
+/// Runs one plan in virtual time. `params` must make a teleoperator; its channel is not used.
 Result<FaultOutcome> run_fault(const Teleoperator::Params& params, const FaultPlan& plan);
 
 /// How many choices a bad number has: every input of both sites, every value, every state.

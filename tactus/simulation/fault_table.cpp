@@ -12,9 +12,15 @@ namespace {
 /// Ticks that a message may wait at a tick boundary on its way, and a state for its packet.
 constexpr double grace_ticks = 6.0;
 
-bool within_limits(const FaultOutcome& outcome) {
-  return outcome.not_finite == 0 && outcome.stale_applied == 0 && outcome.steps_above_rate == 0 &&
-         outcome.forces_above_limit == 0 && outcome.active_without_arming == 0 && outcome.active_at_end;
+std::string_view broken_rule_of_all(const FaultOutcome& outcome) {
+  if (outcome.not_finite > 0) return "an output was not finite";
+  if (outcome.stale_applied > 0) return "a stale packet was applied";
+  if (outcome.steps_above_rate > 0) return "a force step above the rate limit";
+  if (outcome.forces_above_limit > 0) return "a force above the limit";
+  if (outcome.active_without_arming > 0) return "a site followed again without arming";
+  if (outcome.left_workspace) return "a device left its workspace";
+  if (!outcome.active_at_end) return "not active again after clearing and arming";
+  return {};
 }
 
 void add(FaultOutcome& worst, const FaultOutcome& one) {
@@ -26,33 +32,6 @@ void add(FaultOutcome& worst, const FaultOutcome& one) {
   worst.peak_force_N = std::max(worst.peak_force_N, one.peak_force_N);
   worst.given_J = std::max(worst.given_J, one.given_J);
   worst.resume_step_N = std::max(worst.resume_step_N, one.resume_step_N);
-}
-
-FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vector<FaultPlan>& plans,
-                 const std::vector<FaultOutcome>& outcomes) {
-  FaultTally sum{.row = row, .worst = {}};
-  std::vector<double> stop_s, detection;
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    const FaultOutcome& one = outcomes[i];
-    ++sum.tried;
-    sum.survived += survived(row, plans[i], one, params);
-    sum.diverged += one.given_J > params.task.diverged_above_J;
-    sum.simulated_s += plans[i].start_s + plans[i].length_s;
-    if (one.stopped) stop_s.push_back(one.time_to_stop_s);
-    if (one.detection_ticks >= 0) detection.push_back(static_cast<double>(one.detection_ticks));
-    add(sum.worst, one);
-  }
-  sum.stopped = static_cast<std::int64_t>(stop_s.size());
-  sum.detected = static_cast<std::int64_t>(detection.size());
-  if (!stop_s.empty()) {
-    sum.time_to_stop_median_s = quantile(stop_s, 0.5);
-    sum.time_to_stop_most_s = quantile(stop_s, 1.0);
-  }
-  if (!detection.empty()) {
-    sum.detection_ticks_median = quantile(detection, 0.5);
-    sum.detection_ticks_most = quantile(detection, 1.0);
-  }
-  return sum;
 }
 
 }  // namespace
@@ -121,26 +100,30 @@ Teleoperator::Params params_of(const FaultRow& row, const FaultsParams& params) 
   return of;
 }
 
-bool survived(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  if (!within_limits(outcome) || outcome.given_J > params.task.diverged_above_J) return false;
+std::string_view broken_rule(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome,
+                             const FaultsParams& params) {
+  if (const auto rule = broken_rule_of_all(outcome); !rule.empty()) return rule;
+  if (outcome.given_J > params.task.diverged_above_J) return "diverged";
   const double tick_s = 1.0 / params.servo.rate_Hz;
   const control::SupervisionParams& supervision = params.control.supervision;
   const double timeout_s = supervision.watchdog.timeout_s;
+  const bool detected = outcome.detection_ticks >= 0;
   const bool in_time = outcome.stopped && outcome.time_to_stop_s <= timeout_s + grace_ticks * tick_s;
+  constexpr std::string_view late = "not stopped within the time-out", unseen = "not detected";
   switch (row.kind) {
     case FaultKind::none:
-      return !outcome.stopped && outcome.detection_ticks < 0;
+      return outcome.stopped || detected ? "tripped on clean data" : "";
     case FaultKind::cut:
-      return plan.length_s <= timeout_s + grace_ticks * tick_s || in_time;
+      return plan.length_s <= timeout_s + grace_ticks * tick_s || in_time ? "" : late;
     case FaultKind::restart:
-      return in_time;
+      return in_time ? "" : late;
     case FaultKind::encoder_spike:
     case FaultKind::encoder_wrap:
-      return outcome.detection_ticks >= 0 && outcome.detection_ticks <= 1;
+      return detected && outcome.detection_ticks <= 1 ? "" : unseen;
     case FaultKind::force_bias:
-      return outcome.detection_ticks >= 0 || std::fabs(plan.size) < 2.0 * supervision.force_sensor.residual_limit_N;
+      return detected || std::fabs(plan.size) < 2.0 * supervision.force_sensor.residual_limit_N ? "" : unseen;
     case FaultKind::stall:
-      return plan.length_s <= supervision.longest_stall_s || outcome.detection_ticks >= 0;
+      return plan.length_s <= supervision.longest_stall_s || detected ? "" : unseen;
     case FaultKind::loss_bursts:
     case FaultKind::disorder:
     case FaultKind::bad_number:
@@ -149,7 +132,46 @@ bool survived(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& ou
     case FaultKind::delayed_wall:
       break;
   }
-  return true;
+  return {};
+}
+
+std::vector<FaultPlan> draw_plans(const FaultRow& row, const FaultsParams& params) {
+  std::vector<FaultPlan> plans;
+  for (std::int64_t i = 0; i < params.task.seeds; ++i) {
+    plans.push_back(draw_plan(row.kind, i, params.task.seed, params.task.longest_cut_s));
+  }
+  return plans;
+}
+
+FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vector<FaultPlan>& plans,
+                 const std::vector<FaultOutcome>& outcomes) {
+  FaultTally sum{.row = row, .failures = {}, .worst = {}};
+  std::vector<double> stop_s, detection;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    const FaultOutcome& one = outcomes[i];
+    ++sum.tried;
+    if (const auto rule = broken_rule(row, plans[i], one, params); rule.empty()) {
+      ++sum.survived;
+    } else {
+      sum.failures.push_back({static_cast<std::int64_t>(i), rule});
+    }
+    sum.diverged += one.given_J > params.task.diverged_above_J;
+    sum.simulated_s += plans[i].start_s + plans[i].length_s;
+    if (one.stopped) stop_s.push_back(one.time_to_stop_s);
+    if (one.detection_ticks >= 0) detection.push_back(static_cast<double>(one.detection_ticks));
+    add(sum.worst, one);
+  }
+  sum.stopped = static_cast<std::int64_t>(stop_s.size());
+  sum.detected = static_cast<std::int64_t>(detection.size());
+  if (!stop_s.empty()) {
+    sum.time_to_stop_median_s = quantile(stop_s, 0.5);
+    sum.time_to_stop_most_s = quantile(stop_s, 1.0);
+  }
+  if (!detection.empty()) {
+    sum.detection_ticks_median = quantile(detection, 0.5);
+    sum.detection_ticks_most = quantile(detection, 1.0);
+  }
+  return sum;
 }
 
 Result<std::vector<FaultTally>> run_faults(const FaultsParams& params, const std::function<void(double)>& progress) {
@@ -160,10 +182,7 @@ Result<std::vector<FaultTally>> run_faults(const FaultsParams& params, const std
   std::vector<std::vector<FaultPlan>> plans(rows.size());
   for (std::size_t row = 0; row < rows.size(); ++row) {
     of.push_back(params_of(rows[row], params));
-    for (std::size_t i = 0; i < seeds; ++i) {
-      plans[row].push_back(
-          draw_plan(rows[row].kind, static_cast<std::int64_t>(i), params.task.seed, params.task.longest_cut_s));
-    }
+    plans[row] = draw_plans(rows[row], params);
     // What can be made once can be made always: a plan changes no parameter of the parts.
     if (const auto tried = run_fault(of.back(), {.start_s = 0.0, .impairment = {}}); !tried) return tried.error();
   }

@@ -43,10 +43,16 @@ class PacketWitness {
   explicit PacketWitness(double longest_age_s, double tick_s)
       : longest_ticks_(static_cast<std::int64_t>(longest_age_s / tick_s) + 1) {}
 
+  /// Makes room for as many packets of a session, so that only a new session allocates.
+  void expect(std::int64_t packets) {
+    expected_ = static_cast<std::size_t>(packets);
+    starts_.reserve(2);
+  }
   void sent(const control::Packet& packet, std::int64_t tick) {
     if (packet.session != session_) {
       session_ = packet.session;
       starts_.push_back({packet.session, {}});
+      starts_.back().ticks.reserve(expected_);
     }
     starts_.back().ticks.push_back(tick);
   }
@@ -73,6 +79,7 @@ class PacketWitness {
   }
 
   std::int64_t longest_ticks_;
+  std::size_t expected_ = 0;
   std::int64_t session_ = 0;
   std::int64_t newest_ = -1;
   std::vector<Session> starts_;

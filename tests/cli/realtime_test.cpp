@@ -62,6 +62,35 @@ TEST_F(RealTime, OnlyTappingAndOnlyAShortOneRunsInRealTime) {
   EXPECT_EQ(files(), Words{"quick.toml"});
 }
 
+TEST_F(RealTime, ALogReplaysBitForBit) {
+  ASSERT_EQ(tactus(run(quick_experiment(), {"--out", "results"})).status, 0);
+  const Outcome replayed = tactus({"replay", "results/log", "--check", "--json"});
+  EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
+  EXPECT_EQ(Json::parse(replayed.out)["equal"], true);
+  EXPECT_EQ(Json::parse(replayed.out)["taps"], 2);
+  ASSERT_EQ(tactus({"run", quick_experiment(), "--out", "virtual"}).status, 0);
+  const Outcome other = tactus({"replay", "virtual/log", "--check"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("/sites"), std::string::npos) << other.err;
+}
+
+TEST_F(RealTime, FaultsRunAtTheRealClockAfterVirtualTime) {
+  const Outcome outcome = tactus({"faults", "--realtime", "--seeds", "1", "--set", "task.real_time_seeds=1", "--set",
+                                  "task.longest_cut_s=0.2", "--priority", "10", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json document = Json::parse(outcome.out);
+  const Json& rows = document["real_time"]["rows"];
+  ASSERT_EQ(rows.size(), document["rows"].size());
+  for (const Json& row : rows) {
+    EXPECT_EQ(row["tried"], 1);
+    EXPECT_GT(row["peak_force_N"], 0.1) << row["fault"];
+    for (const char* never : {"not_finite_outputs", "stale_applied", "steps_above_rate_limit"}) {
+      EXPECT_EQ(row[never], 0) << row["fault"] << " " << never;
+    }
+  }
+  EXPECT_GT(document["real_time"]["servo"]["ticks"], 10000);
+}
+
 TEST_F(RealTime, HowToKeepTimeIsNoQuestionInVirtualTime) {
   EXPECT_EQ(tactus({"run", quick_experiment(), "--core", "0"}).status, 2);
   const Outcome spin = tactus(run(quick_experiment(), {"--spin-s", "0.0004"}));

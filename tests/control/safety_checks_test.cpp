@@ -32,6 +32,19 @@ TEST(EncoderCheck, ASpikeAndAWrapShowAtOnceAndMotionUpToTheFastestNever) {
   EXPECT_EQ(check.step({.position_m = position_m - 0.65536}), EncoderFault::jump) << "and it stays one";
 }
 
+/// A hand that turns around while the slave chatters on the wall: the encoder rests, and the force comes in pulses.
+TEST(EncoderCheck, ShortPulsesOfForceOnADeviceAtRestAreNoFreezeAndALastingForceIs) {
+  const EncoderCheck::Params params{.frozen_force_N = 0.5, .frozen_after_s = 0.01};
+  EncoderCheck check = EncoderCheck::make(params, tick).value();
+  for (int i = 0; i < 2000; ++i) {
+    const double pulse_N = i % 40 >= 10 && i % 40 < 20 ? 1.0 : 0.0;
+    ASSERT_EQ(check.step({.position_m = 0.01, .acted_N = pulse_N}), EncoderFault::none) << "tick " << i;
+  }
+  int lasting = 0;
+  while (check.step({.position_m = 0.01, .acted_N = -0.6}) == EncoderFault::none && lasting < 1000) ++lasting;
+  EXPECT_NEAR(lasting * tick.value, params.frozen_after_s, 2.0 * tick.value);
+}
+
 TEST(EncoderCheck, AFreezeShowsOnceTheForceWorksAndAtRestOrUnderASteadyForceNever) {
   const EncoderCheck::Params params{.frozen_force_N = 0.5, .frozen_after_s = 0.01};
   EncoderCheck resting = EncoderCheck::make(params, tick).value(), frozen = resting, moving = resting;

@@ -1,5 +1,6 @@
 #include <tactus/link/endpoint.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 
@@ -70,10 +71,21 @@ TEST_F(Between, BeginningsOfHandshakesLeaveNoMemoryBehind) {
       std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
   };
+  // A hand-shake under way holds 71,000 bytes, and a busy machine may make the master begin one at any time: what
+  // counts is the least that is held while the link goes on in peace.
+  const auto held = [&] {
+    std::size_t least = mallinfo2().uordblks;
+    for (int i = 0; i < 1000; ++i) {
+      tick_both();
+      least = std::min(least, mallinfo2().uordblks);
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+    return least;
+  };
   burst();
-  const std::size_t before = mallinfo2().uordblks;
+  const std::size_t before = held();
   burst();
-  EXPECT_LT(mallinfo2().uordblks, before + 1'000'000);  // a connection that stayed would cost 50,000
+  EXPECT_LT(held(), before + 30'000);  // less than one connection that stayed, of 2000 that were begun
   EXPECT_LE(slave->counters().secure.handshakes, master->counters().secure.handshakes);
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 #include <tuple>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -34,6 +35,46 @@ TEST(Faults, EveryRowButAFrozenEncoderSurvivesAndWithALooseMonitorTheSameRunsDiv
     EXPECT_EQ(tally.worst.stale_applied, 0) << tally.row.name;
     EXPECT_EQ(tally.worst.steps_above_rate, 0) << tally.row.name;
     EXPECT_GT(tally.worst.peak_force_N, 0.5) << tally.row.name << ": the wall is felt";
+  }
+}
+
+TEST(Faults, ARunThatDoesNotSurviveIsNamedWithTheRuleThatItBroke) {
+  const FaultsParams params;
+  const FaultRow row = fault_rows().front();
+  const FaultOutcome good{.active_at_end = true};
+  FaultOutcome stale = good, tripped = good, outside = good;
+  stale.stale_applied = 1;
+  tripped.detection_ticks = 40;
+  outside.left_workspace = true;
+  EXPECT_EQ(broken_rule(row, {.impairment = {}}, good, params), "");
+  const FaultTally sum = tally(row, params, std::vector<FaultPlan>(4), {good, stale, tripped, outside});
+  EXPECT_EQ(sum.survived, 1);
+  ASSERT_EQ(sum.failures.size(), 3U);
+  EXPECT_EQ(sum.failures[0].number, 1);
+  EXPECT_EQ(sum.failures[0].rule, "a stale packet was applied");
+  EXPECT_EQ(sum.failures[1].rule, "tripped on clean data");
+  EXPECT_EQ(sum.failures[2].rule, "a device left its workspace");
+}
+
+TEST(Faults, TicksThatTheMachineMissesAreAStallOfBothSites) {
+  const FaultsParams params;
+  const FaultPlan plan = draw_plan(FaultKind::none, 0, 1, 1.0);
+  const auto played = [&](std::int64_t missed) {
+    auto run = FaultRun::make(params, plan).value();
+    const auto late_tick = std::lround((plan.start_s + 0.05) * params.servo.rate_Hz);
+    std::int64_t steps = 1;
+    for (; run.step(steps == late_tick ? missed : 0); ++steps) {
+    }
+    EXPECT_EQ(steps + missed, std::lround((plan.start_s + 0.9) * params.servo.rate_Hz)) << "time goes on";
+    return run.outcome();
+  };
+  const FaultOutcome in_time = played(0), late = played(500), virtual_time = run_fault(params, plan).value();
+  EXPECT_EQ(in_time.given_J, virtual_time.given_J);
+  EXPECT_EQ(in_time.detection_ticks, -1);
+  EXPECT_GT(late.detection_ticks, 0) << "0.1 s without a step ends in hold";
+  for (const FaultOutcome& outcome : {in_time, late}) {
+    EXPECT_EQ(outcome.not_finite + outcome.stale_applied + outcome.steps_above_rate, 0);
+    EXPECT_TRUE(outcome.active_at_end);
   }
 }
 

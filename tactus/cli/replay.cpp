@@ -1,0 +1,81 @@
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/verbs.hpp>
+#include <tactus/core/version.hpp>
+#include <tactus/runtime/replay.hpp>
+
+#include <array>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+struct ReplayOptions {
+  std::string log;
+  bool check = false;
+  bool json = false;
+};
+
+/// With all digits: two numbers that differ look different.
+std::string exact(double value) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.17g", value);
+  return text.data();
+}
+
+std::string text_of(const runtime::Replay& replay) {
+  std::string text =
+      "Replayed " + std::to_string(replay.ticks) + " ticks of " + std::to_string(replay.taps) + " taps: ";
+  if (const auto& found = replay.difference) {
+    text += "the first difference is at tick " + std::to_string(found->tick) + " of tap " + std::to_string(found->tap) +
+            ", topic " + found->topic + ", signal " + found->signal + ": recorded " + exact(found->recorded) +
+            ", replayed " + exact(found->replayed) + ".\n";
+    if (replay.version != version()) {
+      text += "The log was written by version " + replay.version + ", this is " + std::string(version()) + ".\n";
+    }
+    return text;
+  }
+  return text + "every output is the recorded one, bit for bit.\n";
+}
+
+std::string json_of(const runtime::Replay& replay) {
+  nlohmann::ordered_json document{{"taps", replay.taps},
+                                  {"ticks", replay.ticks},
+                                  {"equal", !replay.difference.has_value()},
+                                  {"version", replay.version}};
+  if (const auto& found = replay.difference) {
+    document["difference"] = {{"topic", found->topic},   {"tap", found->tap},           {"tick", found->tick},
+                              {"signal", found->signal}, {"recorded", found->recorded}, {"replayed", found->replayed}};
+  }
+  // A log may come from anywhere; what is not UTF-8 in it is replaced.
+  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int& status) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* verb = app.add_subcommand("replay", "Step the sites of a logged run in real time again, on what they read");
+  verb->add_option("LOG", options->log, "Log (.mcap) of `run --realtime --out`, or the folder that holds it")
+      ->required();
+  verb->add_flag("--check", options->check, "End with status 1 where anything differs from the log");
+  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  verb->callback([options, &app, &status] {
+    const auto replayed = runtime::replay(options->log);
+    if (!replayed) {
+      std::cerr << app.get_name() << ": " << describe(replayed.error()) << "\n";
+      status = exit_status(replayed.error());
+      return;
+    }
+    std::cout << (options->json ? json_of(*replayed) : text_of(*replayed));
+    if (options->check && replayed->difference) status = 1;
+  });
+}
+
+}  // namespace tactus::cli

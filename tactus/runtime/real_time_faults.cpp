@@ -1,0 +1,83 @@
+#include <tactus/runtime/real_time_faults.hpp>
+#include <tactus/runtime/servo_presentation.hpp>
+#include <tactus/simulation/fault_experiment.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace tactus::runtime {
+
+namespace {
+
+using simulation::FaultOutcome;
+using simulation::FaultPlan;
+using simulation::FaultRun;
+using simulation::FaultsParams;
+
+constexpr std::size_t side_by_side = 6;
+constexpr double longest_cut_s = 1.0;
+
+/// Runs in batches, each from the first to the last tick of the longest of its runs. The outcomes keep their order.
+Result<std::vector<FaultOutcome>> play(std::vector<FaultRun>& runs, const ServoThreadParams& servo, ServoReport& all,
+                                       const simulation::Progress& progress) {
+  for (std::size_t first = 0; first < runs.size(); first += side_by_side) {
+    const std::span<FaultRun> batch(runs.data() + first, std::min(side_by_side, runs.size() - first));
+    const auto report = run_servo(servo, [batch](const Tick& tick) noexcept {
+      bool more = false;
+      for (FaultRun& run : batch) more = run.step(tick.missed) || more;
+      return more;
+    });
+    if (!report) return report.error();
+    all.add(*report);
+    progress(static_cast<double>(first + batch.size()) / static_cast<double>(runs.size()));
+  }
+  std::vector<FaultOutcome> outcomes;
+  for (const FaultRun& run : runs) outcomes.push_back(run.outcome());
+  return outcomes;
+}
+
+}  // namespace
+
+Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& request, const ServoThreadParams& servo,
+                                                    const simulation::Progress& progress) {
+  if (auto error = simulation::refuse_variations(request)) return *std::move(error);
+  const auto params = request.document.read<FaultsParams>();
+  if (!params) return params.error();
+  ServoThreadParams clock = servo;
+  clock.rate_Hz = params->servo.rate_Hz;
+  if (auto error = check_servo_thread(clock)) return *std::move(error);
+  const auto tallies = simulation::run_faults(*params, [&progress](double done) { progress(0.5 * done); });
+  if (!tallies) return request.document.locate(tallies.error());
+
+  simulation::FaultsInRealTime real{.params = *params, .tallies = {}, .timing = {}, .timing_json = {}};
+  real.params.task.seeds = params->task.real_time_seeds;
+  real.params.task.longest_cut_s = std::min(longest_cut_s, params->task.longest_cut_s);
+  const auto rows = simulation::fault_rows();
+  std::vector<FaultRun> runs;
+  for (const auto& row : rows) {
+    const auto of = simulation::params_of(row, real.params);
+    for (const FaultPlan& plan : simulation::draw_plans(row, real.params)) {
+      auto run = FaultRun::make(of, plan);
+      if (!run) return request.document.locate(run.error());
+      runs.push_back(*std::move(run));
+    }
+  }
+  const ProcessRights process;  // once for all runs
+  ServoReport kept;
+  const auto outcomes = play(runs, clock, kept, [&progress](double done) { progress(0.5 + 0.5 * done); });
+  if (!outcomes) return outcomes.error();
+  const auto seeds = static_cast<std::size_t>(real.params.task.seeds);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const auto first = outcomes->begin() + static_cast<std::ptrdiff_t>(row * seeds);
+    real.tallies.push_back(simulation::tally(rows[row], real.params, simulation::draw_plans(rows[row], real.params),
+                                             {first, first + static_cast<std::ptrdiff_t>(seeds)}));
+  }
+  real.timing = {timing_table(kept), late_ticks_table(kept)};
+  real.timing_json = servo_json(kept);
+  return simulation::present_faults(request, *params, *tallies, real);
+}
+
+}  // namespace tactus::runtime

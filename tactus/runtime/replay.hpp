@@ -1,0 +1,36 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace tactus::runtime {
+
+/// Where a replay first gave another number than the log has.
+struct ReplayDifference {
+  std::string topic;
+  std::int64_t tap = 0;
+  std::int64_t tick = 0;
+  std::string signal;
+  double recorded = 0.0;
+  double replayed = 0.0;
+};
+
+struct Replay {
+  std::int64_t taps = 0;
+  std::int64_t ticks = 0;  ///< steps that were compared, the one that differs included
+  std::optional<ReplayDifference> difference;
+  std::string version;  ///< of the program that wrote the log; another build may round otherwise
+};
+
+/// Steps the sites of a run in real time once more on what its log says that they read, with the configuration that the
+/// log carries, and compares all that they give bit for bit. The first difference ends it.
+///
+/// Errors: those of reading a log; `missing` where it has no topic `/sites`, `inconsistent` where steps are missing in
+/// it or its signals are others; `out_of_bounds` and others where its configuration makes no teleoperator.
+Result<Replay> replay(const std::filesystem::path& log);
+
+}  // namespace tactus::runtime
