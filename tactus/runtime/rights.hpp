@@ -6,10 +6,6 @@
 
 namespace tactus::runtime {
 
-struct Right;
-/// The calling thread takes denormal numbers for zero, as a servo thread does.
-Right flush_denormals();
-
 /// One thing that a servo thread asks of the system.
 struct Right {
   std::string what;    ///< `SCHED_FIFO priority 80`
@@ -18,6 +14,9 @@ struct Right {
   std::string means;   ///< where it is not: what is lost
   std::string remedy;  ///< where it is not: the command that mends it
 };
+
+/// The calling thread takes denormal numbers for zero, as a servo thread does.
+Right flush_denormals();
 
 /// What the whole process asks for while any servo thread runs: its memory locked into RAM, present and, where the
 /// limit on locked memory allows, future; and the processor kept out of idle states that it is slow to leave. Counted:
