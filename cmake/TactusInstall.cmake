@@ -21,7 +21,7 @@ foreach(module IN LISTS modules)
   endforeach()
   install(TARGETS tactus_${module} EXPORT tactusTargets)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/tactus/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus
-          FILES_MATCHING PATTERN *.hpp)
+          FILES_MATCHING PATTERN *.hpp PATTERN internal EXCLUDE)
 endforeach()
 list(REMOVE_DUPLICATES dependencies)
 list(JOIN dependencies "\n" TACTUS_DEPENDENCIES)

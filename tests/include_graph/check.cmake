@@ -3,7 +3,8 @@
 # Reads every #include of the library and fails when one breaks a rule of the layers:
 #   - a module includes itself and modules that stand before it in LAYERS, always as <tactus/module/thing.hpp>;
 #   - the kernel includes the standard library, Eigen and itself, and nothing that needs an operating system;
-#   - no header that is installed includes a library of others, Eigen excepted.
+#   - no header that is installed includes a library of others, Eigen excepted;
+#   - what stands in a folder `internal` is not installed, and only sources of its own module include it.
 cmake_minimum_required(VERSION 3.25)
 
 set(kernel core signal mechanics control)
@@ -44,6 +45,9 @@ foreach(file IN LISTS files)
         violation(${file}
                   "${module} may not include <${header}>: ${included} does not stand before it in TACTUS_LAYERS")
       endif()
+      if(header MATCHES "/internal/" AND NOT (included STREQUAL module AND file MATCHES "\\.cpp$|/internal/"))
+        violation(${file} "<${header}> is for the sources of ${included} alone")
+      endif()
     elseif(header MATCHES "^[a-z_0-9]+$")
       if(module IN_LIST kernel AND header IN_LIST needs_a_system)
         violation(${file} "the kernel needs no operating system, so it may not include <${header}>")
@@ -51,7 +55,8 @@ foreach(file IN LISTS files)
     elseif(NOT header MATCHES "^(unsupported/)?Eigen/")
       if(module IN_LIST kernel)
         violation(${file} "the kernel needs the standard library and Eigen only, so it may not include <${header}>")
-      elseif(file MATCHES "\\.hpp$" AND NOT header STREQUAL "immintrin.h") # the compiler brings that one
+      elseif(file MATCHES "\\.hpp$" AND NOT file MATCHES "/internal/"
+             AND NOT header STREQUAL "immintrin.h") # the compiler brings that one
         violation(${file} "it is installed, so it may not include <${header}>: include that in a source file")
       endif()
     endif()

@@ -1,3 +1,4 @@
+#include <tactus/recording/internal/tools.hpp>
 #include <tactus/signal/sound.hpp>
 
 #include <chrono>

@@ -1,0 +1,1 @@
+#include <tactus/recording/internal/tools.hpp>
