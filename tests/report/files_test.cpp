@@ -1,13 +1,12 @@
 #include <tactus/report/files.hpp>
 
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
 
+#include "tests/file_size_limit.hpp"
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 namespace tactus::report {
 namespace {
@@ -57,15 +56,11 @@ TEST_F(Files, AFileHoldsExactlyTheBytesGivenAndReplacesTheOldOne) {
 
 TEST_F(Files, ADiskThatRefusesHalfwayLeavesTheOldFileAndNothingElse) {
   ASSERT_FALSE(write_file(folder_ / "report.html", "old").has_value());
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  rlimit small = before;
-  small.rlim_cur = 4096;
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  const Check error = write_file(folder_ / "report.html", std::string(100'000, 'x'));
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
-  std::signal(SIGXFSZ, handler);
+  const Check error = [&] {
+    const FileSizeLimit limit(4096);
+    EXPECT_TRUE(limit.ok());
+    return write_file(folder_ / "report.html", std::string(100'000, 'x'));
+  }();
   expect_error(error, folder_ / "report.html", "File too large");
   EXPECT_EQ(content(folder_ / "report.html"), "old");
   EXPECT_EQ(entries(), 1);

@@ -2,14 +2,13 @@
 #include <tactus/telemetry/export.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
-#include <csignal>
 #include <filesystem>
 #include <string>
 
+#include "tests/file_size_limit.hpp"
 #include "tests/scratch_path.hpp"
 #include "tests/telemetry/sample.hpp"
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 namespace tactus::telemetry {
 namespace {
@@ -40,6 +39,11 @@ class Export : public ::testing::Test {
     }
   }
 
+  [[nodiscard]] Check export_as_named(const std::filesystem::path& file) const {
+    if (file.extension() == ".csv") return export_csv(content_.tables[0], file);
+    return file.extension() == ".mat" ? export_mat(content_, file) : export_hdf5(content_, file);
+  }
+
   static constexpr std::int64_t rows = 1000;
   std::filesystem::path folder_ = scratch_path();
   LogContent content_;
@@ -59,11 +63,7 @@ TEST_F(Export, MatlabFileIsARecordingWithEqualValues) {
 
 TEST_F(Export, APlaceThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
   for (const char* name : {"absent/log.csv", "absent/log.mat", "absent/log.h5"}) {
-    const auto file = folder_ / name;
-    const std::string ending = file.extension();
-    const Check error = ending == ".csv"   ? export_csv(content_.tables[0], file)
-                        : ending == ".mat" ? export_mat(content_, file)
-                                           : export_hdf5(content_, file);
+    const Check error = export_as_named(folder_ / name);
     ASSERT_TRUE(error) << name;
     EXPECT_EQ(error->code, ErrorCode::unwritable);
   }
@@ -72,19 +72,11 @@ TEST_F(Export, APlaceThatCannotBeWrittenIsAnErrorAndLeavesNothing) {
 
 TEST_F(Export, ADiskThatFillsHalfwayIsAnErrorAndLeavesNothing) {
   for (const char* name : {"log.csv", "log.mat", "log.h5"}) {
-    const auto file = folder_ / name;
-    rlimit before{};
-    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-    rlimit small = before;
-    small.rlim_cur = 4096;
-    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-    const std::string ending = file.extension();
-    const Check error = ending == ".csv"   ? export_csv(content_.tables[0], file)
-                        : ending == ".mat" ? export_mat(content_, file)
-                                           : export_hdf5(content_, file);
-    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
-    std::signal(SIGXFSZ, handler);
+    const Check error = [&] {
+      const FileSizeLimit limit(4096);
+      EXPECT_TRUE(limit.ok());
+      return export_as_named(folder_ / name);
+    }();
     ASSERT_TRUE(error) << name;
     EXPECT_EQ(error->code, ErrorCode::unwritable);
   }

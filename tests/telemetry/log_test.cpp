@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/file_size_limit.hpp"
 #include "tests/scratch_path.hpp"
 #include "tests/telemetry/sample.hpp"
 #include <gtest/gtest.h>
@@ -246,7 +247,6 @@ TEST_F(Log, AFullDiskIsReportedAndCounted) {
 
 TEST_F(Log, WhereRoomEndsWithinAChunkTheFileKeepsAllBeforeAndGoesOnWhenThereIsRoom) {
   const int status = in_a_process([this] {
-    std::signal(SIGXFSZ, SIG_IGN);
     auto log = LogWriter::create(path());
     const auto channel = log->add_channel(sample_channel("/sample"));
     std::int64_t k = 0;
@@ -257,15 +257,11 @@ TEST_F(Log, WhereRoomEndsWithinAChunkTheFileKeepsAllBeforeAndGoesOnWhenThereIsRo
     // A limit on the size of files tears a write as a full disk does. The first two chunks fit, the third does not.
     if (chunk() || chunk()) return 1;
     const rlim_t size = std::filesystem::file_size(path());
-    rlimit limit{};
-    getrlimit(RLIMIT_FSIZE, &limit);
-    const rlim_t before = limit.rlim_cur;
-    limit.rlim_cur = size + 100;
-    setrlimit(RLIMIT_FSIZE, &limit);
-    if (!chunk()) return 2;
+    {
+      const FileSizeLimit limit(size + 100);
+      if (!limit.ok() || !chunk()) return 2;
+    }
     if (std::filesystem::file_size(path()) != size) return 3;  // the torn part was cut off
-    limit.rlim_cur = before;
-    setrlimit(RLIMIT_FSIZE, &limit);
     if (chunk()) return 4;
     if (log->acknowledged() != 150 || log->lost() != 50) return 5;
     return log->close() ? 0 : 6;  // says that something was lost
