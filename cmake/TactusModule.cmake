@@ -27,11 +27,20 @@ if(TACTUS_SANITIZE)
   # The code that a sanitizer adds sets off warnings about the flow of values that are not true of the source.
   target_compile_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE} -fno-sanitize-recover=all
                                                   -fno-omit-frame-pointer -Wno-maybe-uninitialized
-                                                  -Wno-null-dereference -Wno-subobject-linkage)
+                                                  -Wno-null-dereference)
   target_link_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE})
 endif()
 
 set_property(GLOBAL PROPERTY TACTUS_MODULES "")
+
+# The headers are read once for several sources of a target. A type without linkage of one of them may be used in another
+# then, which is no mistake.
+function(tactus_compile_together target)
+  if(TACTUS_UNITY_BATCH GREATER 1)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${TACTUS_UNITY_BATCH})
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
+endfunction()
 
 function(tactus_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "HEADERS_ONLY" "" "SOURCES;LINK;LINK_PRIVATE")
@@ -43,8 +52,7 @@ function(tactus_module name)
   else()
     add_library(${target} STATIC ${arg_SOURCES})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tactus_options> ${arg_LINK_PRIVATE})
-    # The headers are read once for several sources.
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ${TACTUS_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 6)
+    tactus_compile_together(${target})
   endif()
   add_library(tactus::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})

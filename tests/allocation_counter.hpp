@@ -6,7 +6,7 @@ namespace tactus::laws {
 
 /// How often this program has asked the heap for memory so far, by `new`, `malloc` or a relative.
 ///
-/// Counts only in a program that has `tests/allocation_counter.cpp` among its sources.
+/// Counts only in a program that links `allocation_counter`.
 std::uint64_t allocation_count() noexcept;
 /// Those of the calling thread alone.
 std::uint64_t own_allocation_count() noexcept;

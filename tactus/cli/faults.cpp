@@ -20,7 +20,7 @@ namespace tactus::cli {
 
 namespace {
 
-struct Options {
+struct FaultsOptions {
   std::optional<std::string> file;
   std::vector<std::string> set;
   std::optional<std::int64_t> seeds;
@@ -30,7 +30,7 @@ struct Options {
   runtime::ServoThreadParams servo;
 };
 
-Check run(const Options& options, const std::string& command) {
+Check run(const FaultsOptions& options, const std::string& command) {
   auto document = options.file ? configuration::Document::load(*options.file)
                                : configuration::Document::parse("[task]\nkind = \"faults\"\n", "built in");
   if (!document) return document.error();
@@ -61,7 +61,7 @@ Check run(const Options& options, const std::string& command) {
 }  // namespace
 
 void add_faults(CLI::App& app, const std::string& command, int& status) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FaultsOptions>();
   CLI::App* faults = app.add_subcommand("faults", "Faults on purpose: how many are survived, and how");
   faults->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind faults; else the built-in one");
   faults->add_option("--set", options->set, "Override one value: key=value")

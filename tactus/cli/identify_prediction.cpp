@@ -20,7 +20,7 @@ namespace tactus::cli {
 
 namespace {
 
-struct Options {
+struct PredictionOptions {
   std::string experiment;
   std::vector<std::string> set;
   std::int64_t blocks = 2;
@@ -35,7 +35,7 @@ struct Motion {
   double sample_time_s;
 };
 
-Result<Motion> recorded(const Options& options) {
+Result<Motion> recorded(const PredictionOptions& options) {
   const auto command =
       recording::read({.file = options.recording, .variable = options.command, .column = options.command_column});
   if (!command) return command.error();
@@ -55,7 +55,7 @@ Result<Motion> recorded(const Options& options) {
       .command = command->values, .position = std::move(position->values), .sample_time_s = *command->sample_time_s};
 }
 
-Result<Motion> simulated(const Options& options, const simulation::InverseModelChirpParams& params) {
+Result<Motion> simulated(const PredictionOptions& options, const simulation::InverseModelChirpParams& params) {
   const double dt_s = 1.0 / params.task.sample_rate_Hz;
   auto record = simulation::follow(params.slave, simulation::chirp_path(params.task, options.band_Hz),
                                    params.task.duration_s, dt_s);
@@ -63,7 +63,7 @@ Result<Motion> simulated(const Options& options, const simulation::InverseModelC
   return Motion{.command = std::move(record->command), .position = std::move(record->position), .sample_time_s = dt_s};
 }
 
-Check identify(const Options& options) {
+Check identify(const PredictionOptions& options) {
   auto document = configuration::Document::load(options.experiment);
   if (!document) return document.error();
   for (const std::string& assignment : options.set) {
@@ -108,7 +108,7 @@ Check identify(const Options& options) {
 }  // namespace
 
 void add_identify_prediction(CLI::App& identify_verb, const std::string& name, int& status) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PredictionOptions>();
   CLI::App* verb =
       identify_verb.add_subcommand("prediction", "Time constant of prediction blocks: closed form, limit, from data");
   verb->add_option("EXPERIMENT", options->experiment, "inverse-model-chirp file: slave and estimator")->required();

@@ -1,3 +1,4 @@
+#include <tactus/cli/interruption.hpp>
 #include <tactus/cli/passages.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
@@ -8,8 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <csignal>
 #include <cstdint>
 #include <iostream>
 #include <memory>
@@ -28,8 +27,6 @@ namespace {
 
 /// More than this waits nowhere: ten seconds of a fast servo.
 constexpr std::size_t longest_queue = 100'000;
-
-std::atomic<bool> relay_interrupted{false};
 
 struct RelayOptions {
   std::string file;
@@ -164,12 +161,10 @@ Check run(const RelayOptions& options) {
 
   Way to_slave(params->channel.to_slave, options.mean_burst, options.duplicate_fraction);
   Way to_master(params->channel.to_master, options.mean_burst, options.duplicate_fraction);
-  for (const int number : {SIGINT, SIGTERM}) {
-    std::signal(number, [](int) { relay_interrupted.store(true, std::memory_order_relaxed); });
-  }
+  const Interruption interruption;
   constexpr std::int64_t look_up_ns = 50'000'000;
   const std::int64_t start_ns = link::monotonic_ns();
-  while (!relay_interrupted.load(std::memory_order_relaxed)) {
+  while (!interruption.asked()) {
     std::int64_t now_ns = link::monotonic_ns();
     if (options.duration_s > 0.0 && static_cast<double>(now_ns - start_ns) > options.duration_s * 1e9) break;
     for (const link::Packet& packet : master->receive()) to_slave.take(packet, now_ns);

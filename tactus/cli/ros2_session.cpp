@@ -1,3 +1,4 @@
+#include <tactus/cli/interruption.hpp>
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
@@ -12,10 +13,8 @@
 #include <tactus/telemetry/recorder.hpp>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 
 #include <nlohmann/json.hpp>
 
@@ -26,25 +25,8 @@ namespace {
 using simulation::Teleoperator;
 using Record = Teleoperator::Record;
 
-constexpr double rest_s = 0.3;
+constexpr double rest_before_s = 0.3;
 constexpr double workspace_m = 1.0;
-std::atomic<bool> interrupted{false};
-
-/// Ctrl-C ends the session and not the program.
-class Interruptible {
- public:
-  Interruptible() : before_{std::signal(SIGINT, &note), std::signal(SIGTERM, &note)} { interrupted = false; }
-  Interruptible(const Interruptible&) = delete;
-  Interruptible& operator=(const Interruptible&) = delete;
-  ~Interruptible() {
-    std::signal(SIGINT, before_[0]);
-    std::signal(SIGTERM, before_[1]);
-  }
-
- private:
-  static void note(int) { interrupted.store(true, std::memory_order_relaxed); }
-  void (*before_[2])(int);
-};
 
 ros2::Snapshot snapshot_of(const Record& record, std::int64_t stamp_ns, bool healthy) {
   return {.stamp_ns = stamp_ns,
@@ -101,7 +83,7 @@ struct Session {
     while (done <= tick.number - first_tick) {
       if (time_s() >= parts->script.duration_s() || !advance(tick.deadline_ns + to_wall_ns)) return false;
     }
-    return !interrupted.load(std::memory_order_relaxed);
+    return true;
   }
 
  private:
@@ -192,7 +174,7 @@ TapScript::TapScript(const simulation::TappingParams& params) {
     const double share = task.taps == 1 ? 0.5 : static_cast<double>(i) / static_cast<double>(task.taps - 1);
     const double speed = task.slowest_m_per_s + share * (task.fastest_m_per_s - task.slowest_m_per_s);
     const double reach_s = mechanics::MinimumJerk::duration_for(2.0 * depth_m, speed);
-    const double reaches_s = duration_s_ + rest_s;
+    const double reaches_s = duration_s_ + rest_before_s;
     const double returns_s = reaches_s + reach_s + task.observation_s;
     taps_.push_back({.reach = {wall_m - depth_m, wall_m + depth_m, reaches_s, reach_s},
                      .back = {wall_m + depth_m, wall_m - depth_m, returns_s, reach_s}});
@@ -202,7 +184,7 @@ TapScript::TapScript(const simulation::TappingParams& params) {
 
 double TapScript::position_m(double time_s) const {
   const auto later = std::upper_bound(taps_.begin(), taps_.end(), time_s, [](double time, const Tap& tap) {
-    return time < tap.reach.start_time_s - rest_s;
+    return time < tap.reach.start_time_s - rest_before_s;
   });
   const Tap& tap = later == taps_.begin() ? taps_.front() : *std::prev(later);
   return time_s < tap.back.start_time_s ? tap.reach.position_m(time_s) : tap.back.position_m(time_s);
@@ -240,8 +222,9 @@ Result<simulation::Outcome> run_ros2_session(const simulation::Request& request,
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
   Session session{.parts = &*parts, .bridge = &*bridge, .log = stream, .to_wall_ns = wall_ns - runtime::monotonic_ns()};
   const auto report = [&] {
-    const Interruptible interruptible;
-    return runtime::run_servo(servo, [&session](const runtime::Tick& tick) noexcept { return session(tick); });
+    const Interruption interruption;
+    return runtime::run_servo(
+        servo, [&](const runtime::Tick& tick) noexcept { return session(tick) && !interruption.asked(); });
   }();
   bridge->close();
   if (recorder) {

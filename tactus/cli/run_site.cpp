@@ -1,3 +1,4 @@
+#include <tactus/cli/interruption.hpp>
 #include <tactus/cli/run_site.hpp>
 #include <tactus/cli/site_loop.hpp>
 #include <tactus/cli/site_report.hpp>
@@ -17,12 +18,7 @@ namespace tactus::cli {
 
 namespace {
 
-std::atomic<bool> site_interrupted{false};
 std::atomic<bool> asked_to_arm{false};
-
-void on_signal(int number) {
-  (number == SIGUSR1 ? asked_to_arm : site_interrupted).store(true, std::memory_order_relaxed);
-}
 
 Error refused(ErrorCode code, const char* option, std::string message) {
   return Error{.code = code, .parameter = {}, .message = std::move(message), .place = option};
@@ -113,7 +109,8 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
       exchange);
   if (!loop) return document.locate(loop.error());
 
-  for (const int number : {SIGINT, SIGTERM, SIGUSR1}) std::signal(number, on_signal);
+  const Interruption interruption;
+  std::signal(SIGUSR1, [](int) { asked_to_arm.store(true, std::memory_order_relaxed); });
   servo_params.rate_Hz = params->servo.rate_Hz;
   auto servo = runtime::ServoThread<SiteLoop>::start(servo_params, *std::move(loop));
   if (!servo) return servo.error();
@@ -121,7 +118,7 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   lines << second_head(options.site) << std::flush;
   bool input_open = true;
   while (!(*servo)->ended()) {
-    if (site_interrupted.load(std::memory_order_relaxed)) (*servo)->stop();
+    if (interruption.asked()) (*servo)->stop();
     const bool typed = line_typed(input_open);
     if (asked_to_arm.exchange(false, std::memory_order_relaxed) || typed) {
       exchange.arm.store(true, std::memory_order_relaxed);

@@ -1,3 +1,4 @@
+#include <tactus/cli/interruption.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/live/live_view.hpp>
@@ -6,7 +7,6 @@
 #include <tactus/telemetry/recorder.hpp>
 
 #include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -25,8 +25,6 @@ namespace tactus::cli {
 extern const std::string_view default_experiment;
 
 namespace {
-
-volatile std::sig_atomic_t interrupted = 0;
 
 struct ServeOptions {
   std::string experiment;
@@ -101,13 +99,11 @@ Check serve(const ServeOptions& options) {
     if (!options.allow_tuning) std::cout << "Parameters are read-only; --allow-tuning lets clients change them.\n";
     std::cout << std::flush;
 
-    interrupted = 0;
-    std::signal(SIGINT, [](int) { interrupted = 1; });
-    std::signal(SIGTERM, [](int) { interrupted = 1; });
+    const Interruption interruption;
     const auto start = std::chrono::steady_clock::now();
     (*view)->engine().run([&] {
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-      return interrupted == 0 && (options.duration_s == 0.0 || elapsed.count() < options.duration_s);
+      return !interruption.asked() && (options.duration_s == 0.0 || elapsed.count() < options.duration_s);
     });
     const live::ServerCounts counts = server->counts();
     std::cout << "Connections: " << counts.accepted << " taken, " << counts.turned_away << " turned away, "

@@ -15,7 +15,7 @@ namespace tactus::cli {
 
 namespace {
 
-struct Options {
+struct StabilityOptions {
   std::string file;
   std::vector<std::string> set;
   std::optional<std::string> out;
@@ -23,7 +23,7 @@ struct Options {
   stability::ReportOptions report;
 };
 
-Check run(const Options& options, const StabilityReport& report, const std::string& command) {
+Check run(const StabilityOptions& options, const StabilityReport& report, const std::string& command) {
   auto document = configuration::Document::load(options.file);
   if (!document) return document.error();
   for (const std::string& assignment : options.set) {
@@ -49,7 +49,7 @@ Check run(const Options& options, const StabilityReport& report, const std::stri
 void add_stability_verb(CLI::App& stability, const std::string& verb, const std::string& summary,
                         const StabilityReport& report, const std::string& name, const std::string& command,
                         int& status) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StabilityOptions>();
   CLI::App* added = stability.add_subcommand(verb, summary);
   added->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind tapping")->required();
   added->add_option("--set", options->set, "Override one value: key=value")

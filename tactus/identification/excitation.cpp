@@ -1,4 +1,5 @@
 #include <tactus/identification/excitation.hpp>
+#include <tactus/identification/refusal.hpp>
 #include <tactus/signal/checks.hpp>
 #include <tactus/signal/random.hpp>
 
@@ -12,10 +13,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double most_samples = 1e8;
-
-Error inconsistent(std::string parameter, std::string message) {
-  return {ErrorCode::inconsistent, std::move(parameter), std::move(message), {}};
-}
 
 Check check_limit(const char* parameter, double force_N, double limit_N) {
   if (force_N <= limit_N) return std::nullopt;

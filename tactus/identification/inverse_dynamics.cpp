@@ -17,7 +17,7 @@ namespace tactus::identification {
 namespace {
 
 constexpr int parameters = 4;
-constexpr int blocks = 12;
+constexpr int scatter_blocks = 12;
 constexpr double student_95 = 2.201;           // two-sided, 11 degrees of freedom
 constexpr double friction_speed_share = 0.02;  // of the rms speed
 constexpr double standstill_share = 0.06;      // of the rms speed
@@ -220,16 +220,16 @@ std::array<Estimate, parameters> estimate(const Problem& problem) {
   const Eigen::Vector4d found = solver.solve(problem.instruments.transpose() * problem.force);
   const Vector residual = problem.force - problem.regressors * found;
   Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
-  for (Eigen::Index block = 0; block < blocks; ++block) {
-    const Eigen::Index first = rows * block / blocks;
-    const Eigen::Index size = rows * (block + 1) / blocks - first;
+  for (Eigen::Index block = 0; block < scatter_blocks; ++block) {
+    const Eigen::Index first = rows * block / scatter_blocks;
+    const Eigen::Index size = rows * (block + 1) / scatter_blocks - first;
     const Eigen::Vector4d score =
         problem.instruments.middleRows(first, size).transpose() * residual.segment(first, size);
     scatter += score * score.transpose();
   }
   const Eigen::Matrix4d inverse = solver.inverse();
   const Eigen::Matrix4d covariance =
-      inverse * scatter * inverse.transpose() * (static_cast<double>(blocks) / (blocks - 1));
+      inverse * scatter * inverse.transpose() * (static_cast<double>(scatter_blocks) / (scatter_blocks - 1));
   std::array<Estimate, parameters> result;
   for (int k = 0; k < parameters; ++k) {
     const double half = student_95 * std::sqrt(std::max(0.0, covariance(k, k)));

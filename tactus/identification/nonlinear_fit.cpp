@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double difference = 1e-3;
-constexpr Index blocks = 20;
+constexpr Index score_blocks = 20;
 /// A variable whose column, less what the others explain, is shorter than this part of the longest tells nothing.
 constexpr double smallest_column = 1e-7;
 
@@ -84,7 +84,7 @@ class Functor {
 
 /// Σ over blocks of (Jᵀr)(Jᵀr)ᵀ, corrected for the degrees of freedom that the fit has used up.
 MatrixXd scatter(const MatrixXd& jacobian, const VectorXd& residuals) {
-  const Index count = std::min(blocks, residuals.size());
+  const Index count = std::min(score_blocks, residuals.size());
   MatrixXd sum = MatrixXd::Zero(jacobian.cols(), jacobian.cols());
   for (Index block = 0; block < count; ++block) {
     const Index first = block * residuals.size() / count, end = (block + 1) * residuals.size() / count;

@@ -1,4 +1,5 @@
 #include <tactus/identification/prediction_time.hpp>
+#include <tactus/identification/refusal.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,11 +19,6 @@ Check check_blocks(std::int64_t blocks) {
                .parameter = "prediction.blocks",
                .message = "is " + std::to_string(blocks) + ": a time constant needs 1 to 4 blocks",
                .place = {}};
-}
-
-Error inconsistent(std::string parameter, std::string message) {
-  return {
-      .code = ErrorCode::inconsistent, .parameter = std::move(parameter), .message = std::move(message), .place = {}};
 }
 
 }  // namespace

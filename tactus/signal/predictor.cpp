@@ -23,15 +23,11 @@ Result<Predictor> Predictor::make(const Params& params, Seconds dt) {
 }
 
 double Predictor::step(double input) noexcept {
-  if (auto* cascade = std::get_if<PredictionCascade>(&chosen_)) return cascade->step(input);
-  if (auto* polynomial = std::get_if<PolynomialPredictor>(&chosen_)) return polynomial->step(input);
-  return std::get_if<KalmanPredictor>(&chosen_)->step(input);
+  return std::visit([input](auto& predictor) { return predictor.step(input); }, chosen_);
 }
 
 void Predictor::reset() noexcept {
-  if (auto* cascade = std::get_if<PredictionCascade>(&chosen_)) cascade->reset();
-  if (auto* polynomial = std::get_if<PolynomialPredictor>(&chosen_)) polynomial->reset();
-  if (auto* kalman = std::get_if<KalmanPredictor>(&chosen_)) kalman->reset();
+  std::visit([](auto& predictor) { predictor.reset(); }, chosen_);
 }
 
 }  // namespace tactus::signal

@@ -10,7 +10,7 @@ namespace tactus::simulation {
 
 namespace {
 
-constexpr double shown_before_touch_s = 0.005;
+constexpr double kept_before_touch_s = 0.005;
 constexpr double reach_m = 0.06;
 constexpr double reach_s = 0.5;
 
@@ -31,7 +31,7 @@ std::optional<double> hand_error(const TappingParams& params, const std::vector<
   std::vector<double> felt;
   const double limit_N = params.control.force_limit_N;
   for (const Teleoperator::Record& record : trace) {
-    if (record.time_s < first_touch_s - shown_before_touch_s) continue;
+    if (record.time_s < first_touch_s - kept_before_touch_s) continue;
     wanted.push_back(std::clamp(params.control.force_gain * record.contact_force_N, -limit_N, limit_N));
     felt.push_back(record.hand_force_N);
   }

@@ -1,5 +1,6 @@
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/contest_presentation.hpp>
+#include <tactus/simulation/internal/gain_json.hpp>
 #include <tactus/simulation/presentation.hpp>
 
 #include <cmath>
@@ -22,17 +23,9 @@ std::string text_of(const GainLimit& limit, const ContestParams& params) {
 
 bool settles(const GainScore& score) { return score.metrics.verdict == Verdict::settled; }
 
-std::string percent(const std::optional<double>& share) {
-  return share ? report::number(100.0 * *share, 2) : std::string("–");
-}
-
 std::string in_newton(double force_N) { return format_number(force_N) + " N"; }
 
-Json json_of(const GainLimit& limit) { return {{"gain_limit", limit.gain}, {"beyond_search", limit.beyond_search}}; }
-
-Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
-Json json_of(const GainScore& score) {
+Json json_of_score(const GainScore& score) {
   return {{"force_gain", score.force_gain},
           {"force_limit_N", score.force_limit_N},
           {"settled_fraction", score.metrics.settled_fraction},
@@ -43,7 +36,8 @@ Json json_of(const GainScore& score) {
 }
 
 template <std::size_t n>
-Json json_of(const char* condition, const std::array<double, n>& values, const std::array<GainLimit, n>& limits) {
+Json json_of_conditions(const char* condition, const std::array<double, n>& values,
+                        const std::array<GainLimit, n>& limits) {
   Json list = Json::array();
   for (std::size_t i = 0; i < n; ++i) {
     Json entry{{condition, values[i]}};
@@ -148,8 +142,8 @@ std::string contest_json(const std::string& experiment, const std::vector<Method
     const MethodScore& score = scores[i];
     const ContestMethod& method = contest_methods()[i];
     Json at_gain = Json::array();
-    for (const GainScore& one : score.at_gain) at_gain.push_back(json_of(one));
-    for (const GainScore& one : score.strong_at_gain) at_gain.push_back(json_of(one));
+    for (const GainScore& one : score.at_gain) at_gain.push_back(json_of_score(one));
+    for (const GainScore& one : score.strong_at_gain) at_gain.push_back(json_of_score(one));
     Json strong{{"force_limit_N", params.task.strong_display_N}};
     strong.update(json_of(score.strong_display));
     document["methods"].push_back({{"name", method.name},
@@ -158,8 +152,8 @@ std::string contest_json(const std::string& experiment, const std::vector<Method
                                    {"beyond_search", score.limit.beyond_search},
                                    {"metrics",
                                     {{"strong_display", strong},
-                                     {"delays", json_of("delay_s", contest_delays_s, score.delayed)},
-                                     {"grips", json_of("grip", contest_grips, score.gripped)},
+                                     {"delays", json_of_conditions("delay_s", contest_delays_s, score.delayed)},
+                                     {"grips", json_of_conditions("grip", contest_grips, score.gripped)},
                                      {"gains", at_gain},
                                      {"free_space_hand_force_rms_N", score.free_space.hand_force_rms_N},
                                      {"free_space_lag_s", json_of(score.free_space.lag_s)}}}});

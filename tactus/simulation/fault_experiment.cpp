@@ -236,7 +236,8 @@ Outcome present_faults(const Request& request, const FaultsParams& params, const
     add(real_time->params, real_time->tallies, "real");
     for (const report::Table& table : real_time->timing) {
       page.table(table);
-      text += "\n" + table.to_text();
+      text += "\n";
+      text += table.to_text();
     }
   }
   std::vector<std::pair<std::string, std::string>> expected;

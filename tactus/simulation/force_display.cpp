@@ -20,10 +20,10 @@ struct Variant {
   control::ModelFriction friction;
   bool mismatched;
 };
-constexpr std::array<Variant, 4> variants{{{control::ModelFriction::at_rest, false},
-                                           {control::ModelFriction::at_rest, true},
-                                           {control::ModelFriction::total_velocity, false},
-                                           {control::ModelFriction::total_velocity, true}}};
+constexpr std::array<Variant, 4> model_variants{{{control::ModelFriction::at_rest, false},
+                                                 {control::ModelFriction::at_rest, true},
+                                                 {control::ModelFriction::total_velocity, false},
+                                                 {control::ModelFriction::total_velocity, true}}};
 /// The variant that is shown in pictures.
 constexpr std::size_t shown_variant = 2;
 
@@ -75,7 +75,7 @@ struct ForceDisplay::Playing {
   std::vector<double> force_N;
   std::vector<double> true_m;      ///< motor position
   std::vector<double> measured_m;  ///< the same through the encoder
-  std::array<std::vector<double>, variants.size()> estimate_m;
+  std::array<std::vector<double>, model_variants.size()> estimate_m;
 };
 
 Result<ForceDisplay> ForceDisplay::make(const ForceDisplayParams& params) {
@@ -92,7 +92,7 @@ Result<ForceDisplay> ForceDisplay::make(const ForceDisplayParams& params) {
   }
   const auto person = mechanics::Operator::make(params.person, Seconds{clock->tick_s});
   if (!person) return under("operator", person.error());
-  for (const Variant& variant : variants) {
+  for (const Variant& variant : model_variants) {
     const auto cancellation = make_variant(params, variant);
     if (!cancellation) return under("control", key_of_display(cancellation.error()));
   }
@@ -116,7 +116,7 @@ ForceDisplay::Playing ForceDisplay::play(double scale, std::int64_t repeat) cons
   auto person = *mechanics::Operator::make(hand, Seconds{clock_.tick_s});
   master.reset(start_m);
   std::vector<control::Cancellation> cancellations;
-  for (const Variant& variant : variants) cancellations.push_back(*make_variant(params_, variant));
+  for (const Variant& variant : model_variants) cancellations.push_back(*make_variant(params_, variant));
 
   Playing playing;
   const auto approach_ticks = static_cast<std::size_t>(std::lround(approach_s / clock_.tick_s));
@@ -131,7 +131,7 @@ ForceDisplay::Playing ForceDisplay::play(double scale, std::int64_t repeat) cons
     master.hold(mechanics::scaled(hand.grip, hand.grip_change.at(static_cast<double>(tick) * clock_.tick_s)));
     const double true_m = master.mechanism().motor_position_m();
     const double measured_m = master.measure().motor_position_m;
-    for (std::size_t i = 0; i < variants.size(); ++i) {
+    for (std::size_t i = 0; i < model_variants.size(); ++i) {
       const double estimate_m = cancellations[i].step({.measured_position_m = measured_m, .motor_force_N = -force_N});
       if (tick >= approach_ticks) playing.estimate_m[i].push_back(estimate_m);
     }
@@ -157,22 +157,22 @@ std::vector<ForceDisplayCase> ForceDisplay::cases() const {
   std::vector<ForceDisplayCase> all;
   for (const double scale : scales) {
     double induced = 0.0, encoder = 0.0;
-    std::array<double, variants.size()> kept{};
+    std::array<double, model_variants.size()> kept{};
     double ticks = 0.0;
     for (std::int64_t repeat = 0; repeat < params_.task.repeats; ++repeat) {
       const Playing with = play(scale, repeat);
       const Playing without = play(0.0, repeat);
       induced += difference_energy(with.true_m, without.true_m, clock_.tick_s);
       encoder += difference_energy(with.measured_m, with.true_m, clock_.tick_s);
-      for (std::size_t i = 0; i < variants.size(); ++i) {
+      for (std::size_t i = 0; i < model_variants.size(); ++i) {
         kept[i] += difference_energy(with.estimate_m[i], without.true_m, clock_.tick_s);
       }
       ticks += static_cast<double>(with.true_m.size());
     }
-    for (std::size_t i = 0; i < variants.size(); ++i) {
+    for (std::size_t i = 0; i < model_variants.size(); ++i) {
       all.push_back({.scale = scale,
-                     .friction = variants[i].friction,
-                     .mismatched = variants[i].mismatched,
+                     .friction = model_variants[i].friction,
+                     .mismatched = model_variants[i].mismatched,
                      .induced_rms_m = std::sqrt(induced / ticks),
                      .kept_fraction = std::sqrt(kept[i] / induced),
                      .encoder_fraction = std::sqrt(encoder / induced)});

@@ -1,6 +1,7 @@
 #include <tactus/identification/force_comparison.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/simulation/force_estimators.hpp>
+#include <tactus/simulation/statistics.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,18 +17,6 @@ using control::InverseModelEstimator;
 
 /// Contact forces are compared up to here, with a zero-phase low-pass of the true force.
 constexpr double comparison_cutoff_Hz = 200.0;
-
-double rms(std::span<const double> values, double about = 0.0) {
-  double squares = 0.0;
-  for (const double value : values) squares += (value - about) * (value - about);
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
-double mean(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
 
 double start_of(const ForceEstimatorsParams& params) {
   return params.environment.position_m - 3.0 * params.task.free_amplitude_m;

@@ -2,6 +2,7 @@
 #include <tactus/signal/delay_line.hpp>
 #include <tactus/signal/second_order_filter.hpp>
 #include <tactus/simulation/hydraulic_rigid_contact.hpp>
+#include <tactus/simulation/statistics.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -67,18 +68,6 @@ class Master {
   double position_m_ = 0.0, velocity_m_per_s_ = 0.0;
 };
 
-double mean(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-double rms_about(std::span<const double> values, double about) {
-  double squares = 0.0;
-  for (const double value : values) squares += (value - about) * (value - about);
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 RigidContact judge(const RigidContactRun& run, const std::vector<bool>& touching, const Press& press, double tick_s) {
   const auto tick = [&](double time_s) { return static_cast<std::size_t>(std::lround(time_s / tick_s)); };
   RigidContact contact;
@@ -93,12 +82,12 @@ RigidContact judge(const RigidContactRun& run, const std::vector<bool>& touching
     return std::span(signal).subspan(tick(press.hold_until_s - judged_s), tick(judged_s));
   };
   contact.fed_back_N = mean(last_part(run.fed_back_N));
-  contact.ripple_N = rms_about(last_part(run.fed_back_N), contact.fed_back_N);
+  contact.ripple_N = rms(last_part(run.fed_back_N), contact.fed_back_N);
   contact.pressure_force_N = mean(last_part(run.pressure_force_N));
   const auto master_m = last_part(run.master_m);
   const auto judged = touching.begin() + static_cast<std::ptrdiff_t>(tick(press.hold_until_s - judged_s));
   const bool stays = std::all_of(judged, judged + static_cast<std::ptrdiff_t>(tick(judged_s)), std::identity{});
-  contact.settled = stays && rms_about(master_m, mean(master_m)) <= settled_within_m;
+  contact.settled = stays && rms(master_m, mean(master_m)) <= settled_within_m;
   const auto half_after_s = [&](const std::vector<double>& signal, double last_N) {
     std::size_t i = first;
     while (i < tick(press.hold_until_s) && signal[i] < 0.5 * last_N) ++i;
@@ -150,7 +139,7 @@ Result<RigidContactRun> run_with(const HydraulicRigidContactParams& params,
   }
   for (std::size_t i = 0; i < presses.size(); ++i) run.contacts[i] = judge(run, touching, presses[i], tick.value);
   const auto first = std::find(touching.begin(), touching.end(), true) - touching.begin();
-  if (first > 0) run.false_force_N = rms_about(std::span(run.fed_back_N).first(static_cast<std::size_t>(first)), 0.0);
+  if (first > 0) run.false_force_N = rms(std::span(run.fed_back_N).first(static_cast<std::size_t>(first)), 0.0);
   return run;
 }
 

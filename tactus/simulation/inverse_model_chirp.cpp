@@ -2,6 +2,7 @@
 #include <tactus/identification/rational_fit.hpp>
 #include <tactus/signal/second_order_filter.hpp>
 #include <tactus/simulation/inverse_model_chirp.hpp>
+#include <tactus/simulation/statistics.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -31,12 +32,6 @@ Path multisine_path(double amplitude_m) {
     return PathPoint{.position_m = rise * point.position_m,
                      .velocity_m_per_s = rise * point.velocity_m_per_s + rise_rate * point.position_m};
   };
-}
-
-double rms(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 FeltForce felt(const std::vector<double>& force_N, Seconds dt) {

@@ -1,4 +1,5 @@
 #include <tactus/report/text.hpp>
+#include <tactus/simulation/internal/gain_json.hpp>
 #include <tactus/simulation/presentation.hpp>
 #include <tactus/simulation/sensorless_presentation.hpp>
 
@@ -25,10 +26,8 @@ std::string delay_text(double delay_s) {
 
 std::string in_milli(const std::optional<double>& value) { return value ? report::number(1e3 * *value, 3) : "–"; }
 
-std::string percent(const std::optional<double>& share) { return share ? report::number(100.0 * *share, 2) : "–"; }
-
 /// Median settling time, as long as it is a time and not the end of the observation.
-std::optional<double> settling_s(const GainScore& score) {
+std::optional<double> settling_time_s(const GainScore& score) {
   if (score.metrics.settled_fraction <= 0.5) return {};
   return score.metrics.settling_time_median_s;
 }
@@ -41,10 +40,6 @@ std::optional<double> hand_error(const GainScore& score) {
 std::size_t row_of(std::size_t delay, std::size_t choice, std::size_t mode) {
   return (delay * force_choices.size() + choice) * sensorless_cancellation.size() + mode;
 }
-
-Json json_of(const GainLimit& limit) { return {{"gain_limit", limit.gain}, {"beyond_search", limit.beyond_search}}; }
-
-Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 }  // namespace
 
@@ -67,7 +62,7 @@ report::Table sensorless_table(const std::vector<SensorlessCase>& rows, const st
     table.add_row({std::string(force_choices[rows[i].choice].name), format_number(1e3 * rows[i].delay_s),
                    std::string(name_of(rows[i].cancellation)),
                    report::number(100.0 * score.at_gain.metrics.settled_fraction, 3),
-                   in_milli(settling_s(score.at_gain)), percent(hand_error(score.at_gain)),
+                   in_milli(settling_time_s(score.at_gain)), percent(hand_error(score.at_gain)),
                    in_milli(score.at_gain.told_force_error_N), in_milli(score.free_space.displayed_force_rms_N),
                    gain_limit_text(score.limit, params.task.lowest_gain),
                    gain_limit_text(score.strong_display, params.task.lowest_gain)});

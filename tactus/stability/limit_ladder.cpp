@@ -1,6 +1,7 @@
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/simulation/contest.hpp>
 #include <tactus/simulation/parallel.hpp>
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/bonded_run.hpp>
 #include <tactus/stability/limit_ladder.hpp>
 #include <tactus/stability/margins.hpp>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace tactus::stability {
 
@@ -111,7 +111,7 @@ bool rings_out(const Loop& loop, double gain, double allowed_s) {
   constexpr double judged_from_Hz = 15.0;
   const double largest = std::pow(0.1, loop.tick_s / allowed_s);
   for (const std::complex<double> pole : poles(loop.closed(gain))) {
-    const bool slow = std::fabs(std::arg(pole)) < 2.0 * std::numbers::pi * judged_from_Hz * loop.tick_s;
+    const bool slow = std::fabs(std::arg(pole)) < turn * judged_from_Hz * loop.tick_s;
     // What falls slowly without swinging is no transient to the judge, unless it grows.
     if (std::abs(pole) > (slow ? 1.0 + 1e-7 : largest)) return false;
   }

@@ -1,12 +1,12 @@
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/presentation.hpp>
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/limit_ladder.hpp>
 #include <tactus/stability/limit_report.hpp>
 #include <tactus/stability/margins.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -143,7 +143,7 @@ Result<simulation::Outcome> report_limit(const simulation::Request& request, con
 
   const GainLimit linear = gain_limit(*loop);
   nlohmann::ordered_json document{{"experiment", request.name},
-                                  {"linear_frequency_Hz", linear.frequency_rad_per_s / (2.0 * std::numbers::pi)},
+                                  {"linear_frequency_Hz", linear.frequency_rad_per_s / turn},
                                   {"limits", nlohmann::ordered_json::array()}};
   for (const LimitRung& rung : *rungs) {
     nlohmann::ordered_json entry{{"of", rung.key}};

@@ -1,3 +1,4 @@
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/linear_plant.hpp>
 
 #include <algorithm>
@@ -78,11 +79,11 @@ StateSpace linear_device(const mechanics::CableChain::Params& mechanism,
   device.a(v, applied) = per_mass[0];
   device.b(v + 2, tip_force_in) = per_mass[2];
 
-  const double lag = 2.0 * std::numbers::pi * amplifier.bandwidth_Hz;
+  const double lag = turn * amplifier.bandwidth_Hz;
   device.a(applied, applied) = -lag;
   device.b(applied, command_in) = lag * amplifier.gain;
 
-  const double corner = 2.0 * std::numbers::pi * sensor_bandwidth_Hz;
+  const double corner = turn * sensor_bandwidth_Hz;
   device.a(reading, reading_rate) = corner;
   device.a(reading_rate, reading) = -corner;
   device.a(reading_rate, reading_rate) = -std::numbers::sqrt2 * corner;
@@ -109,7 +110,7 @@ StateSpace linear_master(const mechanics::CableDrivenMaster::Params& master, con
   whole.a.topLeftCorner(n, n) = device.a;
   whole.b.topLeftCorner(n, device_inputs) = device.b;
   whole.c.leftCols(n) = device.c;
-  const double lag = 2.0 * std::numbers::pi * master.handle_actuator.bandwidth_Hz;
+  const double lag = turn * master.handle_actuator.bandwidth_Hz;
   whole.a(tip_velocity_state, n) = 1.0 / master.mechanism.tip.mass_kg;
   whole.a(n, n) = -lag;
   whole.b(n, tip_command_in) = lag * master.handle_actuator.gain;

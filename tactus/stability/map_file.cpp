@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view magic = "tactus map 1\n";
 constexpr std::size_t numbers_per_point = 5;
-constexpr std::size_t most_points = 1'000'000;
+constexpr std::size_t most_stored_points = 1'000'000;
 
 std::uint32_t checksum(std::string_view bytes) {
   return static_cast<std::uint32_t>(
@@ -84,7 +84,7 @@ std::size_t read_blocks(std::string_view bytes, std::vector<MapStore::Block>& bl
     MapStore::Block block;
     block.number = take<std::uint64_t>(rest);
     const auto count = take<std::uint64_t>(rest);
-    if (count > most_points) return done;
+    if (count > most_stored_points) return done;
     const std::size_t body = head + count * numbers_per_point * sizeof(double);
     if (bytes.size() < body + sizeof(std::uint32_t)) return done;
     for (std::uint64_t i = 0; i < count; ++i) {

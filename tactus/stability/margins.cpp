@@ -12,7 +12,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double longest_turn_rad = 0.1;
 
 /// How far the loop gain turns between two points, seen from 0 or from −1.
-double turn(std::complex<double> a, std::complex<double> b) {
+double turned(std::complex<double> a, std::complex<double> b) {
   const auto between = [](std::complex<double> from, std::complex<double> to) {
     return from == 0.0 || to == 0.0 ? 0.0 : std::fabs(std::arg(to * std::conj(from)));
   };
@@ -89,7 +89,7 @@ LoopCurve trace(std::function<std::complex<double>(double)> at, double tick_s, d
   /// Halves until neighbours are close; past that depth a curve has a jump, which none of a rational loop has.
   const std::function<void(double, std::complex<double>, double, std::complex<double>, int)> refine =
       [&](double from, std::complex<double> from_gain, double to, std::complex<double> to_gain, int depth) {
-        if (depth > 0 && turn(from_gain, to_gain) > longest_turn_rad) {
+        if (depth > 0 && turned(from_gain, to_gain) > longest_turn_rad) {
           const double middle = 0.5 * (from + to);
           const std::complex<double> middle_gain = curve.at(middle);
           refine(from, from_gain, middle, middle_gain, depth - 1);

@@ -1,6 +1,7 @@
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/presentation.hpp>
 #include <tactus/simulation/tapping.hpp>
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/margins.hpp>
 #include <tactus/stability/margins_report.hpp>
 #include <tactus/stability/uncertainty.hpp>
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include <nlohmann/json.hpp>
@@ -17,8 +17,6 @@ namespace tactus::stability {
 
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
-constexpr double degree = 180.0 / std::numbers::pi;
 /// Poles of a longer closed loop are counted and not listed: the time for a list grows with the cube.
 constexpr Eigen::Index most_listed_states = 400;
 

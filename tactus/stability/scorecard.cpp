@@ -1,3 +1,4 @@
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/scorecard.hpp>
 
 #include <algorithm>
@@ -8,8 +9,6 @@
 namespace tactus::stability {
 
 namespace {
-
-constexpr double turn = 2.0 * std::numbers::pi;
 
 /// Calls `visit(key, value, bounds)` for every number of a parameter struct, nested ones included.
 template <class T, class Visit>

@@ -1,6 +1,7 @@
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/presentation.hpp>
 #include <tactus/simulation/tapping.hpp>
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/scorecard.hpp>
 #include <tactus/stability/scorecard_report.hpp>
 #include <tactus/stability/two_port_sweep.hpp>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
@@ -16,9 +16,7 @@ namespace tactus::stability {
 
 namespace {
 
-constexpr double turn = 2.0 * std::numbers::pi;
-
-std::string number_or_none(double value) { return std::isfinite(value) ? report::number(value, 4) : "none"; }
+std::string four_digits_or_none(double value) { return std::isfinite(value) ? report::number(value, 4) : "none"; }
 
 /// The stiffest walls in N/m that the closed forms allow the master alone to display, in the hand of the file.
 struct VirtualWalls {
@@ -45,7 +43,7 @@ report::Table card_table(const Scorecard& card, const simulation::Teleoperator::
       {{"what", "", report::Column::Align::left}, {"value"}, {"unit", "", report::Column::Align::left}, {"at", "Hz"}},
       "Scorecard of the master");
   const auto row = [&table](const char* what, double value, const char* unit, double at_Hz = 0.0) {
-    table.add_row({what, number_or_none(value), unit, at_Hz > 0.0 ? report::number(at_Hz, 4) : ""});
+    table.add_row({what, four_digits_or_none(value), unit, at_Hz > 0.0 ? report::number(at_Hz, 4) : ""});
   };
   row("largest stable force gain", card.limit.force_gain, "", card.limit.frequency_rad_per_s / turn);
   row("the same without cancellation", card.uncancelled.force_gain, "", card.uncancelled.frequency_rad_per_s / turn);

@@ -1,20 +1,18 @@
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/presentation.hpp>
 #include <tactus/simulation/tapping.hpp>
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/two_port_report.hpp>
 #include <tactus/stability/two_port_sweep.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
 namespace tactus::stability {
 
 namespace {
-
-constexpr double degree = 180.0 / std::numbers::pi;
 
 /// The point with the least of `value`.
 template <class Value>

@@ -1,3 +1,4 @@
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/two_port_sweep.hpp>
 
 #include <cmath>
@@ -5,11 +6,7 @@
 
 namespace tactus::stability {
 
-namespace {
-
-constexpr double turn = 2.0 * std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 report::Axis two_port_axis() { return {.label = "frequency", .unit = "Hz", .scale = report::Axis::Scale::logarithmic}; }
 

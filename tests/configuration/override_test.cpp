@@ -22,7 +22,7 @@ Check set_and_read(std::string_view assignment) {
   return read ? Check{} : Check(read.error());
 }
 
-void expect_error(std::string_view assignment, ErrorCode code, std::string_view description) {
+void expect_override_error(std::string_view assignment, ErrorCode code, std::string_view description) {
   const Check error = set_and_read(assignment);
   ASSERT_TRUE(error) << assignment;
   EXPECT_EQ(error->code, code) << assignment;
@@ -81,24 +81,26 @@ TEST(Override, ATextTakesWhatWasTypedEvenWhereTomlSeesAnotherType) {
 }
 
 TEST(Override, ItsErrorsSayWhatWasTyped) {
-  expect_error(
+  expect_override_error(
       "control.force_gain=-1", ErrorCode::out_of_bounds,
       "--set control.force_gain=-1: control.force_gain: -1 is out of bounds: it must be at least 0 and at most 10");
-  expect_error("control.forcegain=1", ErrorCode::unknown_key,
-               "--set control.forcegain=1: control.forcegain: unknown key: did you mean force_gain?");
-  expect_error("contro.force_gain=1", ErrorCode::unknown_key,
-               "--set contro.force_gain=1: contro: unknown section: did you mean control?");
-  expect_error("control.taps=many", ErrorCode::wrong_type,
-               "--set control.taps=many: control.taps: \"many\" is a text, but a whole number is asked for, and it "
-               "must be at least 1 and at most 4096: write for instance taps = 32");
-  expect_error("control.cancellation=7", ErrorCode::out_of_bounds,
-               "--set control.cancellation=7: control.cancellation: \"7\" is no choice here: it must be \"off\", "
-               "\"model\" or \"adaptive\"");
+  expect_override_error("control.forcegain=1", ErrorCode::unknown_key,
+                        "--set control.forcegain=1: control.forcegain: unknown key: did you mean force_gain?");
+  expect_override_error("contro.force_gain=1", ErrorCode::unknown_key,
+                        "--set contro.force_gain=1: contro: unknown section: did you mean control?");
+  expect_override_error(
+      "control.taps=many", ErrorCode::wrong_type,
+      "--set control.taps=many: control.taps: \"many\" is a text, but a whole number is asked for, and it "
+      "must be at least 1 and at most 4096: write for instance taps = 32");
+  expect_override_error(
+      "control.cancellation=7", ErrorCode::out_of_bounds,
+      "--set control.cancellation=7: control.cancellation: \"7\" is no choice here: it must be \"off\", "
+      "\"model\" or \"adaptive\"");
 }
 
 TEST(Override, AMalformedAssignmentIsRefusedAtOnce) {
-  expect_error("control.force_gain", ErrorCode::syntax,
-               "--set control.force_gain: there is no = in it: write key=value, as in control.force_gain=3");
+  expect_override_error("control.force_gain", ErrorCode::syntax,
+                        "--set control.force_gain: there is no = in it: write key=value, as in control.force_gain=3");
   EXPECT_EQ(set_and_read("")->code, ErrorCode::syntax);
   for (const std::string key : {"", " ", ".", "a.", ".a", "a..b", "a b", "\"a\"", "[a]", "\xff"}) {
     Document written = document();
@@ -115,19 +117,20 @@ TEST(Override, AMalformedAssignmentIsRefusedAtOnce) {
 }
 
 TEST(Override, ASectionAndAValueDoNotTakeEachOthersPlace) {
-  expect_error("task.kind.speed=3", ErrorCode::wrong_type,
-               "--set task.kind.speed=3: task.kind.speed: task.kind is a value, so no key can lie below it");
-  expect_error("control=3", ErrorCode::wrong_type,
-               "--set control=3: control: this is a section: set one of its keys, as in control.some_key=3");
-  expect_error(
+  expect_override_error("task.kind.speed=3", ErrorCode::wrong_type,
+                        "--set task.kind.speed=3: task.kind.speed: task.kind is a value, so no key can lie below it");
+  expect_override_error("control=3", ErrorCode::wrong_type,
+                        "--set control=3: control: this is a section: set one of its keys, as in control.some_key=3");
+  expect_override_error(
       "slave={mass_kg=1}", ErrorCode::wrong_type,
       "--set slave={mass_kg=1}: slave: a section cannot be set at once: set each of its keys, as in slave.some_key=3");
-  expect_error(
+  expect_override_error(
       "slave=3", ErrorCode::wrong_type,
       "--set slave=3: slave: 3 is a whole number, but a section is asked for: write [slave] with its keys below it");
-  expect_error("slave.mass_kg.x=3", ErrorCode::wrong_type,
-               "--set slave.mass_kg.x=3: slave.mass_kg: this is a section, but a number in kg is asked for, and it "
-               "must be finite and greater than 0 kg: write for instance mass_kg = 0.5");
+  expect_override_error(
+      "slave.mass_kg.x=3", ErrorCode::wrong_type,
+      "--set slave.mass_kg.x=3: slave.mass_kg: this is a section, but a number in kg is asked for, and it "
+      "must be finite and greater than 0 kg: write for instance mass_kg = 0.5");
 }
 
 TEST(Merge, AnotherFilesKeysTakeThePlaceOfTheFirstsAndTheRestStay) {

@@ -47,14 +47,14 @@ TEST(Engine, AScriptedTapIsBitForBitThatOfATeleoperatorOnTheSamePath) {
   for (std::size_t loop = 0; loop < loops; ++loop) {
     const std::vector<LoopTick> ticks = tap(*view, loop, 0.8);
     auto alone = simulation::Teleoperator::make(sample_settings().of_loop(loop).value(), script.start_m()).value();
-    const double tick_s = alone.tick_s();
+    const double loop_tick_s = alone.tick_s();
     bool touched = false;
     double time_s = 0.0;
     for (const LoopTick& tick : ticks) {
-      const auto record = alone.step(script.position_m(time_s), script.position_m(time_s + tick_s));
+      const auto record = alone.step(script.position_m(time_s), script.position_m(time_s + loop_tick_s));
       ASSERT_TRUE(are_equal(tick.record, record)) << loop << " at " << record.time_s;
       touched = touched || record.touched;
-      time_s += tick_s;
+      time_s += loop_tick_s;
     }
     EXPECT_TRUE(touched);
   }

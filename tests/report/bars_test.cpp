@@ -10,14 +10,14 @@
 namespace tactus::report {
 namespace {
 
-struct Rectangle {
+struct DrawnRectangle {
   double x, y, width, height;
 };
 
-std::vector<Rectangle> rectangles(const std::string& svg, const std::string& style) {
+std::vector<DrawnRectangle> rectangles(const std::string& svg, const std::string& style) {
   const std::regex pattern("<rect class=\"" + style +
                            "\" x=\"([^\"]*)\" y=\"([^\"]*)\" width=\"([^\"]*)\" height=\"([^\"]*)\"");
-  std::vector<Rectangle> found;
+  std::vector<DrawnRectangle> found;
   for (std::sregex_iterator match(svg.begin(), svg.end(), pattern), end; match != end; ++match) {
     found.push_back({std::stod((*match)[1]), std::stod((*match)[2]), std::stod((*match)[3]), std::stod((*match)[4])});
   }
@@ -41,7 +41,7 @@ Axis linear(double lower, double upper) { return {.label = "gain", .lower = lowe
 TEST(Bars, AreAsLongAsTheirValuesAndStandInTheOrderOfTheirNames) {
   const std::string svg = draw(figure_of(linear(0, 4), {{.name = "", .lengths = {4, 2, 1}}})).svg;
   const auto bars = rectangles(svg, "fill-0");
-  const Rectangle frame = rectangles(svg, "frame").front();
+  const DrawnRectangle frame = rectangles(svg, "frame").front();
   ASSERT_EQ(bars.size(), 3U);
   EXPECT_NEAR(bars[0].width, frame.width, 0.1);
   EXPECT_NEAR(bars[1].width, frame.width / 2, 0.1);
@@ -54,7 +54,7 @@ TEST(Bars, AreAsLongAsTheirValuesAndStandInTheOrderOfTheirNames) {
 TEST(Bars, BeginAtNoughtWhereTheAxisHasItAndAtTheLowerLimitOfALogarithm) {
   const std::string svg = draw(figure_of(linear(-2, 2), {{.name = "", .lengths = {1, -1, -2}}})).svg;
   const auto bars = rectangles(svg, "fill-0");
-  const Rectangle frame = rectangles(svg, "frame").front();
+  const DrawnRectangle frame = rectangles(svg, "frame").front();
   const double zero = frame.x + frame.width / 2;
   EXPECT_NEAR(bars[0].x, zero, 0.1);
   EXPECT_NEAR(bars[1].x + bars[1].width, zero, 0.1);

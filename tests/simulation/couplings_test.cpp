@@ -23,7 +23,7 @@ Teleoperator::Params tapping_params(const std::string& architecture) {
 
 /// The same without tremor, correction, noise, friction, hysteresis and encoder counts, so that forces balance as on
 /// paper, and damped so that a slave without friction does not chatter.
-Teleoperator::Params ideal_params(const std::string& architecture) {
+Teleoperator::Params ideal_coupling(const std::string& architecture) {
   Teleoperator::Params params = tapping_params(architecture);
   params.control.cancellation = control::CancellationMode::off;
   params.person.tremor_amplitude_m = 0.0;
@@ -109,7 +109,7 @@ Teleoperator::Record pressed(Teleoperator::Params params) {
 }
 
 TEST(Couplings, APressOverPositionPositionShowsTheForceOfTheContactWithoutASensorForIt) {
-  const Teleoperator::Params params = ideal_params("position-position");
+  const Teleoperator::Params params = ideal_coupling("position-position");
   const Balance balance(params);
   const double force_N = pressed_m / (balance.slave + gain * balance.master);
   const Teleoperator::Record end = pressed(params);
@@ -118,7 +118,7 @@ TEST(Couplings, APressOverPositionPositionShowsTheForceOfTheContactWithoutASenso
 }
 
 TEST(Couplings, APressOverProjectionShowsAllOfTheForceAtRest) {
-  const Teleoperator::Params params = ideal_params("projection");
+  const Teleoperator::Params params = ideal_coupling("projection");
   const Balance balance(params);
   const double force_N = pressed_m / (balance.slave + gain * balance.master);
   const Teleoperator::Record end = pressed(params);
@@ -127,7 +127,7 @@ TEST(Couplings, APressOverProjectionShowsAllOfTheForceAtRest) {
 }
 
 TEST(Couplings, APressOverASharedCompliantSlaveMeetsItsStiffnessInRow) {
-  Teleoperator::Params params = ideal_params("shared-compliant");
+  Teleoperator::Params params = ideal_coupling("shared-compliant");
   for (const double stiffness : {100.0, 500.0}) {
     params.control.compliance.stiffness_N_per_m = stiffness;
     const Balance balance(params);
@@ -139,7 +139,7 @@ TEST(Couplings, APressOverASharedCompliantSlaveMeetsItsStiffnessInRow) {
 }
 
 TEST(Couplings, FreeMotionOverPositionPositionDragsByTheRoundTripTimesTheStiffness) {
-  Teleoperator::Params params = ideal_params("position-position");
+  Teleoperator::Params params = ideal_coupling("position-position");
   params.control.force_gain = gain;
   params.environment.position_m = 0.5;  // out of reach
   params.channel.to_slave.delay_s = 0.02;

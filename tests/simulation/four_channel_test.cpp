@@ -15,7 +15,7 @@ namespace {
 using Records = std::vector<Teleoperator::Record>;
 
 /// The tapping experiment without anything random, and with nothing that rubs, slips, counts or saturates.
-Teleoperator::Params ideal_params(const std::string& architecture) {
+Teleoperator::Params ideal_four_channel(const std::string& architecture) {
   Teleoperator::Params params = experiment_file<TappingParams>("tapping");
   params.control.architecture = architecture;
   params.control.force_limit_N = 10.0;
@@ -53,7 +53,7 @@ constexpr std::size_t until_rest = 60000;
 TEST(FourChannel, PressingAtRestTheHandPushesMuTimesTheContactForceAndTheSlaveStandsAtLambdaTimesTheMaster) {
   for (const double mu : {1.0, 3.0}) {
     for (const double lambda : {1.0, 0.5}) {
-      Teleoperator::Params params = ideal_params("four-channel");
+      Teleoperator::Params params = ideal_four_channel("four-channel");
       params.control.force_gain = mu;
       params.control.position_scale = lambda;
       // With the whole of the hand force on the slave the frictionless rig rings (docs/theory/four-channel.md).
@@ -71,7 +71,7 @@ TEST(FourChannel, PressingAtRestTheHandPushesMuTimesTheContactForceAndTheSlaveSt
 
 // The slave of position-force needs an error to push: contact force over its proportional gain.
 TEST(FourChannel, PositionForceLeavesTheErrorThatItsSlavesProportionalGainPushesWith) {
-  Teleoperator::Params params = ideal_params("position-force");
+  Teleoperator::Params params = ideal_four_channel("position-force");
   params.control.cancellation = control::CancellationMode::off;
   params.control.force_gain = 1.0;
   const auto end = press(params, until_rest).back();

@@ -1,8 +1,8 @@
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/margins.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,8 +11,6 @@
 
 namespace tactus::stability {
 namespace {
-
-constexpr double turn = 2.0 * std::numbers::pi;
 
 /// Closed-loop poles that oscillate faster than 20 Hz, the slowest to decay first, of each pair the upper one.
 std::vector<std::complex<double>> ringing(const Loop& loop) {

@@ -1,9 +1,9 @@
 #include <tactus/signal/random.hpp>
+#include <tactus/stability/angle.hpp>
 #include <tactus/stability/two_port.hpp>
 
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,8 +11,6 @@
 
 namespace tactus::stability {
 namespace {
-
-constexpr double turn = 2.0 * std::numbers::pi;
 
 simulation::Teleoperator::Params uncancelled() {
   simulation::Teleoperator::Params params = linear_rig();
