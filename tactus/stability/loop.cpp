@@ -40,7 +40,9 @@ struct Part {
     return (system.c * state.segment(at, system.states()))(0) + system.d(0, 0) * input;
   }
   void advance(const Eigen::VectorXd& state, double input, Eigen::VectorXd& next) const {
-    next.segment(at, system.states()) = system.a * state.segment(at, system.states()) + system.b.col(0) * input;
+    auto mine = next.segment(at, system.states());
+    mine.noalias() = system.a * state.segment(at, system.states());
+    mine += system.b.col(0) * input;
   }
 };
 

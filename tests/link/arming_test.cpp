@@ -81,7 +81,8 @@ class TwoSites {
       master.step(at_master_);
       const bool was_active = slave.standing() == Standing::active;
       slave.step(at_slave_);
-      if (!was_active && slave.standing() == Standing::active) followed.emplace_back(at_slave_.session, slave.armings());
+      if (!was_active && slave.standing() == Standing::active)
+        followed.emplace_back(at_slave_.session, slave.armings());
       from_master_.push_back({master.standing(), master.armings(), master_session});
       from_slave_.push_back({slave.standing(), slave.armings(), slave_session});
     }
