@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace architecture_test {
 
 constexpr Seconds tick{200e-6};
 
@@ -125,5 +125,5 @@ TEST(Site, ACopyIsAForkWithAControllerOfItsOwn) {
   EXPECT_EQ(sites->master.step(input(0.1)).induced_position_m, before_m);
 }
 
-}  // namespace
+}  // namespace architecture_test
 }  // namespace tactus::control

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace cancellation_test {
 
 static_assert(Element<Cancellation>);
 
@@ -152,5 +152,5 @@ TEST(Cancellation, AModelThatCannotBeMadeIsRefusedUnderItsName) {
   EXPECT_EQ(late.error().parameter, "dt");
 }
 
-}  // namespace
+}  // namespace cancellation_test
 }  // namespace tactus::control

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace energy_tank_test {
 
 static_assert(Element<TankMaster>);
 static_assert(Element<TankSlave>);
@@ -180,5 +180,5 @@ TEST(EnergyTank, ErrorsNameTheKeyOfTheFile) {
   EXPECT_EQ(make_sites(params, Seconds{tick_s}).error().parameter, "cancellation_step");
 }
 
-}  // namespace
+}  // namespace energy_tank_test
 }  // namespace tactus::control

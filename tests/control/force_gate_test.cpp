@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace force_gate_test {
 
 static_assert(Element<ForceGate>);
 
@@ -104,5 +104,5 @@ TEST(ForceGate, CannotBeConfiguredOff) {
   EXPECT_TRUE(ForceGate::make({.force_limit_N = 100.0, .rate_limit_N_per_s = 1e6}, Seconds{tick_s}));
 }
 
-}  // namespace
+}  // namespace force_gate_test
 }  // namespace tactus::control

@@ -12,7 +12,7 @@
 
 // Observers of the environment's force against exact motions of the body that they believe in.
 namespace tactus::control {
-namespace {
+namespace force_observers_test {
 
 constexpr Seconds tick{200e-6};
 constexpr double mass_kg = 0.032;
@@ -135,5 +135,5 @@ TEST(ForceObserverCutoffs, AreRefusedWhereTheSampleRateCannotGiveThem) {
   EXPECT_EQ(DisturbanceObserver::make({.cutoff_Hz = 2300.0}, tick).error().parameter, "cutoff_Hz");
 }
 
-}  // namespace
+}  // namespace force_observers_test
 }  // namespace tactus::control

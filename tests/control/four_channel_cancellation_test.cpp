@@ -14,7 +14,7 @@
 // Paper A's appendix: cancellation of induced master motion as the slave's local force loop of a four-channel
 // controller that has C_1 and C_2 only.
 namespace tactus::control {
-namespace {
+namespace four_channel_cancellation_test {
 
 using Complex = std::complex<double>;
 constexpr double tick_s = 200e-6;
@@ -159,5 +159,5 @@ TEST(FourChannelCancellation, WithDelayTheSlaveCancelsTooEarlyAndTheTwoPart) {
   EXPECT_GT(largest_difference(on_master, on_slave), 1e6 * round_off_N);
 }
 
-}  // namespace
+}  // namespace four_channel_cancellation_test
 }  // namespace tactus::control

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace four_channel_test {
 
 static_assert(Element<FourChannelMaster>);
 static_assert(Element<FourChannelSlave>);
@@ -80,8 +80,8 @@ struct Teleoperator {
 
   /// What the controllers really do, measured on them.
   static Teleoperator measured(const Gains& gains, double frequency_Hz, Complex master_device, Complex slave_device) {
-    const auto m = control::master(gains);
-    const auto s = control::slave(gains);
+    const auto m = four_channel_test::master(gains);
+    const auto s = four_channel_test::slave(gains);
     const double f = frequency_Hz;
     return {.c_1 = response(m, f, motor_position, tells_position) * response(s, f, told_position, motor_force),
             .c_2 = -response(s, f, tip_force, tells_force) * response(m, f, told_force, motor_force),
@@ -333,5 +333,5 @@ TEST(FourChannel, AMessageThatIsNoNumberClosesTheSlavesGate) {
   EXPECT_EQ(sites.slave.fault(), GateFault::not_finite);
 }
 
-}  // namespace
+}  // namespace four_channel_test
 }  // namespace tactus::control

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace grip_cancellation_test {
 
 static_assert(Element<GripCancellation>);
 
@@ -186,5 +186,5 @@ TEST(GripCancellation, InANominalHandTheBankCancelsAsTheFixedModelDoes) {
   }
 }
 
-}  // namespace
+}  // namespace grip_cancellation_test
 }  // namespace tactus::control

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace hand_force_compensation_test {
 
 using Complex = std::complex<double>;
 constexpr Seconds tick{200e-6};
@@ -116,5 +116,5 @@ TEST(HandForceCompensation, WhatItAsksOfTheMotorStaysWithinTheForceLimit) {
   EXPECT_EQ(largest_N, params.force_limit_N);
 }
 
-}  // namespace
+}  // namespace hand_force_compensation_test
 }  // namespace tactus::control

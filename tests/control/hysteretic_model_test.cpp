@@ -11,7 +11,7 @@
 // The model with its defaults, hysteretic linkage, quintic hand and friction and all, against SciPy, which integrates
 // Bouc and Wen's differential equation along with the rest.
 namespace tactus::control {
-namespace {
+namespace hysteretic_model_test {
 
 constexpr double tick_s = 200e-6;
 
@@ -67,5 +67,5 @@ TEST(HystereticModel, WithALinearLinkageItMissesTheHystereticPathByTwentyTimesAs
   }
 }
 
-}  // namespace
+}  // namespace hysteretic_model_test
 }  // namespace tactus::control

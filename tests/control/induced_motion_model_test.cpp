@@ -16,7 +16,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace induced_motion_model_test {
 
 static_assert(Element<InducedMotionModel>);
 
@@ -352,5 +352,5 @@ TEST(InducedMotionModel, AfterAnAbsurdForceItComesBackToRest) {
   }
 }
 
-}  // namespace
+}  // namespace induced_motion_model_test
 }  // namespace tactus::control

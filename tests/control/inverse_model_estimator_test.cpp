@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace inverse_model_estimator_test {
 
 using Params = InverseModelEstimator::Params;
 constexpr Seconds dt{1e-4};
@@ -131,5 +131,5 @@ TEST(InverseModelEstimator, NeitherMassNorDampingAndNoGainAreRefused) {
   EXPECT_TRUE(refused(params).starts_with("actuator_gain"));
 }
 
-}  // namespace
+}  // namespace inverse_model_estimator_test
 }  // namespace tactus::control

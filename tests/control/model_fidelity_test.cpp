@@ -14,7 +14,7 @@
 // The linear models of lower fidelity. Oracles: impedances of paper A's Table I in complex algebra, and the closed
 // solutions of a mass on a spring.
 namespace tactus::control {
-namespace {
+namespace model_fidelity_test {
 
 constexpr double tick_s = 200e-6;
 constexpr CancellationStep both_steps[] = {CancellationStep::exact, CancellationStep::euler};
@@ -276,5 +276,5 @@ TEST(ModelFidelity, AHandMadeSofterThanItIsIsRefused) {
   EXPECT_EQ(refused.error().parameter, "master.linear_hand_stiffening");
 }
 
-}  // namespace
+}  // namespace model_fidelity_test
 }  // namespace tactus::control

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace position_force_test {
 
 static_assert(Element<PositionForceMaster>);
 static_assert(Element<PositionForceSlave>);
@@ -227,5 +227,5 @@ TEST(PositionForceSlave, ACommandThatIsNoNumberReleasesTheMotorUntilReset) {
   EXPECT_NEAR(site.step(input(0.0005, 0.0, 0.0)).motor_force_N, 0.05, 1e-12);
 }
 
-}  // namespace
+}  // namespace position_force_test
 }  // namespace tactus::control

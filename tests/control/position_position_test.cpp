@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace position_position_test {
 
 constexpr double tick_s = 200e-6;
 
@@ -125,5 +125,5 @@ TEST(PositionPosition, WithoutDelayAndScaleBothSitesTogetherAreADamperLessWhatSa
   EXPECT_NEAR(damping_seen(0.01, 0.01, -1.0), expected, 2e-3);
 }
 
-}  // namespace
+}  // namespace position_position_test
 }  // namespace tactus::control

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace projection_test {
 
 constexpr double tick_s = 200e-6;
 /// Table I: motor, drum and handle; friction of motor and drum.
@@ -217,5 +217,5 @@ TEST(ProjectionMaster, TheObserverIsDrivenByTheForceThatTheGateLetThrough) {
   EXPECT_NEAR(open.respond(input(0.0, 0.5)).motor_force_N, -(0.1 * 0.5 + 0.9 * 0.05), 1e-9);
 }
 
-}  // namespace
+}  // namespace projection_test
 }  // namespace tactus::control

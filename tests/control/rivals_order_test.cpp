@@ -14,7 +14,7 @@
 
 // The remedies of paper A, Sec. IV, together: their order in the site, what is off, and what ends in a gate.
 namespace tactus::control {
-namespace {
+namespace rivals_order_test {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -242,5 +242,5 @@ TEST(Rivals, WhatThisServoRateCannotCarryIsRefusedByName) {
   EXPECT_EQ(refused([](auto& p) { p.handle_gate.force_limit_N = 1e3; }), "handle_gate.force_limit_N");
 }
 
-}  // namespace
+}  // namespace rivals_order_test
 }  // namespace tactus::control

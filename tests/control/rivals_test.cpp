@@ -9,7 +9,7 @@
 
 // The remedies of paper A, Sec. IV, each alone, all seen from outside the site.
 namespace tactus::control {
-namespace {
+namespace rivals_test {
 
 static_assert(Element<ShapingFilter>);
 static_assert(Element<LocalDamping>);
@@ -242,5 +242,5 @@ TEST(Rivals, TheForceFilterComesBeforeTheCrossoverSoNeitherActuatorGetsWhatItTak
   EXPECT_LT(std::abs(handle_response(params, 100.0)), 1e-9);
 }
 
-}  // namespace
+}  // namespace rivals_test
 }  // namespace tactus::control

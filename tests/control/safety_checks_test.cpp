@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace safety_checks_test {
 
 constexpr double tick_s = 200e-6;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -156,5 +156,5 @@ TEST(PacketJudge, ANumberThatIsNoneOrThatNoSiteCouldMeanIsRefusedWhereverItStand
   }
 }
 
-}  // namespace
+}  // namespace safety_checks_test
 }  // namespace tactus::control

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace safety_gate_test {
 
 static_assert(Element<SafetyGate>);
 
@@ -183,5 +183,5 @@ TEST(SafetyGate, ConfigurationCanTightenEveryLimitAndLoosenNone) {
       Seconds{tick_s}));
 }
 
-}  // namespace
+}  // namespace safety_gate_test
 }  // namespace tactus::control

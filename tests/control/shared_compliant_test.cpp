@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace shared_compliant_test {
 
 constexpr double tick_s = 200e-6;
 
@@ -65,5 +65,5 @@ TEST(SharedCompliantSlave, InFreeSpaceItFollowsAsPositionForceDoes) {
   }
 }
 
-}  // namespace
+}  // namespace shared_compliant_test
 }  // namespace tactus::control

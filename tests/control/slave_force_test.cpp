@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace slave_force_test {
 
 static_assert(Element<SlaveForce>);
 
@@ -149,5 +149,5 @@ TEST(Architecture, NamesTheKeyOfTheEstimatorThatCannotBe) {
   EXPECT_EQ(sites.error().parameter, "slave_force.disturbance_observer.cutoff_Hz");
 }
 
-}  // namespace
+}  // namespace slave_force_test
 }  // namespace tactus::control

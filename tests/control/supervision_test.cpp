@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace supervision_test {
 
 constexpr double tick_s = 200e-6;
 constexpr Seconds tick{tick_s};
@@ -279,5 +279,5 @@ TEST(Supervision, ATimeOutThatWouldNeverComeIsRefusedWithItsKey) {
   EXPECT_EQ(make_supervised_slave({}, 0, tick).error().parameter, "supervision.session");
 }
 
-}  // namespace
+}  // namespace supervision_test
 }  // namespace tactus::control

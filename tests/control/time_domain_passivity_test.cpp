@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace time_domain_passivity_test {
 
 static_assert(Element<PassivityMaster>);
 static_assert(Element<PassivitySlave>);
@@ -239,5 +239,5 @@ TEST(TimeDomainPassivity, ErrorsNameTheKeyOfTheFile) {
   EXPECT_EQ(make_sites(params, Seconds{tick_s}).error().parameter, "passivity.velocity.cutoff_Hz");
 }
 
-}  // namespace
+}  // namespace time_domain_passivity_test
 }  // namespace tactus::control

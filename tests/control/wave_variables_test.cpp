@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::control {
-namespace {
+namespace wave_variables_test {
 
 static_assert(Element<WaveMaster>);
 static_assert(Element<WaveSlave>);
@@ -239,5 +239,5 @@ TEST(WaveVariables, ErrorsNameTheKeyOfTheFile) {
   EXPECT_EQ(make_sites(params, Seconds{tick_s}).error().parameter, "force_gain");
 }
 
-}  // namespace
+}  // namespace wave_variables_test
 }  // namespace tactus::control

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace bench_model_test {
 
 constexpr double tick_s = 200e-6;
 
@@ -126,5 +126,5 @@ TEST(BenchModel, ThinningAveragesCommandsAndPicksPositions) {
   EXPECT_EQ(thin.position_m, (std::vector<double>{0.1, 0.3}));
 }
 
-}  // namespace
+}  // namespace bench_model_test
 }  // namespace tactus::identification

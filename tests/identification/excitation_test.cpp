@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace excitation_test {
 
 using Samples = std::vector<double>;
 
@@ -137,5 +137,5 @@ TEST(Excitation, what_would_exceed_a_limit_or_cannot_be_is_refused) {
   EXPECT_FALSE(crossing_m({.fade_s = 3.0}, tick));
 }
 
-}  // namespace
+}  // namespace excitation_test
 }  // namespace tactus::identification

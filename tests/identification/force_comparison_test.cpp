@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace force_comparison_test {
 
 constexpr Seconds dt{1e-3};
 
@@ -83,5 +83,5 @@ TEST(FalseForce, IsTheEstimateWhereTheAxisMovesAndNothingIsMeasured) {
   EXPECT_EQ(false_force(estimate, std::vector<double>(3000, 1.0), position, 0.01, Seconds{1e-3}, 100)->duration_s, 0.0);
 }
 
-}  // namespace
+}  // namespace force_comparison_test
 }  // namespace tactus::identification

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace frequency_response_test {
 
 using Complex = std::complex<double>;
 using Samples = std::vector<double>;
@@ -204,5 +204,5 @@ TEST(FrequencyResponse, recordings_that_cannot_tell_get_a_message) {
   EXPECT_FALSE(judge_linearity({}, 0.0, 100.0));
 }
 
-}  // namespace
+}  // namespace frequency_response_test
 }  // namespace tactus::identification

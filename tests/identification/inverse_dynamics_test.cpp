@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace inverse_dynamics_test {
 
 constexpr double inertia = 1.5e-3;
 constexpr double viscous = 4e-3;
@@ -168,5 +168,5 @@ TEST(InverseDynamics, a_force_that_has_nothing_to_do_with_the_motion_gives_no_mo
   EXPECT_FALSE(fit_inverse_dynamics(signals)) << refusal(signals);
 }
 
-}  // namespace
+}  // namespace inverse_dynamics_test
 }  // namespace tactus::identification

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace linear_fit_test {
 
 // y over x = 1…5, worked by hand: slope 0.6, offset 2.2, residual squares 2.4 on three degrees of freedom, so s² = 0.8,
 // the slope's standard error √(0.8/10) and the offset's √(0.8·(1/5 + 9/10)).
@@ -58,5 +58,5 @@ TEST(LinearFit, SizesThatDoNotFitTooFewObservationsAndValuesThatAreNoNumbersAreR
   EXPECT_EQ(fit.error().code, ErrorCode::out_of_bounds);
 }
 
-}  // namespace
+}  // namespace linear_fit_test
 }  // namespace tactus::identification

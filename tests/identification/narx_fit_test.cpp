@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace narx_fit_test {
 
 using control::NarxForceEstimator;
 using control::SlaveMotionSample;
@@ -205,5 +205,5 @@ TEST(NarxFit, NamesTheKeyThatIsOutOfBounds) {
   EXPECT_EQ(fit_narx({}, wrong, dt).error().parameter, "cutoff_Hz");
 }
 
-}  // namespace
+}  // namespace narx_fit_test
 }  // namespace tactus::identification

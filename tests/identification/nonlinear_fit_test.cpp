@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace nonlinear_fit_test {
 
 constexpr int samples = 400;
 double time_of(int i) { return 0.01 * i; }
@@ -131,5 +131,5 @@ TEST(NonlinearFit, AStartThatIsNoModelAndTooFewResidualsAreRefused) {
   EXPECT_FALSE(fit_nonlinear(problem));
 }
 
-}  // namespace
+}  // namespace nonlinear_fit_test
 }  // namespace tactus::identification

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace operator_impedance_test {
 
 /// A person holds a rubbing master and moves it slowly while the motor gives it jolts, integrated at 10 kHz and
 /// recorded at 1 kHz. Nothing of it is shared with the estimate.
@@ -252,5 +252,5 @@ TEST(OperatorImpedance, a_band_or_window_that_cannot_be_is_refused) {
   }
 }
 
-}  // namespace
+}  // namespace operator_impedance_test
 }  // namespace tactus::identification

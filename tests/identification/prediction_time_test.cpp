@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace prediction_time_test {
 
 TEST(PredictionTime, TheNumericLimitIsTheClosedFormForEveryNumberOfBlocks) {
   control::InverseModelEstimator::Params model;
@@ -36,5 +36,5 @@ TEST(PredictionTime, NoBlocksHaveNoTimeConstant) {
   EXPECT_FALSE(prediction_time_closed_form(0.01, 0.0, 5));
 }
 
-}  // namespace
+}  // namespace prediction_time_test
 }  // namespace tactus::identification

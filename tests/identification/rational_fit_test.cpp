@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace rational_fit_test {
 
 TEST(RationalFit, AFourthOrderSystemIsFoundFromItsResponseToNoise) {
   // (s + 30)(s + 80)(s² + 20 s + 4000) below (s + 100)² (s + 200)(s + 50): the truth is in the class of models.
@@ -35,5 +35,5 @@ TEST(RationalFit, DataThatCannotTellTheCoefficientsApartIsRefused) {
   EXPECT_FALSE(fit_rational(std::vector<double>(5, 1.0), std::vector<double>(5, 1.0), Seconds{1e-3}, 20.0));
 }
 
-}  // namespace
+}  // namespace rational_fit_test
 }  // namespace tactus::identification

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::identification {
-namespace {
+namespace session_test {
 
 /// A device that answers with what no two runs share, and counts what it is asked.
 class CountingRig final : public Rig {
@@ -168,5 +168,5 @@ TEST_F(Session, AFolderThatCannotBeWrittenIsRefusedAtOnce) {
   EXPECT_EQ(session.error().code, ErrorCode::unwritable);
 }
 
-}  // namespace
+}  // namespace session_test
 }  // namespace tactus::identification

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace cable_chain_test {
 
 static_assert(Element<CableChain>);
 
@@ -385,5 +385,5 @@ TEST(CableChain, AStepTooLongForAStiffnessIsRefusedWithTheStiffnessNamed) {
   EXPECT_EQ(held.error().parameter, "grip.stiffness_N_per_m");
 }
 
-}  // namespace
+}  // namespace cable_chain_test
 }  // namespace tactus::mechanics

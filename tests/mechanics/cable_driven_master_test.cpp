@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace cable_driven_master_test {
 
 static_assert(Element<CableDrivenMaster>);
 
@@ -180,5 +180,5 @@ TEST(CableDrivenMaster, AGripTooStiffForTheStepIsNamedAsTheGrips) {
   EXPECT_EQ(device.error().parameter, "grip.stiffness_N_per_m");
 }
 
-}  // namespace
+}  // namespace cable_driven_master_test
 }  // namespace tactus::mechanics

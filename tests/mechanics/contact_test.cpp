@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace contact_test {
 
 static_assert(Element<KelvinVoigtContact>);
 static_assert(Element<HuntCrossleyContact>);
@@ -137,5 +137,5 @@ TEST(HuntCrossleyContact, HasItsSecantStiffnessAtTheReferenceDepthAndGrowsByTheE
   }
 }
 
-}  // namespace
+}  // namespace contact_test
 }  // namespace tactus::mechanics

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace electric_slave_test {
 
 static_assert(Element<ElectricSlave>);
 
@@ -270,5 +270,5 @@ TEST(ElectricSlave, AWallTooStiffOrTooViscousForTheSubstepIsRefusedByName) {
   EXPECT_EQ(ElectricSlave::make(params, Seconds{40e-6}).error().parameter, "mechanism.cable.stiffness_N_per_m");
 }
 
-}  // namespace
+}  // namespace electric_slave_test
 }  // namespace tactus::mechanics

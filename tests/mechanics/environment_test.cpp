@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace environment_test {
 
 static_assert(Element<Environment>);
 
@@ -79,5 +79,5 @@ TEST(Environment, BondedWallPullsAsItPushes) {
   EXPECT_DOUBLE_EQ(wall.step({.position_m = 0.008, .velocity_m_per_s = -0.1}), -(2000.0 * 0.002 + 0.3));
 }
 
-}  // namespace
+}  // namespace environment_test
 }  // namespace tactus::mechanics

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace friction_test {
 
 static_assert(Element<CoulombFriction>);
 
@@ -120,5 +120,5 @@ TEST(CoulombFriction, StickSlipMotionConvergesToThePiecewiseSolutionOfScipy) {
   EXPECT_LT(fine_m, 0.3 * coarse_m);
 }
 
-}  // namespace
+}  // namespace friction_test
 }  // namespace tactus::mechanics

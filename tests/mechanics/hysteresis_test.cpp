@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace hysteresis_test {
 
 static_assert(Element<ElastoSlipSpring>);
 static_assert(Element<BoucWenSpring>);
@@ -234,5 +234,5 @@ TEST(BoucWenSpring, ItsDefaultsMatchTheLoopOfTheElastoSlipSpring) {
   }
 }
 
-}  // namespace
+}  // namespace hysteresis_test
 }  // namespace tactus::mechanics

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace minimum_jerk_test {
 
 constexpr MinimumJerk reach{.start_m = 0.02, .end_m = -0.03, .start_time_s = 0.5, .duration_s = 0.4};
 constexpr double stroke_m = -0.05;
@@ -77,5 +77,5 @@ TEST(MinimumJerk, HasTheLeastSquaredJerkOfAllReachesBetweenRestAndRest) {
   }
 }
 
-}  // namespace
+}  // namespace minimum_jerk_test
 }  // namespace tactus::mechanics

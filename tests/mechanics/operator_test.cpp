@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace operator_test {
 
 static_assert(Element<Operator>);
 
@@ -150,5 +150,5 @@ TEST(Operator, APersonQuickerThanTheBoundIsRefusedByName) {
   EXPECT_EQ(too_long_in_ticks.error().parameter, "correction.reaction_time_s");
 }
 
-}  // namespace
+}  // namespace operator_test
 }  // namespace tactus::mechanics

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace servo_hydraulic_slave_test {
 
 static_assert(Element<ServoValve>);
 static_assert(Element<ServoHydraulicSlave>);
@@ -180,5 +180,5 @@ TEST(ServoHydraulicSlave, RefusesPartsThatContradictOneAnother) {
   EXPECT_EQ(ServoHydraulicSlave::make(params, Seconds{step_s}).error().parameter, "cylinder.friction.static_N");
 }
 
-}  // namespace
+}  // namespace servo_hydraulic_slave_test
 }  // namespace tactus::mechanics

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace springs_test {
 
 static_assert(Element<LinearSpring>);
 static_assert(Element<QuinticSpring>);
@@ -40,5 +40,5 @@ TEST(QuinticSpring, BeyondTheGuardOnlyTheLinearPartGrows) {
   EXPECT_NEAR(spring.step({.deflection_m = -8e-3, .rate_m_per_s = 0.0}), -at_guard_N - 40.0 * 3e-3, 1e-10);
 }
 
-}  // namespace
+}  // namespace springs_test
 }  // namespace tactus::mechanics

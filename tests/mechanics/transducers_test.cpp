@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::mechanics {
-namespace {
+namespace transducers_test {
 
 static_assert(Element<Encoder>);
 static_assert(Element<CurrentAmplifier>);
@@ -141,5 +141,5 @@ TEST(ForceSensor, ABandwidthThatTheSubstepsCannotCarryIsRefused) {
   EXPECT_EQ(refused.error().parameter, "bandwidth_Hz");
 }
 
-}  // namespace
+}  // namespace transducers_test
 }  // namespace tactus::mechanics

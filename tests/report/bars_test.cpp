@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace bars_test {
 
 struct DrawnRectangle {
   double x, y, width, height;
@@ -98,5 +98,5 @@ TEST(Bars, SetTheLimitsOfAnAxisThatHasNone) {
   EXPECT_NEAR(bars[0].width, bars[2].width / 8, 0.1);
 }
 
-}  // namespace
+}  // namespace bars_test
 }  // namespace tactus::report

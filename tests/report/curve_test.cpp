@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace curve_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Rectangle frame{10, 20, 100, 50};
@@ -94,5 +94,5 @@ TEST(PathData, StaysInsideForDivergingData) {
   }
 }
 
-}  // namespace
+}  // namespace curve_test
 }  // namespace tactus::report

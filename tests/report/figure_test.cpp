@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace figure_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -296,5 +296,5 @@ TEST(Figure, IsTheSameBytesEachTimeAndInEachLocale) {
   EXPECT_EQ(other, svg);
 }
 
-}  // namespace
+}  // namespace figure_test
 }  // namespace tactus::report

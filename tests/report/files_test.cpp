@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace files_test {
 
 namespace fs = std::filesystem;
 
@@ -127,5 +127,5 @@ TEST_F(Files, AFolderInWhichNothingCanBeWrittenIsRefusedBeforeTheWork) {
   EXPECT_TRUE(prepare_directory("").has_value());
 }
 
-}  // namespace
+}  // namespace files_test
 }  // namespace tactus::report

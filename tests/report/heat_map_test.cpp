@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace heat_map_test {
 
 /// 3 by 4 cells, the middle row of class 1 but for its first cell, the rest of class 0.
 HeatMap small_map() {
@@ -107,5 +107,5 @@ TEST(HeatMap, APageNumbersItAmongItsFigures) {
   EXPECT_NE(html.find("What it shows."), std::string::npos);
 }
 
-}  // namespace
+}  // namespace heat_map_test
 }  // namespace tactus::report

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace page_test {
 
 const std::string evil = "</style><script>alert(\"1\" && '2')</script>";
 
@@ -89,5 +89,5 @@ TEST(Page, ScrollsFiguresAndTablesInPlaceOnANarrowScreen) {
   for (const std::string& part : tags(html, "div", "scroll")) EXPECT_EQ(attribute(part, "tabindex"), "0");
 }
 
-}  // namespace
+}  // namespace page_test
 }  // namespace tactus::report

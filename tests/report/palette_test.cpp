@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace palette_test {
 
 using Triple = std::array<double, 3>;
 using Matrix = std::array<Triple, 3>;
@@ -84,5 +84,5 @@ TEST(Palette, SlotsStayApartForTheColourBlind) {
   }
 }
 
-}  // namespace
+}  // namespace palette_test
 }  // namespace tactus::report

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace table_test {
 
 using Align = Column::Align;
 
@@ -66,5 +66,5 @@ TEST(TableHtml, ShowsMarkupLiterally) {
   EXPECT_EQ(table.to_html().find("<script"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace table_test
 }  // namespace tactus::report

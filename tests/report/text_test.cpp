@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace text_test {
 
 TEST(Number, HasTheSignificantDigitsAskedFor) {
   EXPECT_EQ(number(0.012345, 3), "0.0123");
@@ -80,5 +80,5 @@ TEST(WithUnit, TiesTheBracketToTheName) {
   EXPECT_EQ(with_unit("", "N"), "(N)");
 }
 
-}  // namespace
+}  // namespace text_test
 }  // namespace tactus::report

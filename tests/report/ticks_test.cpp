@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::report {
-namespace {
+namespace ticks_test {
 
 using Labels = std::vector<std::string>;
 using Values = std::vector<double>;
@@ -145,5 +145,5 @@ TEST(AxisLimits, AreAlwaysUsable) {
   EXPECT_GT(checked, 800);
 }
 
-}  // namespace
+}  // namespace ticks_test
 }  // namespace tactus::report

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::signal {
-namespace {
+namespace delay_line_test {
 
 struct Message {
   double position_m = 0.0;
@@ -58,5 +58,5 @@ TEST(DelayLine, ADelayBeyondItsCapacityIsRefusedWithTheRemedy) {
   EXPECT_FALSE((DelayLine<double, 8>::make({.delay_s = 1e300}, tick).ok()));
 }
 
-}  // namespace
+}  // namespace delay_line_test
 }  // namespace tactus::signal

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::signal {
-namespace {
+namespace filtered_derivative_test {
 
 static_assert(Element<FilteredDerivative>);
 
@@ -66,5 +66,5 @@ TEST(FilteredDerivative, ACutoffThatABackwardDifferenceCannotReachIsRefused) {
             "cutoff_Hz: 2200 Hz must lie below 2200 Hz, 0.44 of the sample rate: lower the cutoff or sample faster");
 }
 
-}  // namespace
+}  // namespace filtered_derivative_test
 }  // namespace tactus::signal

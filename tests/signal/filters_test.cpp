@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::signal {
-namespace {
+namespace filters_test {
 
 static_assert(Element<LowPass>);
 static_assert(Element<SecondOrderFilter>);
@@ -131,5 +131,5 @@ TEST(Filters, AFrequencyFromHalfTheSampleRateUpIsRefusedWithTheRemedy) {
   EXPECT_EQ(wide.error().parameter, "notch_width_Hz");
 }
 
-}  // namespace
+}  // namespace filters_test
 }  // namespace tactus::signal

@@ -65,7 +65,7 @@ using SignalElements =
                      signal::RationalFilter, signal::DelayLine<double, 1>, signal::DelayLine<double, 64>>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Signal, ElementLaws, SignalElements);
 
-namespace {
+namespace laws_test {
 
 /// A sound element, the base of the broken ones: an integrator with a leak.
 template <class Self>
@@ -246,5 +246,5 @@ TEST(TheLaws, CatchAFaultyDescription) {
   EXPECT_EQ(the_parameters_are_described<Twice>().value_or(""), "gain: the name stands twice");
 }
 
-}  // namespace
+}  // namespace laws_test
 }  // namespace tactus::laws

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::signal {
-namespace {
+namespace prediction_block_test {
 
 constexpr double dt_s = 1e-4;
 
@@ -82,5 +82,5 @@ TEST(PredictionCascade, InTheUsableBandTheErrorStaysBelowItsTolerance) {
   EXPECT_NEAR(band_Hz, std::sqrt(1e-3 / 3.0) / (2.0 * std::numbers::pi * 0.0018), 0.01 * band_Hz);
 }
 
-}  // namespace
+}  // namespace prediction_block_test
 }  // namespace tactus::signal

@@ -11,7 +11,7 @@
 
 // Polynomial and Kalman prediction, the rivals of the prediction block.
 namespace tactus::signal {
-namespace {
+namespace predictors_test {
 
 constexpr double dt_s = 2e-4;
 constexpr double horizon_s = 0.0036;
@@ -176,5 +176,5 @@ TEST(Predictor, NamesTheKeyOfWhatItRefuses) {
   EXPECT_EQ(refused.error().parameter, "polynomial.samples");
 }
 
-}  // namespace
+}  // namespace predictors_test
 }  // namespace tactus::signal

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::signal {
-namespace {
+namespace random_test {
 
 static_assert(std::is_trivially_copyable_v<Random>);
 
@@ -99,5 +99,5 @@ TEST(Random, ForksSeedsAndForksOfForksAreUncorrelated) {
   }
 }
 
-}  // namespace
+}  // namespace random_test
 }  // namespace tactus::signal

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::signal {
-namespace {
+namespace rational_filter_test {
 
 TEST(RationalFilter, TheSampledResponseIsTheContinuousOneAtTheWarpedFrequency) {
   // (s + 30)(s + 80)(s² + 20 s + 4000) below (s + 100)² (s + 200)(s + 50), and the same with fewer powers.
@@ -51,5 +51,5 @@ TEST(Routh, RootsLeftOfTheAxisAndOnlyThose) {
   EXPECT_TRUE(is_hurwitz(Polynomial{5.0}));
 }
 
-}  // namespace
+}  // namespace rational_filter_test
 }  // namespace tactus::signal

@@ -8,7 +8,7 @@
 
 // What the fidelity of the cancelling model decides in the closed loop: docs/theory/cancellation-models.md.
 namespace tactus::simulation {
-namespace {
+namespace cancellation_models_test {
 
 using control::CancellationMode;
 using control::ModelFidelity;
@@ -69,5 +69,5 @@ TEST(CancellationModels, WhatALinearModelAddsToASlowPushIsTheServosStiffnessTime
   EXPECT_NEAR(own_N - stiffened_N, servo_N_per_m * (1.0 / 40.0 - 1.0 / 400.0), 0.01);
 }
 
-}  // namespace
+}  // namespace cancellation_models_test
 }  // namespace tactus::simulation

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace channel_test {
 
 constexpr Seconds tick{1e-3};
 
@@ -84,5 +84,5 @@ TEST(Channel, TheSameSeedGivesTheSameLossAndAnotherSeedAnother) {
   EXPECT_NE(pattern(1), pattern(2));
 }
 
-}  // namespace
+}  // namespace channel_test
 }  // namespace tactus::simulation

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace clock_test {
 
 Clock made(double rate_Hz, double delay_s, double longest_step_s) {
   const auto clock =
@@ -53,5 +53,5 @@ TEST(Clock, RefusesAComputationDelayOfATickOrMore) {
   }
 }
 
-}  // namespace
+}  // namespace clock_test
 }  // namespace tactus::simulation

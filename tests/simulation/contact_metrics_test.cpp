@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace contact_metrics_test {
 
 constexpr double tick_s = 2e-4;
 constexpr std::size_t ticks_before = 1000;
@@ -106,5 +106,5 @@ TEST(ContactMetrics, AWindowThatWasCutShortIsJudgedWithoutReadingBeyondIt) {
   EXPECT_NEAR(metrics.residual_rms_N, std::sqrt((0.25 + 1.0) / 2.0), 0.02);
 }
 
-}  // namespace
+}  // namespace contact_metrics_test
 }  // namespace tactus::simulation

@@ -17,7 +17,7 @@
 
 // What docs/theory/contest.md says of the methods, and the experiment that compares them.
 namespace tactus::simulation {
-namespace {
+namespace contest_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -195,5 +195,5 @@ TEST(Contest, RefusesASearchThatEndsWhereItBeginsAndAVariation) {
   EXPECT_EQ(refused.error().place, "--vary");
 }
 
-}  // namespace
+}  // namespace contest_test
 }  // namespace tactus::simulation

@@ -11,7 +11,7 @@
 
 /// Position-position, projection and shared-compliant in the loop: person, devices, channel and wall.
 namespace tactus::simulation {
-namespace {
+namespace couplings_test {
 
 using Records = std::vector<Teleoperator::Record>;
 
@@ -179,5 +179,5 @@ TEST(Couplings, OfAnImpactProjectionShowsTheUnconditionalFractionAndWhatTheHandH
   }
 }
 
-}  // namespace
+}  // namespace couplings_test
 }  // namespace tactus::simulation

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace delayed_slave_test {
 
 TEST(DelayedSlave, FollowsAChirpAsScipySays) {
   const OracleTable oracle("simulation_delayed_slave");
@@ -39,5 +39,5 @@ TEST(DelayedSlave, TooManyStepsAreRefused) {
   EXPECT_EQ(record.error().parameter, "slave.actuator_delay_s");
 }
 
-}  // namespace
+}  // namespace delayed_slave_test
 }  // namespace tactus::simulation

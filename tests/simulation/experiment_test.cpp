@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 namespace tactus::simulation {
-namespace {
+namespace experiment_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -182,5 +182,5 @@ TEST(ChooseExperiment, KnowsItsKindsAndListsThemForAnother) {
   EXPECT_EQ(missing.error().code, ErrorCode::missing);
 }
 
-}  // namespace
+}  // namespace experiment_test
 }  // namespace tactus::simulation

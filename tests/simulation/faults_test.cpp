@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace faults_test {
 
 TEST(Faults, EveryRowButAFrozenEncoderSurvivesAndWithALooseMonitorTheSameRunsDiverge) {
   FaultsParams params;
@@ -154,5 +154,5 @@ TEST(FaultWitnesses, SeeWhatTheyAreThereFor) {
   EXPECT_DOUBLE_EQ(outcome.given_J, 1.5) << "the rise from the lowest";
 }
 
-}  // namespace
+}  // namespace faults_test
 }  // namespace tactus::simulation

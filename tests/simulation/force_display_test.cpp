@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace force_display_test {
 
 using control::ModelFriction;
 
@@ -184,5 +184,5 @@ TEST_F(Display, NamesTheKeyThatCannotBe) {
   EXPECT_EQ(refused_key([](auto& p) { p.servo.computation_delay_s = 2e-4; }), "servo.computation_delay_s");
 }
 
-}  // namespace
+}  // namespace force_display_test
 }  // namespace tactus::simulation

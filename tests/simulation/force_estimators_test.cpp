@@ -11,7 +11,7 @@
 
 // What docs/theory/force-estimators.md says of the estimators on one slave.
 namespace tactus::simulation {
-namespace {
+namespace force_estimators_test {
 
 ForceEstimatorsParams file() { return experiment_file<ForceEstimatorsParams>("force-estimators"); }
 
@@ -127,5 +127,5 @@ TEST(ForceEstimators, TheExperimentListsEveryEstimatorAndNamesWhatItRefuses) {
   }
 }
 
-}  // namespace
+}  // namespace force_estimators_test
 }  // namespace tactus::simulation

@@ -12,7 +12,7 @@
 #include <matio.h>
 
 namespace tactus::simulation {
-namespace {
+namespace force_profile_test {
 
 class ForceProfile : public Scratch {
  protected:
@@ -199,5 +199,5 @@ TEST_F(ForceProfile, AColumnOfAMatlabVariableIsPlayed) {
   EXPECT_NE(error.message.find("did you mean 'torque'"), std::string::npos) << error.message;
 }
 
-}  // namespace
+}  // namespace force_profile_test
 }  // namespace tactus::simulation

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace four_channel_test {
 
 using Records = std::vector<Teleoperator::Record>;
 
@@ -102,5 +102,5 @@ TEST(FourChannelCancellation, OnTheNonlinearRigWithoutDelayTheSlaveMovesAsUnderT
             1e-5);
 }
 
-}  // namespace
+}  // namespace four_channel_test
 }  // namespace tactus::simulation

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace gain_limit_test {
 
 GainLimit limit_at(double threshold) {
   return find_gain_limit(0.25, 32.0, [threshold](double gain) { return gain <= threshold; });
@@ -46,5 +46,5 @@ TEST(GainLimit, TriesOnlyGainsOfTheSearch) {
   EXPECT_EQ(tried, (std::vector<double>{2.0, 2.0 * 1.4142135623730951, 3.0}));
 }
 
-}  // namespace
+}  // namespace gain_limit_test
 }  // namespace tactus::simulation

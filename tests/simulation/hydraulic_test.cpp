@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace hydraulic_test {
 
 TEST(HydraulicRig, TheFittedDampingIsThatOfTheOrificesAndTheOverlap) {
   HydraulicRigParams params;
@@ -106,5 +106,5 @@ TEST(HydraulicRigidContact, RefusesASubstepThatIsTooLong) {
   EXPECT_EQ(error->parameter, "slave.cylinder.dead_volume_m3");
 }
 
-}  // namespace
+}  // namespace hydraulic_test
 }  // namespace tactus::simulation

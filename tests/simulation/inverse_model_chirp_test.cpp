@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace inverse_model_chirp_test {
 
 TEST(InverseModelChirp, TwoBlocksAtTheDerivedTimeConstantFeelATenthOfTheForceBelowTwoHertz) {
   const InverseModelChirpResult result = run_inverse_model_chirp({}).value();
@@ -37,5 +37,5 @@ TEST(InverseModelChirp, ALoopThatIsUnstableIsRefusedBeforeTheRun) {
   EXPECT_EQ(error->parameter, "slave.controller_gain_N_per_m");
 }
 
-}  // namespace
+}  // namespace inverse_model_chirp_test
 }  // namespace tactus::simulation

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace isolation_test {
 
 using identification::FoundParameter;
 using identification::Isolation;
@@ -129,5 +129,5 @@ TEST(CancellationModel, OnADeviceThatIsTheModelImpactsLeaveLittle) {
   EXPECT_GT(identification::check_on_impacts(rig, model, 1.0)->residual, 0.1);
 }
 
-}  // namespace
+}  // namespace isolation_test
 }  // namespace tactus::simulation

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace parallel_test {
 
 TEST(ForEachInParallel, DoesEveryPieceOfWorkOnce) {
   for (const std::size_t count : {0U, 1U, 2U, 1000U}) {
@@ -30,5 +30,5 @@ TEST(ForEachInParallel, ReportsProgressOnTheCallingThreadAndNoMoreThanTheWhole) 
       });
 }
 
-}  // namespace
+}  // namespace parallel_test
 }  // namespace tactus::simulation

@@ -10,7 +10,7 @@
 
 // The architectures that are passive over a delay, in the tapping loop: docs/theory/passivity.md.
 namespace tactus::simulation {
-namespace {
+namespace passive_architectures_test {
 
 TappingParams delayed(const std::string& architecture, double delay_s) {
   auto params = experiment_file<TappingParams>("tapping");
@@ -128,5 +128,5 @@ TEST(TimeDomainPassivity, WithoutDelayIsOnlyAsGoodAsTheLoadThatTheLineSees) {
   EXPECT_EQ(run(params).metrics.verdict, Verdict::settled);
 }
 
-}  // namespace
+}  // namespace passive_architectures_test
 }  // namespace tactus::simulation

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace quantile_test {
 
 // The expected values are what numpy.quantile (1.24, method 'linear') prints for the same lists.
 
@@ -25,5 +25,5 @@ TEST(Quantile, OfOneValueIsThatValue) {
   for (const double q : {0.0, 0.3, 0.5, 1.0}) EXPECT_EQ(quantile({4.25}, q), 4.25);
 }
 
-}  // namespace
+}  // namespace quantile_test
 }  // namespace tactus::simulation

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace quick_identification_test {
 
 using identification::FoundParameter;
 using identification::Isolation;
@@ -36,5 +36,5 @@ TEST(QuickIdentification, AHeldMasterTellsItsStiffnessAndDampingButNotTheFrictio
   EXPECT_LT(identification::check_on_impacts(rig, model, 1.0).value().residual, 0.35);
 }
 
-}  // namespace
+}  // namespace quick_identification_test
 }  // namespace tactus::simulation

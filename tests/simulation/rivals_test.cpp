@@ -12,7 +12,7 @@
 
 // What the rivals of cancellation do to a contact: the statements and the numbers of docs/theory/rivals.md.
 namespace tactus::simulation {
-namespace {
+namespace rivals_test {
 
 using control::Shaping;
 using Change = std::function<void(TappingParams&)>;
@@ -172,5 +172,5 @@ TEST(TappingFigures, TheForceOfTheHandlesActuatorIsShownWhereThereIsOne) {
   EXPECT_EQ(force_lines({crossover(30.0), isolated}).size(), 2U);
 }
 
-}  // namespace
+}  // namespace rivals_test
 }  // namespace tactus::simulation

@@ -12,7 +12,7 @@
 
 // What docs/theory/sensorless-teleoperation.md says, on smaller runs.
 namespace tactus::simulation {
-namespace {
+namespace sensorless_test {
 
 using Json = nlohmann::ordered_json;
 using control::CancellationMode;
@@ -142,5 +142,5 @@ TEST(Sensorless, RefusesWhatItCannotCompare) {
   EXPECT_EQ(refused.error().place, "--vary");
 }
 
-}  // namespace
+}  // namespace sensorless_test
 }  // namespace tactus::simulation

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace simulated_rig_test {
 
 using identification::Assembly;
 using identification::MotorProgram;
@@ -169,5 +169,5 @@ TEST(SimulatedRig, TheLoopAreaIsWhatASlowLoopEncloses) {
   EXPECT_NEAR(area_J, loop_area_J(params, amplitude_m), 1e-3 * area_J);
 }
 
-}  // namespace
+}  // namespace simulated_rig_test
 }  // namespace tactus::simulation

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace spectral_error_test {
 
 constexpr double sample_time_s = 200e-6;
 constexpr std::size_t samples = 1000;  // a bin every 5 Hz
@@ -63,5 +63,5 @@ TEST(SpectralError, HasNoMeaningWhereNothingWasWanted) {
   EXPECT_FALSE(spectral_error(std::vector<double>(samples, 0.0), impulse(1.0), sample_time_s, 20.0, 1000.0));
 }
 
-}  // namespace
+}  // namespace spectral_error_test
 }  // namespace tactus::simulation

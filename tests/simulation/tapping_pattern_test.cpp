@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace tapping_pattern_test {
 
 using control::CancellationMode;
 
@@ -205,5 +205,5 @@ TEST(DefaultTapping, TheModelIsMeasurablyWrongAboutThePlant) {
   EXPECT_LT(share, 0.5) << "a model that is this bad cancels little";
 }
 
-}  // namespace
+}  // namespace tapping_pattern_test
 }  // namespace tactus::simulation

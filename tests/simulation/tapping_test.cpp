@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace tapping_test {
 
 using Trace = std::vector<Teleoperator::Record>;
 
@@ -358,5 +358,5 @@ TEST(MedianTap, IsTheOneInTheMiddleTheLowerOfTwoTheFirstOfEqualOnes) {
   EXPECT_EQ(median_tap({tap_of(0.05)}), 0U);
 }
 
-}  // namespace
+}  // namespace tapping_test
 }  // namespace tactus::simulation

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
-namespace {
+namespace teleoperator_test {
 
 using Records = std::vector<Teleoperator::Record>;
 using Path = std::function<double(double)>;
@@ -344,5 +344,5 @@ TEST(Teleoperator, RefusesAGripThatBecomesTooStiffForTheSteps) {
   EXPECT_EQ(refused.error().parameter, "operator.grip.stiffness_N_per_m");
 }
 
-}  // namespace
+}  // namespace teleoperator_test
 }  // namespace tactus::simulation
