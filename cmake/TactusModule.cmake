@@ -26,8 +26,9 @@ target_compile_options(tactus_options INTERFACE
 if(TACTUS_SANITIZE)
   # The code that a sanitizer adds sets off warnings about the flow of values that are not true of the source.
   target_compile_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE} -fno-sanitize-recover=all
-                                                  -fno-omit-frame-pointer -Wno-maybe-uninitialized
-                                                  -Wno-null-dereference)
+                                                  -fno-omit-frame-pointer
+                                                  -Wno-null-dereference
+                                                  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE})
 endif()
 
@@ -38,7 +39,7 @@ set_property(GLOBAL PROPERTY TACTUS_MODULES "")
 function(tactus_compile_together target)
   if(TACTUS_UNITY_BATCH GREATER 1)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${TACTUS_UNITY_BATCH})
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 
