@@ -59,7 +59,7 @@ int run_command(int argc, char** argv) {
   add_replay(app, status);
   add_faults(app, command, status);
   add_stability(app, command, status);
-  add_doctor(app, status);
+  add_doctor(app, command, status);
   add_schema(app, status);
   add_serve(app, status);
   try {

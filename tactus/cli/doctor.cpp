@@ -1,12 +1,15 @@
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/servo_options.hpp>
-#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
+#include <tactus/core/version.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/runtime/doctor.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,23 +25,51 @@ using runtime::Finding;
 struct DoctorOptions {
   runtime::ServoThreadParams servo;
   double duration_s = 3.0;
+  std::optional<std::string> out;
   bool json = false;
 };
 
-std::string text_of(const std::vector<Finding>& findings) {
+report::Table table_of(const std::vector<Finding>& findings) {
   using Align = report::Column::Align;
   report::Table table({{"looked at", "", Align::left}, {"verdict", "", Align::left}, {"found", "", Align::left}},
                       "Can this machine keep time?");
+  for (const Finding& finding : findings) table.add_row({finding.name, name_of(finding.verdict), finding.found});
+  return table;
+}
+
+std::string answer(const std::vector<Finding>& findings) {
+  return runtime::can_keep_time(findings)
+             ? "Yes: a loop can be run here, as well as the verdicts say."
+             : "No: mend what is bad. A loop runs here all the same, and counts its late ticks.";
+}
+
+std::string text_of(const std::vector<Finding>& findings) {
   std::string explained;
   for (const Finding& finding : findings) {
-    table.add_row({finding.name, name_of(finding.verdict), finding.found});
     explained += finding.name + ": " + finding.means + ".\n";
     if (!finding.remedy.empty()) explained += "    remedy: " + finding.remedy + "\n";
   }
-  const bool can = runtime::can_keep_time(findings);
-  return table.to_text() + "\n" + explained +
-         (can ? "\nYes: a loop can be run here, as well as the verdicts say.\n"
-              : "\nNo: mend what is bad. A loop runs here all the same, and counts its late ticks.\n");
+  return table_of(findings).to_text() + "\n" + explained + "\n" + answer(findings) + "\n";
+}
+
+std::string html_of(const std::vector<Finding>& findings, const report::Figure& timing,
+                    const runtime::ServoReport& servo, const std::string& command) {
+  report::Page page("Can this machine keep time?");
+  page.paragraph(answer(findings));
+  page.table(table_of(findings));
+  std::vector<std::pair<std::string, std::string>> explained;
+  for (const Finding& finding : findings) {
+    explained.emplace_back(finding.name,
+                           finding.means + "." + (finding.remedy.empty() ? "" : " Remedy: " + finding.remedy));
+  }
+  page.definitions(explained);
+  page.heading("How an empty step kept time");
+  page.table(runtime::timing_table(servo));
+  page.figure(timing);
+  page.table(runtime::late_ticks_table(servo));
+  page.table(runtime::rights_table(servo));
+  page.footer("tactus " + std::string(version()), command);
+  return page.to_html();
 }
 
 std::string json_of(const std::vector<Finding>& findings, const runtime::Measurement& measurement) {
@@ -56,25 +87,32 @@ std::string json_of(const std::vector<Finding>& findings, const runtime::Measure
 }
 
 /// Whether the machine can keep time.
-Result<bool> examine(const DoctorOptions& options) {
+Result<bool> examine(const DoctorOptions& options, const std::string& command) {
   constexpr Bounds durations = between(0.1, 3600.0);
   if (!durations.contain(options.duration_s)) {
     Error error = out_of_bounds({}, options.duration_s, durations, units::second);
     error.place = "--duration-s";
     return error;
   }
+  if (options.out) {
+    if (auto error = check_writable(*options.out)) return *std::move(error);
+  }
   const auto measurement = runtime::measure_lateness(options.servo, options.duration_s);
   if (!measurement) return measurement.error();
   const auto findings =
       runtime::diagnose(runtime::read_machine_facts(static_cast<int>(options.servo.priority)), *measurement);
-  std::cout << (options.json ? json_of(findings, *measurement) : text_of(findings));
-  if (auto error = flush_standard_output()) return *std::move(error);
+  const report::Figure timing = runtime::timing_figure(measurement->report);
+  const simulation::Outcome outcome{.text = text_of(findings),
+                                    .json = json_of(findings, *measurement),
+                                    .html = html_of(findings, timing, measurement->report, command),
+                                    .figures = {timing}};
+  if (auto error = write_outcome(options.out, outcome, options.json)) return *std::move(error);
   return runtime::can_keep_time(findings);
 }
 
 }  // namespace
 
-void add_doctor(CLI::App& app, int& status) {
+void add_doctor(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* verb = app.add_subcommand("doctor", "Can this machine keep time? What is missing, and what mends it");
   verb->add_option("--rate-Hz", options->servo.rate_Hz, "Ticks per second to measure at")
@@ -82,9 +120,10 @@ void add_doctor(CLI::App& app, int& status) {
       ->capture_default_str();
   verb->add_option("--duration-s", options->duration_s, "How long to measure")->type_name("S")->capture_default_str();
   add_servo_options(*verb, options->servo);
+  verb->add_option("--out", options->out, "Folder for report.html, results.json and the figure")->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
-  verb->callback([options, &app, &status] {
-    const auto can = examine(*options);
+  verb->callback([options, &app, &command, &status] {
+    const auto can = examine(*options, command);
     if (!can) std::cerr << app.get_name() << ": " << describe(can.error()) << "\n";
     status = !can ? exit_status(can.error()) : (*can ? 0 : 1);
   });

@@ -15,7 +15,7 @@ void add_identify(CLI::App& app, const std::string& command, int& status) {
   add_identify_inverse(*verb, name, command, status);
   add_identify_bench(*verb, name, command, status);
   add_identify_operator(*verb, name, command, status);
-  add_identify_prediction(*verb, name, status);
+  add_identify_prediction(*verb, name, command, status);
 }
 
 }  // namespace tactus::cli

@@ -15,6 +15,6 @@ void add_identify_frf(CLI::App& identify, const std::string& name, const std::st
 void add_identify_inverse(CLI::App& identify, const std::string& name, const std::string& command, int& status);
 void add_identify_bench(CLI::App& identify, const std::string& name, const std::string& command, int& status);
 void add_identify_operator(CLI::App& identify, const std::string& name, const std::string& command, int& status);
-void add_identify_prediction(CLI::App& identify, const std::string& name, int& status);
+void add_identify_prediction(CLI::App& identify, const std::string& name, const std::string& command, int& status);
 
 }  // namespace tactus::cli

@@ -1,13 +1,16 @@
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/identification/prediction_time.hpp>
 #include <tactus/recording/recording.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/inverse_model_chirp.hpp>
+#include <tactus/simulation/presentation.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -27,6 +30,7 @@ struct PredictionOptions {
   double band_Hz = 1.0;
   std::string recording, command, position;
   std::int64_t command_column = 1, position_column = 1;
+  std::optional<std::string> out;
   bool json = false;
 };
 
@@ -63,7 +67,47 @@ Result<Motion> simulated(const PredictionOptions& options, const simulation::Inv
   return Motion{.command = std::move(record->command), .position = std::move(record->position), .sample_time_s = dt_s};
 }
 
-Check identify(const PredictionOptions& options) {
+/// The time constants by the three ways, and what is felt with the last.
+struct TimeConstants {
+  double closed_form_s, limit_s, from_data_s, error_rms_N;
+};
+
+report::Table table_of(const PredictionOptions& options, const TimeConstants& found) {
+  report::Table table({{"time constant", "", report::Column::Align::left}, {"Tp", "ms"}},
+                      "Prediction with " + std::to_string(options.blocks) + " blocks");
+  table.add_row({"closed form", report::number(1e3 * found.closed_form_s, 5)});
+  table.add_row({"numeric limit", report::number(1e3 * found.limit_s, 5)});
+  table.add_row({options.recording.empty() ? "from a simulated chirp up to " + format_number(options.band_Hz) + " Hz"
+                                           : "from the recording",
+                 report::number(1e3 * found.from_data_s, 5)});
+  return table;
+}
+
+simulation::Outcome outcome_of(const PredictionOptions& options, const TimeConstants& found,
+                               const simulation::Request& request, std::string_view configuration) {
+  const report::Table table = table_of(options, found);
+  const std::string felt = "Force felt in this free motion: " + report::number(found.error_rms_N, 3) + " N RMS";
+  report::Page page(request.name + ": time constant of the prediction blocks");
+  page.paragraph(
+      "Prediction blocks advance what the inverse model reads, to make up for the slave's delays and lags. Their time "
+      "constant follows from the slave's description (closed form), from the whole chain at low frequency (numeric "
+      "limit), and from a free motion, in which the estimated force should be zero.");
+  page.table(table);
+  page.paragraph(felt + ", with the time constant that the motion gives.");
+  simulation::add_provenance(page, request, configuration);
+  return {.text = table.to_text() + felt + "\n",
+          .json = "{\n  \"blocks\": " + std::to_string(options.blocks) + ",\n  \"closed_form_s\": " +
+                  format_number(found.closed_form_s) + ",\n  \"limit_s\": " + format_number(found.limit_s) +
+                  ",\n  \"from_data_s\": " + format_number(found.from_data_s) +
+                  ",\n  \"error_rms_N\": " + format_number(found.error_rms_N) + "\n}\n",
+          .html = page.to_html(),
+          .figures = {}};
+}
+
+Check identify(const PredictionOptions& options, const std::string& command) {
+  if (options.out) {
+    if (auto error = check_writable(*options.out)) return error;
+  }
   auto document = configuration::Document::load(options.experiment);
   if (!document) return document.error();
   for (const std::string& assignment : options.set) {
@@ -86,28 +130,21 @@ Check identify(const PredictionOptions& options) {
       params->estimator, options.blocks);
   if (!data) return document->locate(under("estimator", data.error()));
 
-  if (options.json) {
-    std::cout << "{\n  \"blocks\": " << options.blocks << ",\n  \"closed_form_s\": " << format_number(*closed)
-              << ",\n  \"limit_s\": " << format_number(*limit)
-              << ",\n  \"from_data_s\": " << format_number(data->time_constant_s)
-              << ",\n  \"error_rms_N\": " << format_number(data->error_rms_N) << "\n}\n";
-    return flush_standard_output();
-  }
-  report::Table table({{"time constant", "", report::Column::Align::left}, {"Tp", "ms"}},
-                      "Prediction with " + std::to_string(options.blocks) + " blocks");
-  table.add_row({"closed form", report::number(1e3 * *closed, 5)});
-  table.add_row({"numeric limit", report::number(1e3 * *limit, 5)});
-  table.add_row({options.recording.empty() ? "from a simulated chirp up to " + format_number(options.band_Hz) + " Hz"
-                                           : "from the recording",
-                 report::number(1e3 * data->time_constant_s, 5)});
-  std::cout << table.to_text() << "Force felt in this free motion: " << report::number(data->error_rms_N, 3)
-            << " RMS\n";
-  return flush_standard_output();
+  const simulation::Request request{.document = *document,
+                                    .variations = {},
+                                    .name = std::filesystem::path(options.experiment).stem().string(),
+                                    .command = command};
+  const TimeConstants found{.closed_form_s = *closed,
+                            .limit_s = *limit,
+                            .from_data_s = data->time_constant_s,
+                            .error_rms_N = data->error_rms_N};
+  return write_outcome(options.out, outcome_of(options, found, request, configuration::to_toml(*params)), options.json);
 }
 
 }  // namespace
 
-void add_identify_prediction(CLI::App& identify_verb, const std::string& name, int& status) {
+void add_identify_prediction(CLI::App& identify_verb, const std::string& name, const std::string& command,
+                             int& status) {
   auto options = std::make_shared<PredictionOptions>();
   CLI::App* verb =
       identify_verb.add_subcommand("prediction", "Time constant of prediction blocks: closed form, limit, from data");
@@ -124,9 +161,10 @@ void add_identify_prediction(CLI::App& identify_verb, const std::string& name, i
       ->needs(recording);
   verb->add_option("--command-column", options->command_column, "Column of that variable (.mat), from 1");
   verb->add_option("--position-column", options->position_column, "Column of that variable (.mat), from 1");
+  verb->add_option("--out", options->out, "Folder for report.html and results.json")->type_name("DIR");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
-  verb->callback([options, name, &status] {
-    if (const auto error = identify(*options)) {
+  verb->callback([options, name, &command, &status] {
+    if (const auto error = identify(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";
       status = exit_status(*error);
     }

@@ -115,20 +115,20 @@ Check refuse_servo_options_without_a_servo_thread(const CLI::App& verb, const Ru
 Check run(const RunOptions& options, const std::string& command) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
-  if (!options.site.site.empty()) {
-    if (options.out || !options.vary.empty()) {
-      return Error{.code = ErrorCode::inconsistent,
-                   .parameter = {},
-                   .message = "one site runs one combination and writes no folder: leave --vary and --out out",
-                   .place = "--site"};
-    }
-    return run_site(options.site, options.servo, request->document, options.json);
-  }
-  const auto experiment = simulation::choose_experiment(request->document);
-  if (!experiment) return experiment.error();
   if (options.out) {
     if (auto error = check_writable(*options.out)) return error;
   }
+  if (!options.site.site.empty()) {
+    if (!options.vary.empty()) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = {},
+                   .message = "one site runs one combination: leave --vary out",
+                   .place = "--site"};
+    }
+    return run_site(options.site, options.servo, *request, options.out, options.json);
+  }
+  const auto experiment = simulation::choose_experiment(request->document);
+  if (!experiment) return experiment.error();
 
   if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind());
   if (options.real_time) return run_in_real_time(options, *request);

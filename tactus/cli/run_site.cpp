@@ -1,14 +1,16 @@
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/run_site.hpp>
 #include <tactus/cli/site_loop.hpp>
 #include <tactus/cli/site_report.hpp>
-#include <tactus/cli/standard_output.hpp>
+#include <tactus/configuration/document.hpp>
 #include <tactus/simulation/experiment.hpp>
 
 #include <atomic>
 #include <csignal>
 #include <iostream>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <poll.h>
@@ -89,8 +91,9 @@ void add_site_options(CLI::App& verb, SiteOptions& options) {
   add("--longest-age-s", options.longest_age_s, "Older messages are not applied", "S")->capture_default_str();
 }
 
-Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_params,
-               const configuration::Document& document, bool json) {
+Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_params, const simulation::Request& request,
+               const std::optional<std::string>& out, bool json) {
+  const configuration::Document& document = request.document;
   const auto experiment = simulation::choose_experiment(document);
   if (!experiment) return experiment.error();
   if ((*experiment)->kind() != "tapping") {
@@ -117,6 +120,7 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   std::ostream& lines = json ? std::cerr : std::cout;
   lines << second_head(options.site) << std::flush;
   bool input_open = true;
+  std::vector<SiteSecond> seconds;
   while (!(*servo)->ended()) {
     if (interruption.asked()) (*servo)->stop();
     const bool typed = line_typed(input_open);
@@ -124,13 +128,16 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
       exchange.arm.store(true, std::memory_order_relaxed);
     }
     SiteSecond second;
-    while (exchange.seconds.try_pop(second)) lines << second_line(second) << std::flush;
+    while (exchange.seconds.try_pop(second)) {
+      lines << second_line(second) << std::flush;
+      seconds.push_back(second);
+    }
     usleep(20'000);
   }
   const auto& report = (*servo)->finish();
   const SiteTotals totals = (*servo)->step().totals();
-  std::cout << (json ? site_json(options.site, totals, report) : site_text(options.site, totals, report));
-  return flush_standard_output();
+  return write_outcome(
+      out, site_outcome(options.site, totals, seconds, report, request, configuration::to_toml(*params)), json);
 }
 
 }  // namespace tactus::cli

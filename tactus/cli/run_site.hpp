@@ -1,9 +1,9 @@
 #pragma once
 
-#include <tactus/configuration/document.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/link/following.hpp>
 #include <tactus/runtime/servo_thread.hpp>
+#include <tactus/simulation/experiment.hpp>
 
 #include <optional>
 #include <string>
@@ -31,10 +31,10 @@ struct SiteOptions {
 /// Adds these options to the verb.
 void add_site_options(CLI::App& verb, SiteOptions& options);
 
-/// Runs one site of the experiment in real time until it ends or is interrupted: a line a second, then tables. With
-/// `json` the lines go to standard error and one document to standard output. SIGUSR1 or a line on standard input arms.
-/// Of `servo`, the rate is the experiment's.
-Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo, const configuration::Document& document,
-               bool json);
+/// Runs one site of the request's experiment in real time until it ends or is interrupted: a line a second, then
+/// tables, and a report in the folder `out` if there is one. With `json` the lines go to standard error and one
+/// document to standard output. SIGUSR1 or a line on standard input arms. Of `servo`, the rate is the experiment's.
+Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo, const simulation::Request& request,
+               const std::optional<std::string>& out, bool json);
 
 }  // namespace tactus::cli

@@ -1,7 +1,10 @@
 #include <tactus/cli/site_report.hpp>
+#include <tactus/report/figure.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
+#include <tactus/simulation/presentation.hpp>
 
 #include <array>
 #include <cstdio>
@@ -38,7 +41,9 @@ std::string second_line(const SiteSecond& second) {
   return line.data();
 }
 
-std::string site_text(const std::string& site, const SiteTotals& totals, const runtime::ServoReport& servo) {
+namespace {
+
+report::Table site_table(const std::string& site, const SiteTotals& totals) {
   using Align = report::Column::Align;
   const auto count = [](auto value) { return std::to_string(value); };
   const auto ms = [](double seconds) { return report::number(1e3 * seconds, 3); };
@@ -73,11 +78,52 @@ std::string site_text(const std::string& site, const SiteTotals& totals, const r
   table.add_row({"largest force step in a tick", report::number(totals.largest_force_step_N, 3), "N"});
   table.add_row({"the same, 1 s after arming", report::number(totals.largest_resuming_force_step_N, 3), "N"});
   table.add_row({"force steps above the gate's limit", count(totals.steps_above_limit), ""});
-  return table.to_text() + "\n" + runtime::timing_table(servo).to_text() + "\n" +
-         runtime::late_ticks_table(servo).to_text();
+  return table;
 }
 
-std::string site_json(const std::string& site, const SiteTotals& totals, const runtime::ServoReport& servo) {
+/// The link and the force, second by second.
+report::Figure seconds_figure(const std::vector<SiteSecond>& seconds) {
+  const auto line = [&seconds](const char* name, int colour, auto value) {
+    report::Line drawn{.name = name, .x = {}, .y = {}, .colour = colour};
+    for (const SiteSecond& second : seconds) {
+      drawn.x.push_back(second.time_s);
+      drawn.y.push_back(value(second));
+    }
+    return drawn;
+  };
+  const report::Axis time{.label = "time", .unit = "s"};
+  return {.title = "Second by second",
+          .caption =
+              "What the messages of each second took, how many were lost on the way here, and the largest force of the "
+              "motor. Where the site is not active it follows nobody.",
+          .columns = 1,
+          .panels = {{.title = {},
+                      .x = time,
+                      .y = {.label = "mean", .unit = "ms", .lower = 0.0},
+                      .lines = {line("round trip", 0, [](const SiteSecond& one) { return 1e3 * one.round_trip_s; }),
+                                line("age of messages", 1, [](const SiteSecond& one) { return 1e3 * one.age_s; })},
+                      .rules = {}},
+                     {.title = {},
+                      .x = time,
+                      .y = {.label = "lost", .unit = "%", .lower = 0.0},
+                      .lines = {line("lost", 2, [](const SiteSecond& one) { return 100.0 * one.loss_fraction; })},
+                      .rules = {}},
+                     {.title = {},
+                      .x = time,
+                      .y = {.label = "peak force", .unit = "N", .lower = 0.0},
+                      .lines = {line("peak force", 3, [](const SiteSecond& one) { return one.peak_force_N; })},
+                      .rules = {}},
+                     {.title = {},
+                      .x = time,
+                      .y = {.label = "active", .lower = 0.0, .upper = 1.0},
+                      .lines = {line(
+                          "active", 4,
+                          [](const SiteSecond& one) { return one.standing == link::Standing::active ? 1.0 : 0.0; })},
+                      .rules = {}}},
+          .share_x = report::Sharing::in_line};
+}
+
+std::string json_of(const std::string& site, const SiteTotals& totals, const runtime::ServoReport& servo) {
   nlohmann::ordered_json holds = nlohmann::ordered_json::object();
   for (const auto& [cause, name] : enumerators(link::HoldCause{})) {
     holds[name] = totals.holds[static_cast<std::size_t>(cause)];
@@ -121,6 +167,29 @@ std::string site_json(const std::string& site, const SiteTotals& totals, const r
                                           {"overflowed", link.secure.overflowed}}},
                                         {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}};
   return document.dump(2) + "\n";
+}
+
+}  // namespace
+
+simulation::Outcome site_outcome(const std::string& site, const SiteTotals& totals,
+                                 const std::vector<SiteSecond>& seconds, const runtime::ServoReport& servo,
+                                 const simulation::Request& request, std::string_view configuration) {
+  const report::Table table = site_table(site, totals);
+  const std::vector<report::Figure> figures{seconds_figure(seconds), runtime::timing_figure(servo)};
+  report::Page page(request.name + ": the " + site);
+  page.table(table);
+  page.figure(figures[0]);
+  page.heading("How time was kept");
+  page.table(runtime::timing_table(servo));
+  page.figure(figures[1]);
+  page.table(runtime::late_ticks_table(servo));
+  page.table(runtime::rights_table(servo));
+  simulation::add_provenance(page, request, configuration);
+  return {.text = table.to_text() + "\n" + runtime::timing_table(servo).to_text() + "\n" +
+                  runtime::late_ticks_table(servo).to_text(),
+          .json = json_of(site, totals, servo),
+          .html = page.to_html(),
+          .figures = figures};
 }
 
 }  // namespace tactus::cli

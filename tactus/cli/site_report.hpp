@@ -2,8 +2,11 @@
 
 #include <tactus/cli/site_loop.hpp>
 #include <tactus/runtime/servo_thread.hpp>
+#include <tactus/simulation/experiment.hpp>
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace tactus::cli {
 
@@ -12,9 +15,9 @@ std::string second_head(const std::string& site);
 /// One second in one line.
 std::string second_line(const SiteSecond& second);
 
-/// All of a run as tables.
-std::string site_text(const std::string& site, const SiteTotals& totals, const runtime::ServoReport& servo);
-/// All of a run as one JSON document.
-std::string site_json(const std::string& site, const SiteTotals& totals, const runtime::ServoReport& servo);
+/// All of a run for every reader: tables, one JSON document, a report with the link and the force second by second.
+simulation::Outcome site_outcome(const std::string& site, const SiteTotals& totals,
+                                 const std::vector<SiteSecond>& seconds, const runtime::ServoReport& servo,
+                                 const simulation::Request& request, std::string_view configuration);
 
 }  // namespace tactus::cli

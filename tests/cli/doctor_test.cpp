@@ -47,6 +47,18 @@ TEST_F(Doctor, APersonGetsATableAndWhatItMeans) {
   EXPECT_NE(outcome.out.find("lateness: a tick begins this long after it is due"), std::string::npos) << outcome.out;
 }
 
+TEST_F(Doctor, ItsReportHoldsEveryFindingAndHowTimeWasKept) {
+  const Outcome outcome = tactus(with({"--out", "machine"}));
+  EXPECT_NE(outcome.out.find("machine/report.html"), std::string::npos) << outcome.out << outcome.err;
+  EXPECT_EQ(files(), (Words{"machine", "machine/figure-1.svg", "machine/report.html", "machine/results.json"}));
+  const std::string page = content("machine/report.html");
+  for (const Json& finding : Json::parse(content("machine/results.json"))["findings"]) {
+    EXPECT_NE(page.find(finding["name"].get<std::string>()), std::string::npos) << finding["name"];
+  }
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_NE(page.find("tactus doctor"), std::string::npos) << "how to repeat it";
+}
+
 TEST_F(Doctor, AWrongRequestIsRefusedByName) {
   for (const Words& wrong : {Words{"--duration-s", "0"}, Words{"--rate-Hz", "0"}, Words{"--priority", "100"},
                              Words{"--spin-s", "0.0002"}, Words{"--core", "-2"}}) {

@@ -1,4 +1,5 @@
 #include <string>
+#include <vector>
 
 #include "tests/cli/command.hpp"
 #include <gtest/gtest.h>
@@ -20,6 +21,17 @@ TEST_F(IdentifyPrediction, closed_form_limit_and_slow_data_agree_and_share_the_l
   EXPECT_NEAR(found["closed_form_s"].get<double>(), (4 * 0.002 + 0.0005) / 2, 1e-12);
   EXPECT_NEAR(found["limit_s"].get<double>(), found["closed_form_s"].get<double>(), 1e-3 * 0.00425);
   EXPECT_NEAR(found["from_data_s"].get<double>(), found["closed_form_s"].get<double>(), 0.05 * 0.00425);
+}
+
+TEST_F(IdentifyPrediction, its_report_says_the_three_ways_and_how_to_repeat_it) {
+  const Outcome outcome = tactus({"identify", "prediction", chirp, "--blocks", "3", "--out", "found"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(files(), (std::vector<std::string>{"found", "found/report.html", "found/results.json"}));
+  EXPECT_EQ(Json::parse(content("found/results.json"))["blocks"], 3);
+  const std::string page = content("found/report.html");
+  for (const char* part : {"closed form", "numeric limit", "N RMS", "identify prediction", "[estimator]"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
 }
 
 TEST_F(IdentifyPrediction, what_cannot_be_is_refused_by_name) {

@@ -68,7 +68,7 @@ TEST_F(TwoSites, TapThroughARelayThatLosesDelaysReordersAndDoubles) {
       --for-slave 127.0.0.1:$P3 --mean-burst 3 --duplicate-fraction 0.1 --json \
       --set channel.to_slave.loss_fraction=0.1 --set channel.to_slave.delay_s=0.002 \
       --set channel.to_slave.jitter_s=0.004 --set channel.to_master.delay_s=0.003 >relay.json & relay=$!
-    site slave --site slave --listen 127.0.0.1:$P2 --peer 127.0.0.1:$P3 & slave=$!
+    site slave --site slave --listen 127.0.0.1:$P2 --peer 127.0.0.1:$P3 --out report & slave=$!
     site master --site master --listen 127.0.0.1:$P0 --peer 127.0.0.1:$P1 --arm & master=$!
     wait_for master ' active '
     wait_for slave ' active '
@@ -88,6 +88,11 @@ TEST_F(TwoSites, TapThroughARelayThatLosesDelaysReordersAndDoubles) {
   // A doubled record is dropped by DTLS, before the link's own window.
   EXPECT_GT(slave["link"]["refused"].get<int>(), relay["to_slave"]["doubled"].get<int>() / 2);
   EXPECT_GT(master["round_trip_mean_s"], 0.005);
+  std::ostringstream page;
+  page << std::ifstream(folder / "report" / "report.html").rdbuf();
+  for (const char* part : {"the slave", "round trip", "age of messages", "SCHED_FIFO", "--site slave", "[servo]"}) {
+    EXPECT_NE(page.str().find(part), std::string::npos) << part;
+  }
 }
 
 TEST_F(TwoSites, ASlaveThatIsKilledAndComesBackFollowsOnlyAfterArming) {
