@@ -4,14 +4,10 @@
 #include <cerrno>
 #include <cstddef>
 
+#include "tests/sanitizers.hpp"
+
 // A sanitizer owns the heap of its program and offers a hook; elsewhere glibc's own entry points are put in front.
-#if defined(__has_feature)
-#define TACTUS_HAS_FEATURE(name) __has_feature(name)
-#else
-#define TACTUS_HAS_FEATURE(name) 0
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || TACTUS_HAS_FEATURE(address_sanitizer) || \
-    TACTUS_HAS_FEATURE(thread_sanitizer)
+#if TACTUS_UNDER_ADDRESS_SANITIZER || TACTUS_UNDER_THREAD_SANITIZER
 #define TACTUS_SANITIZED_HEAP 1
 #else
 #define TACTUS_SANITIZED_HEAP 0

@@ -15,6 +15,7 @@
 #include "sample_view.hpp"
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <tests/sanitizers.hpp>
 #include <tests/scratch_path.hpp>
 
 namespace tactus::live {
@@ -218,11 +219,7 @@ void expect_the_log_of_a_loop_alone(const std::filesystem::path& file) {
 }
 
 // The thread sanitizer makes everything some twenty times slower. It finds the same with less at once.
-#ifdef __SANITIZE_THREAD__
-constexpr bool slowed_down = true;
-#else
-constexpr bool slowed_down = false;
-#endif
+constexpr bool slowed_down = TACTUS_UNDER_THREAD_SANITIZER != 0;
 
 TEST(Server, SlowAndDeadClientsCostTheLoopNothingAndTheirLossesAreCounted) {
   const auto file = scratch_path();

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/file_size_limit.hpp"
+#include "tests/sanitizers.hpp"
 #include "tests/scratch_path.hpp"
 #include "tests/telemetry/sample.hpp"
 #include <gtest/gtest.h>
@@ -113,7 +114,7 @@ int in_a_process(Body&& body) {
 
 /// From here on a request for more than 512 MiB fails. Sanitizers need more for themselves.
 void limit_memory() {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if !TACTUS_UNDER_ADDRESS_SANITIZER && !TACTUS_UNDER_THREAD_SANITIZER
   const rlimit limit{.rlim_cur = 512U << 20U, .rlim_max = 512U << 20U};
   setrlimit(RLIMIT_AS, &limit);
 #endif
