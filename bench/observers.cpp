@@ -1,4 +1,5 @@
 // The same real-time loop with all observers and with none, in alternating windows: scripts/compare-with-observers.
+#include <tactus/cli/ros2_session.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/live/live_view.hpp>
 #include <tactus/live/server.hpp>
@@ -84,16 +85,6 @@ struct Seen {
   }
 };
 
-ros2::Snapshot snapshot_of(const live::Engine::Record& record, std::int64_t stamp_ns) {
-  return {.stamp_ns = stamp_ns,
-          .master_position_m = record.master_position_m,
-          .master_force_N = -record.displayed_force_N,
-          .hand_force_N = record.hand_force_N,
-          .slave_position_m = record.slave_position_m,
-          .slave_command_m = record.command_m,
-          .environment_force_N = record.told_force_N};
-}
-
 std::unique_ptr<live::LiveView> make_view(const Options& options) {
   const auto document = demand(configuration::Document::load(options.experiment));
   return demand(live::LiveView::make(demand(live::Settings::make(document)), {.experiment = "tapping"}));
@@ -141,7 +132,7 @@ runtime::ServoReport observed(const Options& options, Seen& seen) {
         options, engine,
         [&engine, &bridge](const runtime::Tick& tick) noexcept {
           engine.step();
-          bridge.publish(snapshot_of(engine.newest(0), tick.deadline_ns));
+          bridge.publish(cli::snapshot_of(engine.newest(0), tick.deadline_ns, true));
           static_cast<void>(bridge.take_wish());
           return true;
         },

@@ -63,11 +63,7 @@ std::string html_of(const std::vector<Finding>& findings, const report::Figure& 
                            finding.means + "." + (finding.remedy.empty() ? "" : " Remedy: " + finding.remedy));
   }
   page.definitions(explained);
-  page.heading("How an empty step kept time");
-  page.table(runtime::timing_table(servo));
-  page.figure(timing);
-  page.table(runtime::late_ticks_table(servo));
-  page.table(runtime::rights_table(servo));
+  runtime::add_timing(page, servo, timing);
   page.footer("tactus " + std::string(version()), command);
   return page.to_html();
 }

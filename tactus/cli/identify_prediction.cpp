@@ -18,6 +18,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
 namespace tactus::cli {
 
@@ -95,13 +96,12 @@ simulation::Outcome outcome_of(const PredictionOptions& options, const TimeConst
   page.table(table);
   page.paragraph(felt + ", with the time constant that the motion gives.");
   simulation::add_provenance(page, request, configuration);
-  return {.text = table.to_text() + felt + "\n",
-          .json = "{\n  \"blocks\": " + std::to_string(options.blocks) + ",\n  \"closed_form_s\": " +
-                  format_number(found.closed_form_s) + ",\n  \"limit_s\": " + format_number(found.limit_s) +
-                  ",\n  \"from_data_s\": " + format_number(found.from_data_s) +
-                  ",\n  \"error_rms_N\": " + format_number(found.error_rms_N) + "\n}\n",
-          .html = page.to_html(),
-          .figures = {}};
+  const nlohmann::ordered_json json{{"blocks", options.blocks},
+                                    {"closed_form_s", found.closed_form_s},
+                                    {"limit_s", found.limit_s},
+                                    {"from_data_s", found.from_data_s},
+                                    {"error_rms_N", found.error_rms_N}};
+  return {.text = table.to_text() + felt + "\n", .json = json.dump(2) + "\n", .html = page.to_html(), .figures = {}};
 }
 
 Check identify(const PredictionOptions& options, const std::string& command) {

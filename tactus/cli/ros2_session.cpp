@@ -28,17 +28,6 @@ using Record = Teleoperator::Record;
 constexpr double rest_before_s = 0.3;
 constexpr double workspace_m = 1.0;
 
-ros2::Snapshot snapshot_of(const Record& record, std::int64_t stamp_ns, bool healthy) {
-  return {.stamp_ns = stamp_ns,
-          .master_position_m = record.master_position_m,
-          .master_force_N = -record.displayed_force_N,
-          .hand_force_N = record.hand_force_N,
-          .slave_position_m = record.slave_position_m,
-          .slave_command_m = record.command_m,
-          .environment_force_N = record.told_force_N,
-          .healthy = healthy};
-}
-
 /// What steps, all of it made before the first tick.
 struct Parts {
   Teleoperator teleoperator;
@@ -146,25 +135,30 @@ simulation::Outcome outcome_of(const simulation::Request& request, const Ros2Opt
                                const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo,
                                const std::string& configuration) {
   const report::Table table = table_of(options, session, counts);
-  const report::Table timing = runtime::timing_table(servo);
-  const report::Table late = runtime::late_ticks_table(servo);
   const report::Figure figure = runtime::timing_figure(servo);
   report::Page page(request.name + " among ROS 2 nodes");
   page.paragraph("The teleoperator ran in real time and published under the namespace " + options.name_space + ".");
   page.table(table);
-  page.heading("How time was kept");
-  page.table(timing);
-  page.table(late);
-  page.table(runtime::rights_table(servo));
-  page.figure(figure);
+  runtime::add_timing(page, servo, figure);
   simulation::add_provenance(page, request, configuration);
-  return {.text = table.to_text() + "\n" + timing.to_text() + "\n" + late.to_text(),
+  return {.text = table.to_text() + "\n" + runtime::timing_text(servo),
           .json = json_of(request, options, session, counts, servo),
           .html = page.to_html(),
           .figures = {figure}};
 }
 
 }  // namespace
+
+ros2::Snapshot snapshot_of(const Teleoperator::Record& record, std::int64_t stamp_ns, bool healthy) {
+  return {.stamp_ns = stamp_ns,
+          .master_position_m = record.master_position_m,
+          .master_force_N = -record.displayed_force_N,
+          .hand_force_N = record.hand_force_N,
+          .slave_position_m = record.slave_position_m,
+          .slave_command_m = record.command_m,
+          .environment_force_N = record.told_force_N,
+          .healthy = healthy};
+}
 
 TapScript::TapScript(const simulation::TappingParams& params) {
   const simulation::TappingTask& task = params.task;

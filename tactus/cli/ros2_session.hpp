@@ -2,10 +2,13 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
+#include <tactus/ros2/bridge.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/experiment.hpp>
 #include <tactus/simulation/tapping.hpp>
+#include <tactus/simulation/teleoperator.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -31,6 +34,9 @@ class TapScript {
   std::vector<Tap> taps_;
   double duration_s_ = 0.0;
 };
+
+/// What ROS 2 nodes see of a tick. The motor is commanded the opposite of the displayed force.
+ros2::Snapshot snapshot_of(const simulation::Teleoperator::Record& record, std::int64_t stamp_ns, bool healthy);
 
 struct Ros2Options {
   std::string name_space = "tactus";

@@ -121,20 +121,24 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   lines << second_head(options.site) << std::flush;
   bool input_open = true;
   std::vector<SiteSecond> seconds;
+  const auto take_seconds = [&] {
+    SiteSecond second;
+    while (exchange.seconds.try_pop(second)) {
+      lines << second_line(second) << std::flush;
+      seconds.push_back(second);
+    }
+  };
   while (!(*servo)->ended()) {
     if (interruption.asked()) (*servo)->stop();
     const bool typed = line_typed(input_open);
     if (asked_to_arm.exchange(false, std::memory_order_relaxed) || typed) {
       exchange.arm.store(true, std::memory_order_relaxed);
     }
-    SiteSecond second;
-    while (exchange.seconds.try_pop(second)) {
-      lines << second_line(second) << std::flush;
-      seconds.push_back(second);
-    }
+    take_seconds();
     usleep(20'000);
   }
   const auto& report = (*servo)->finish();
+  take_seconds();
   const SiteTotals totals = (*servo)->step().totals();
   return write_outcome(
       out, site_outcome(options.site, totals, seconds, report, request, configuration::to_toml(*params)), json);

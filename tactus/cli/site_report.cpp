@@ -179,14 +179,9 @@ simulation::Outcome site_outcome(const std::string& site, const SiteTotals& tota
   report::Page page(request.name + ": the " + site);
   page.table(table);
   page.figure(figures[0]);
-  page.heading("How time was kept");
-  page.table(runtime::timing_table(servo));
-  page.figure(figures[1]);
-  page.table(runtime::late_ticks_table(servo));
-  page.table(runtime::rights_table(servo));
+  runtime::add_timing(page, servo, figures[1]);
   simulation::add_provenance(page, request, configuration);
-  return {.text = table.to_text() + "\n" + runtime::timing_table(servo).to_text() + "\n" +
-                  runtime::late_ticks_table(servo).to_text(),
+  return {.text = table.to_text() + "\n" + runtime::timing_text(servo),
           .json = json_of(site, totals, servo),
           .html = page.to_html(),
           .figures = figures};

@@ -129,6 +129,18 @@ report::Figure timing_figure(const ServoReport& report) {
                   .rules = {{.direction = report::Rule::Direction::vertical, .at = period_us, .label = "one tick"}}}}};
 }
 
+void add_timing(report::Page& page, const ServoReport& report, const report::Figure& figure) {
+  page.heading("How time was kept");
+  page.table(timing_table(report));
+  page.figure(figure);
+  page.table(late_ticks_table(report));
+  page.table(rights_table(report));
+}
+
+std::string timing_text(const ServoReport& report) {
+  return timing_table(report).to_text() + "\n" + late_ticks_table(report).to_text();
+}
+
 std::string servo_json(const ServoReport& report) {
   nlohmann::ordered_json late;
   for (const LateCause cause : late_causes) late[name_of(cause)] = report.late_for(cause);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/report/figure.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 
@@ -20,6 +21,12 @@ report::Table rights_table(const ServoReport& report);
 
 /// How many ticks began, and how many steps took, how long: both histograms on logarithmic axes.
 report::Figure timing_figure(const ServoReport& report);
+
+/// The section of a page on all of that; `figure` is that of `timing_figure`.
+void add_timing(report::Page& page, const ServoReport& report, const report::Figure& figure);
+
+/// Both tables of times for a terminal.
+std::string timing_text(const ServoReport& report);
 
 /// All of it as one JSON object.
 std::string servo_json(const ServoReport& report);
