@@ -20,18 +20,23 @@ constexpr auto enumerators(EncoderFault) {
 /// Whether a measured position can be true.
 ///
 /// A jump: |x(k) − x(k−1)| > v_max · T. A spike is one, a counter that wraps is one, and so is the way back.
-/// A freeze: for `frozen_after_s` without a break the motor's force has been `frozen_force_N` or more away from what it
-/// was at the last count, and not one more came. A device that rests, or presses with a steady force, is not frozen, so
-/// a freeze shows only once the force works. The force must stay away: a hand that turns around holds a device still
-/// through the short pulses of a chattering contact.
+/// A freeze: for `frozen_after_s` without a break there was a force that must move the device, and not one count came.
+/// Such a force is
+///
+/// - a motor's force that is `frozen_force_N` or more away from what it was at the last count. A device that rests, or
+///   presses with a steady force, is not frozen, so this shows only once the force works. It must stay away: a hand
+///   that turns around holds a device still through the short pulses of a chattering contact;
+/// - where a sensor tells what resists the motor, a difference of `unbalanced_force_N` or more between the two. What
+///   friction cannot hold must move, however slowly the force changes.
 ///
 /// Without model or controller: it knows the readings and the force that the gate let through. Range: v_max · T should
-/// be well above one count.
+/// be well above one count; `unbalanced_force_N` above friction and the error of the sensor.
 class EncoderCheck {
  public:
   struct Params {
     double fastest_m_per_s = 100.0;
     double frozen_force_N = 20.0;
+    double unbalanced_force_N = 20.0;
     double frozen_after_s = 0.01;
     static constexpr auto fields() {
       return std::tuple{
@@ -39,13 +44,16 @@ class EncoderCheck {
                 "Fastest motion that can be true; a reading farther from the one before is a jump."),
           field("frozen_force_N", &Params::frozen_force_N, units::newton, positive_up_to(200.0),
                 "Lasting change of the motor's force that must move the encoder by a count."),
+          field("unbalanced_force_N", &Params::unbalanced_force_N, units::newton, positive_up_to(200.0),
+                "Lasting difference between the forces of motor and tip that must; at a slave with a force sensor."),
           field("frozen_after_s", &Params::frozen_after_s, units::second, positive_up_to(1.0),
                 "How long it may take to do so.")};
     }
   };
   struct Input {
     double position_m = 0.0;
-    double acted_N = 0.0;  ///< on the motor since the reading before
+    double acted_N = 0.0;       ///< on the motor since the reading before
+    double unbalanced_N = 0.0;  ///< what of it nothing known resists; 0 where nobody measures that
   };
   using Output = EncoderFault;
 
@@ -65,7 +73,9 @@ class EncoderCheck {
       still_s_ = 0.0;
       return EncoderFault::none;
     }
-    still_s_ = std::fabs(input.acted_N - counted_N_) >= frozen_force_N_ ? still_s_ + dt_s_ : 0.0;
+    const bool must_move = std::fabs(input.acted_N - counted_N_) >= frozen_force_N_ ||
+                           std::fabs(input.unbalanced_N) >= unbalanced_force_N_;
+    still_s_ = must_move ? still_s_ + dt_s_ : 0.0;
     return still_s_ >= frozen_after_s_ ? EncoderFault::frozen : EncoderFault::none;
   }
 
@@ -80,17 +90,19 @@ class EncoderCheck {
   EncoderCheck(const Params& params, Seconds dt)
       : farthest_m_(params.fastest_m_per_s * dt.value),
         frozen_force_N_(params.frozen_force_N),
+        unbalanced_force_N_(params.unbalanced_force_N),
         frozen_after_s_(params.frozen_after_s),
         dt_s_(dt.value) {}
 
   double farthest_m_;
   double frozen_force_N_;
+  double unbalanced_force_N_;
   double frozen_after_s_;
   double dt_s_;
   bool started_ = false;
   double position_m_ = 0.0;
   double counted_N_ = 0.0;  ///< the force at the last count
-  double still_s_ = 0.0;    ///< since the force has been that far from it
+  double still_s_ = 0.0;    ///< since there is a force that must move the device
 };
 
 }  // namespace tactus::control

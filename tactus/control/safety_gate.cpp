@@ -13,7 +13,7 @@ double share_beyond(double value, double limit) {
 
 }  // namespace
 
-double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks) noexcept {
+double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::optional<double> resisting_N) noexcept {
   if (!std::isfinite(position_m)) {
     latch(GateFault::not_finite);
     velocity_m_per_s_ = 0.0;
@@ -25,7 +25,8 @@ double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks) noexce
     energy_.skip();
   }
   const double acted_N = force_.passed_N();
-  const EncoderFault wrong = encoder_.step({.position_m = position_m, .acted_N = acted_N});
+  const EncoderFault wrong = encoder_.step(
+      {.position_m = position_m, .acted_N = acted_N, .unbalanced_N = resisting_N ? acted_N - *resisting_N : 0.0});
   if (wrong == EncoderFault::frozen) latch(GateFault::encoder_frozen);
   if (wrong == EncoderFault::jump) {
     latch(GateFault::encoder_jump);

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 namespace tactus::control {
 
@@ -76,8 +77,10 @@ class SafetyGate {
 
   /// Looks at a reading, before the controller does: the position in m to believe, which is the last good one where
   /// this is none. `elapsed_ticks` is more than 1 after a stall; then nothing is said about the way in between.
+  /// `resisting_N` is what a sensor says that pushes back against the motor.
   /// Real-time safe.
-  double believe(double position_m, std::int64_t elapsed_ticks = 1) noexcept;
+  double believe(double position_m, std::int64_t elapsed_ticks = 1,
+                 std::optional<double> resisting_N = std::nullopt) noexcept;
   /// The force in N that may reach the motor instead of `command_N`. Always finite. Once a tick, after `believe`.
   /// Real-time safe.
   double pass(double command_N) noexcept;

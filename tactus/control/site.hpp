@@ -160,6 +160,10 @@ class MasterGates {
   /// The gate that reads the motor's position.
   [[nodiscard]] SafetyGate& motor() noexcept { return motor_; }
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
+  /// The position in m to believe, as `SafetyGate` says. Real-time safe.
+  double believe(const MasterInput& read, std::int64_t elapsed_ticks) noexcept {
+    return motor_.believe(read.motor_position_m, elapsed_ticks);
+  }
   /// Puts what may reach the actuators in place of what was commanded. Real-time safe.
   void pass(MasterOutput& output) noexcept {
     constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -188,6 +192,10 @@ class SlaveGates {
 
   [[nodiscard]] SafetyGate& motor() noexcept { return motor_; }
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
+  /// The position in m to believe, as `SafetyGate` says. Real-time safe.
+  double believe(const SlaveInput& read, std::int64_t elapsed_ticks) noexcept {
+    return motor_.believe(read.motor_position_m, elapsed_ticks, read.tip_force_N);
+  }
   /// Puts what may reach the motor in place of what was commanded. Real-time safe.
   void pass(SlaveOutput& output) noexcept { output.motor_force_N = motor_.pass(output.motor_force_N); }
   void reset() noexcept { motor_.reset(); }
@@ -226,7 +234,7 @@ class Site {
       gates_.motor().refuse();
       mend(read, believed_);
     }
-    read.motor_position_m = gates_.motor().believe(read.motor_position_m, elapsed_ticks);
+    read.motor_position_m = gates_.believe(read, elapsed_ticks);
     believed_ = read;
     Output output = controller_->respond(believed_);
     if (share != 1.0) scale(output, share);

@@ -59,6 +59,20 @@ TEST(EncoderCheck, AFreezeShowsOnceTheForceWorksAndAtRestOrUnderASteadyForceNeve
   EXPECT_NEAR(shown, std::asin(0.5 / 0.6) / 0.01 + 50.0, 2.0);
 }
 
+TEST(EncoderCheck, ADeviceThatIsPushedMoreThanFrictionHoldsMustMoveHoweverSteadilyItIsPushed) {
+  const EncoderCheck::Params params{.unbalanced_force_N = 0.1, .frozen_after_s = 0.01};
+  EncoderCheck held = EncoderCheck::make(params, tick).value(), moving = held, frozen = held;
+  int shown = -1;
+  for (int i = 0; i < 5000; ++i) {
+    ASSERT_EQ(held.step({.position_m = 0.01, .acted_N = 3.0, .unbalanced_N = 0.09}), EncoderFault::none);
+    const double counted_m = 1e-5 * (i / 40);
+    ASSERT_EQ(moving.step({.position_m = counted_m, .acted_N = 3.0, .unbalanced_N = -0.11}), EncoderFault::none);
+    const bool seen = frozen.step({.position_m = 0.01, .acted_N = 3.0, .unbalanced_N = -0.11}) == EncoderFault::frozen;
+    if (seen && shown < 0) shown = i;
+  }
+  EXPECT_NEAR(shown * tick_s, params.frozen_after_s, 2.0 * tick_s);
+}
+
 TEST(ForceSensorCheck, ADropOutInContactAndABiasShowWhenTheLowPassHasGoneThroughTheLimit) {
   ForceSensorCheck check = ForceSensorCheck::make({.residual_limit_N = 0.4, .cutoff_Hz = 8.0}, tick).value();
   for (int i = 0; i < 5000; ++i) ASSERT_FALSE(check.step({.acted_N = 1.0, .tip_force_N = 1.0 - 0.03}));

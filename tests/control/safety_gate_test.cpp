@@ -159,6 +159,21 @@ TEST(SafetyGate, AfterAStallTheWayInBetweenIsNeitherAJumpNorWork) {
   EXPECT_EQ(element.velocity_m_per_s(), 0.0);
 }
 
+TEST(SafetyGate, AMotorThatNothingResistsAndThatStandsStillHasAFrozenEncoder) {
+  const SafetyGate made = gate({.encoder = {.unbalanced_force_N = 0.5}});
+  const auto fault_after = [&](std::optional<double> resisting_N) {
+    SafetyGate element = made;
+    for (int tick = 0; tick < 500; ++tick) {
+      element.believe(0.0, 1, resisting_N);
+      element.pass(1.0);
+    }
+    return element.fault();
+  };
+  EXPECT_EQ(fault_after(0.6), GateFault::none) << "pressed against a wall";
+  EXPECT_EQ(fault_after(std::nullopt), GateFault::none) << "nobody measures what resists";
+  EXPECT_EQ(fault_after(0.0), GateFault::encoder_frozen);
+}
+
 TEST(SafetyGate, ConfigurationCanTightenEveryLimitAndLoosenNone) {
   const auto refused = [](auto&& spoil) {
     SafetyGate::Params params;
@@ -175,6 +190,7 @@ TEST(SafetyGate, ConfigurationCanTightenEveryLimitAndLoosenNone) {
     EXPECT_EQ(refused([=](auto& p) { p.position_limit_m = loose; }), "position_limit_m");
     EXPECT_EQ(refused([=](auto& p) { p.encoder.fastest_m_per_s = loose; }), "encoder.fastest_m_per_s");
     EXPECT_EQ(refused([=](auto& p) { p.encoder.frozen_force_N = loose; }), "encoder.frozen_force_N");
+    EXPECT_EQ(refused([=](auto& p) { p.encoder.unbalanced_force_N = loose; }), "encoder.unbalanced_force_N");
     EXPECT_EQ(refused([=](auto& p) { p.energy.damp_above_J = loose; }), "energy.damp_above_J");
     EXPECT_EQ(refused([=](auto& p) { p.energy.hold_above_J = loose; }), "energy.hold_above_J");
   }

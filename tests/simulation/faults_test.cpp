@@ -13,7 +13,7 @@
 namespace tactus::simulation {
 namespace faults_test {
 
-TEST(Faults, EveryRowButAFrozenEncoderSurvivesAndWithALooseMonitorTheSameRunsDiverge) {
+TEST(Faults, EveryRowSurvivesAndWithALooseMonitorTheSameRunsDiverge) {
   FaultsParams params;
   params.task.seeds = 2;
   params.task.longest_cut_s = 0.3;
@@ -23,10 +23,7 @@ TEST(Faults, EveryRowButAFrozenEncoderSurvivesAndWithALooseMonitorTheSameRunsDiv
   for (const FaultTally& tally : *tallies) {
     EXPECT_EQ(tally.tried, 2);
     if (tally.row.monitored) {
-      // A slave whose encoder froze may have left its workspace, and then stays in fault: docs/theory/safety.md.
-      if (tally.row.kind != FaultKind::encoder_freeze) {
-        EXPECT_EQ(tally.survived, 2) << tally.row.name;
-      }
+      EXPECT_EQ(tally.survived, 2) << tally.row.name;
       EXPECT_EQ(tally.diverged, 0) << tally.row.name;
     } else {
       EXPECT_EQ(tally.diverged, 2) << tally.row.name;
@@ -36,6 +33,23 @@ TEST(Faults, EveryRowButAFrozenEncoderSurvivesAndWithALooseMonitorTheSameRunsDiv
     EXPECT_EQ(tally.worst.steps_above_rate, 0) << tally.row.name;
     EXPECT_GT(tally.worst.peak_force_N, 0.5) << tally.row.name << ": the wall is felt";
   }
+}
+
+/// What its tip force leaves of a slave's motor force betrays a frozen encoder before the slave has gone.
+TEST(Faults, ASlaveWhoseEncoderFreezesStaysInItsWorkspaceBecauseItsForcesAreBalanced) {
+  const FaultsParams params;
+  FaultsParams unbalanced = params;
+  unbalanced.control.slave_gate.encoder.unbalanced_force_N = 200.0;
+  int lost = 0, lost_unbalanced = 0, slaves = 0;
+  for (std::int64_t seed = 0; slaves < 20; ++seed) {
+    const FaultPlan plan = draw_plan(FaultKind::encoder_freeze, 0, seed, 1.0);
+    if (plan.site != FaultSite::slave) continue;
+    ++slaves;
+    lost += run_fault(params, plan).value().left_workspace ? 1 : 0;
+    lost_unbalanced += run_fault(unbalanced, plan).value().left_workspace ? 1 : 0;
+  }
+  EXPECT_EQ(lost, 0);
+  EXPECT_GT(lost_unbalanced, 0) << "or this shows nothing";
 }
 
 TEST(Faults, ARunThatDoesNotSurviveIsNamedWithTheRuleThatItBroke) {
