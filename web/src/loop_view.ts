@@ -5,7 +5,7 @@ import * as descriptions from './plots/descriptions';
 import type { SignalName } from './protocol/messages';
 import { drawScene, fitCanvas, sceneHeight } from './scene/scene';
 import { scaleFor } from './scene/scale';
-import { signalIndex, window_s, type Loop } from './state/loop';
+import { signalIndex, type Loop } from './state/loop';
 import type { Side } from './state/session';
 import { SteadyVerdict } from './state/verdict';
 
@@ -149,14 +149,12 @@ export class LoopView {
   }
 
   private drawPlots(now_s: number): void {
-    const { trace, gaps } = this.loop;
+    const { trace } = this.loop;
     if (trace.length === 0) return;
     const [time, ...signals] = trace.views();
     const select = (names: readonly SignalName[]): PlotData => [time, ...names.map((name) => signals[signalIndex(name)]!)];
-    const [from, to] = [trace.latest - window_s, trace.latest];
-    this.positions.gaps = this.forces.gaps = gaps;
-    this.positions.update(select(descriptions.positionSignals), from, to, now_s);
-    this.forces.update(select(descriptions.forceSignals), from, to, now_s);
+    this.positions.update(select(descriptions.positionSignals), trace.latest, now_s);
+    this.forces.update(select(descriptions.forceSignals), trace.latest, now_s);
   }
 }
 
