@@ -1,30 +1,45 @@
 /** What a line covers in each column of pixels: nothing is lost between two columns, and nothing is drawn twice. */
 export interface Envelope {
   /** Least and greatest value of the line in each column; a column that it does not cross has low above high. */
-  low: Float32Array;
-  high: Float32Array;
+  readonly low: Float32Array;
+  readonly high: Float32Array;
+  /** How far the line goes up and down in each column: high above low times as often as it crosses the column. */
+  readonly travel: Float32Array;
 }
 
 export function makeEnvelope(columns: number): Envelope {
-  return { low: new Float32Array(columns).fill(Infinity), high: new Float32Array(columns).fill(-Infinity) };
+  return {
+    low: new Float32Array(columns).fill(Infinity),
+    high: new Float32Array(columns).fill(-Infinity),
+    travel: new Float32Array(columns),
+  };
 }
 
 /**
  * Finds the envelope of the line through points in order of time, from `from` to `to` over its columns. A point that is
  * not a number breaks the line.
  */
-export function findEnvelope(time: Float64Array, values: Float32Array, from: number, to: number, { low, high }: Envelope): void {
+export function findEnvelope(
+  time: Float64Array,
+  values: Float32Array,
+  from: number,
+  to: number,
+  { low, high, travel }: Envelope,
+): void {
   const columns = low.length;
   const columnsPerSecond = columns / (to - from);
   low.fill(Infinity);
   high.fill(-Infinity);
+  travel.fill(0);
   const cover = (column: number, a: number, b: number): void => {
     if (Math.min(a, b) < low[column]!) low[column] = Math.min(a, b);
     if (Math.max(a, b) > high[column]!) high[column] = Math.max(a, b);
+    travel[column]! += Math.abs(a - b);
   };
   const first = Math.max(1, firstSince(time, from));
   for (let i = first; i < time.length; ++i) {
-    const [y1, y2] = [values[i - 1]!, values[i]!];
+    const y1 = values[i - 1]!;
+    const y2 = values[i]!;
     if (Number.isNaN(y1) || Number.isNaN(y2)) continue;
     const x1 = (time[i - 1]! - from) * columnsPerSecond;
     const x2 = (time[i]! - from) * columnsPerSecond;

@@ -44,9 +44,11 @@ export class Plot {
   private readonly entries: HTMLButtonElement[] = [];
   private raster = new Raster(1, 1);
   private envelopes: Envelope[] = [];
+  private bounds: readonly [low: number, high: number];
 
   constructor(private readonly description: PlotDescription) {
     this.range = new StableRange(...description.base);
+    this.bounds = description.base;
     this.shown = description.lines.map(() => true);
     this.element = document.createElement('figure');
     this.element.className = 'plot';
@@ -59,7 +61,7 @@ export class Plot {
     const host = document.createElement('div');
     host.className = 'plot-host';
     host.setAttribute('role', 'img');
-    host.setAttribute('aria-label', `${description.title}: ${description.yLabel} over ${description.xLabel}`);
+    host.setAttribute('aria-label', `${description.title}, in ${description.yLabel} over ${description.xLabel}`);
     this.element.append(caption, host);
     this.chart = new uPlot(this.options(), [[]], host);
     this.chart.over.append(this.canvas);
@@ -77,9 +79,10 @@ export class Plot {
       low = envelope.low.reduce((least, value) => Math.min(least, value), low);
       high = envelope.high.reduce((greatest, value) => Math.max(greatest, value), high);
     });
-    const [bottom, top] = this.range.update(low, high, now_s);
-    const { min, max } = this.chart.scales.y!;
-    if (bottom !== min || top !== max) this.chart.setScale('y', { min: bottom, max: top });
+    this.bounds = this.range.update(low, high, now_s);
+    const [min, max] = this.bounds;
+    const { y } = this.chart.scales;
+    if (min !== y!.min || max !== y!.max) this.chart.setScale('y', { min, max });
     this.drawLines();
   }
 
@@ -98,12 +101,11 @@ export class Plot {
 
   private drawLines(): void {
     const { raster, canvas, context } = this;
-    const { min, max } = this.chart.scales.y!;
     raster.clear();
     this.description.lines.forEach((line, index) => {
       const envelope = this.envelopes[index];
       if (!this.shown[index] || !envelope) return;
-      raster.draw(envelope, min!, max!, (line.width ?? 1.5) * devicePixelRatio, rgb(palette[line.colour]));
+      raster.draw(envelope, ...this.bounds, (line.width ?? 1.5) * devicePixelRatio, rgb(palette[line.colour]));
     });
     if (canvas.width !== raster.width || canvas.height !== raster.height) {
       canvas.width = raster.width;
@@ -127,6 +129,8 @@ export class Plot {
   private legend(): HTMLElement {
     const legend = document.createElement('div');
     legend.className = 'legend';
+    legend.setAttribute('role', 'group');
+    legend.setAttribute('aria-label', `Lines of: ${this.description.title}`);
     this.description.lines.forEach((line, index) => {
       const entry = document.createElement('button');
       entry.type = 'button';

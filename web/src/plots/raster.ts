@@ -3,6 +3,9 @@ import type { Envelope } from './envelope';
 /** A colour as the bytes of a pixel. */
 export type Rgb = readonly [red: number, green: number, blue: number];
 
+/** What a line crosses often in one column is drawn fainter, down to this, so that lines beneath show through. */
+const faintest = 0.4;
+
 /**
  * Pixels that lines are drawn into, column by column: a stroke of thousands of points costs a browser without a
  * graphics card many times what it costs to fill the pixels that they cover.
@@ -30,25 +33,24 @@ export class Raster {
       if (envelope.low[x]! > envelope.high[x]!) continue;
       const top = (high - envelope.high[x]!) * pixelsPerUnit - thickness / 2;
       const bottom = (high - envelope.low[x]!) * pixelsPerUnit + thickness / 2;
-      this.fillColumn(x, Math.max(0, top), Math.min(this.height, bottom), colour);
+      const strength = (bottom - top) / (thickness + envelope.travel[x]! * pixelsPerUnit);
+      this.fillColumn(x, Math.max(0, top), Math.min(this.height, bottom), colour, Math.max(faintest, Math.min(1, strength)));
     }
   }
 
   /** A pixel that is covered in part, at either end, gets a part of the colour. */
-  private fillColumn(x: number, top: number, bottom: number, colour: Rgb): void {
+  private fillColumn(x: number, top: number, bottom: number, colour: Rgb, strength: number): void {
     const full = Math.ceil(top);
     const end = Math.floor(bottom);
-    if (full > top) this.blend(x, full - 1, Math.min(full, bottom) - top, colour);
+    if (full > top) this.blend(x, full - 1, strength * (Math.min(full, bottom) - top), colour);
     if (full > end) return;
-    const { pixels, bytes, width } = this;
-    let at = full * width + x;
-    if (full < end) {
-      bytes.set(colour, 4 * at);
-      bytes[4 * at + 3] = 255;
-      const pixel = pixels[at]!;
-      for (let y = full; y < end; ++y, at += width) pixels[at] = pixel;
+    const pixel = pixelOf(colour, strength);
+    for (let y = full; y < end; ++y) {
+      const at = y * this.width + x;
+      if (strength === 1 || this.pixels[at] === 0) this.pixels[at] = pixel;
+      else this.blend(x, y, strength, colour);
     }
-    if (bottom > end) this.blend(x, end, bottom - end, colour);
+    if (bottom > end) this.blend(x, end, strength * (bottom - end), colour);
   }
 
   private blend(x: number, y: number, share: number, colour: Rgb): void {
@@ -59,6 +61,16 @@ export class Raster {
     for (let i = 0; i < 3; ++i) bytes[at + i] = (share * colour[i]! + beneath * bytes[at + i]!) / alpha;
     bytes[at + 3] = 255 * alpha;
   }
+}
+
+const one = new Uint8ClampedArray(4);
+const oneAsPixel = new Uint32Array(one.buffer);
+
+/** The four bytes of a pixel as one number, in the order of this machine. */
+function pixelOf(colour: Rgb, alpha: number): number {
+  one.set(colour);
+  one[3] = 255 * alpha;
+  return oneAsPixel[0]!;
 }
 
 /** Reads a colour of the style sheet, `#rrggbb`. */

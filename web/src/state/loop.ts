@@ -16,7 +16,7 @@ const initial: LoopState = {
   wall_position_m: 0.01,
   slave_force_N: 0,
   displayed_force_N: 0,
-  energy_J: 0,
+  vibrationEnergy_J: 0,
   inContact: false,
   verdict: 'free',
   cause: '',

@@ -65,6 +65,8 @@ describe.skipIf(leftOut)('the page before tactus serve', () => {
     await choose('right.method', 'none');
     await page.click('#tap');
     await until(async () => expect([await verdict('left'), await verdict('right')]).toEqual(['settled', 'rings']));
+    expect(await page.textContent('.loop[data-side=left] .verdict')).toMatch(/Left\s+Settled/);
+    expect(await page.textContent('.loop[data-side=right] .verdict')).toMatch(/Right\s+Rings/);
     if (process.env.PICTURE) {
       await page.click('#dismiss');
       await page.waitForTimeout(400);

@@ -1,11 +1,18 @@
 import { describe, expect, test } from 'vitest';
-import { findEnvelope, makeEnvelope } from '../../src/plots/envelope';
+import { findEnvelope, makeEnvelope, type Envelope } from '../../src/plots/envelope';
 import { Raster, rgb } from '../../src/plots/raster';
 
 function envelopeOf(time: number[], values: number[], from: number, to: number, columns: number): [number, number][] {
   const envelope = makeEnvelope(columns);
   findEnvelope(Float64Array.from(time), Float32Array.from(values), from, to, envelope);
   return [...envelope.low.keys()].map((column) => [envelope.low[column]!, envelope.high[column]!]);
+}
+
+/** An envelope of given columns, as of a line that crosses each once. */
+function once(...columns: [number, number][]): Envelope {
+  const low = Float32Array.from(columns, ([value]) => value);
+  const high = Float32Array.from(columns, ([, value]) => value);
+  return { low, high, travel: high.map((value, i) => Math.max(0, value - low[i]!)) };
 }
 
 const empty = [Infinity, -Infinity];
@@ -70,7 +77,7 @@ describe('pixels', () => {
 
   function drawn(low: number, high: number): number[] {
     const raster = new Raster(1, 10);
-    raster.draw({ low: Float32Array.of(low), high: Float32Array.of(high) }, 0, 10, 1, red);
+    raster.draw(once([low, high]), 0, 10, 1, red);
     return alphas(raster, 0);
   }
 
@@ -83,7 +90,7 @@ describe('pixels', () => {
   test('have the colour of the line, and none where it is not', () => {
     expect(red).toEqual([0xc2, 0x2f, 0x2f]);
     const raster = new Raster(2, 1);
-    raster.draw({ low: Float32Array.of(0, Infinity), high: Float32Array.of(1, -Infinity) }, 0, 1, 1, red);
+    raster.draw(once([0, 1], [Infinity, -Infinity]), 0, 1, 1, red);
     expect([...raster.bytes]).toEqual([...red, 255, 0, 0, 0, 0]);
     raster.clear();
     expect([...raster.bytes].every((byte) => byte === 0)).toBe(true);
@@ -95,11 +102,21 @@ describe('pixels', () => {
     expect(drawn(-9, -5)).toEqual(new Array(10).fill(0));
   });
 
+  test('are fainter where a line goes up and down many times, and show what is beneath', () => {
+    const raster = new Raster(1, 10);
+    const often = makeEnvelope(1);
+    findEnvelope(Float64Array.of(0, 0.2, 0.4, 0.6, 0.8), Float32Array.of(2, 8, 2, 8, 2), 0, 1, often);
+    expect([often.low[0], often.high[0], often.travel[0]]).toEqual([2, 8, 24]);
+    raster.draw(once([5, 5]), 0, 10, 2, [0, 0, 0]);
+    raster.draw(often, 0, 10, 2, [255, 0, 0]);
+    expect(alphas(raster, 0)).toEqual([0, 102, 102, 102, 255, 255, 102, 102, 102, 0]);
+    expect([...raster.bytes.slice(16, 20)]).toEqual([102, 0, 0, 255]);
+  });
+
   test('show through the end of a line above', () => {
     const raster = new Raster(1, 1);
-    const whole = { low: Float32Array.of(0.5), high: Float32Array.of(0.5) };
-    raster.draw(whole, 0, 1, 1, [0, 0, 0]);
-    raster.draw({ low: Float32Array.of(0), high: Float32Array.of(0) }, 0, 1, 1, [200, 100, 0]);
+    raster.draw(once([0.5, 0.5]), 0, 1, 1, [0, 0, 0]);
+    raster.draw(once([0, 0]), 0, 1, 1, [200, 100, 0]);
     expect([...raster.bytes]).toEqual([100, 50, 0, 255]);
   });
 });
