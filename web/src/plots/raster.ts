@@ -29,10 +29,18 @@ export class Raster {
   /** Draws a line of some thickness, given by its envelope; `low` is the value at the bottom, `high` that at the top. */
   draw(envelope: Envelope, low: number, high: number, thickness: number, colour: Rgb): void {
     const pixelsPerUnit = this.height / (high - low);
+    // A steep stretch is as thick to either side as a flat one is above and below.
+    const beside = Math.floor(thickness / 2);
     for (let x = 0; x < this.width; ++x) {
       if (envelope.low[x]! > envelope.high[x]!) continue;
-      const top = (high - envelope.high[x]!) * pixelsPerUnit - thickness / 2;
-      const bottom = (high - envelope.low[x]!) * pixelsPerUnit + thickness / 2;
+      let greatest = envelope.high[x]!;
+      let least = envelope.low[x]!;
+      for (let near = Math.max(0, x - beside); near <= Math.min(this.width - 1, x + beside); ++near) {
+        greatest = Math.max(greatest, envelope.high[near]!);
+        least = Math.min(least, envelope.low[near]!);
+      }
+      const top = (high - greatest) * pixelsPerUnit - thickness / 2;
+      const bottom = (high - least) * pixelsPerUnit + thickness / 2;
       const strength = (bottom - top) / (thickness + envelope.travel[x]! * pixelsPerUnit);
       this.fillColumn(x, Math.max(0, top), Math.min(this.height, bottom), colour, Math.max(faintest, Math.min(1, strength)));
     }
