@@ -95,9 +95,10 @@ export class LoopView {
 
   private drawVerdict(now_s: number): void {
     const { verdict, word, sentence, measured } = this.verdict.update(this.loop.state, now_s);
-    if (this.textIsDue) this.find('.measured').textContent = measured;
     const element = this.find('.verdict');
-    if (this.element.dataset.verdict === verdict && element.dataset.sentence === sentence) return;
+    const same = this.element.dataset.verdict === verdict && element.dataset.sentence === sentence;
+    if (this.textIsDue || !same) this.find('.measured').textContent = measured;
+    if (same) return;
     this.element.dataset.verdict = verdict;
     element.dataset.sentence = sentence;
     element.querySelector('path')!.setAttribute('d', icons[verdict]);
