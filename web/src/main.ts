@@ -1,9 +1,9 @@
 import 'uplot/dist/uPlot.min.css';
 import './base.css';
-import './page.css';
-import './loop.css';
 import './controls/controls.css';
 import './plots/plots.css';
+import './loop.css';
+import './page.css';
 import { buildControls } from './controls/parameters';
 import { element, HealthLine, showConnection, showIntroduction, showNotices, showSound } from './controls/status';
 import { LoopView } from './loop_view';

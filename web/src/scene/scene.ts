@@ -135,9 +135,9 @@ function drawRail(context: Context, width: number, y: number): void {
   line(context, 0, y, width, y);
 }
 
-/** A force as an arrow that pushes to the left, from `x`. */
+/** A force as an arrow that pushes to the left, from `x`; none for what would read 0.0 N. */
 function drawForce(context: Context, x: number, y: number, force_N: number): void {
-  if (force_N < 0.03) return;
+  if (force_N < 0.05) return;
   const length = Math.min(90, 10 + force_N * arrowPixelsPerNewton);
   context.strokeStyle = palette.force;
   context.fillStyle = palette.force;
