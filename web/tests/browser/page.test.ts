@@ -155,7 +155,9 @@ describe('a phone', () => {
       all.filter((one) => one.getClientRects().length > 0 && one.getBoundingClientRect().height < 22).length,
     );
     expect(small).toBe(0);
-    const box = (await phone.page.locator('#handle-left').boundingBox())!;
+    const handle = phone.page.locator('#handle-left');
+    await handle.scrollIntoViewIfNeeded();
+    const box = (await handle.boundingBox())!;
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const touch = await phone.page.context().newCDPSession(phone.page);
     await touch.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ x, y }] });
