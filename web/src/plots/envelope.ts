@@ -27,7 +27,7 @@ export function findEnvelope(
   { low, high, travel }: Envelope,
 ): void {
   const columns = low.length;
-  const columnsPerSecond = columns / (to - from);
+  const columnsPerUnit = columns / (to - from);
   low.fill(Infinity);
   high.fill(-Infinity);
   travel.fill(0);
@@ -41,8 +41,8 @@ export function findEnvelope(
     const y1 = values[i - 1]!;
     const y2 = values[i]!;
     if (Number.isNaN(y1) || Number.isNaN(y2)) continue;
-    const x1 = (time[i - 1]! - from) * columnsPerSecond;
-    const x2 = (time[i]! - from) * columnsPerSecond;
+    const x1 = (time[i - 1]! - from) * columnsPerUnit;
+    const x2 = (time[i]! - from) * columnsPerUnit;
     const begin = Math.max(0, Math.floor(x1));
     const end = Math.min(columns - 1, Math.floor(x2));
     if (begin === end && x1 >= 0 && x2 < columns) {

@@ -3,7 +3,7 @@ import type { Envelope } from './envelope';
 /** A colour as the bytes of a pixel. */
 export type Rgb = readonly [red: number, green: number, blue: number];
 
-/** What a line crosses often in one column is drawn fainter, down to this, so that lines beneath show through. */
+/** A line that goes up and down often within a column is fainter there, down to this, so that others show through. */
 const faintest = 0.4;
 
 /**
@@ -48,6 +48,7 @@ export class Raster {
 
   /** A pixel that is covered in part, at either end, gets a part of the colour. */
   private fillColumn(x: number, top: number, bottom: number, colour: Rgb, strength: number): void {
+    if (bottom <= top) return;
     const full = Math.ceil(top);
     const end = Math.floor(bottom);
     if (full > top) this.blend(x, full - 1, strength * (Math.min(full, bottom) - top), colour);

@@ -100,6 +100,7 @@ describe('pixels', () => {
   test('stay within the picture when a line leaves it', () => {
     expect(drawn(-5, 20)).toEqual(new Array(10).fill(255));
     expect(drawn(12, 20)).toEqual(new Array(10).fill(0));
+    expect(drawn(-1.7, -1.3)).toEqual(new Array(10).fill(0));
     expect(drawn(-9, -5)).toEqual(new Array(10).fill(0));
   });
 
