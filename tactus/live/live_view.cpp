@@ -66,6 +66,8 @@ Result<std::unique_ptr<LiveView>> LiveView::make(const Settings& settings, const
   if (!teleoperators) return teleoperators.error();
   auto judge = ContactJudge::make(Seconds{(*teleoperators)[0].tick_s()});
   if (!judge) return judge.error();
+  const auto energy = VibrationEnergy::make(Seconds{(*teleoperators)[0].tick_s()});
+  if (!energy) return energy.error();
   std::array<double, loops> reach_m{};
   for (std::size_t i = 0; i < loops; ++i) {
     reach_m[i] = device_reach_m * std::max(1.0, (*params)[i].control.position_scale);
@@ -75,11 +77,12 @@ Result<std::unique_ptr<LiveView>> LiveView::make(const Settings& settings, const
                               .wall_m = Settings::wall_m,
                               .reach_m = reach_m});
   if (!engine) return engine.error();
-  return std::unique_ptr<LiveView>(new LiveView(settings, options, *std::move(params), *std::move(engine), *judge));
+  return std::unique_ptr<LiveView>(
+      new LiveView(settings, options, *std::move(params), *std::move(engine), *judge, *energy));
 }
 
 LiveView::LiveView(const Settings& settings, const Options& options, LoopParams params, std::unique_ptr<Engine> engine,
-                   const ContactJudge& judge)
+                   const ContactJudge& judge, const VibrationEnergy& energy)
     : settings_(settings), options_(options), params_(std::move(params)), engine_(std::move(engine)) {
   const std::string package = "tactus_msgs/msg/";
   for (const char* loop : loop_names) {
@@ -90,7 +93,7 @@ LiveView::LiveView(const Settings& settings, const Options& options, LoopParams 
     topics_.push_back({prefix + "state", package + "LiveState", live_state_definition()});
     topics_.push_back({prefix + "teleoperator", package + "TeleoperatorRecord",
                        telemetry::ros2msg(telemetry::columns_of<Engine::Record>())});
-    watched_.push_back({.block = BlockBuilder(engine_->tick_s()), .judge = judge, .state = {}});
+    watched_.push_back({.block = BlockBuilder(engine_->tick_s()), .judge = judge, .energy = energy, .state = {}});
   }
 }
 
@@ -264,14 +267,12 @@ void LiveView::watch(Watched& watched, const LoopTick& tick) {
   if (tick.run != watched.run) {
     watched.run = tick.run;
     watched.judge.reset();
-    shown.energy_J = 0.0;
-  } else {
-    // The hand gives what it pushes along the way; what it gets has the other sign.
-    shown.energy_J -= watched.hand_force_N * (record.master_position_m - shown.master_position_m);
+    watched.energy.reset(record.master_position_m);
   }
   watched.judge.step(record.contact_force_N, record.touched);
-  if (watched.judge.has_begun()) shown.energy_J = 0.0;
-  watched.hand_force_N = record.hand_force_N;
+  watched.energy.step(record.displayed_force_N, record.master_position_m);
+  if (watched.judge.has_begun()) watched.energy.begin();
+  shown.vibration_energy_J = watched.energy.energy_J();
   shown.time_s = record.time_s;
   shown.hand_position_m = tick.hand_position_m;
   shown.master_position_m = record.master_position_m;

@@ -5,6 +5,7 @@
 #include <tactus/live/engine.hpp>
 #include <tactus/live/messages.hpp>
 #include <tactus/live/settings.hpp>
+#include <tactus/live/vibration_energy.hpp>
 
 #include <array>
 #include <map>
@@ -53,14 +54,14 @@ class LiveView final : public Application {
   struct Watched {
     BlockBuilder block;
     ContactJudge judge;
+    VibrationEnergy energy;
     LiveState state;
     std::uint32_t run = 0;
     std::size_t ticks_to_state = 0;
-    double hand_force_N = 0.0;
   };
 
   LiveView(const Settings& settings, const Options& options, LoopParams params, std::unique_ptr<Engine> engine,
-           const ContactJudge& judge);
+           const ContactJudge& judge, const VibrationEnergy& energy);
   static Result<LoopParams> params_of(const Settings& settings);
   std::optional<Status> move_hand(ClientId client, std::string_view bytes);
   std::optional<Status> command(std::string_view bytes);

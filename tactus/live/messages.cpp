@@ -44,7 +44,8 @@ std::string live_state_definition() {
          line("float64", "wall_position_m", "The wall's surface, over the position scale.") +
          line("float64", "slave_force_N", "True force on the slave's tip.") +
          line("float64", "displayed_force_N", "At the master's motor, positive where it pushes the hand back.") +
-         line("float64", "energy_J", "Net energy given to the hand since the contact began.") +
+         line("float64", "vibration_energy_J",
+              "That the master's motor gave to the handle by vibration above 15 Hz, since the contact began.") +
          line("bool", "in_contact", "The slave touches the wall.") +
          line("string", "verdict", "free, contact, settled, rings or stopped.") +
          line("string", "cause", "Why, in one sentence; may be empty.") +
@@ -96,8 +97,9 @@ BlockBuilder::Block BlockBuilder::take() {
 
 std::string to_cdr(const LiveState& state) {
   CdrWriter writer;
-  for (const double value : {state.time_s, state.hand_position_m, state.master_position_m, state.slave_position_m,
-                             state.wall_position_m, state.slave_force_N, state.displayed_force_N, state.energy_J}) {
+  for (const double value :
+       {state.time_s, state.hand_position_m, state.master_position_m, state.slave_position_m, state.wall_position_m,
+        state.slave_force_N, state.displayed_force_N, state.vibration_energy_J}) {
     writer.add(value);
   }
   writer.add(state.in_contact);

@@ -90,7 +90,7 @@ struct LiveState {
   double wall_position_m = 0.0;
   double slave_force_N = 0.0;
   double displayed_force_N = 0.0;
-  double energy_J = 0.0;  ///< net, given to the hand since the contact began
+  double vibration_energy_J = 0.0;  ///< of `VibrationEnergy`, since the contact began
   bool in_contact = false;
   std::string verdict;
   std::string cause;

@@ -60,6 +60,12 @@ Messages collect(LiveView& view, double duration_s, bool all = true) {
   return messages;
 }
 
+double vibration_energy_J_of(const std::string& state) {
+  Reader reader(state);
+  for (int i = 0; i < 7; ++i) reader.float64();
+  return reader.float64();
+}
+
 std::string verdict_of(const std::string& state) {
   Reader reader(state);
   for (int i = 0; i < 8; ++i) reader.float64();
@@ -112,6 +118,22 @@ TEST(LiveView, BlocksHoldTheLeastAndLargestValuesOfTheRecordsAndTheForceAtEveryT
   }
   EXPECT_EQ(verdict_of(messages.at("/left/state").back()), "settled");
   EXPECT_EQ(verdict_of(messages.at("/right/state").back()), "rings");
+}
+
+TEST(LiveView, ALoopThatRingsGivesEnergyByVibrationAndOneThatSettlesHardlyAny) {
+  const auto view = sample_view();
+  EXPECT_FALSE(publish(*view, "/operator/command", R"({"command":"tap"})"));
+  static_cast<void>(collect(*view, 0.6));
+  const auto energies_mJ = [](const Messages& messages) {
+    return std::pair{1e3 * vibration_energy_J_of(messages.at("/left/state").back()),
+                     1e3 * vibration_energy_J_of(messages.at("/right/state").back())};
+  };
+  const auto [settled_mJ, ringing_mJ] = energies_mJ(collect(*view, 0.1));
+  EXPECT_LT(std::fabs(settled_mJ), 1.0);
+  EXPECT_GT(ringing_mJ, 5.0);
+  const auto [settled_later_mJ, ringing_later_mJ] = energies_mJ(collect(*view, 0.2));
+  EXPECT_NEAR(settled_later_mJ, settled_mJ, 0.1);
+  EXPECT_GT(ringing_later_mJ, ringing_mJ + 2.0);
 }
 
 TEST(LiveView, WhatNobodyWantsIsNotSent) {

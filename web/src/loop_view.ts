@@ -5,7 +5,7 @@ import * as descriptions from './plots/descriptions';
 import type { SignalName } from './protocol/messages';
 import { drawScene, fitCanvas, sceneHeight } from './scene/scene';
 import { scaleFor } from './scene/scale';
-import { signalIndex, window_s, type Loop } from './state/loop';
+import { signalIndex, type Loop } from './state/loop';
 import type { Side } from './state/session';
 import { SteadyVerdict } from './state/verdict';
 
@@ -20,7 +20,7 @@ const icons = {
 /** How far back a moving thing leaves its blur, and a force its arrow. */
 const blur_s = 0.05;
 const forceMemory_s = 0.1;
-const meterFull_N = 1.5;
+const meterFull_N = 2;
 const textEvery_s = 0.25;
 
 /** One loop on the page: heading with its method, verdict, scene and force meter; and two plots. */
@@ -58,6 +58,7 @@ export class LoopView {
     this.handle.setAttribute('aria-label', `Your handle, ${side} loop, in millimetres`);
     this.handle.setAttribute('aria-valuemin', String(1e3 * lowest_m));
     this.handle.setAttribute('aria-valuemax', String(1e3 * highest_m));
+    this.find('.meter').setAttribute('aria-valuemax', String(meterFull_N));
     const place: Place = {
       millimetresPerPixel: () => 1 / scaleFor(this.width).pixelsPerMillimetre,
       handle_m: () => loop.state.hand_position_m,
@@ -80,7 +81,7 @@ export class LoopView {
   }
 
   rename(name: string): void {
-    this.find('.name').textContent = name;
+    for (const place of this.element.querySelectorAll('.name')) place.textContent = name;
   }
 
   /** Shows or hides all of it. */
@@ -94,14 +95,15 @@ export class LoopView {
 
   private drawVerdict(now_s: number): void {
     const { verdict, word, sentence, measured } = this.verdict.update(this.loop.state, now_s);
-    if (this.textIsDue) this.find('.measured').textContent = measured;
     const element = this.find('.verdict');
-    if (this.element.dataset.verdict === verdict && element.dataset.sentence === sentence) return;
+    const same = this.element.dataset.verdict === verdict && element.dataset.sentence === sentence;
+    if (this.textIsDue || !same) this.find('.measured').textContent = measured;
+    if (same) return;
     this.element.dataset.verdict = verdict;
     element.dataset.sentence = sentence;
     element.querySelector('path')!.setAttribute('d', icons[verdict]);
     element.querySelector('strong')!.textContent = word;
-    element.querySelector('span')!.textContent = sentence;
+    element.querySelector('.sentence')!.textContent = sentence;
   }
 
   private drawMeter(): void {
@@ -111,11 +113,11 @@ export class LoopView {
     const share = (force_N: number): number => Math.min(1, force_N / meterFull_N);
     this.find('.meter-level').style.transform = `scaleX(${share(low)})`;
     this.find('.meter-range').style.transform = `translateX(${100 * share(low)}%) scaleX(${Math.max(0.004, share(high) - share(low))})`;
-    this.find('.meter-peak').style.transform = `translateX(${100 * share(this.peak_N)}%)`;
+    this.find('.meter-peak').style.transform = `translateX(${98 * share(this.peak_N)}%)`;
     if (!this.textIsDue) return;
     const text = `${high.toFixed(2)} N`;
     this.find('.meter-text').textContent = text;
-    this.find('.meter').setAttribute('aria-valuenow', high.toFixed(2));
+    this.find('.meter').setAttribute('aria-valuenow', Math.min(high, meterFull_N).toFixed(2));
     this.find('.meter').setAttribute('aria-valuetext', text);
   }
 
@@ -149,14 +151,12 @@ export class LoopView {
   }
 
   private drawPlots(now_s: number): void {
-    const { trace, gaps } = this.loop;
+    const { trace } = this.loop;
     if (trace.length === 0) return;
     const [time, ...signals] = trace.views();
     const select = (names: readonly SignalName[]): PlotData => [time, ...names.map((name) => signals[signalIndex(name)]!)];
-    const [from, to] = [trace.latest - window_s, trace.latest];
-    this.positions.gaps = this.forces.gaps = gaps;
-    this.positions.update(select(descriptions.positionSignals), from, to, now_s);
-    this.forces.update(select(descriptions.forceSignals), from, to, now_s);
+    this.positions.update(select(descriptions.positionSignals), trace.latest, now_s);
+    this.forces.update(select(descriptions.forceSignals), trace.latest, now_s);
   }
 }
 

@@ -1,5 +1,8 @@
 import 'uplot/dist/uPlot.min.css';
 import './base.css';
+import './controls/controls.css';
+import './plots/plots.css';
+import './loop.css';
 import './page.css';
 import { buildControls } from './controls/parameters';
 import { element, HealthLine, showConnection, showIntroduction, showNotices, showSound } from './controls/status';
@@ -7,11 +10,10 @@ import { LoopView } from './loop_view';
 import { Hand } from './operator/hand';
 import { GamepadInput } from './operator/inputs';
 import * as descriptions from './plots/descriptions';
-import { Plot, type PlotData } from './plots/plot';
+import { Plot } from './plots/plot';
 import { FoxgloveClient } from './protocol/foxglove';
 import { onSchemeChange } from './scene/palette';
 import { Sound } from './sound/sound';
-import { window_s } from './state/loop';
 import { closeUpTime_ms } from './state/contact';
 import { choiceText } from './state/parameters';
 import { Session, sides } from './state/session';
@@ -96,19 +98,13 @@ const gamepad = new GamepadInput(
   tap,
 );
 const health = new HealthLine(session, () => client.undecodable);
-let drawnCloseUp = -1;
+const nothing = new Float32Array(closeUpTime_ms.length).fill(NaN);
 
 function drawShared(now_s: number): void {
   const { left: a, right: b } = session.loops;
-  const revision = a.contact.revision + b.contact.revision + (session.sideBySide ? 0.5 : 0);
-  if (revision !== drawnCloseUp) {
-    drawnCloseUp = revision;
-    const other = session.sideBySide ? b.contact.force_N : b.contact.force_N.map(() => NaN);
-    const data: PlotData = [closeUpTime_ms, a.contact.force_N, other];
-    closeUp.update(data, closeUpTime_ms[0]!, 250, now_s);
-  }
+  closeUp.update([closeUpTime_ms, a.contact.force_N, session.sideBySide ? b.contact.force_N : nothing], 0, now_s);
   const { latest } = session.energy;
-  if (latest > -Infinity) energy.update(session.energy.views(), latest - window_s, latest, now_s);
+  if (latest > -Infinity) energy.update(session.energy.views(), latest, now_s);
 }
 
 /** With reduced motion the plots move on in steps. */

@@ -1,5 +1,7 @@
 import type { PlotDescription } from './plot';
 import type { SignalName } from '../protocol/messages';
+import { after_s, before_s } from '../state/contact';
+import { window_s } from '../state/loop';
 
 /** Which signals the plots of one loop show, in the order of their lines. */
 export const positionSignals: readonly SignalName[] = [
@@ -10,11 +12,11 @@ export const positionSignals: readonly SignalName[] = [
 ];
 export const forceSignals: readonly SignalName[] = ['slave_force_n', 'displayed_force_n', 'hand_force_n'];
 
-function ago(value: number, latest: number): string {
-  return (value - latest).toFixed(1).replace('-', '−').replace('−0.0', '0.0').replace('0.0', 'now');
+function ago(value: number): string {
+  return value === 0 ? 'now' : value.toFixed(1).replace('-', '−');
 }
 
-const overTime = { xLabel: 'seconds ago', xText: ago, xStep: 0.5 };
+const overTime = { xLabel: 'seconds ago', xText: ago, xStep: 0.5, reach: [-window_s, 0] } as const;
 
 export const positions: PlotDescription = {
   ...overTime,
@@ -56,6 +58,7 @@ export const closeUp: PlotDescription = {
   xLabel: 'ms after the first touch',
   yLabel: 'N',
   xStep: 50,
+  reach: [-1e3 * before_s, 1e3 * after_s],
   base: [-0.5, 1.5],
   height: 190,
   lines: loops,
@@ -63,10 +66,10 @@ export const closeUp: PlotDescription = {
 
 export const energy: PlotDescription = {
   ...overTime,
-  title: 'Energy given to your hand',
-  note: 'Since the contact began. Above zero, more came back than you put in: no real wall does that.',
+  title: 'Vibration energy put into your handle',
+  note: 'By the motor, above 15 Hz, since the contact began. A crisp contact levels off; a loop that rings generates more and more.',
   yLabel: 'mJ',
-  base: [-2, 2],
+  base: [-1, 5],
   height: 190,
   lines: loops,
 };

@@ -1,5 +1,7 @@
 import uPlot from 'uplot';
 import { palette, type ColourName } from '../scene/palette';
+import { findEnvelope, makeEnvelope, type Envelope } from './envelope';
+import { Raster, rgb } from './raster';
 import { StableRange } from './range';
 
 /** One line of a plot. */
@@ -16,29 +18,37 @@ export interface PlotDescription {
   readonly xLabel: string;
   readonly yLabel: string;
   readonly lines: readonly Line[];
+  /** What the x axis shows, before and after the origin of the data. */
+  readonly reach: readonly [number, number];
   readonly base: readonly [number, number];
   readonly height: number;
   /** Labels of the x axis; by default the values themselves. */
-  readonly xText?: (value: number, latest: number) => string;
+  readonly xText?: (value: number) => string;
   /** Distance of the marks of the x axis. */
   readonly xStep: number;
 }
 
 export type PlotData = readonly [Float64Array, ...Float32Array[]];
 
-/** A plot with a title, a legend whose entries show and hide lines, and axes with units. */
+/**
+ * A plot with a title, a legend whose entries show and hide lines, and axes with units. uPlot draws the axes, when they
+ * change; the lines are drawn anew in every picture, on a canvas of their own above them.
+ */
 export class Plot {
   readonly element: HTMLElement;
   private readonly chart: uPlot;
+  private readonly canvas = document.createElement('canvas');
+  private readonly context = this.canvas.getContext('2d')!;
   private readonly range: StableRange;
   private readonly shown: boolean[];
   private readonly entries: HTMLButtonElement[] = [];
-  private latest = 0;
-  /** Stretches of x without data, which no line may cross. */
-  gaps: readonly { readonly from: number; readonly to: number }[] = [];
+  private raster = new Raster(1, 1);
+  private envelopes: Envelope[] = [];
+  private bounds: readonly [low: number, high: number];
 
   constructor(private readonly description: PlotDescription) {
     this.range = new StableRange(...description.base);
+    this.bounds = description.base;
     this.shown = description.lines.map(() => true);
     this.element = document.createElement('figure');
     this.element.className = 'plot';
@@ -51,21 +61,29 @@ export class Plot {
     const host = document.createElement('div');
     host.className = 'plot-host';
     host.setAttribute('role', 'img');
-    host.setAttribute('aria-label', `${description.title}: ${description.yLabel} over ${description.xLabel}`);
+    host.setAttribute('aria-label', `${description.title}, in ${description.yLabel} over ${description.xLabel}`);
     this.element.append(caption, host);
-    this.chart = new uPlot(this.options(), [[], ...description.lines.map(() => [])], host);
+    this.chart = new uPlot(this.options(), [[]], host);
+    this.chart.over.append(this.canvas);
     new ResizeObserver(() => this.fit(host)).observe(host);
   }
 
-  /** Shows data from `from` to `to` on the x axis. */
-  update(data: PlotData, from: number, to: number, now_s: number): void {
-    this.latest = to;
-    const [low, high] = this.range.update(...this.extremes(data, from), now_s);
-    this.chart.batch(() => {
-      this.chart.setData(data as unknown as uPlot.AlignedData, false);
-      this.chart.setScale('x', { min: from, max: to });
-      this.chart.setScale('y', { min: low, max: high });
+  /** Shows data; `origin` is where in their time the zero of the x axis is. */
+  update([time, ...signals]: PlotData, origin: number, now_s: number): void {
+    this.fitRaster();
+    const [from, to] = this.description.reach.map((value) => origin + value) as [number, number];
+    let [low, high] = [Infinity, -Infinity];
+    this.envelopes.forEach((envelope, index) => {
+      findEnvelope(time, signals[index]!, from, to, envelope);
+      if (!this.shown[index]) return;
+      low = envelope.low.reduce((least, value) => Math.min(least, value), low);
+      high = envelope.high.reduce((greatest, value) => Math.max(greatest, value), high);
     });
+    this.bounds = this.range.update(low, high, now_s);
+    const [min, max] = this.bounds;
+    const { y } = this.chart.scales;
+    if (min !== y!.min || max !== y!.max) this.chart.setScale('y', { min, max });
+    this.drawLines();
   }
 
   /** Names a line anew in the legend, or leaves it out there. */
@@ -78,6 +96,29 @@ export class Plot {
   /** Draws again, in the colours of now. */
   redraw(): void {
     this.chart.redraw(false, true);
+    this.drawLines();
+  }
+
+  private drawLines(): void {
+    const { raster, canvas, context } = this;
+    raster.clear();
+    this.description.lines.forEach((line, index) => {
+      const envelope = this.envelopes[index];
+      if (!this.shown[index] || !envelope) return;
+      raster.draw(envelope, ...this.bounds, (line.width ?? 1.5) * devicePixelRatio, rgb(palette[line.colour]));
+    });
+    if (canvas.width !== raster.width || canvas.height !== raster.height) {
+      canvas.width = raster.width;
+      canvas.height = raster.height;
+    }
+    context.putImageData(new ImageData(raster.bytes, raster.width, raster.height), 0, 0);
+  }
+
+  private fitRaster(): void {
+    const { width, height } = this.chart.bbox;
+    if (this.raster.width === width && this.raster.height === height) return;
+    this.raster = new Raster(width, height);
+    this.envelopes = this.description.lines.map(() => makeEnvelope(width));
   }
 
   private fit(host: HTMLElement): void {
@@ -85,23 +126,11 @@ export class Plot {
     if (width > 0 && width !== this.chart.width) this.chart.setSize({ width, height: this.description.height });
   }
 
-  private extremes([time, ...signals]: PlotData, from: number): [number, number] {
-    let low = Infinity;
-    let high = -Infinity;
-    signals.forEach((values, index) => {
-      if (!this.shown[index]) return;
-      for (let i = values.length - 1; i >= 0 && time[i]! >= from; --i) {
-        const value = values[i]!;
-        if (value < low) low = value;
-        if (value > high) high = value;
-      }
-    });
-    return [low, high];
-  }
-
   private legend(): HTMLElement {
     const legend = document.createElement('div');
     legend.className = 'legend';
+    legend.setAttribute('role', 'group');
+    legend.setAttribute('aria-label', `Lines of: ${this.description.title}`);
     this.description.lines.forEach((line, index) => {
       const entry = document.createElement('button');
       entry.type = 'button';
@@ -115,7 +144,7 @@ export class Plot {
       entry.addEventListener('click', () => {
         this.shown[index] = !this.shown[index];
         entry.setAttribute('aria-pressed', String(this.shown[index]));
-        this.chart.setSeries(index + 1, { show: this.shown[index]! });
+        this.drawLines();
       });
       legend.append(entry);
     });
@@ -123,7 +152,7 @@ export class Plot {
   }
 
   private options(): uPlot.Options {
-    const { xLabel, yLabel, lines, height, xStep } = this.description;
+    const { xLabel, yLabel, height, reach, base, xStep } = this.description;
     const xText = this.description.xText ?? ((value: number) => String(value).replace('-', '−'));
     const axis: uPlot.Axis = {
       stroke: () => palette.muted,
@@ -135,14 +164,13 @@ export class Plot {
       labelGap: 0,
       gap: 4,
     };
-    const latest = (): number => this.latest;
     return {
       width: 320,
       height,
       legend: { show: false },
       cursor: { show: false },
       padding: [8, 12, 0, 0],
-      scales: { x: { time: false, auto: false }, y: { auto: false } },
+      scales: { x: { time: false, range: [...reach] }, y: { min: base[0], max: base[1], range: (_chart, min, max) => [min, max] } },
       axes: [
         {
           ...axis,
@@ -150,37 +178,20 @@ export class Plot {
           // Clear of the lowest mark of the other axis.
           gap: 10,
           label: xLabel,
-          splits: (_chart, _axis, min, max) => marks(min, max, xStep, this.description.xText ? latest() : 0),
-          values: (_chart, splits) => splits.map((value) => xText(value, latest())),
+          splits: (_chart, _axis, min, max) => marks(min, max, xStep),
+          values: (_chart, splits) => splits.map(xText),
         },
         { ...axis, size: 42, space: 24, label: yLabel, values: (_chart, splits) => splits.map(minusSign) },
       ],
-      series: [
-        {},
-        ...lines.map((line) => ({
-          label: line.label,
-          stroke: () => palette[line.colour],
-          width: line.width ?? 1.5,
-          points: { show: false },
-          gaps: (chart: uPlot) => this.gapPixels(chart),
-        })),
-      ],
+      series: [{}],
     };
-  }
-
-  private gapPixels(chart: uPlot): [number, number][] {
-    return this.gaps
-      .filter(({ to }) => to > (chart.scales.x?.min ?? 0))
-      .map(({ from, to }) => [chart.valToPos(from, 'x', true), chart.valToPos(to, 'x', true)]);
   }
 }
 
-/** Multiples of `step` away from `origin`. */
-function marks(min: number, max: number, step: number, origin: number): number[] {
+/** Multiples of `step`. */
+function marks(min: number, max: number, step: number): number[] {
   const values: number[] = [];
-  for (let k = Math.ceil((min - origin) / step - 1e-6); origin + k * step <= max + 1e-6 * step; ++k) {
-    values.push(origin + k * step);
-  }
+  for (let k = Math.ceil(min / step); k <= Math.floor(max / step); ++k) values.push(k * step);
   return values;
 }
 

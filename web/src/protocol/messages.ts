@@ -34,7 +34,7 @@ export interface LoopState {
   readonly wall_position_m: number;
   readonly slave_force_N: number;
   readonly displayed_force_N: number;
-  readonly energy_J: number;
+  readonly vibrationEnergy_J: number;
   readonly inContact: boolean;
   readonly verdict: Verdict;
   readonly cause: string;
@@ -78,7 +78,7 @@ export function toLoopState(message: Message): LoopState {
     wall_position_m: number(message.wall_position_m),
     slave_force_N: number(message.slave_force_n),
     displayed_force_N: number(message.displayed_force_n),
-    energy_J: number(message.energy_j),
+    vibrationEnergy_J: number(message.vibration_energy_j),
     inContact: message.in_contact === true,
     verdict: verdict ?? 'free',
     cause: typeof message.cause === 'string' ? message.cause : '',

@@ -135,9 +135,9 @@ function drawRail(context: Context, width: number, y: number): void {
   line(context, 0, y, width, y);
 }
 
-/** A force as an arrow that pushes to the left, from `x`. */
+/** A force as an arrow that pushes to the left, from `x`; none for what would read 0.0 N. */
 function drawForce(context: Context, x: number, y: number, force_N: number): void {
-  if (force_N < 0.03) return;
+  if (force_N < 0.05) return;
   const length = Math.min(90, 10 + force_N * arrowPixelsPerNewton);
   context.strokeStyle = palette.force;
   context.fillStyle = palette.force;
@@ -156,7 +156,7 @@ function drawMaster(context: Context, width: number, scale: Scale, content: Scen
   label(context, 'your hand on the master', 8, 10, palette.muted, 'left');
   const [low, high] = content.master_mm;
   const x = scale.x((low + high) / 2);
-  drawForce(context, x - 20, masterLane + 16, content.displayed_N);
+  drawForce(context, x - 20, masterLane + 24, content.displayed_N);
   drawBand(context, scale.x(low) - 13, scale.x(high) + 13, masterLane, 30, content.rings ? palette.bad : palette.master);
   drawFist(context, x, masterLane, palette.master, 1);
   if (content.engaged) {

@@ -20,8 +20,6 @@ const freeBefore_s = 0.2;
 export class ContactCapture {
   /** In N on the grid; not a number where nothing has been seen yet. */
   readonly force_N = new Float32Array(gridLength).fill(NaN);
-  /** Counts what was filled in, so that a drawing knows whether there is something new. */
-  revision = 0;
   private filled = 0;
   private begin_s: number | undefined;
   private lastTouch_s = -Infinity;
@@ -31,7 +29,6 @@ export class ContactCapture {
     this.filled = 0;
     this.begin_s = undefined;
     this.lastTouch_s = -Infinity;
-    this.revision += 1;
   }
 
   /** The greatest force between slave and wall in a column at this time, in order of time. */
@@ -55,6 +52,5 @@ export class ContactCapture {
       const upTo = Math.min(gridLength, Math.floor((time[i]! - this.begin_s) / grid_s + 0.5) + 1);
       while (this.filled < upTo) this.force_N[this.filled++] = force[i]!;
     }
-    this.revision += 1;
   }
 }

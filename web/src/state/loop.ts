@@ -16,7 +16,7 @@ const initial: LoopState = {
   wall_position_m: 0.01,
   slave_force_N: 0,
   displayed_force_N: 0,
-  energy_J: 0,
+  vibrationEnergy_J: 0,
   inContact: false,
   verdict: 'free',
   cause: '',
@@ -24,19 +24,16 @@ const initial: LoopState = {
   dropped: 0,
 };
 
-export interface Gap {
-  readonly from: number;
-  readonly to: number;
-}
-
 /** What is known of one of the two loops. Positions are kept in mm and forces in N, as they are shown. */
 export class Loop {
   state: LoopState = initial;
-  /** Two rows a column: the least value, then the greatest, so that a line through them fills what lies between. */
+  /**
+   * Two rows a column: the least value, then the greatest, so that a line through them fills what lies
+   * between. A row where nothing is a number stands for a stretch that no block covered.
+   */
   readonly trace = new SlidingSeries(2 * keptColumns, signalNames.length);
   readonly handForce = new SlidingSeries(keptTicks, 1);
   readonly contact = new ContactCapture();
-  readonly gaps: Gap[] = [];
   /** Time that no block covered since the page was loaded, and its pieces. */
   missing_s = 0;
   missingPieces = 0;
@@ -47,7 +44,6 @@ export class Loop {
     this.trace.clear();
     this.handForce.clear();
     this.contact.clear();
-    this.gaps.length = 0;
     this.blockEnd_s = undefined;
   }
 
@@ -86,8 +82,8 @@ export class Loop {
     if (block.start_s < this.trace.latest - block.column_s) this.trace.clear();
     const end = this.blockEnd_s;
     if (end !== undefined && block.start_s > end + 1.5 * block.column_s) {
-      this.gaps.push({ from: end, to: block.start_s });
-      if (this.gaps.length > 50) this.gaps.shift();
+      this.trace.add(end);
+      for (let signal = 0; signal < signalNames.length; ++signal) this.trace.set(signal, NaN);
       this.missing_s += block.start_s - end;
       this.missingPieces += 1;
     }

@@ -46,14 +46,15 @@ export class SlidingSeries {
     return [this.time.subarray(begin, this.end), ...this.values.map((values) => values.subarray(begin, this.end))];
   }
 
-  /** Least and greatest value of a signal since a time; an empty range is `[Infinity, -Infinity]`. */
+  /** Least and greatest number of a signal since a time; an empty range is `[Infinity, -Infinity]`. */
   extremes(signal: number, since: number): [number, number] {
     const values = this.values[signal]!;
     let low = Infinity;
     let high = -Infinity;
     for (let i = this.end - 1; i >= this.end - this.length && this.time[i]! >= since; --i) {
-      low = Math.min(low, values[i]!);
-      high = Math.max(high, values[i]!);
+      const value = values[i]!;
+      if (value < low) low = value;
+      if (value > high) high = value;
     }
     return [low, high];
   }

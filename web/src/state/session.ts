@@ -28,7 +28,7 @@ type Listeners = { [Name in keyof Events]: ((event: Events[Name]) => void)[] };
 /** All that the page knows: filled by the connection, read by everything that is shown or heard. */
 export class Session implements Handlers {
   readonly loops: Readonly<Record<Side, Loop>> = { left: new Loop(), right: new Loop() };
-  /** Energy that each loop gave to the hand, in mJ, over the time of the left loop. */
+  /** Energy that each loop gave to the handle by vibration, in mJ, over the time of the left loop. */
   readonly energy = new SlidingSeries(400, sides.length);
   connection: Connection = { state: 'connecting' };
   described: readonly ParameterDescription[] = [];
@@ -79,7 +79,7 @@ export class Session implements Handlers {
     this.energy.add(time_s);
     sides.forEach((side, index) => {
       const runs = side === 'left' || this.sideBySide;
-      this.energy.set(index, runs ? 1e3 * this.loops[side].state.energy_J : NaN);
+      this.energy.set(index, runs ? 1e3 * this.loops[side].state.vibrationEnergy_J : NaN);
     });
   }
 

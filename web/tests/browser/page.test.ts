@@ -103,6 +103,24 @@ describe('the page', () => {
     expect(outline).toBe('solid');
   });
 
+  test('hides a line at a press on its name, also while the plots are held', async () => {
+    const drawn = () =>
+      page.$eval('.plot:first-child .u-over canvas', (canvas) => {
+        const { width, height } = canvas as HTMLCanvasElement;
+        const { data } = (canvas as HTMLCanvasElement).getContext('2d')!.getImageData(0, 0, width, height);
+        return data.some((byte) => byte !== 0);
+      });
+    await page.uncheck(`${parameter('side_by_side')} input`);
+    await page.click('#tap');
+    await until(async () => expect(await drawn()).toBe(true));
+    await page.click('#pause');
+    const name = page.locator('.plot:first-child .legend button:visible');
+    await name.click();
+    expect(await drawn()).toBe(false);
+    await name.click();
+    expect(await drawn()).toBe(true);
+  });
+
   test('shows a change that another client made, and a refusal with its reason', async () => {
     server.values.set('control.force_gain', 4);
     server.sendToAll({ op: 'parameterValues', parameters: [{ name: 'control.force_gain', value: 4 }] });
@@ -137,7 +155,9 @@ describe('a phone', () => {
       all.filter((one) => one.getClientRects().length > 0 && one.getBoundingClientRect().height < 22).length,
     );
     expect(small).toBe(0);
-    const box = (await phone.page.locator('#handle-left').boundingBox())!;
+    const handle = phone.page.locator('#handle-left');
+    await handle.scrollIntoViewIfNeeded();
+    const box = (await handle.boundingBox())!;
     const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
     const touch = await phone.page.context().newCDPSession(phone.page);
     await touch.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ x, y }] });

@@ -34,7 +34,7 @@ float64 slave_position_m
 float64 wall_position_m
 float64 slave_force_n
 float64 displayed_force_n
-float64 energy_j
+float64 vibration_energy_j
 bool in_contact
 string verdict
 string cause
