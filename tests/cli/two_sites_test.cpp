@@ -54,11 +54,11 @@ class TwoSites : public ::testing::Test {
   }
 
   /// Messages of each topic of a log, as another verb reads it.
-  [[nodiscard]] nlohmann::json telemetry_of(const std::string& log) const {
+  [[nodiscard]] nlohmann::json messages_of(const std::string& log) const {
     shell("$TACTUS export " + log + " --to mat --out export.mat --json >export.json 2>/dev/null");
+    const nlohmann::json document = result("export");
     nlohmann::json messages;
-    for (const auto& topic : result("export")["topics"])
-      messages[topic["topic"].get<std::string>()] = topic["messages"];
+    for (const auto& topic : document["topics"]) messages[topic["topic"].get<std::string>()] = topic["messages"];
     return messages;
   }
 
@@ -102,7 +102,7 @@ TEST_F(TwoSites, TapThroughARelayThatLosesDelaysReordersAndDoubles) {
   ASSERT_FALSE(slave["seconds"].empty());
   EXPECT_EQ(slave["seconds"].back()["time_s"], slave["duration_s"]);
   EXPECT_EQ(slave["log_dropped"], 0);
-  const auto log = telemetry_of("report/log");
+  const auto log = messages_of("report/log");
   EXPECT_EQ(log["/site"], slave["ticks"]);
   EXPECT_EQ(log["/servo"], slave["ticks"]);
   std::ostringstream page;
