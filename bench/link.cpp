@@ -47,8 +47,8 @@ struct Contestant {
 
 /// What `Endpoint` does for a tick, in the two halves that a ping-pong has.
 End end_of(Endpoint& endpoint) {
-  return {.send = [&endpoint] { endpoint.send({.position_m = 1.0}, Standing::active, 1, monotonic_ns()); },
-          .came = [&endpoint] { return endpoint.receive(monotonic_ns()).arrival.fresh; }};
+  return {.send = [&endpoint] { testing::send(endpoint, 1.0, monotonic_ns()); },
+          .came = [&endpoint] { return !endpoint.receive(monotonic_ns()).empty(); }};
 }
 
 /// The barest: one system call to send, one to receive.
@@ -114,10 +114,10 @@ int main() {
   };
   Bare bare_left = open_bare(bare_ports.master, bare_ports.slave);
   Bare bare_right = open_bare(bare_ports.slave, bare_ports.master);
-  Endpoint plain_left = testing::open(SiteName::master, plain_ports, std::nullopt);
-  Endpoint plain_right = testing::open(SiteName::slave, plain_ports, std::nullopt);
-  Endpoint secure_left = testing::open(SiteName::master, secure_ports, testing::test_key());
-  Endpoint secure_right = testing::open(SiteName::slave, secure_ports, testing::test_key());
+  Endpoint plain_left = testing::open(SiteRole::master, plain_ports, std::nullopt);
+  Endpoint plain_right = testing::open(SiteRole::slave, plain_ports, std::nullopt);
+  Endpoint secure_left = testing::open(SiteRole::master, secure_ports, testing::test_key());
+  Endpoint secure_right = testing::open(SiteRole::slave, secure_ports, testing::test_key());
   if (!testing::meet(plain_left, plain_right) || !testing::meet(secure_left, secure_right)) {
     std::fputs("bench_link: the sites did not meet\n", stderr);
     return 1;

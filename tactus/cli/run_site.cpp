@@ -6,11 +6,15 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/simulation/experiment.hpp>
 
+#include <array>
 #include <atomic>
 #include <csignal>
+#include <cstddef>
+#include <filesystem>
 #include <iostream>
+#include <string>
+#include <string_view>
 #include <utility>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <poll.h>
@@ -24,6 +28,10 @@ std::atomic<bool> asked_to_arm{false};
 
 Error refused(ErrorCode code, const char* option, std::string message) {
   return Error{.code = code, .parameter = {}, .message = std::move(message), .place = option};
+}
+
+control::SiteRole role_of(const SiteOptions& options) {
+  return options.site == "master" ? control::SiteRole::master : control::SiteRole::slave;
 }
 
 /// `PORT` or `HOST:PORT`; without it the peer's port on every own address.
@@ -54,22 +62,53 @@ Result<link::Endpoint::Settings> link_settings(const SiteOptions& options) {
                    "the link is encrypted: make a key with `tactus key FILE` and give it to both sites; on one host, "
                    "--unencrypted does without");
   }
-  return link::Endpoint::Settings{.site = options.site == "master" ? link::SiteName::master : link::SiteName::slave,
-                                  .peer = *peer,
-                                  .listen = *listen,
-                                  .key = key,
-                                  .longest_age_s = options.longest_age_s};
+  return link::Endpoint::Settings{.site = role_of(options), .peer = *peer, .listen = *listen, .key = key};
 }
 
-/// Whether a person typed a line. A standard input that has ended is left alone.
-bool line_typed(bool& open) {
-  pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-  if (!open || poll(&input, 1, 0) <= 0) return false;
-  char text[256];
-  const ssize_t size = read(STDIN_FILENO, text, sizeof(text));
-  open = size > 0;
-  return open;
-}
+/// What a person asks a site for while it runs: words on standard input, and SIGUSR1.
+class Person {
+ public:
+  explicit Person(control::SiteRole role) : role_(role) {
+    std::signal(SIGUSR1, [](int) { asked_to_arm.store(true, std::memory_order_relaxed); });
+  }
+
+  /// Passes on what came since the last call; a wrong word is told on standard error.
+  void ask(SiteExchange& exchange) {
+    const bool master = role_ == control::SiteRole::master;
+    if (asked_to_arm.exchange(false, std::memory_order_relaxed) && master) exchange.words.try_push(SiteWord::arm);
+    read_what_waits();
+    for (auto end = typed_.find('\n'); end != std::string::npos; end = typed_.find('\n')) {
+      const auto word = parse_site_word(std::string_view(typed_).substr(0, end), role_);
+      if (word) {
+        if (!exchange.words.try_push(*word)) return;  // asked again at the next call
+      } else {
+        std::cerr << "tactus: " << describe(word.error()) << "\n";
+      }
+      typed_.erase(0, end + 1);
+    }
+  }
+
+ private:
+  /// A standard input that has ended is left alone, after its last line.
+  void read_what_waits() {
+    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
+    if (!open_ || poll(&input, 1, 0) <= 0) return;
+    std::array<char, 256> text{};
+    const ssize_t size = read(STDIN_FILENO, text.data(), text.size());
+    open_ = size > 0;
+    if (open_) {
+      typed_.append(text.data(), static_cast<std::size_t>(size));
+    } else if (!typed_.empty()) {
+      typed_ += '\n';
+    }
+  }
+
+  control::SiteRole role_;
+  std::string typed_;
+  bool open_ = true;
+};
+
+std::filesystem::path log_folder(const std::string& out) { return std::filesystem::path(out) / "log"; }
 
 }  // namespace
 
@@ -86,9 +125,6 @@ void add_site_options(CLI::App& verb, SiteOptions& options) {
   verb.add_flag("--unencrypted", options.unencrypted, "Plain text, on this host's loopback only")->group(group);
   verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as the slave is heard")->group(group);
   add("--duration-s", options.duration_s, "How long to run; 0 is until interrupted", "S")->capture_default_str();
-  add("--hold-after-s", options.following.hold_after_s, "Silence of the other site that ends in hold", "S")
-      ->capture_default_str();
-  add("--longest-age-s", options.longest_age_s, "Older messages are not applied", "S")->capture_default_str();
 }
 
 Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_params, const simulation::Request& request,
@@ -104,44 +140,53 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   const auto link = link_settings(options);
   if (!link) return link.error();
 
+  SiteRun run;
+  run.role = role_of(options);
   SiteExchange exchange;
-  auto following = options.following;
-  following.stale_after_s = std::min(following.stale_after_s, 0.5 * following.hold_after_s);
-  auto loop = SiteLoop::make(
-      *params, {.link = *link, .following = following, .duration_s = options.duration_s, .arm_at_once = options.arm},
-      exchange);
+  auto loop =
+      SiteLoop::make(*params, {.link = *link, .duration_s = options.duration_s, .arm_at_once = options.arm}, exchange);
   if (!loop) return document.locate(loop.error());
+  const std::string configuration = configuration::to_toml(*params);
+  std::optional<SiteLog> log;
+  if (out) {
+    auto created = SiteLog::create(log_folder(*out), request, configuration, run.role);
+    if (!created) return created.error();
+    log.emplace(*std::move(created));
+    loop->log_to(log->streams());
+  }
 
   const Interruption interruption;
-  std::signal(SIGUSR1, [](int) { asked_to_arm.store(true, std::memory_order_relaxed); });
+  Person person(run.role);
   servo_params.rate_Hz = params->servo.rate_Hz;
   auto servo = runtime::ServoThread<SiteLoop>::start(servo_params, *std::move(loop));
   if (!servo) return servo.error();
   std::ostream& lines = json ? std::cerr : std::cout;
-  lines << second_head(options.site) << std::flush;
-  bool input_open = true;
-  std::vector<SiteSecond> seconds;
+  lines << second_head(run.role) << std::flush;
   const auto take_seconds = [&] {
     SiteSecond second;
     while (exchange.seconds.try_pop(second)) {
       lines << second_line(second) << std::flush;
-      seconds.push_back(second);
+      run.seconds.push_back(second);
     }
   };
   while (!(*servo)->ended()) {
     if (interruption.asked()) (*servo)->stop();
-    const bool typed = line_typed(input_open);
-    if (asked_to_arm.exchange(false, std::memory_order_relaxed) || typed) {
-      exchange.arm.store(true, std::memory_order_relaxed);
-    }
+    person.ask(exchange);
     take_seconds();
     usleep(20'000);
   }
-  const auto& report = (*servo)->finish();
+  run.servo = (*servo)->finish();
+  (*servo)->step().finish();
   take_seconds();
-  const SiteTotals totals = (*servo)->step().totals();
-  return write_outcome(
-      out, site_outcome(options.site, totals, seconds, report, request, configuration::to_toml(*params)), json);
+  run.totals = (*servo)->step().totals();
+  Check log_error;
+  if (log) {
+    log_error = log->close();
+    run.log_dropped = log->dropped();
+  }
+  if (auto error = write_outcome(out, site_outcome(run, request, configuration), json)) return error;
+  if (log && !log_error) (json ? std::cerr : std::cout) << "Log: " << log_folder(*out).string() << "\n";
+  return log_error;
 }
 
 }  // namespace tactus::cli

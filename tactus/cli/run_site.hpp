@@ -1,7 +1,6 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
-#include <tactus/link/following.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/experiment.hpp>
 
@@ -24,16 +23,15 @@ struct SiteOptions {
   bool unencrypted = false;
   bool arm = false;
   double duration_s = 0.0;
-  double longest_age_s = 0.5;
-  link::Following::Params following;
 };
 
 /// Adds these options to the verb.
 void add_site_options(CLI::App& verb, SiteOptions& options);
 
 /// Runs one site of the request's experiment in real time until it ends or is interrupted: a line a second, then
-/// tables, and a report in the folder `out` if there is one. With `json` the lines go to standard error and one
-/// document to standard output. SIGUSR1 or a line on standard input arms. Of `servo`, the rate is the experiment's.
+/// tables. In the folder `out`, if there is one, it leaves a report, and every tick in `log/log.mcap`. With `json` the
+/// lines go to standard error and one document to standard output. What a person asks for is read from standard input,
+/// a `SiteWord` a line; SIGUSR1 arms. Of `servo`, the rate is the experiment's.
 Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo, const simulation::Request& request,
                const std::optional<std::string>& out, bool json);
 

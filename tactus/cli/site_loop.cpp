@@ -41,70 +41,81 @@ Result<SiteLoop> SiteLoop::make(const simulation::TappingParams& params, const S
   const Seconds tick{clock->tick_s};
   control::ControlParams control = params.control;
   control.model = simulation::mismatched(control.model, params.task.mismatch);
-  auto sites = control::make_sites(control, tick);
-  if (!sites) return under("control", sites.error());
-
   const RepeatedTaps path(params);
   const double slave_start_m = control.position_scale * path.start_m();
-  const bool is_master = settings.link.site == link::SiteName::master;
+  const bool is_master = settings.link.site == control::SiteRole::master;
+  auto endpoint = link::Endpoint::make(settings.link);
+  if (!endpoint) return endpoint.error();
   auto work = [&]() -> Result<Work> {
     if (is_master) {
       const auto plant = simulation::MasterPlant::make(params.master, params.person, *clock, path.start_m());
       if (!plant) return plant.error();
-      return Work(Master{.plant = *plant, .site = std::move(sites->master), .path = path, .clock = *clock});
+      auto site = control::make_supervised_master(control, endpoint->session(), tick);
+      if (!site) return under("control", site.error());
+      return Work(Master{.plant = *plant, .site = *std::move(site), .path = path, .clock = *clock});
     }
     const auto plant = simulation::SlavePlant::make(params.slave, params.environment, *clock, slave_start_m);
     if (!plant) return plant.error();
-    return Work(Slave{.plant = *plant, .site = std::move(sites->slave), .clock = *clock});
+    auto site = control::make_supervised_slave(control, endpoint->session(), tick);
+    if (!site) return under("control", site.error());
+    return Work(Slave{.plant = *plant, .site = *std::move(site), .clock = *clock});
   }();
   if (!work) return work.error();
-  const auto following = link::Following::make(settings.following, tick, {.position_m = slave_start_m});
-  if (!following) return following.error();
-  auto endpoint = link::Endpoint::make(settings.link);
-  if (!endpoint) return endpoint.error();
   const auto& gate = is_master ? control.gate : control.slave_gate;
-  return SiteLoop(settings, exchange, *std::move(endpoint), *following, *std::move(work), tick.value,
+  return SiteLoop(settings, exchange, *std::move(endpoint), *std::move(work), tick.value, control.supervision,
                   gate.rate_limit_N_per_s * tick.value);
 }
 
-SiteLoop::SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpoint endpoint,
-                   const link::Following& following, Work work, double tick_s, double force_step_limit_N)
+SiteLoop::SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpoint endpoint, Work work, double tick_s,
+                   const control::SupervisionParams& supervision, double force_step_limit_N)
     : settings_(settings),
       exchange_(&exchange),
       endpoint_(std::move(endpoint)),
-      arming_(settings.link.site, settings.following.hold_after_s, tick_s),
-      following_(following),
       work_(std::move(work)),
       tick_s_(tick_s),
+      longest_age_s_(supervision.packets.longest_age_s),
+      listen_before_arming_s_(supervision.watchdog.timeout_s),
       may_arm_at_once_(settings.arm_at_once) {
   totals_.force_step_limit_N = force_step_limit_N;
 }
 
-SiteLoop::Stepped SiteLoop::Master::step(const control::Arrival& arrival, bool active) noexcept {
+SiteLoop::Stepped SiteLoop::Master::step(const control::SiteRequests& requests, std::int64_t elapsed_ticks) noexcept {
   const auto reading = plant.measure();
-  const auto output = site.step({.motor_position_m = reading.motor_position_m,
-                                 .hand_force_N = reading.hand_force_N,
-                                 .arrival = arrival,
-                                 .grip = reading.grip});
+  const auto output = site.step({.sensors = {.motor_position_m = reading.motor_position_m,
+                                             .hand_force_N = reading.hand_force_N,
+                                             .arrival = {},
+                                             .grip = reading.grip},
+                                 .requests = requests,
+                                 .elapsed_ticks = elapsed_ticks});
   const double now_s = path_s;
-  if (active) path_s += clock.tick_s;
-  plant.begin_tick({.motor_force_N = output.motor_force_N, .handle_force_N = output.handle_force_N},
+  if (site.state() == control::SiteState::active) path_s += clock.tick_s;
+  plant.begin_tick({.motor_force_N = output.site.motor_force_N, .handle_force_N = output.site.handle_force_N},
                    path.position_m(now_s), path.position_m(path_s));
   for (int i = 0; i < clock.substeps; ++i) plant.substep(i);
-  return {.message = output.message,
-          .motor_force_N = output.motor_force_N,
-          .fault = site.fault() != control::GateFault::none};
+  Stepped stepped{.packet = output.packet, .record = {output.record}};
+  stepped.record.position_m = reading.motor_position_m;
+  stepped.record.read_force_N = reading.hand_force_N;
+  stepped.record.grip = reading.grip;
+  stepped.record.motor_force_N = output.site.motor_force_N;
+  stepped.record.handle_force_N = output.site.handle_force_N;
+  stepped.record.induced_position_m = output.site.induced_position_m;
+  stepped.record.intended_position_m = output.site.intended_position_m;
+  return stepped;
 }
 
-SiteLoop::Stepped SiteLoop::Slave::step(const control::Arrival& arrival, bool) noexcept {
+SiteLoop::Stepped SiteLoop::Slave::step(const control::SiteRequests& requests, std::int64_t elapsed_ticks) noexcept {
   const auto reading = plant.measure();
-  const auto output =
-      site.step({.motor_position_m = reading.motor_position_m, .tip_force_N = reading.tip_force_N, .arrival = arrival});
-  plant.begin_tick(output.motor_force_N);
+  const auto output = site.step(
+      {.sensors = {.motor_position_m = reading.motor_position_m, .tip_force_N = reading.tip_force_N, .arrival = {}},
+       .requests = requests,
+       .elapsed_ticks = elapsed_ticks});
+  plant.begin_tick(output.site.motor_force_N);
   for (int i = 0; i < clock.substeps; ++i) plant.substep(i);
-  return {.message = output.message,
-          .motor_force_N = output.motor_force_N,
-          .fault = site.fault() != control::GateFault::none};
+  Stepped stepped{.packet = output.packet, .record = {output.record}};
+  stepped.record.position_m = reading.motor_position_m;
+  stepped.record.read_force_N = reading.tip_force_N;
+  stepped.record.motor_force_N = output.site.motor_force_N;
+  return stepped;
 }
 
 bool SiteLoop::operator()(const runtime::Tick& tick) noexcept {
@@ -113,74 +124,104 @@ bool SiteLoop::operator()(const runtime::Tick& tick) noexcept {
     start_ns_ = now_ns;
     second_ends_ns_ = now_ns + 1'000'000'000;
   }
-  const auto received = endpoint_.receive(now_ns);
-  const link::Standing before = arming_.standing();
-  if (received.heard) heard_s_ += tick_s_;
-  // The slave follows a number that rises, so it must have heard the one before.
-  const bool arm_at_once = may_arm_at_once_ && heard_s_ > settings_.following.hold_after_s;
-  if (arm_at_once) may_arm_at_once_ = false;
-  const bool arm = exchange_->arm.exchange(false, std::memory_order_relaxed) || arm_at_once;
-  const link::Standing standing = arming_.step({.heard = received.heard,
-                                                .silence_s = received.silence_s,
-                                                .session = received.session,
-                                                .peer = received.standing,
-                                                .peer_armings = received.armings,
-                                                .arm = arm,
-                                                .fault = fault_});
-  judge(received, before);
-  const auto arrival =
-      following_.step({.arrival = received.arrival, .silence_s = received.silence_s, .standing = standing});
-  const bool active = standing == link::Standing::active;
-  const Stepped stepped = std::visit([&](auto& work) { return work.step(arrival, active); }, work_);
-  fault_ = stepped.fault;
-  endpoint_.send(stepped.message, standing, arming_.armings(), now_ns);
+  receive(now_ns);
+  const control::SiteState before = state();
+  const control::SiteRequests pressed = requests();
+  Stepped stepped = std::visit([&](auto& work) { return work.step(pressed, tick.missed + 1); }, work_);
+  endpoint_.send(stepped.packet, now_ns);
+
+  stepped.record.tick = tick.number;
+  stepped.record.missed = tick.missed;
+  stepped.record.age_s = newest_.age_s;
+  stepped.record.round_trip_s = condition_.round_trip_s;
+  stepped.record.link_silence_s = condition_.silence_s;
+  stepped.record.hear(newest_.message);
+  stepped.record.tell(stepped.packet);
+  judge(before, stepped.record);
   measure(stepped);
+  log(tick, stepped.record);
+  last_ = stepped.record;
 
   ++totals_.ticks;
-  totals_.active_ticks += active ? 1 : 0;
+  ++second_ticks_;
   totals_.duration_s = static_cast<double>(now_ns - start_ns_) * 1e-9;
-  if (now_ns >= second_ends_ns_) end_second();
+  if (now_ns >= second_ends_ns_) {
+    end_second();
+    second_ends_ns_ += 1'000'000'000;
+  }
   return settings_.duration_s <= 0.0 || totals_.duration_s < settings_.duration_s;
 }
 
-void SiteLoop::judge(const link::Endpoint::Received& received, link::Standing before) noexcept {
-  const link::Standing now = arming_.standing();
-  ++ticks_since_arming_;
-  if (before == link::Standing::hold && now == link::Standing::active) {
-    ++totals_.armings;
-    ticks_since_arming_ = 0;
-  } else if (before == link::Standing::active && now == link::Standing::hold) {
-    ++totals_.holds[static_cast<std::size_t>(arming_.cause())];
-    totals_.longest_silence_at_hold_s = std::max(totals_.longest_silence_at_hold_s, received.silence_s);
+void SiteLoop::receive(std::int64_t now_ns) noexcept {
+  const auto packets = endpoint_.receive(now_ns);
+  condition_ = endpoint_.condition(now_ns);
+  for (const control::Packet& packet : packets) {
+    const auto verdict = std::visit([&](auto& work) { return work.site.take(packet); }, work_);
+    ++totals_.packets[verdict];
+    if (verdict != control::PacketVerdict::applied) continue;
+    const bool older = packet.session == newest_.session && packet.sequence <= newest_.sequence;
+    if (older || packet.age_s > longest_age_s_) ++totals_.stale_applied;
+    newest_ = packet;
+    for (Arrivals* sums : {&arrivals_, &second_}) {
+      ++sums->packets;
+      sums->round_trip_sum_s += condition_.round_trip_s;
+      sums->age_sum_s += packet.age_s;
+    }
+    totals_.round_trip_max_s = std::max(totals_.round_trip_max_s, condition_.round_trip_s);
+    totals_.age_max_s = std::max(totals_.age_max_s, packet.age_s);
   }
-  if (!received.arrival.fresh) return;
-  const bool older = received.session == last_session_ && received.sequence <= last_sequence_;
-  if (older || received.age_s > settings_.link.longest_age_s) ++totals_.stale_applied;
-  last_session_ = received.session;
-  last_sequence_ = received.sequence;
-  ++messages_;
-  ++second_messages_;
-  round_trip_sum_s_ += received.round_trip_s;
-  second_round_trip_sum_s_ += received.round_trip_s;
-  age_sum_s_ += received.age_s;
-  second_age_sum_s_ += received.age_s;
-  totals_.round_trip_max_s = std::max(totals_.round_trip_max_s, received.round_trip_s);
-  totals_.age_max_s = std::max(totals_.age_max_s, received.age_s);
+}
+
+control::SiteRequests SiteLoop::requests() noexcept {
+  if (newest_.session != 0) heard_s_ += tick_s_;
+  if (buttons_.ready()) {
+    SiteWord word{};
+    // The slave follows a number that rises, so it must have heard the one before.
+    if (may_arm_at_once_ && heard_s_ > listen_before_arming_s_) {
+      may_arm_at_once_ = false;
+      buttons_.take(SiteWord::arm);
+    } else if (exchange_->words.try_pop(word)) {
+      buttons_.take(word);
+    }
+  }
+  return buttons_.step(state());
+}
+
+void SiteLoop::judge(control::SiteState before, const SiteLogRecord& record) noexcept {
+  using control::SiteState;
+  const SiteState now = state();
+  ++totals_.ticks_in[now];
+  ++totals_.ticks_limited[static_cast<control::ActiveLimit>(record.limit)];
+  ++ticks_since_active_;
+  if (now == before) return;
+  if (now == SiteState::armed && (before == SiteState::align || before == SiteState::hold)) ++totals_.armings;
+  if (now == SiteState::active) ticks_since_active_ = 0;
+  if (now == SiteState::fault) ++totals_.faults[static_cast<control::GateFault>(record.fault)];
+  if (now == SiteState::hold) {
+    ++totals_.holds[static_cast<control::SiteCause>(record.cause)];
+    totals_.longest_silence_at_hold_s = std::max(totals_.longest_silence_at_hold_s, record.silence_s);
+  }
 }
 
 void SiteLoop::measure(const Stepped& stepped) noexcept {
-  const double force_N = stepped.motor_force_N;
-  if (!std::isfinite(force_N) || !control::is_finite(stepped.message)) ++totals_.not_finite;
-  const double step_N = std::fabs(force_N - motor_force_N_);
-  motor_force_N_ = force_N;
+  const double force_N = stepped.record.motor_force_N;
+  if (!std::isfinite(force_N) || !control::is_finite(stepped.packet.message)) ++totals_.not_finite;
+  const double step_N = std::fabs(force_N - last_.motor_force_N);
   constexpr double round_off = 1e-12;
   if (step_N > totals_.force_step_limit_N * (1.0 + round_off)) ++totals_.steps_above_limit;
   totals_.peak_force_N = std::max(totals_.peak_force_N, std::fabs(force_N));
   second_peak_N_ = std::max(second_peak_N_, std::fabs(force_N));
   totals_.largest_force_step_N = std::max(totals_.largest_force_step_N, step_N);
-  if (totals_.armings > 0 && static_cast<double>(ticks_since_arming_) * tick_s_ < resuming_s) {
+  if (totals_.ticks_in[control::SiteState::active] > 0 &&
+      static_cast<double>(ticks_since_active_) * tick_s_ < resuming_s) {
     totals_.largest_resuming_force_step_N = std::max(totals_.largest_resuming_force_step_N, step_N);
   }
+}
+
+void SiteLoop::log(const runtime::Tick& tick, const SiteLogRecord& record) noexcept {
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - streams_.origin_ns);
+  if (streams_.site != nullptr) streams_.site->push(due_ns, record);
+  if (streams_.servo != nullptr) streams_.servo->push(due_ns, runtime::recorded(tick));
 }
 
 void SiteLoop::end_second() noexcept {
@@ -189,27 +230,30 @@ void SiteLoop::end_second() noexcept {
   const bool same = counters.expected >= second_expected_ && counters.arrived >= second_arrived_;
   const double expected = static_cast<double>(counters.expected - (same ? second_expected_ : 0));
   const double arrived = static_cast<double>(counters.arrived - (same ? second_arrived_ : 0));
-  const double messages = static_cast<double>(std::max<std::int64_t>(second_messages_, 1));
-  exchange_->seconds.try_push({.time_s = static_cast<double>(second_ends_ns_ - start_ns_) * 1e-9,
-                               .standing = arming_.standing(),
-                               .cause = arming_.cause(),
-                               .round_trip_s = second_round_trip_sum_s_ / messages,
-                               .age_s = second_age_sum_s_ / messages,
+  exchange_->seconds.try_push({.time_s = totals_.duration_s,
+                               .state = static_cast<control::SiteState>(last_.state),
+                               .cause = static_cast<control::SiteCause>(last_.cause),
+                               .limit = static_cast<control::ActiveLimit>(last_.limit),
+                               .fault = static_cast<control::GateFault>(last_.fault),
+                               .round_trip_s = second_.mean(second_.round_trip_sum_s),
+                               .age_s = second_.mean(second_.age_sum_s),
                                .loss_fraction = expected > 0.0 ? std::max(0.0, 1.0 - arrived / expected) : 0.0,
                                .peak_force_N = second_peak_N_});
-  second_ends_ns_ += 1'000'000'000;
-  second_round_trip_sum_s_ = second_age_sum_s_ = second_peak_N_ = 0.0;
-  second_messages_ = 0;
+  second_ = {};
+  second_ticks_ = 0;
+  second_peak_N_ = 0.0;
   second_expected_ = counters.expected;
   second_arrived_ = counters.arrived;
 }
 
+void SiteLoop::finish() noexcept {
+  if (second_ticks_ > 0) end_second();
+}
+
 SiteTotals SiteLoop::totals() const {
   SiteTotals totals = totals_;
-  if (messages_ > 0) {
-    totals.round_trip_mean_s = round_trip_sum_s_ / static_cast<double>(messages_);
-    totals.age_mean_s = age_sum_s_ / static_cast<double>(messages_);
-  }
+  totals.round_trip_mean_s = arrivals_.mean(arrivals_.round_trip_sum_s);
+  totals.age_mean_s = arrivals_.mean(arrivals_.age_sum_s);
   totals.link = endpoint_.counters();
   return totals;
 }

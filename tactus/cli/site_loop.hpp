@@ -1,39 +1,52 @@
 #pragma once
 
-#include <tactus/link/arming.hpp>
+#include <tactus/cli/site_buttons.hpp>
+#include <tactus/cli/site_log.hpp>
+#include <tactus/control/supervised_site.hpp>
 #include <tactus/link/endpoint.hpp>
-#include <tactus/link/following.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/site_plants.hpp>
 #include <tactus/simulation/tapping.hpp>
 #include <tactus/telemetry/ring.hpp>
 
 #include <array>
-#include <atomic>
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <variant>
 
 namespace tactus::cli {
 
-/// One second of a site, for the display.
+/// One second of a site, for the display. State, cause, limit and fault are those of its end.
 struct SiteSecond {
   double time_s = 0.0;  ///< of its end, since the start
-  link::Standing standing = link::Standing::hold;
-  link::HoldCause cause = link::HoldCause::not_armed;
-  double round_trip_s = 0.0;  ///< mean over the messages of the second, as age
+  control::SiteState state = control::SiteState::configure;
+  control::SiteCause cause = control::SiteCause::started;
+  control::ActiveLimit limit = control::ActiveLimit::none;
+  control::GateFault fault = control::GateFault::none;
+  double round_trip_s = 0.0;  ///< mean over the packets that were applied in the second, as age
   double age_s = 0.0;
   double loss_fraction = 0.0;
   double peak_force_N = 0.0;  ///< of the motor, either way
+};
+
+/// How many there are of each value of an enum that begins at 0 and leaves none out.
+template <class Word>
+struct CountOfEach {
+  std::array<std::int64_t, enumerators(Word{}).size()> counts{};
+  std::int64_t& operator[](Word word) noexcept { return counts[static_cast<std::size_t>(word)]; }
+  std::int64_t operator[](Word word) const noexcept { return counts[static_cast<std::size_t>(word)]; }
 };
 
 /// What a site went through.
 struct SiteTotals {
   double duration_s = 0.0;
   std::int64_t ticks = 0;
-  std::int64_t active_ticks = 0;
-  std::int64_t armings = 0;
-  std::array<std::int64_t, 7> holds{};  ///< by `HoldCause`
+  CountOfEach<control::SiteState> ticks_in;         ///< by state
+  CountOfEach<control::ActiveLimit> ticks_limited;  ///< by what changed the force
+  CountOfEach<control::SiteCause> holds;            ///< by what led into hold
+  CountOfEach<control::GateFault> faults;           ///< by what the gate latched
+  CountOfEach<control::PacketVerdict> packets;      ///< by what became of them
+  std::int64_t armings = 0;                         ///< out of align or hold
   double longest_silence_at_hold_s = 0.0;
   double round_trip_mean_s = 0.0;
   double round_trip_max_s = 0.0;
@@ -41,10 +54,10 @@ struct SiteTotals {
   double age_max_s = 0.0;
   double peak_force_N = 0.0;
   double largest_force_step_N = 0.0;           ///< of the motor from tick to tick
-  double largest_resuming_force_step_N = 0.0;  ///< the same in the first second after each arming
+  double largest_resuming_force_step_N = 0.0;  ///< the same in the first second after the site became active
   double force_step_limit_N = 0.0;             ///< what the gate allows
   std::int64_t steps_above_limit = 0;
-  std::int64_t stale_applied = 0;  ///< an older message after a newer one, or one over age: must be 0
+  std::int64_t stale_applied = 0;  ///< an older packet after a newer one, or one over age: must be 0
   std::int64_t not_finite = 0;     ///< forces or messages that are not finite: must be 0
   link::Endpoint::Counters link;
 };
@@ -64,17 +77,16 @@ class RepeatedTaps {
 
 /// What a running site and the rest of its program tell one another. No locks.
 struct SiteExchange {
-  std::atomic<bool> arm{false};  ///< a person asks to arm
+  telemetry::Ring<SiteWord, 16> words;  ///< of the person
   telemetry::Ring<SiteSecond, 64> seconds;
 };
 
-/// One site of two: link, arming, following, controller behind its gates, simulated plant. The step of a servo thread;
-/// does not allocate, lock or block.
+/// One site of two: the link, a supervised site and its simulated plant. The step of a servo thread; does not allocate,
+/// lock or block.
 class SiteLoop {
  public:
   struct Settings {
     link::Endpoint::Settings link;
-    link::Following::Params following;
     double duration_s = 0.0;   ///< 0 for no end
     bool arm_at_once = false;  ///< the master, as soon as it hears the slave for the first time
   };
@@ -83,62 +95,83 @@ class SiteLoop {
   static Result<SiteLoop> make(const simulation::TappingParams& params, const Settings& settings,
                                SiteExchange& exchange);
 
+  /// Every tick from now on goes there too. Before the first tick; what `streams` points to must outlive the last.
+  void log_to(const SiteStreams& streams) noexcept { streams_ = streams; }
+
   /// One tick. False after `duration_s`.
   bool operator()(const runtime::Tick& tick) noexcept;
 
+  /// Hands on the second that has begun. After the last tick, once.
+  void finish() noexcept;
   /// After the last tick.
   [[nodiscard]] SiteTotals totals() const;
 
  private:
   struct Stepped {
-    control::Message message;
-    double motor_force_N;
-    bool fault;
+    control::Packet packet;
+    SiteLogRecord record;
   };
   struct Master {
     simulation::MasterPlant plant;
-    control::MasterSite site;
+    control::SupervisedMaster site;
     RepeatedTaps path;
     simulation::Clock clock;
-    double path_s = 0.0;  ///< how far along the path the person is; a person waits while the site holds
-    Stepped step(const control::Arrival& arrival, bool active) noexcept;
+    double path_s = 0.0;  ///< how far along the path the person is; a person waits while the site is not active
+    Stepped step(const control::SiteRequests& requests, std::int64_t elapsed_ticks) noexcept;
   };
   struct Slave {
     simulation::SlavePlant plant;
-    control::SlaveSite site;
+    control::SupervisedSlave site;
     simulation::Clock clock;
-    Stepped step(const control::Arrival& arrival, bool active) noexcept;
+    Stepped step(const control::SiteRequests& requests, std::int64_t elapsed_ticks) noexcept;
   };
   using Work = std::variant<Master, Slave>;
 
-  SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpoint endpoint, const link::Following& following,
-           Work work, double tick_s, double force_step_limit_N);
-  void judge(const link::Endpoint::Received& received, link::Standing before) noexcept;
+  /// Sums over applied packets.
+  struct Arrivals {
+    double round_trip_sum_s = 0.0;
+    double age_sum_s = 0.0;
+    std::int64_t packets = 0;
+    [[nodiscard]] double mean(double sum_s) const noexcept {
+      return packets > 0 ? sum_s / static_cast<double>(packets) : 0.0;
+    }
+  };
+
+  SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpoint endpoint, Work work, double tick_s,
+           const control::SupervisionParams& supervision, double force_step_limit_N);
+  void receive(std::int64_t now_ns) noexcept;
+  control::SiteRequests requests() noexcept;
+  void judge(control::SiteState before, const SiteLogRecord& record) noexcept;
   void measure(const Stepped& stepped) noexcept;
+  void log(const runtime::Tick& tick, const SiteLogRecord& record) noexcept;
   void end_second() noexcept;
+  [[nodiscard]] control::SiteState state() const noexcept {
+    return std::visit([](const auto& work) { return work.site.state(); }, work_);
+  }
 
   Settings settings_;
   SiteExchange* exchange_;
+  SiteStreams streams_;
   link::Endpoint endpoint_;
-  link::Arming arming_;
-  link::Following following_;
+  SiteButtons buttons_;
   Work work_;
   double tick_s_;
-  bool fault_ = false;
+  double longest_age_s_;
+  double listen_before_arming_s_;
   bool may_arm_at_once_;
   double heard_s_ = 0.0;  ///< since the other site was heard first
-  double motor_force_N_ = 0.0;
-  std::int64_t ticks_since_arming_ = 0;
-  std::uint64_t last_session_ = 0;
-  std::uint64_t last_sequence_ = 0;
+  link::Endpoint::Condition condition_;
+  control::Packet newest_;  ///< that was applied
+  SiteLogRecord last_;      ///< of the tick before
+  std::int64_t ticks_since_active_ = 0;
   SiteTotals totals_;
-  double round_trip_sum_s_ = 0.0, age_sum_s_ = 0.0;
-  std::int64_t messages_ = 0;
-  // Of the running second.
+  Arrivals arrivals_;
   std::int64_t start_ns_ = 0;
+  // Of the running second.
   std::int64_t second_ends_ns_ = 0;
-  double second_round_trip_sum_s_ = 0.0, second_age_sum_s_ = 0.0, second_peak_N_ = 0.0;
-  std::int64_t second_messages_ = 0;
+  Arrivals second_;
+  std::int64_t second_ticks_ = 0;
+  double second_peak_N_ = 0.0;
   std::uint64_t second_expected_ = 0, second_arrived_ = 0;
 };
 

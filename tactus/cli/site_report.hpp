@@ -4,6 +4,8 @@
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/experiment.hpp>
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,13 +13,21 @@
 namespace tactus::cli {
 
 /// The head of the lines that `second_line` makes.
-std::string second_head(const std::string& site);
+std::string second_head(control::SiteRole role);
 /// One second in one line.
 std::string second_line(const SiteSecond& second);
 
-/// All of a run for every reader: tables, one JSON document, a report with the link and the force second by second.
-simulation::Outcome site_outcome(const std::string& site, const SiteTotals& totals,
-                                 const std::vector<SiteSecond>& seconds, const runtime::ServoReport& servo,
-                                 const simulation::Request& request, std::string_view configuration);
+/// All that is known of a run when it is over.
+struct SiteRun {
+  control::SiteRole role = control::SiteRole::master;
+  SiteTotals totals;
+  std::vector<SiteSecond> seconds;
+  runtime::ServoReport servo;
+  std::optional<std::uint64_t> log_dropped;  ///< records that the log had no room for; nothing where there is no log
+};
+
+/// All of a run for every reader: tables, one JSON document, a report with states, link and force second by second.
+simulation::Outcome site_outcome(const SiteRun& run, const simulation::Request& request,
+                                 std::string_view configuration);
 
 }  // namespace tactus::cli

@@ -58,7 +58,7 @@ struct ControlParams : PositionForceMaster::Params {
             field("tank", &ControlParams::tank, "Architecture energy-tank."),
             field("supervision", &ControlParams::supervision,
                   "States, watchdogs and what a site believes of the other; used where sites are supervised: by "
-                  "`tactus faults` and on a real clock.")});
+                  "`tactus faults` and `tactus run --site`.")});
   }
 };
 

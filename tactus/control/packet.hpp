@@ -28,6 +28,33 @@ struct Packet {
   Message message{};
 };
 
+/// Which session of the other site counts: the one that was taken up last. One that was left is never taken up again;
+/// the last 16 are remembered. Real-time safe.
+class Sessions {
+ public:
+  /// The one that counts; 0 before any.
+  [[nodiscard]] std::int64_t current() const noexcept { return current_; }
+  /// Whether `session` counted once and does not any more. 0 is no session and counts as left.
+  [[nodiscard]] bool was_left(std::int64_t session) const noexcept {
+    if (session == 0) return true;
+    for (const std::int64_t left : left_) {
+      if (session == left) return true;
+    }
+    return false;
+  }
+  /// `session` counts from now on; it must not have been left.
+  void take_up(std::int64_t session) noexcept {
+    left_[next_left_] = current_;
+    next_left_ = (next_left_ + 1) % left_.size();
+    current_ = session;
+  }
+
+ private:
+  std::int64_t current_ = 0;
+  std::array<std::int64_t, 16> left_{};  ///< 0 is none
+  std::size_t next_left_ = 0;
+};
+
 /// What becomes of a packet.
 enum class PacketVerdict { applied, late, stale, left_session, not_finite, implausible };
 constexpr auto enumerators(PacketVerdict) {
@@ -60,6 +87,8 @@ class PacketJudge {
 
   /// Velocities, waves and energies beyond this are refused, in their units.
   static constexpr double largest_other = 1e6;
+  /// No person arms a master more often.
+  static constexpr std::int64_t most_armings = 1'000'000'000;
 
   static Result<PacketJudge> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);
@@ -68,16 +97,12 @@ class PacketJudge {
 
   /// Judges one packet; what it says counts only where this is `applied`. Real-time safe.
   PacketVerdict step(const Packet& packet) noexcept {
-    if (was_left(packet.session)) return PacketVerdict::left_session;
-    if (packet.session == session_ && packet.sequence <= sequence_) return PacketVerdict::late;
+    if (sessions_.was_left(packet.session)) return PacketVerdict::left_session;
+    if (packet.session == sessions_.current() && packet.sequence <= sequence_) return PacketVerdict::late;
     if (!(packet.age_s <= params_.longest_age_s)) return PacketVerdict::stale;
     if (!is_finite(packet.message)) return PacketVerdict::not_finite;
-    if (!is_plausible(packet.message)) return PacketVerdict::implausible;
-    if (packet.session != session_) {
-      left_[next_left_] = session_;
-      next_left_ = (next_left_ + 1) % left_.size();
-      session_ = packet.session;
-    }
+    if (!is_plausible(packet)) return PacketVerdict::implausible;
+    if (packet.session != sessions_.current()) sessions_.take_up(packet.session);
     sequence_ = packet.sequence;
     return PacketVerdict::applied;
   }
@@ -87,25 +112,18 @@ class PacketJudge {
  private:
   explicit PacketJudge(const Params& params) : params_(params) {}
 
-  [[nodiscard]] bool was_left(std::int64_t session) const noexcept {
-    if (session == 0) return true;
-    for (const std::int64_t left : left_) {
-      if (session == left) return true;
-    }
-    return false;
-  }
-  [[nodiscard]] bool is_plausible(const Message& message) const noexcept {
-    return std::fabs(message.position_m) <= params_.position_limit_m &&
+  [[nodiscard]] bool is_plausible(const Packet& packet) const noexcept {
+    const Message& message = packet.message;
+    return packet.armings >= 0 && packet.armings <= most_armings &&
+           std::fabs(message.position_m) <= params_.position_limit_m &&
            std::fabs(message.force_N) <= params_.force_limit_N &&
            std::fabs(message.velocity_m_per_s) <= largest_other && std::fabs(message.wave) <= largest_other &&
            std::fabs(message.energy_J) <= largest_other;
   }
 
   Params params_;
-  std::int64_t session_ = 0;
+  Sessions sessions_;
   std::int64_t sequence_ = 0;
-  std::array<std::int64_t, 16> left_{};  ///< the last sessions that were left; 0 is none
-  std::size_t next_left_ = 0;
 };
 
 }  // namespace tactus::control

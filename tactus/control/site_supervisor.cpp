@@ -1,5 +1,7 @@
 #include <tactus/control/site_supervisor.hpp>
 
+#include <algorithm>
+
 namespace tactus::control {
 
 SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
@@ -7,8 +9,11 @@ SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
   if (input.force_sensor) return SiteCause::force_sensor;
   if (input.stalled) return SiteCause::stalled;
   if (input.silent) return SiteCause::silent;
+  if (input.unanswered) return SiteCause::unanswered;
   const bool stands = input.peer != SiteState::armed && input.peer != SiteState::active;
-  return stands && input.peer_armings == armings_ ? SiteCause::peer : SiteCause::none;
+  // While armed, what stands under another number has not heard of this arming yet.
+  const bool counts = state_ == SiteState::active || input.peer_armings == armings_;
+  return stands && counts ? SiteCause::peer : SiteCause::none;
 }
 
 void SiteSupervisor::go(SiteState state, SiteCause cause, const Input& input) noexcept {
@@ -23,7 +28,7 @@ void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
   // An energy latch is no obstacle: arming empties the account.
   const bool may = input.heard && !input.silent && !input.stalled;
   if (!may || !(master ? asked : input.peer_armings != over_ && input.peer == SiteState::armed)) return;
-  armings_ = master ? armings_ + 1 : input.peer_armings;
+  armings_ = master ? std::max(armings_, input.peer_armings) + 1 : input.peer_armings;
   state_ = SiteState::armed;
   pressed_ = false;
 }

@@ -10,13 +10,31 @@
 namespace tactus::control {
 
 /// Why a site does not follow: a different thing from its state, and from the limit that clips a force right now.
-enum class SiteCause { none, started, dead_man, silent, stalled, other_session, peer, force_sensor, energy, gate };
+enum class SiteCause {
+  none,
+  started,
+  dead_man,
+  silent,
+  stalled,
+  other_session,
+  peer,
+  force_sensor,
+  energy,
+  gate,
+  unanswered
+};
 constexpr auto enumerators(SiteCause) {
-  return std::array{Enumerator{SiteCause::none, "none"},         Enumerator{SiteCause::started, "started"},
-                    Enumerator{SiteCause::dead_man, "dead-man"}, Enumerator{SiteCause::silent, "silent"},
-                    Enumerator{SiteCause::stalled, "stalled"},   Enumerator{SiteCause::other_session, "other-session"},
-                    Enumerator{SiteCause::peer, "peer"},         Enumerator{SiteCause::force_sensor, "force-sensor"},
-                    Enumerator{SiteCause::energy, "energy"},     Enumerator{SiteCause::gate, "gate"}};
+  return std::array{Enumerator{SiteCause::none, "none"},
+                    Enumerator{SiteCause::started, "started"},
+                    Enumerator{SiteCause::dead_man, "dead-man"},
+                    Enumerator{SiteCause::silent, "silent"},
+                    Enumerator{SiteCause::stalled, "stalled"},
+                    Enumerator{SiteCause::other_session, "other-session"},
+                    Enumerator{SiteCause::peer, "peer"},
+                    Enumerator{SiteCause::force_sensor, "force-sensor"},
+                    Enumerator{SiteCause::energy, "energy"},
+                    Enumerator{SiteCause::gate, "gate"},
+                    Enumerator{SiteCause::unanswered, "unanswered"}};
 }
 
 enum class SiteRole { master, slave };
@@ -38,12 +56,14 @@ struct SiteRequests {
 ///
 ///     configure –align→ align –arm→ armed –dead-man, and the other site armed→ active
 ///     active –dead-man let go→ armed      armed, active –silence, stall, other site, sensor, energy→ hold –arm→ armed
+///     armed –no answer→ hold
 ///     any –safety gate→ fault –clear→ align
 ///
-/// Arming is a number that the master counts up and every packet carries. The slave is armed when it sees the number
-/// rise, repeats it, and the master becomes active only once the slave does. Either site falls into hold when the other
-/// holds under the same number, or was restarted; so one that was cut off alone does not come back with an arming that
-/// is over, and nothing but a new one leads out.
+/// Arming is a number that the master counts up and every packet carries; a restarted master goes on from the number
+/// that it hears the slave has followed. The slave is armed when it sees the number rise, repeats it, and the master
+/// becomes active only once the slave does. Either site falls into hold when the other holds under the same number, or
+/// under any while this one is active, or was restarted; so one that was cut off alone does not come back with an
+/// arming that is over, and nothing but a new one leads out. An arming that the slave does not answer is given up.
 class SiteSupervisor {
  public:
   struct Params {
@@ -59,6 +79,7 @@ class SiteSupervisor {
     SiteState peer = SiteState::configure;
     std::int64_t peer_armings = 0;
     bool silent = false;        ///< the watchdog barks
+    bool unanswered = false;    ///< the slave has not followed the arming for too long
     bool stalled = false;       ///< this site was not stepped for too long
     bool force_sensor = false;  ///< the force sensor cannot be right
     bool energy = false;        ///< the passivity monitor has latched

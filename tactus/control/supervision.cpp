@@ -19,9 +19,11 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   if (!follower) return under("silence", follower.error());
   const auto watchdog = Watchdog::make(params.watchdog, dt);
   if (!watchdog) return under("watchdog", watchdog.error());
+  const auto answer = Watchdog::make({.timeout_s = params.answer_within_s}, dt);
+  if (!answer) return answer.error();
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return Supervision(*judge, *follower, *watchdog, *supervisor, params, session, dt);
+  return Supervision(*judge, *follower, *watchdog, *answer, *supervisor, role, params, session, dt);
 }
 
 PacketVerdict Supervision::take(const Packet& packet) noexcept {
@@ -33,6 +35,15 @@ PacketVerdict Supervision::take(const Packet& packet) noexcept {
     ++refused_;
   }
   return verdict;
+}
+
+/// Whether the master has waited too long for the slave to follow its arming.
+bool Supervision::unanswered() noexcept {
+  const std::int64_t armings = supervisor_.armings();
+  const bool waits = role_ == SiteRole::master && before_ == SiteState::armed && newest_.armings != armings;
+  if (!waits || armings != awaited_arming_) answer_.reset();
+  awaited_arming_ = armings;
+  return waits && answer_.step({.heard = false, .elapsed_ticks = elapsed_ticks_});
 }
 
 SiteState Supervision::decide(const Sight& sight) noexcept {
@@ -50,6 +61,7 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
                            .peer = newest_.state,
                            .peer_armings = newest_.armings,
                            .silent = silent,
+                           .unanswered = unanswered(),
                            .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
                            .force_sensor = sight.force_sensor,
                            .energy = sight.fault == GateFault::energy,

@@ -20,6 +20,7 @@ struct SupervisionParams {
   Watchdog::Params watchdog;
   ForceSensorCheck::Params force_sensor;
   double longest_stall_s = 0.02;
+  double answer_within_s = 1.0;
   double blend_s = 0.1;
   static constexpr auto fields() {
     return std::tuple{
@@ -29,6 +30,10 @@ struct SupervisionParams {
         field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
+        field(
+            "answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
+            "How long the master waits for the slave to follow an arming before it gives it up and holds; longer than "
+            "the round trip."),
         field("blend_s", &SupervisionParams::blend_s, units::second, positive_up_to(10.0),
               "How long a force takes to come in when a site becomes active, and to go.")};
   }
@@ -57,7 +62,7 @@ struct SiteRecord {
                  "0 configure, 1 align, 2 armed, 3 active, 4 hold, 5 fault."),
         observed("cause", &SiteRecord::cause, units::none, "", "", "",
                  "Why the site does not follow: 0 none, 1 started, 2 dead-man, 3 silent, 4 stalled, 5 other-session, "
-                 "6 peer, 7 force-sensor, 8 energy, 9 gate."),
+                 "6 peer, 7 force-sensor, 8 energy, 9 gate, 10 unanswered."),
         observed("limit", &SiteRecord::limit, units::none, "", "", "",
                  "What changes the force right now: 0 none, 1 energy, 2 workspace, 3 velocity, 4 force, 5 rate."),
         observed("fault", &SiteRecord::fault, units::none, "", "", "",
@@ -114,12 +119,16 @@ class Supervision {
   [[nodiscard]] SiteRecord record() const noexcept;
 
  private:
+  [[nodiscard]] bool unanswered() noexcept;
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
-              const SiteSupervisor& supervisor, const SupervisionParams& params, std::int64_t session, Seconds dt)
+              const Watchdog& answer, const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params,
+              std::int64_t session, Seconds dt)
       : judge_(judge),
         follower_(follower),
         watchdog_(watchdog),
+        answer_(answer),
         supervisor_(supervisor),
+        role_(role),
         dt_s_(dt.value),
         longest_stall_s_(params.longest_stall_s),
         blend_step_(dt.value / params.blend_s),
@@ -128,7 +137,9 @@ class Supervision {
   PacketJudge judge_;
   MessageFollower follower_;
   Watchdog watchdog_;
+  Watchdog answer_;  ///< of the slave to an arming
   SiteSupervisor supervisor_;
+  SiteRole role_;
   double dt_s_;
   double longest_stall_s_;
   double blend_step_;
@@ -139,6 +150,7 @@ class Supervision {
   bool fresh_ = false;
   std::int64_t elapsed_ticks_ = 1;
   std::int64_t refused_ = 0;
+  std::int64_t awaited_arming_ = 0;
   double share_ = 0.0;
   SiteState before_ = SiteState::configure;
 };

@@ -7,6 +7,7 @@ namespace tactus::link {
 namespace {
 
 constexpr std::uint32_t magic = 0x31544354;  // "TCT1" in the order of the bytes
+constexpr std::uint8_t master_byte = 1, slave_byte = 2;
 
 /// Writes numbers one after the other, lowest byte first.
 class Writer {
@@ -45,25 +46,25 @@ class Reader {
 }  // namespace
 
 DatagramBytes encode(const Datagram& datagram) noexcept {
+  const control::Packet& packet = datagram.packet;
   DatagramBytes bytes;
   Writer out(bytes);
   out.put(magic);
   out.put(datagram_version);
-  out.put(static_cast<std::uint8_t>(datagram.site));
-  out.put(static_cast<std::uint8_t>(datagram.standing));
-  out.put(datagram.armings);
-  out.put(std::uint32_t{0});
-  out.put(datagram.session);
-  out.put(datagram.peer_session);
-  out.put(datagram.sequence);
+  out.put(datagram.site == SiteRole::master ? master_byte : slave_byte);
+  out.put(static_cast<std::uint8_t>(packet.state));
+  out.put_signed(packet.armings);
+  out.put_signed(packet.session);
+  out.put_signed(datagram.peer_session);
+  out.put_signed(packet.sequence);
   out.put_signed(datagram.sent_ns);
   out.put_signed(datagram.echo_sent_ns);
   out.put_signed(datagram.echo_hold_ns);
-  out.put_double(datagram.message.position_m);
-  out.put_double(datagram.message.velocity_m_per_s);
-  out.put_double(datagram.message.force_N);
-  out.put_double(datagram.message.wave);
-  out.put_double(datagram.message.energy_J);
+  out.put_double(packet.message.position_m);
+  out.put_double(packet.message.velocity_m_per_s);
+  out.put_double(packet.message.force_N);
+  out.put_double(packet.message.wave);
+  out.put_double(packet.message.energy_J);
   return bytes;
 }
 
@@ -73,30 +74,27 @@ Refusal decode(std::span<const std::byte> bytes, Datagram& datagram) noexcept {
   if (in.get<std::uint32_t>() != magic) return Refusal::magic;
   if (in.get<std::uint16_t>() != datagram_version) return Refusal::version;
   const auto site = in.get<std::uint8_t>();
-  if (site != static_cast<std::uint8_t>(SiteName::master) && site != static_cast<std::uint8_t>(SiteName::slave)) {
-    return Refusal::site;
-  }
-  const auto standing = in.get<std::uint8_t>();
-  if (standing > static_cast<std::uint8_t>(Standing::active)) return Refusal::standing;
+  if (site != master_byte && site != slave_byte) return Refusal::site;
+  const auto state = in.get<std::uint8_t>();
+  if (state > static_cast<std::uint8_t>(control::SiteState::fault)) return Refusal::state;
   Datagram read;
-  read.site = static_cast<SiteName>(site);
-  read.standing = static_cast<Standing>(standing);
-  read.armings = in.get<std::uint32_t>();
-  in.get<std::uint32_t>();  // reserved
-  read.session = in.get<std::uint64_t>();
-  read.peer_session = in.get<std::uint64_t>();
-  read.sequence = in.get<std::uint64_t>();
-  if (read.session == 0 || read.sequence == 0) return Refusal::session;
+  control::Packet& packet = read.packet;
+  read.site = site == master_byte ? SiteRole::master : SiteRole::slave;
+  packet.state = static_cast<control::SiteState>(state);
+  packet.armings = in.get_signed();
+  packet.session = in.get_signed();
+  read.peer_session = in.get_signed();
+  packet.sequence = in.get_signed();
+  if (packet.session == 0 || packet.sequence <= 0) return Refusal::session;
   read.sent_ns = in.get_signed();
   read.echo_sent_ns = in.get_signed();
   read.echo_hold_ns = in.get_signed();
   if (read.sent_ns < 0 || read.echo_sent_ns < 0 || read.echo_hold_ns < 0) return Refusal::time;
-  read.message.position_m = in.get_double();
-  read.message.velocity_m_per_s = in.get_double();
-  read.message.force_N = in.get_double();
-  read.message.wave = in.get_double();
-  read.message.energy_J = in.get_double();
-  if (!control::is_finite(read.message)) return Refusal::not_finite;
+  packet.message.position_m = in.get_double();
+  packet.message.velocity_m_per_s = in.get_double();
+  packet.message.force_N = in.get_double();
+  packet.message.wave = in.get_double();
+  packet.message.energy_J = in.get_double();
   datagram = read;
   return Refusal::none;
 }

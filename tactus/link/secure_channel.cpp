@@ -1,3 +1,4 @@
+#include <tactus/link/dtls_wire.hpp>
 #include <tactus/link/secure_channel.hpp>
 #include <tactus/telemetry/ring.hpp>
 
@@ -20,7 +21,6 @@ namespace {
 
 constexpr const char* cipher_suite = "ECDHE-PSK-CHACHA20-POLY1305";
 constexpr const char* identity = "tactus";
-constexpr long mtu_bytes = 1200;
 constexpr unsigned first_retransmission_us = 50'000;
 constexpr unsigned last_retransmission_us = 400'000;
 /// A hand-shake that takes longer is given up, and its memory with it.
@@ -40,53 +40,9 @@ using Ssl = std::unique_ptr<SSL, Freed<SSL, SSL_free>>;
 using Method = std::unique_ptr<BIO_METHOD, Freed<BIO_METHOD, BIO_meth_free>>;
 using Peer = std::unique_ptr<BIO_ADDR, Freed<BIO_ADDR, BIO_ADDR_free>>;
 
-/// What the network looks like to OpenSSL: it reads the one packet that is laid out, and writes to the socket.
-struct Wire {
-  const Socket* socket = nullptr;
-  std::span<const std::byte> packet;
-};
-
-int wire_write(BIO* bio, const char* data, int size) {
-  BIO_clear_retry_flags(bio);
-  const auto* wire = static_cast<const Wire*>(BIO_get_data(bio));
-  // What the kernel does not take is lost, as it could be further on; DTLS sends again what matters.
-  wire->socket->send(std::as_bytes(std::span(data, static_cast<std::size_t>(size))));
-  return size;
-}
-
-int wire_read(BIO* bio, char* data, int size) {
-  BIO_clear_retry_flags(bio);
-  auto* wire = static_cast<Wire*>(BIO_get_data(bio));
-  if (wire->packet.empty()) {
-    BIO_set_retry_read(bio);
-    return -1;
-  }
-  const std::size_t count = std::min(wire->packet.size(), static_cast<std::size_t>(size));
-  std::memcpy(data, wire->packet.data(), count);
-  wire->packet = {};
-  return static_cast<int>(count);
-}
-
-long wire_control(BIO*, int command, long, void*) {
-  switch (command) {
-    case BIO_CTRL_FLUSH:
-      return 1;
-    case BIO_CTRL_DGRAM_QUERY_MTU:
-    case BIO_CTRL_DGRAM_GET_FALLBACK_MTU:
-      return mtu_bytes;
-    default:
-      return 0;
-  }
-}
-
-int wire_create(BIO* bio) {
-  BIO_set_init(bio, 1);
-  return 1;
-}
-
 /// One DTLS connection, begun or finished. Used by one thread at a time.
 struct Connection {
-  Wire wire;
+  DtlsWire wire;
   Ssl ssl;
   std::int64_t begun_ns = 0;
 
@@ -199,12 +155,12 @@ int SecureChannel::Implementation::check_cookie(SSL* ssl, const unsigned char* c
 Check SecureChannel::Implementation::start() {
   const bool client = role_ == HandshakeRole::client;
   context_.reset(SSL_CTX_new(client ? DTLS_client_method() : DTLS_server_method()));
-  method_.reset(BIO_meth_new(BIO_get_new_index() | BIO_TYPE_SOURCE_SINK, "tactus wire"));
-  bool good = context_ && method_ && draw_cookie() &&
-              SSL_CTX_set_min_proto_version(context_.get(), DTLS1_2_VERSION) == 1 &&
-              SSL_CTX_set_max_proto_version(context_.get(), DTLS1_2_VERSION) == 1 &&
-              SSL_CTX_set_cipher_list(context_.get(), cipher_suite) == 1 &&
-              SSL_CTX_set1_groups_list(context_.get(), "X25519") == 1;
+  method_.reset(new_wire_method());
+  const bool good = context_ && method_ && draw_cookie() &&
+                    SSL_CTX_set_min_proto_version(context_.get(), DTLS1_2_VERSION) == 1 &&
+                    SSL_CTX_set_max_proto_version(context_.get(), DTLS1_2_VERSION) == 1 &&
+                    SSL_CTX_set_cipher_list(context_.get(), cipher_suite) == 1 &&
+                    SSL_CTX_set1_groups_list(context_.get(), "X25519") == 1;
   if (good) {
     SSL_CTX_set_app_data(context_.get(), this);
     SSL_CTX_set_options(context_.get(),
@@ -214,8 +170,6 @@ Check SecureChannel::Implementation::start() {
     SSL_CTX_set_psk_server_callback(context_.get(), find_key);
     SSL_CTX_set_cookie_generate_cb(context_.get(), write_cookie);
     SSL_CTX_set_cookie_verify_cb(context_.get(), check_cookie);
-    good = BIO_meth_set_write(method_.get(), wire_write) == 1 && BIO_meth_set_read(method_.get(), wire_read) == 1 &&
-           BIO_meth_set_ctrl(method_.get(), wire_control) == 1 && BIO_meth_set_create(method_.get(), wire_create) == 1;
   }
   ERR_clear_error();
   if (!good) {
@@ -314,14 +268,13 @@ std::unique_ptr<Connection> SecureChannel::Implementation::connect() {
   connection->wire.socket = socket_;
   connection->begun_ns = monotonic_ns();
   connection->ssl.reset(SSL_new(context_.get()));
-  BIO* bio = BIO_new(method_.get());
+  BIO* bio = new_wire(method_.get(), connection->wire);
   if (!connection->ssl || bio == nullptr) {
     BIO_free(bio);
     return nullptr;
   }
-  BIO_set_data(bio, &connection->wire);
   SSL_set_bio(connection->ssl.get(), bio, bio);
-  SSL_set_mtu(connection->ssl.get(), mtu_bytes);
+  SSL_set_mtu(connection->ssl.get(), DtlsWire::mtu_bytes);
   DTLS_set_timer_cb(connection->ssl.get(), retransmission_us);
   return connection;
 }

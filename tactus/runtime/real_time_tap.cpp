@@ -77,13 +77,7 @@ bool RealTimeTap::step(const Tick& tick) noexcept {
   record_.tip_position_m = slave_.plant().tip_position_m();
   const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - streams_.origin_ns);
   if (streams_.sites != nullptr) streams_.sites->push(due_ns, recorded(streams_.tap, own, output));
-  if (streams_.servo != nullptr) {
-    streams_.servo->push(due_ns, {.tick = own.number,
-                                  .missed = tick.missed,
-                                  .lateness_s = 1e-9 * static_cast<double>(tick.began_ns - tick.deadline_ns),
-                                  .previous_duration_s = 1e-9 * static_cast<double>(tick.previous_duration_ns),
-                                  .previous_cause = static_cast<std::int64_t>(tick.previous_cause)});
-  }
+  if (streams_.servo != nullptr) streams_.servo->push(due_ns, recorded(own));
   return true;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/core/signals.hpp>
 #include <tactus/runtime/local_teleoperator.hpp>
+#include <tactus/runtime/servo_record.hpp>
 #include <tactus/runtime/simulated_devices.hpp>
 #include <tactus/runtime/sites_record.hpp>
 #include <tactus/simulation/tap_observer.hpp>
@@ -12,27 +12,6 @@
 #include <vector>
 
 namespace tactus::runtime {
-
-/// How the clock of the servo went, for the log: one record for each step.
-struct ServoRecord {
-  std::int64_t tick = 0;
-  std::int64_t missed = 0;
-  double lateness_s = 0.0;
-  double previous_duration_s = 0.0;
-  std::int64_t previous_cause = 0;
-  static constexpr auto signals() {
-    return std::tuple{
-        observed("tick", &ServoRecord::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
-        observed("missed", &ServoRecord::missed, units::none, "", "", "", "Deadlines missed right before this one."),
-        observed("lateness_s", &ServoRecord::lateness_s, units::second, "", "", "", "From the deadline to the step."),
-        observed("previous_duration_s", &ServoRecord::previous_duration_s, units::second, "", "", "",
-                 "How long the step before took."),
-        observed(
-            "previous_cause", &ServoRecord::previous_cause, units::none, "", "", "",
-            "Why the step before was late: 0 it was not, 1 computing, 2 blocking, 3 paging, 4 waking, 5 preempted, "
-            "6 stalled.")};
-  }
-};
 
 /// Where a run in real time goes while it runs.
 struct RealTimeStreams {

@@ -20,8 +20,8 @@ class Between {
     const std::uint16_t for_master = free_port(), for_slave = free_port();
     master_side_.emplace(Socket::open(loopback(for_master), loopback(master_port)).value());
     slave_side_.emplace(Socket::open(loopback(for_slave), loopback(slave_port)).value());
-    master.emplace(open(SiteName::master, {.master = master_port, .slave = for_master}, test_key()));
-    slave.emplace(open(SiteName::slave, {.master = for_slave, .slave = slave_port}, test_key()));
+    master.emplace(open(SiteRole::master, {.master = master_port, .slave = for_master}, test_key()));
+    slave.emplace(open(SiteRole::slave, {.master = for_slave, .slave = slave_port}, test_key()));
   }
 
   /// Passes on what both sites have sent; the attacker hears it.
@@ -40,23 +40,23 @@ class Between {
   void tick_both() {
     tick(*master, 1.0);
     pass_on();
-    last = tick(*slave, 2.0);
+    if (const auto came = tick(*slave, 2.0)) last = *came;
     pass_on();
   }
   bool meet() {
     const std::int64_t end_ns = monotonic_ns() + 20'000'000'000;
-    while (monotonic_ns() < end_ns && slave->counters().inbound.applied < 50) {
+    while (monotonic_ns() < end_ns && slave->counters().inbound.counted < 50) {
       tick_both();
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
-    return slave->counters().inbound.applied >= 50;
+    return slave->counters().inbound.counted >= 50;
   }
   void attack(int kind = -1) { slave_side_->send(attacker.next(kind)); }
 
   std::optional<Endpoint> master, slave;
   Attacker attacker{1};
   std::uint64_t passed_to_slave = 0;  ///< messages, not hand-shakes
-  Endpoint::Received last;            ///< at the slave
+  control::Packet last;               ///< that came to the slave
 
  private:
   std::optional<Socket> master_side_, slave_side_;

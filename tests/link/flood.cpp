@@ -57,7 +57,7 @@ class TickingSite {
       const double took_us = static_cast<double>(monotonic_ns() - began_ns) * 1e-3;
       auto& times = flooded_ ? flooded_us : quiet_us;
       if (times.size() < times.capacity()) times.push_back(took_us);
-      if (received.heard && received.arrival.message.position_m != 1.0) ++wrong;
+      if (received && received->message.position_m != 1.0) ++wrong;
     }
   }
   Endpoint& endpoint_;
@@ -115,7 +115,7 @@ int main(int count, char** arguments) {
   const std::size_t memory = mallinfo2().uordblks;
   const bool accepted = counters.secure.opened > between.passed_to_slave || counters.malformed > 0 || slave.wrong > 0 ||
                         counters.inbound.sessions != 1;
-  const bool went_on = counters.secure.handshakes >= 1 && counters.inbound.applied > 1000;
+  const bool went_on = counters.secure.handshakes >= 1 && counters.inbound.counted > 1000;
   const bool grew = memory > memory_before + 1'000'000;
   std::printf("hostile packets sent %lld, %.0f a second; refused %llu, passed to the hand-shakes %llu, no room %llu\n",
               sent, static_cast<double>(sent) / flooded_s, static_cast<unsigned long long>(counters.secure.refused),

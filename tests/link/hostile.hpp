@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -48,11 +48,11 @@ class Attacker {
         break;
       case 6: {  // a plain datagram that says it is the newest
         Datagram datagram;
-        datagram.site = below(2) == 0 ? SiteName::master : SiteName::slave;
-        datagram.session = random_.bits() | 1;
-        datagram.sequence = ~std::uint64_t{0} >> 1;
+        datagram.site = below(2) == 0 ? SiteRole::master : SiteRole::slave;
+        datagram.packet.session = static_cast<std::int64_t>(random_.bits() | 1);
+        datagram.packet.sequence = std::numeric_limits<std::int64_t>::max();
         datagram.sent_ns = monotonic_ns();
-        datagram.message.position_m = 1e3;
+        datagram.packet.message.position_m = 1e3;
         const auto bytes = encode(datagram);
         packet_.assign(bytes.begin(), bytes.end());
         break;

@@ -15,22 +15,25 @@ namespace {
 
 using Verdict = Inbound::Verdict;
 
-constexpr std::uint64_t own_session = 77;
+constexpr std::int64_t own_session = 77;
 constexpr std::int64_t ms = 1'000'000;
 
 /// What the slave of `session` sends at `sent_ns` of its clock when it has just heard what the master sent at that
 /// time.
-Datagram from_slave(std::uint64_t session, std::uint64_t sequence, std::int64_t sent_ns) {
+Datagram from_slave(std::int64_t session, std::int64_t sequence, std::int64_t sent_ns) {
   Datagram datagram;
-  datagram.site = SiteName::slave;
-  datagram.session = session;
+  datagram.site = SiteRole::slave;
+  datagram.packet.session = session;
+  datagram.packet.sequence = sequence;
+  datagram.packet.message.position_m = static_cast<double>(sequence);
   datagram.peer_session = own_session;
-  datagram.sequence = sequence;
   datagram.sent_ns = sent_ns;
   datagram.echo_sent_ns = sent_ns;
-  datagram.message.position_m = static_cast<double>(sequence);
   return datagram;
 }
+
+/// The verdict on a datagram whose age does not matter.
+Verdict verdict(Inbound& inbound, Datagram datagram, std::int64_t now_ns) { return inbound.take(datagram, now_ns); }
 
 TEST(ReplayWindow, AgreesWithASetThatForgetsNothing) {
   EXPECT_TRUE(rc::check([] {
@@ -53,33 +56,33 @@ TEST(ReplayWindow, AgreesWithASetThatForgetsNothing) {
   }));
 }
 
-TEST(Inbound, TheNewestWinsAndNothingOlderFollowsItWhateverTheOrder) {
+TEST(Inbound, EachDatagramOfASessionCountsOnceWhateverTheOrder) {
   EXPECT_TRUE(rc::check([] {
-    const auto order = *rc::gen::container<std::vector<std::uint64_t>>(rc::gen::inRange<std::uint64_t>(1, 200));
-    Inbound inbound(SiteName::master, own_session, 0.5);
-    std::uint64_t newest = 0;
-    for (const std::uint64_t sequence : order) {
-      const auto verdict = inbound.take(from_slave(5, sequence, 1000 * ms), 1001 * ms);
-      RC_ASSERT((verdict == Verdict::applied) == (sequence > newest));
-      newest = std::max(newest, sequence);
-      RC_ASSERT(inbound.newest().sequence == newest);
+    const auto order = *rc::gen::container<std::vector<std::int64_t>>(rc::gen::inRange<std::int64_t>(1, 60));
+    Inbound inbound(SiteRole::master, own_session);
+    std::set<std::int64_t> seen;
+    for (const std::int64_t sequence : order) {
+      const bool counts = verdict(inbound, from_slave(5, sequence, 1000 * ms), 1001 * ms) == Verdict::counted;
+      RC_ASSERT(counts == seen.insert(sequence).second);
+      RC_ASSERT(inbound.arrived() == seen.size());
     }
   }));
 }
 
-TEST(Inbound, NoDatagramThatDoesNotAnswerTheOwnSessionIsApplied) {
+TEST(Inbound, NoDatagramThatDoesNotAnswerTheOwnSessionCounts) {
   EXPECT_TRUE(rc::check([] {
     Datagram datagram = *testing::any_datagram();
     if (datagram.peer_session == own_session) datagram.peer_session = 0;
-    Inbound inbound(SiteName::master, own_session, 0.5);
-    RC_ASSERT(inbound.take(datagram, 1000 * ms) != Verdict::applied);
-    RC_ASSERT(inbound.counters().applied == 0U);
+    Inbound inbound(SiteRole::master, own_session);
+    RC_ASSERT(inbound.take(datagram, 1000 * ms) != Verdict::counted);
+    RC_ASSERT(inbound.counters().counted == 0U);
+    RC_ASSERT(inbound.heard_ns() == 0);
   }));
 }
 
 TEST(Inbound, AnyDatagramIsJudgedWithoutHarm) {
   EXPECT_TRUE(rc::check([] {
-    Inbound inbound(SiteName::master, own_session, 0.5);
+    Inbound inbound(SiteRole::master, own_session);
     for (int i = 0; i < 20; ++i) {
       Datagram datagram = *testing::any_datagram();
       datagram.peer_session = own_session;
@@ -89,43 +92,71 @@ TEST(Inbound, AnyDatagramIsJudgedWithoutHarm) {
 }
 
 TEST(Inbound, OwnDatagramsThatComeBackAreRefused) {
-  Inbound inbound(SiteName::master, own_session, 0.5);
+  Inbound inbound(SiteRole::master, own_session);
   Datagram reflected = from_slave(5, 1, 1000 * ms);
-  reflected.site = SiteName::master;
+  reflected.site = SiteRole::master;
   EXPECT_EQ(inbound.take(reflected, 1001 * ms), Verdict::reflected);
 }
 
-TEST(Inbound, AMessageOverTheLongestAgeIsNotApplied) {
-  Inbound inbound(SiteName::master, own_session, 0.5);
-  EXPECT_EQ(inbound.take(from_slave(5, 1, 1000 * ms), 1002 * ms), Verdict::applied);
-  EXPECT_EQ(inbound.take(from_slave(5, 2, 1000 * ms), 1600 * ms), Verdict::stale);
-  EXPECT_EQ(inbound.newest().sequence, 1U);
-  EXPECT_EQ(inbound.take(from_slave(5, 3, 1600 * ms), 1602 * ms), Verdict::applied);
+TEST(Inbound, APacketHasItsAgeAndAnInfiniteOneWhereNoEchoTells) {
+  Inbound inbound(SiteRole::master, own_session);
+  Datagram mute = from_slave(5, 1, 1000 * ms);
+  mute.echo_sent_ns = 0;
+  ASSERT_EQ(inbound.take(mute, 1002 * ms), Verdict::counted);
+  EXPECT_TRUE(std::isinf(mute.packet.age_s));
+  // Back at once, after a round trip of 2 ms: half of it is its age, and the other clock goes 1 ms behind.
+  Datagram quick = from_slave(5, 2, 1000 * ms);
+  ASSERT_EQ(inbound.take(quick, 1002 * ms), Verdict::counted);
+  EXPECT_NEAR(quick.packet.age_s, 0.001, 1e-9);
+  Datagram slow = from_slave(5, 3, 1100 * ms);
+  slow.echo_sent_ns = 0;
+  ASSERT_EQ(inbound.take(slow, 1600 * ms), Verdict::counted);
+  EXPECT_NEAR(slow.packet.age_s, 0.499, 1e-9);
 }
 
-TEST(Inbound, AGreetingIsAnsweredAndNotApplied) {
-  Inbound inbound(SiteName::master, own_session, 0.5);
+// What counts twice at one site counts once at the other: the judge of packets refuses what is late or too old.
+TEST(Inbound, OfWhatCountsTheJudgeOfPacketsAppliesTheNewestOnly) {
+  Inbound inbound(SiteRole::master, own_session);
+  auto judge = control::PacketJudge::make({.longest_age_s = 0.2}, Seconds{1e-3}).value();
+  const auto applied = [&](std::int64_t sequence, std::int64_t sent_ns, std::int64_t now_ns) {
+    Datagram datagram = from_slave(5, sequence, sent_ns);
+    EXPECT_EQ(inbound.take(datagram, now_ns), Verdict::counted);
+    return judge.step(datagram.packet);
+  };
+  EXPECT_EQ(applied(1, 1000 * ms, 1002 * ms), control::PacketVerdict::applied);
+  EXPECT_EQ(applied(3, 1002 * ms, 1004 * ms), control::PacketVerdict::applied);
+  EXPECT_EQ(applied(2, 1001 * ms, 1005 * ms), control::PacketVerdict::late);
+  EXPECT_EQ(applied(4, 1006 * ms, 1600 * ms), control::PacketVerdict::stale);
+  EXPECT_EQ(applied(5, 1600 * ms, 1602 * ms), control::PacketVerdict::applied);
+}
+
+TEST(Inbound, AGreetingIsAnsweredAndDoesNotCount) {
+  Inbound inbound(SiteRole::master, own_session);
   Datagram greeting = from_slave(5, 1, 1000 * ms);
   greeting.peer_session = 0;
   EXPECT_EQ(inbound.take(greeting, 1001 * ms), Verdict::greeting);
-  EXPECT_EQ(inbound.answered_session(), 5U);
-  EXPECT_EQ(inbound.counters().applied, 0U);
+  EXPECT_EQ(inbound.answered_session(), 5);
+  EXPECT_EQ(inbound.echo_sent_ns(), 1000 * ms);
+  // One from before the session was taken up comes late: it is not what is echoed.
+  EXPECT_EQ(verdict(inbound, from_slave(5, 3, 1002 * ms), 1003 * ms), Verdict::counted);
+  EXPECT_EQ(inbound.take(greeting, 1004 * ms), Verdict::greeting);
+  EXPECT_EQ(inbound.echo_sent_ns(), 1002 * ms);
 }
 
 TEST(Inbound, ARestartedSiteIsTakenUpOnceItAnswersAndTheOldOneNeverAgain) {
-  Inbound inbound(SiteName::master, own_session, 0.5);
-  EXPECT_EQ(inbound.take(from_slave(5, 900, 1000 * ms), 1001 * ms), Verdict::applied);
+  Inbound inbound(SiteRole::master, own_session);
+  EXPECT_EQ(verdict(inbound, from_slave(5, 900, 1000 * ms), 1001 * ms), Verdict::counted);
   // Recorded before the own start: answers another session.
   Datagram recorded = from_slave(6, 901, 1000 * ms);
   recorded.peer_session = own_session - 1;
   EXPECT_EQ(inbound.take(recorded, 1001 * ms), Verdict::foreign);
-  EXPECT_EQ(inbound.take(from_slave(6, 1, 1002 * ms), 1003 * ms), Verdict::applied);
+  EXPECT_EQ(verdict(inbound, from_slave(6, 1, 1002 * ms), 1003 * ms), Verdict::counted);
   EXPECT_EQ(inbound.counters().sessions, 2U);
-  EXPECT_EQ(inbound.take(from_slave(5, 902, 1004 * ms), 1005 * ms), Verdict::foreign);
+  EXPECT_EQ(verdict(inbound, from_slave(5, 902, 1004 * ms), 1005 * ms), Verdict::foreign);
   Datagram late_greeting = from_slave(5, 903, 1004 * ms);
   late_greeting.peer_session = 0;
   EXPECT_EQ(inbound.take(late_greeting, 1005 * ms), Verdict::foreign);
-  EXPECT_EQ(inbound.newest().session, 6U);
+  EXPECT_EQ(inbound.answered_session(), 6);
 }
 
 TEST(PeerClock, FindsTheOffsetToHalfTheRoundTripWhateverTheWays) {

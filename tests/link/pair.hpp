@@ -46,8 +46,8 @@ struct Ports {
   std::uint16_t slave = free_port();
 };
 
-inline Endpoint open(SiteName site, const Ports& ports, const std::optional<Key>& key) {
-  const bool master = site == SiteName::master;
+inline Endpoint open(SiteRole site, const Ports& ports, const std::optional<Key>& key) {
+  const bool master = site == SiteRole::master;
   auto endpoint = Endpoint::make({.site = site,
                                   .peer = loopback(master ? ports.slave : ports.master),
                                   .listen = loopback(master ? ports.master : ports.slave),
@@ -56,12 +56,22 @@ inline Endpoint open(SiteName site, const Ports& ports, const std::optional<Key>
   return *std::move(endpoint);
 }
 
-/// One tick of a site that tells `position_m`.
-inline Endpoint::Received tick(Endpoint& endpoint, double position_m) {
+/// Sends the next packet of a site, which tells `position_m`.
+inline void send(Endpoint& endpoint, double position_m, std::int64_t now_ns) {
+  const auto counters = endpoint.counters();
+  endpoint.send({.session = endpoint.session(),
+                 .sequence = static_cast<std::int64_t>(counters.sent + counters.unsent) + 1,
+                 .message = {.position_m = position_m}},
+                now_ns);
+}
+
+/// One tick of a site that tells `position_m`; what came last, if anything.
+inline std::optional<control::Packet> tick(Endpoint& endpoint, double position_m) {
   const std::int64_t now_ns = monotonic_ns();
-  const auto received = endpoint.receive(now_ns);
-  endpoint.send({.position_m = position_m}, Standing::active, 1, now_ns);
-  return received;
+  const auto packets = endpoint.receive(now_ns);
+  const auto last = packets.empty() ? std::nullopt : std::optional(packets.back());
+  send(endpoint, position_m, now_ns);
+  return last;
 }
 
 /// Ticks both ends every 200 µs until `done` says so. False after `longest_s`.
@@ -78,7 +88,7 @@ inline bool tick_until(Endpoint& master, Endpoint& slave, const std::function<bo
 
 inline bool meet(Endpoint& master, Endpoint& slave) {
   return tick_until(master, slave,
-                    [&] { return master.counters().inbound.applied > 3 && slave.counters().inbound.applied > 3; });
+                    [&] { return master.counters().inbound.counted > 3 && slave.counters().inbound.counted > 3; });
 }
 
 }  // namespace tactus::link::testing

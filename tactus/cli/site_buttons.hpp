@@ -1,0 +1,49 @@
+#pragma once
+
+#include <tactus/control/site_supervisor.hpp>
+#include <tactus/core/result.hpp>
+
+#include <array>
+#include <string_view>
+
+namespace tactus::cli {
+
+/// What a person may type at a running site.
+enum class SiteWord {
+  arm,       ///< arms both sites and takes the dead-man switch in hand; an empty line says the same
+  press,     ///< takes the dead-man switch in hand again
+  release,   ///< lets go of it
+  clutch,    ///< from now on the hand moves and the slave does not
+  unclutch,  ///< from now on the slave follows again
+  clear,     ///< leaves a fault
+};
+constexpr auto enumerators(SiteWord) {
+  return std::array{Enumerator{SiteWord::arm, "arm"},           Enumerator{SiteWord::press, "press"},
+                    Enumerator{SiteWord::release, "release"},   Enumerator{SiteWord::clutch, "clutch"},
+                    Enumerator{SiteWord::unclutch, "unclutch"}, Enumerator{SiteWord::clear, "clear"}};
+}
+
+/// A line that was typed, spaces around it left out. At the slave only `clear` has a meaning: all else is asked at the
+/// master. Errors: `syntax`, naming the words that there are.
+Result<SiteWord> parse_site_word(std::string_view line, control::SiteRole role);
+
+/// The hands of a simulated person on the buttons of a site: turns words into what is pressed, tick by tick. A site
+/// aligns by itself at the second tick. The dead-man switch is taken as pressed while the site is armed or active,
+/// until the word `release`; after each arming it is pressed anew. Real-time safe.
+class SiteButtons {
+ public:
+  /// Whether a word can be taken: a button that was pushed is let go for a tick first.
+  [[nodiscard]] bool ready() const noexcept { return !pushed_; }
+  /// For the next `step`.
+  void take(SiteWord word) noexcept;
+  /// What is pressed at this tick; `state` is that after the tick before.
+  control::SiteRequests step(control::SiteState state) noexcept;
+
+ private:
+  control::SiteRequests next_{.dead_man = true};  ///< its dead-man switch: whether the person means to press it
+  bool begun_ = false;
+  bool aligned_ = false;
+  bool pushed_ = false;
+};
+
+}  // namespace tactus::cli

@@ -1,0 +1,277 @@
+#include <tactus/cli/site_loop.hpp>
+#include <tactus/telemetry/log_reader.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tests/allocation_counter.hpp>
+#include <tests/link/pair.hpp>
+#include <tests/scratch_path.hpp>
+
+namespace tactus::cli {
+namespace site_loop_test {
+
+using control::GateFault;
+using control::SiteCause;
+using control::SiteRole;
+using control::SiteState;
+
+constexpr std::int64_t tick_ns = 200'000;
+
+/// Both sites in one program, over the loopback and in plain text, at a clock of the test's own: as fast as they can.
+class Sites : public ::testing::Test {
+ protected:
+  struct Site {
+    SiteExchange exchange;
+    std::optional<SiteLog> log;
+    std::optional<SiteLoop> loop;
+    std::int64_t tick = 0;
+    /// Where it stood at the end of the second that ended last.
+    SiteSecond second;
+
+    void step(std::int64_t now_ns) noexcept {
+      (*loop)({.number = tick++, .deadline_ns = now_ns, .began_ns = now_ns});
+      while (exchange.seconds.try_pop(second)) {
+      }
+    }
+  };
+
+  Sites() { params.control.force_gain = 1.0; }
+  ~Sites() override { std::filesystem::remove_all(folder); }
+
+  void open(bool arm_at_once = false) {
+    const link::testing::Ports ports;
+    const auto make = [&](Site& site, SiteRole role, std::uint16_t own, std::uint16_t other) {
+      auto made = SiteLoop::make(params,
+                                 {.link = {.site = role,
+                                           .peer = link::testing::loopback(other),
+                                           .listen = link::testing::loopback(own),
+                                           .key = std::nullopt},
+                                  .arm_at_once = arm_at_once && role == SiteRole::master},
+                                 site.exchange);
+      ASSERT_TRUE(made) << describe(made.error());
+      site.loop.emplace(*std::move(made));
+      simulation::Request request;
+      request.name = "test";
+      auto log = SiteLog::create(folder / name_of(role), request, "[task]\nseed = 5\n", role);
+      ASSERT_TRUE(log) << describe(log.error());
+      site.log.emplace(*std::move(log));
+      SiteStreams streams = site.log->streams();
+      streams.origin_ns = 0;  // the test's clock
+      site.loop->log_to(streams);
+    };
+    make(master, SiteRole::master, ports.master, ports.slave);
+    make(slave, SiteRole::slave, ports.slave, ports.master);
+  }
+  /// Ends both and reads a topic of a site's log.
+  telemetry::LogTable close(Site& site, SiteRole role, const std::string& topic = "/site") {
+    site.loop->finish();
+    while (site.exchange.seconds.try_pop(site.second)) {
+    }
+    EXPECT_FALSE(site.log->close());
+    EXPECT_EQ(site.log->dropped(), 0U);
+    auto content = telemetry::read_log(folder / name_of(role), topic).value();
+    EXPECT_TRUE(content.summary.complete);
+    metadata = content.summary.metadata["tactus"];
+    return content.tables.at(0);
+  }
+  static std::vector<double> column(const telemetry::LogTable& table, const std::string& name) {
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      if (table.columns[i].name == name) return table.values[i];
+    }
+    ADD_FAILURE() << "no column " << name;
+    return {};
+  }
+
+  /// The log's rings hold 4096 ticks, and the disk wants time too.
+  void run(int ticks, bool step_master = true, bool step_slave = true) {
+    for (int i = 0; i < ticks; ++i) {
+      now_ns += tick_ns;
+      if (step_master) master.step(now_ns);
+      if (step_slave) slave.step(now_ns);
+      if (i % 500 == 499) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+  /// One second in which this is asked first.
+  void ask(Site& site, SiteWord word) {
+    site.exchange.words.try_push(word);
+    run(5000);
+  }
+  void expect(SiteState at_master, SiteState at_slave) const {
+    EXPECT_STREQ(name_of(master.second.state), name_of(at_master));
+    EXPECT_STREQ(name_of(slave.second.state), name_of(at_slave));
+  }
+
+  const std::filesystem::path folder = scratch_path();
+  simulation::TappingParams params;
+  Site master, slave;
+  std::int64_t now_ns = 1'000'000'000;
+  std::map<std::string, std::string> metadata;
+};
+
+TEST_F(Sites, GoThroughTheirStatesAsAPersonAsks) {
+  open();
+  run(5005);
+  expect(SiteState::align, SiteState::align);
+  ask(master, SiteWord::arm);
+  expect(SiteState::active, SiteState::active);
+  EXPECT_EQ(master.second.cause, SiteCause::none);
+  EXPECT_GT(slave.second.peak_force_N, 0.01);
+  ask(master, SiteWord::release);
+  expect(SiteState::armed, SiteState::armed);
+  EXPECT_EQ(master.second.cause, SiteCause::dead_man);
+  ask(master, SiteWord::press);
+  expect(SiteState::active, SiteState::active);
+  ask(master, SiteWord::clutch);
+  expect(SiteState::active, SiteState::active);
+  ask(master, SiteWord::unclutch);
+  const auto table = close(master, SiteRole::master);
+  const auto told = column(table, "told_position_m"), read = column(table, "position_m");
+  const auto spread = [](const std::vector<double>& all, std::size_t begin, std::size_t end) {
+    const auto [low, high] = std::minmax_element(all.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                 all.begin() + static_cast<std::ptrdiff_t>(end));
+    return *high - *low;
+  };
+  // From one second to the next with the clutch pressed.
+  EXPECT_EQ(spread(told, 20'010, 25'000), 0.0);
+  EXPECT_GT(spread(read, 20'010, 25'000), 1e-3) << "the hand moves on";
+  EXPECT_GT(spread(told, 25'010, 30'000), 1e-3);
+}
+
+TEST_F(Sites, ThatAreCutOffHoldUntilAPersonArms) {
+  open(true);
+  run(5005);
+  expect(SiteState::active, SiteState::active);
+  run(600, true, false);
+  run(5000);
+  expect(SiteState::hold, SiteState::hold);
+  EXPECT_EQ(master.second.cause, SiteCause::silent);
+  run(5000);
+  expect(SiteState::hold, SiteState::hold);
+  ask(master, SiteWord::arm);
+  expect(SiteState::active, SiteState::active);
+  const SiteTotals totals = master.loop->totals();
+  EXPECT_EQ(totals.armings, 2);
+  EXPECT_EQ(totals.holds[SiteCause::silent], 1);
+  EXPECT_NEAR(totals.longest_silence_at_hold_s, 0.1, 0.001);
+  EXPECT_EQ(totals.stale_applied, 0);
+  EXPECT_EQ(totals.steps_above_limit, 0);
+}
+
+// The slave's gate is set so that the taps are too fast for it.
+TEST_F(Sites, AFaultIsLeftByClearingAtThatSiteAndAnArmingThatGoesUnansweredIsGivenUp) {
+  params.control.slave_gate.velocity_limit_m_per_s = 0.01;
+  open(true);
+  run(10'005);
+  expect(SiteState::hold, SiteState::fault);
+  EXPECT_EQ(slave.second.fault, GateFault::velocity);
+  EXPECT_EQ(slave.second.cause, SiteCause::gate);
+  EXPECT_EQ(master.second.fault, GateFault::none) << "state and cause of the master, no fault of its gate";
+  EXPECT_EQ(master.second.cause, SiteCause::peer);
+  ask(master, SiteWord::clear);
+  expect(SiteState::hold, SiteState::fault);
+  ask(master, SiteWord::arm);
+  run(1000);
+  EXPECT_EQ(master.loop->totals().holds[SiteCause::unanswered], 1);
+  run(4000);
+  expect(SiteState::hold, SiteState::fault);
+  ask(slave, SiteWord::clear);
+  expect(SiteState::hold, SiteState::align);
+  EXPECT_EQ(slave.second.fault, GateFault::none);
+  ask(master, SiteWord::arm);
+  EXPECT_EQ(slave.loop->totals().armings, 2);
+}
+
+// What a site does to its last tick is in its log, and its last second in what the report is made from.
+TEST_F(Sites, TheLastSecondIsInTheLogAndInTheReport) {
+  open(true);
+  run(7'777);
+  const auto table = close(slave, SiteRole::slave);
+  const auto servo = telemetry::read_log(folder / "slave", "/servo").value().tables.at(0);
+  EXPECT_EQ(metadata["site"], "slave");
+  EXPECT_EQ(metadata["configuration"], "[task]\nseed = 5\n");
+  EXPECT_FALSE(metadata["version"].empty());
+  EXPECT_TRUE(std::filesystem::exists(folder / "slave" / "metadata.yaml"));
+  ASSERT_EQ(table.times_ns.size(), 7'777U);
+  ASSERT_EQ(servo.times_ns.size(), 7'777U);
+  EXPECT_EQ(table.times_ns.back(), static_cast<std::uint64_t>(now_ns));
+  const SiteTotals totals = slave.loop->totals();
+  EXPECT_EQ(totals.ticks, 7'777);
+  EXPECT_DOUBLE_EQ(slave.second.time_s, totals.duration_s);
+  EXPECT_NEAR(totals.duration_s, 7'776 * 200e-6, 1e-9);
+
+  // State, cause, active limit and fault are four columns; the link's facts and both forces beside them.
+  const auto state = column(table, "state"), cause = column(table, "cause");
+  EXPECT_EQ(state.back(), static_cast<double>(SiteState::active));
+  EXPECT_EQ(cause.back(), static_cast<double>(SiteCause::none));
+  EXPECT_EQ(cause.front(), static_cast<double>(SiteCause::started));
+  EXPECT_EQ(std::set<double>(state.begin(), state.end()), (std::set<double>{0, 1, 2, 3}));
+  for (const char* name : {"limit", "fault"}) EXPECT_EQ(column(table, name).back(), 0.0) << name;
+  EXPECT_GT(column(table, "round_trip_s").back(), 0.0);
+  EXPECT_EQ(column(table, "link_silence_s").back(), 0.0);
+  EXPECT_EQ(column(table, "told_sequence").back(), 7'777.0);
+  EXPECT_EQ(column(table, "applied_sequence").back(), 7'777.0) << "the master is stepped first";
+  const auto forces = column(table, "motor_force_N");
+  EXPECT_GT(*std::ranges::max_element(forces), 0.01);
+}
+
+TEST_F(Sites, ATickWithItsLogDoesNotAllocate) {
+  open(true);
+  run(5005);
+  expect(SiteState::active, SiteState::active);
+  const std::uint64_t before = laws::own_allocation_count();
+  run(3000);
+  EXPECT_EQ(laws::own_allocation_count(), before);
+}
+
+TEST(SiteWords, AreReadFromALineAndAWrongOneNamesThoseThatThereAre) {
+  EXPECT_EQ(parse_site_word("", SiteRole::master).value(), SiteWord::arm);
+  EXPECT_EQ(parse_site_word("  release \r", SiteRole::master).value(), SiteWord::release);
+  EXPECT_EQ(parse_site_word("clear", SiteRole::slave).value(), SiteWord::clear);
+  const auto wrong = parse_site_word("amr", SiteRole::master);
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(describe(wrong.error()).find("arm, press, release, clutch, unclutch, clear"), std::string::npos)
+      << describe(wrong.error());
+  const auto elsewhere = parse_site_word("arm", SiteRole::slave);
+  ASSERT_FALSE(elsewhere);
+  EXPECT_NE(describe(elsewhere.error()).find("at the master"), std::string::npos) << describe(elsewhere.error());
+  EXPECT_FALSE(parse_site_word("", SiteRole::slave));
+}
+
+TEST(SiteButtons, AButtonIsPushedForATickAndTheDeadManSwitchComesAfterArming) {
+  SiteButtons buttons;
+  EXPECT_FALSE(buttons.step(SiteState::configure).align) << "what is pressed at the start is not heard";
+  EXPECT_TRUE(buttons.step(SiteState::configure).align);
+  EXPECT_FALSE(buttons.step(SiteState::align).align);
+  ASSERT_TRUE(buttons.ready());
+  buttons.take(SiteWord::arm);
+  const auto pushed = buttons.step(SiteState::align);
+  EXPECT_TRUE(pushed.arm);
+  EXPECT_FALSE(pushed.dead_man);
+  EXPECT_FALSE(buttons.ready()) << "let go first, or a second push would not rise";
+  const auto after = buttons.step(SiteState::armed);
+  EXPECT_FALSE(after.arm);
+  EXPECT_TRUE(after.dead_man);
+  ASSERT_TRUE(buttons.ready());
+  buttons.take(SiteWord::arm);
+  EXPECT_FALSE(buttons.step(SiteState::armed).dead_man) << "armed anew, pressed anew";
+  EXPECT_TRUE(buttons.step(SiteState::armed).dead_man);
+  buttons.take(SiteWord::arm);
+  EXPECT_TRUE(buttons.step(SiteState::active).dead_man) << "an arming while active lets nothing go";
+  EXPECT_FALSE(buttons.step(SiteState::hold).dead_man);
+  buttons.take(SiteWord::release);
+  EXPECT_FALSE(buttons.step(SiteState::active).dead_man);
+}
+
+}  // namespace site_loop_test
+}  // namespace tactus::cli
