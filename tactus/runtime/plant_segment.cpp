@@ -76,7 +76,8 @@ bool is_taken(int file, off_t place) {
 /// Whether the name still leads to this file.
 bool is_named(int file, const std::string& name) {
   const File again(shm_open(file_name(name).c_str(), O_RDWR | O_CLOEXEC, 0));
-  struct stat own {}, there {};
+  struct stat own {
+  }, there{};
   return again.descriptor >= 0 && fstat(file, &own) == 0 && fstat(again.descriptor, &there) == 0 &&
          own.st_ino == there.st_ino;
 }
@@ -158,8 +159,9 @@ Result<PlantSegment> PlantSegment::create(const std::string& name, const PlantFa
     return PlantSegment(name, file.release(), layout, true);
   }
   return segment_error(ErrorCode::failed, option,
-                       "plant '" + name + "': other processes make and remove plants of that name all the time: give "
-                                          "this one another name");
+                       "plant '" + name +
+                           "': other processes make and remove plants of that name all the time: give "
+                           "this one another name");
 }
 
 Result<PlantSegment> PlantSegment::attach(const std::string& name) {
@@ -167,9 +169,9 @@ Result<PlantSegment> PlantSegment::attach(const std::string& name) {
   if (auto error = check_name(name, option)) return *std::move(error);
   File file(shm_open(file_name(name).c_str(), O_RDWR | O_CLOEXEC, 0));
   if (file.descriptor < 0 && errno == ENOENT) {
-    return segment_error(ErrorCode::missing, option,
-                         "no plant '" + name + "' runs here: start it with `tactus plant EXPERIMENT --name " + name +
-                             "`");
+    return segment_error(
+        ErrorCode::missing, option,
+        "no plant '" + name + "' runs here: start it with `tactus plant EXPERIMENT --name " + name + "`");
   }
   if (file.descriptor < 0) return system_error(option, name, "shm_open");
   if (!is_taken(file.descriptor, owner_place)) {

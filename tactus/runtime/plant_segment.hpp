@@ -22,11 +22,11 @@ namespace tactus::runtime {
 
 /// What happened in one tick of a simulated plant that no sensor tells: for metrics, never for a site.
 struct SimulatedTruth {
-  std::int64_t tick = 0;          ///< of the plant since its start: this one has ended; 0 is the start itself
-  double tip_position_m = 0.0;    ///< of the slave, when the tick ended
-  double contact_sum_N = 0.0;     ///< of the force on the wall over the substeps of the tick
-  double contact_peak_N = 0.0;    ///< of the largest substep
-  std::int64_t touched = 0;       ///< 1: the tip met the wall in the tick
+  std::int64_t tick = 0;             ///< of the plant since its start: this one has ended; 0 is the start itself
+  double tip_position_m = 0.0;       ///< of the slave, when the tick ended
+  double contact_sum_N = 0.0;        ///< of the force on the wall over the substeps of the tick
+  double contact_peak_N = 0.0;       ///< of the largest substep
+  std::int64_t touched = 0;          ///< 1: the tip met the wall in the tick
   std::int64_t touched_substep = 0;  ///< in which substep first
   double touched_after_s = 0.0;      ///< when, from the begin of that substep
 };

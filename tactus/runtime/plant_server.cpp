@@ -2,8 +2,8 @@
 
 namespace tactus::runtime {
 
-Result<std::unique_ptr<PlantServer>> PlantServer::make(const std::string& name,
-                                                       const simulation::TappingParams& params, Seconds silence) {
+Result<std::unique_ptr<PlantServer>> PlantServer::make(const std::string& name, const simulation::TappingParams& params,
+                                                       Seconds silence) {
   if (!silence_bounds.contain(silence.value)) {
     Error error = out_of_bounds({}, silence.value, silence_bounds, units::second);
     error.place = "--silence-s";
@@ -18,8 +18,7 @@ Result<std::unique_ptr<PlantServer>> PlantServer::make(const std::string& name,
                                              .taps = params.task.taps,
                                              .configuration = plant_configuration(params)});
   if (!segment) return segment.error();
-  return std::unique_ptr<PlantServer>(
-      new PlantServer(*std::move(ensemble), *first, *std::move(segment), silence));
+  return std::unique_ptr<PlantServer>(new PlantServer(*std::move(ensemble), *first, *std::move(segment), silence));
 }
 
 PlantServer::PlantServer(simulation::TappingEnsemble ensemble, const SimulatedPlant& first, PlantSegment segment,

@@ -59,9 +59,9 @@ class PlantServer {
   DeviceServer slave_;
   DeviceReading master_reading_;
   DeviceReading slave_reading_;
-  std::size_t current_ = 0;              ///< written by the servo thread, while `made_` is not 0
-  std::atomic<std::uint64_t> made_{0};   ///< session that the other plant was made for; 0 once it is taken
-  std::uint64_t served_ = 0;             ///< session that was made last
+  std::size_t current_ = 0;             ///< written by the servo thread, while `made_` is not 0
+  std::atomic<std::uint64_t> made_{0};  ///< session that the other plant was made for; 0 once it is taken
+  std::uint64_t served_ = 0;            ///< session that was made last
   std::uint64_t session_ = 0;
   bool running_ = false;
   std::int64_t start_tick_ = 0;

@@ -35,8 +35,7 @@ Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const simulation::Tap& ta
   auto loop = LocalTeleoperator::make(params.control, params.channel, Seconds{clock->tick_s},
                                       params.control.position_scale * tap.path.start_m, plant.master(), plant.slave());
   if (!loop) return loop.error();
-  return std::unique_ptr<RealTimeTap>(
-      new RealTimeTap(tap, observation_s, streams, *clock, plant, *std::move(loop)));
+  return std::unique_ptr<RealTimeTap>(new RealTimeTap(tap, observation_s, streams, *clock, plant, *std::move(loop)));
 }
 
 RealTimeTap::RealTimeTap(const simulation::Tap& tap, double observation_s, const RealTimeStreams& streams,

@@ -156,10 +156,11 @@ Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, SharedPlant*
   return done;
 }
 
-std::string json_of(const simulation::Request& request, const std::vector<TappingRun>& runs,
-                    const std::vector<ServoReport>& servos) {
+std::string json_of(const simulation::Request& request, const std::optional<PlantChoice>& plant,
+                    const std::vector<TappingRun>& runs, const std::vector<ServoReport>& servos) {
   auto document = nlohmann::ordered_json::parse(simulation::tapping_json(request, runs));
   document["clock"] = "real";
+  if (plant) document["plant"] = plant->name;
   for (std::size_t i = 0; i < servos.size(); ++i) {
     document["runs"][i]["servo"] = nlohmann::ordered_json::parse(servo_json(servos[i]));
   }
@@ -218,7 +219,10 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
   ServoReport all;
   for (std::size_t i = 0; i < cases->all.size(); ++i) {
     auto done = run_taps(cases->all[i], plant.get(), log ? log->streams[i] : RealTimeStreams{}, tap_done);
-    if (!done) return done.error();
+    if (!done) {
+      if (log) (void)close_log(*log, *options.log);  // it shows how it came to that
+      return done.error();
+    }
     all.add(done->servo);
     runs.push_back(std::move(done->run));
     servos.push_back(std::move(done->servo));
@@ -234,14 +238,15 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
   report::Page page = simulation::tapping_page(request, table, figures);
   page.heading("How time was kept");
   page.paragraph(
-      "The sites ran on a servo thread at deadlines of the real clock, the devices were simulated beside them.");
+      std::string("The sites ran on a servo thread at deadlines of the real clock, the devices were simulated ") +
+      (options.plant ? "in the process of the plant '" + options.plant->name + "'." : "beside them."));
   page.table(timing);
   page.table(late);
   page.table(rights_table(all));
   simulation::add_provenance(page, request, cases->first_configuration);
   std::string text = table.to_text() + "\n" + timing.to_text() + "\n" + late.to_text() + losses_of(all);
   return RealTimeOutcome{.outcome = {.text = std::move(text),
-                                     .json = json_of(request, runs, servos),
+                                     .json = json_of(request, options.plant, runs, servos),
                                      .html = page.to_html(),
                                      .figures = std::move(figures),
                                      .traces = {},

@@ -23,7 +23,7 @@ struct RealTimeOptions {
   ServoThreadParams servo;                   ///< the rate is that of the experiment
   std::optional<std::filesystem::path> log;  ///< file that takes every tick while it runs; its folder is made
   std::map<std::string, std::string> about;  ///< for the log, beside the configuration
-  std::optional<PlantChoice> plant;          ///< else devices are simulated on the servo thread
+  std::optional<PlantChoice> plant{};        ///< else devices are simulated on the servo thread
 };
 
 /// What came out, and what became of the log.

@@ -69,16 +69,13 @@ DeviceCommand DeviceServer::command(const Tick& tick) noexcept {
   // The last one of a loop, which lets go, has the time of the one before.
   if (newest && newest->session == session_ && newest->time_ns >= command_.time_ns) command_ = *newest;
   if (!obeyed()) return {};
-  gave_up_ =
-      gave_up_ || !is_finite(command_.command) || too_old(command_.time_ns, tick.began_ns, silence_ns_);
+  gave_up_ = gave_up_ || !is_finite(command_.command) || too_old(command_.time_ns, tick.began_ns, silence_ns_);
   return gave_up_ ? DeviceCommand{} : command_.command;
 }
 
 void DeviceServer::publish(const Tick& tick, std::int64_t device_tick, const DeviceReading& reading) noexcept {
-  slots_->readings.publish({.reading = reading,
-                            .tick = device_tick,
-                            .time_ns = tick.began_ns,
-                            .gave_up_on = gave_up_ ? session_ : 0});
+  slots_->readings.publish(
+      {.reading = reading, .tick = device_tick, .time_ns = tick.began_ns, .gave_up_on = gave_up_ ? session_ : 0});
 }
 
 }  // namespace tactus::runtime

@@ -77,9 +77,8 @@ Check SharedPlant::begin(std::size_t tap) {
   while (segment_->answer.load(std::memory_order_acquire) != session) {
     if (!segment_.living_owner()) return why_lost();
     if (std::chrono::steady_clock::now() > last) {
-      return plant_error(ErrorCode::failed, "the plant '" + segment_.name() +
-                                                "' did not begin tap " + std::to_string(tap) +
-                                                " within 5 s: stop it and start it again");
+      return plant_error(ErrorCode::failed, "the plant '" + segment_.name() + "' did not begin tap " +
+                                                std::to_string(tap) + " within 5 s: stop it and start it again");
     }
     std::this_thread::sleep_for(1ms);
   }
@@ -124,8 +123,7 @@ Error SharedPlant::why_lost() const {
                                               "`tactus doctor`, or start it with a longer --silence-s");
   }
   if (fell_behind_) {
-    return plant_error(ErrorCode::failed, plant + "went on for more than " +
-                                              std::to_string(PlantLayout::truth_ticks) +
+    return plant_error(ErrorCode::failed, plant + "went on for more than " + std::to_string(PlantLayout::truth_ticks) +
                                               " ticks while this run stood still: see `tactus doctor`");
   }
   return plant_error(ErrorCode::failed,
