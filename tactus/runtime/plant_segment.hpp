@@ -64,6 +64,8 @@ struct PlantLayout {
   DeviceSlots slave;
   SharedSlots<SimulatedTruth, truth_ticks> simulated_truth;
 };
+static_assert(std::is_standard_layout_v<PlantLayout> && std::is_trivially_destructible_v<PlantLayout>,
+              "it is mapped, not made");
 
 /// A mapped segment, as its owner or as its one controller; unmapped, and by its owner removed, at the end.
 ///

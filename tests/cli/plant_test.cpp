@@ -67,7 +67,7 @@ TEST_F(Plant, ThatIsKilledEndsTheRunAndIsReplacedByTheNext) {
   shell(R"(
     plant --set task.observation_s=9 & plant=$!
     wait_for plant.out "Plant '$NAME'"
-    ( silence=0.5; drive --set task.observation_s=9 --out results >run.out 2>run.log; echo $? >run.status ) &
+    ( silence=2; drive --set task.observation_s=9 --out results >run.out 2>run.log; echo $? >run.status ) &
     wait_for plant.out 'driven by process'
     drive >second.out 2>second.log; echo $? >second.status
     kill -KILL $plant

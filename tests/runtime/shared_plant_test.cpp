@@ -232,7 +232,7 @@ TEST(SharedPlant, WhenThePlantIsKilledInMidRunBothSitesLetGoAtTheRateLimitAndThe
   params.control.slave_gate.rate_limit_N_per_s = 200.0;
   const std::string name = name_of("killed");
   const pid_t child = start_plant(name, params, patient);
-  const auto plant = attach(name, Seconds{0.5});
+  const auto plant = attach(name, Seconds{2.0});
   ASSERT_TRUE(plant);
   ASSERT_FALSE(plant->begin(0));
   const auto ensemble = TappingEnsemble::make(params);
