@@ -219,14 +219,14 @@ PlantFacts PlantSegment::facts() const {
                             std::min<std::size_t>(layout_->configuration_length, PlantLayout::configuration_bytes)}};
 }
 
-std::optional<pid_t> PlantSegment::living_owner() const {
+std::optional<std::int64_t> PlantSegment::living_owner() const {
   if (!owner_ && !is_taken(file_, owner_place)) return std::nullopt;
-  return static_cast<pid_t>(layout_->owner.load());
+  return static_cast<std::int64_t>(layout_->owner.load());
 }
 
-std::optional<pid_t> PlantSegment::living_controller() const {
+std::optional<std::int64_t> PlantSegment::living_controller() const {
   if (owner_ && !is_taken(file_, controller_place)) return std::nullopt;
-  return static_cast<pid_t>(layout_->controller.load());
+  return static_cast<std::int64_t>(layout_->controller.load());
 }
 
 PlantRequest PlantSegment::request() const noexcept {

@@ -15,8 +15,6 @@
 #include <type_traits>
 #include <utility>
 
-#include <sys/types.h>
-
 /// The shared memory of a plant that a process of its own owns: what lies in it, and who may be in it.
 namespace tactus::runtime {
 
@@ -99,9 +97,9 @@ class PlantSegment {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] PlantFacts facts() const;
   /// The process that owns it, where that lives.
-  [[nodiscard]] std::optional<pid_t> living_owner() const;
+  [[nodiscard]] std::optional<std::int64_t> living_owner() const;
   /// The process that drives it, where that lives.
-  [[nodiscard]] std::optional<pid_t> living_controller() const;
+  [[nodiscard]] std::optional<std::int64_t> living_controller() const;
 
   /// What the controller asked for last. Real-time safe.
   [[nodiscard]] PlantRequest request() const noexcept;

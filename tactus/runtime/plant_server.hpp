@@ -23,7 +23,7 @@ struct PlantStatus {
   std::int64_t missed = 0;     ///< ticks
   std::int64_t taps = 0;       ///< begun
   std::int64_t let_go = 0;     ///< taps in which commands stopped coming, or were not finite
-  std::optional<pid_t> controller;
+  std::optional<std::int64_t> controller;
 };
 
 /// The owner's side of a plant: simulated devices in real time, on a servo thread, for a controller in another process.
