@@ -55,6 +55,7 @@ int run_command(int argc, char** argv) {
   add_identify(app, command, status);
   add_export(app, status);
   add_key(app, status);
+  add_plant(app, status);
   add_relay(app, status);
   add_replay(app, status);
   add_faults(app, command, status);

@@ -1,3 +1,4 @@
+#include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/ros2_session.hpp>
@@ -25,13 +26,13 @@ namespace tactus::cli {
 namespace {
 
 struct RunOptions {
-  std::string file;
-  std::vector<std::string> with;
-  std::vector<std::string> set;
+  ExperimentOptions experiment;
   std::vector<std::string> vary;
   std::optional<std::string> out;
   bool json = false;
   bool real_time = false;
+  std::optional<std::string> plant;
+  double plant_silence_s = runtime::usual_silence.value;
   runtime::ServoThreadParams servo;
   SiteOptions site;
   bool ros2 = false;
@@ -39,16 +40,8 @@ struct RunOptions {
 };
 
 Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
-  auto document = configuration::Document::load(options.file);
+  auto document = load_experiment(options.experiment);
   if (!document) return document.error();
-  for (const std::string& file : options.with) {
-    const auto other = configuration::Document::load(file);
-    if (!other) return other.error();
-    if (auto error = document->merge(*other)) return *std::move(error);
-  }
-  for (const std::string& assignment : options.set) {
-    if (auto error = document->set(assignment)) return *std::move(error);
-  }
   std::vector<simulation::Variation> variations;
   for (const std::string& text : options.vary) {
     auto variation = simulation::parse_variation(text);
@@ -57,7 +50,7 @@ Result<simulation::Request> make_request(const RunOptions& options, const std::s
   }
   return simulation::Request{.document = *std::move(document),
                              .variations = std::move(variations),
-                             .name = std::filesystem::path(options.file).stem().string(),
+                             .name = std::filesystem::path(options.experiment.file).stem().string(),
                              .command = command};
 }
 
@@ -67,6 +60,9 @@ void say_log(const RunOptions& options, const std::filesystem::path& folder) {
 
 Check run_in_real_time(const RunOptions& options, const simulation::Request& request) {
   runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin()};
+  if (options.plant) {
+    real_time.plant = runtime::PlantChoice{.name = *options.plant, .silence = Seconds{options.plant_silence_s}};
+  }
   const std::filesystem::path folder = std::filesystem::path(options.out.value_or("")) / "log";
   if (options.out) real_time.log = folder / "log.mcap";
   const auto done = [&] {
@@ -152,14 +148,7 @@ Check run(const RunOptions& options, const std::string& command) {
 void add_run(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* verb = app.add_subcommand("run", "Run an experiment, in virtual or in real time");
-  verb->add_option("EXPERIMENT", options->file, "Experiment file (TOML)")->required();
-  verb->add_option("--with", options->with,
-                   "File whose keys take the place of the experiment's, as an identified model")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
-  verb->add_option("--set", options->set, "Override one value: key=value")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_experiment_options(*verb, options->experiment);
   verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations: key=a,b,c")
       ->type_name("KEY=A,B,C")
       ->allow_extra_args(false);
@@ -168,6 +157,15 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
   CLI::Option* real_time = verb->add_flag("--realtime", options->real_time,
                                           "Run it at the real clock, on a servo thread, with simulated devices");
+  CLI::Option* plant = verb->add_option("--plant", options->plant,
+                                        "Drive the devices of the `tactus plant` of that name, not ones of its own")
+                           ->type_name("NAME")
+                           ->needs(real_time);
+  verb->add_option("--plant-silence-s", options->plant_silence_s,
+                   "The longest silence of that plant before both sites let go, 0.001 to 10")
+      ->type_name("S")
+      ->capture_default_str()
+      ->needs(plant);
   add_servo_options(*verb, options->servo);
   add_site_options(*verb, options->site);
   verb->get_option("--site")->excludes(real_time);

@@ -19,6 +19,7 @@ void add_export(CLI::App& app, int& status);
 void add_faults(CLI::App& app, const std::string& command, int& status);
 void add_identify(CLI::App& app, const std::string& command, int& status);
 void add_key(CLI::App& app, int& status);
+void add_plant(CLI::App& app, int& status);
 void add_relay(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
 void add_stability(CLI::App& app, const std::string& command, int& status);

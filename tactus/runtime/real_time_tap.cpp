@@ -7,47 +7,60 @@ namespace tactus::runtime {
 
 using simulation::Teleoperator;
 
+namespace {
+
+/// No site commands a force any more.
+bool is_at_rest(const LocalTeleoperator::Output& output) noexcept {
+  return output.sites.master.motor_force_N == 0.0 && output.sites.master.handle_force_N == 0.0 &&
+         output.sites.slave.motor_force_N == 0.0;
+}
+
+}  // namespace
+
 Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const simulation::Tap& tap, double observation_s,
                                                        const RealTimeStreams& streams) {
-  const Teleoperator::Params& params = tap.params;
-  const auto clock = simulation::Clock::make(params.servo, params.plant);
-  if (!clock) return clock.error();
-  const double slave_start_m = params.control.position_scale * tap.path.start_m;
-  auto master = simulation::MasterPlant::make(params.master, params.person, *clock, tap.path.start_m);
-  if (!master) return master.error();
-  auto slave = simulation::SlavePlant::make(params.slave, params.environment, *clock, slave_start_m);
-  if (!slave) return slave.error();
-  std::unique_ptr<RealTimeTap> made(new RealTimeTap(tap, observation_s, streams, *clock, *master, *slave));
-  auto loop = LocalTeleoperator::make(params.control, params.channel, Seconds{clock->tick_s}, slave_start_m,
-                                      made->master_, made->slave_);
-  if (!loop) return loop.error();
-  made->loop_ = std::make_unique<LocalTeleoperator>(*std::move(loop));
+  auto plant = SimulatedPlant::make(tap);
+  if (!plant) return plant.error();
+  auto own = std::make_unique<SimulatedPlant>(*std::move(plant));
+  auto made = make(tap, observation_s, *own, streams);
+  if (made) (*made)->own_ = std::move(own);
   return made;
 }
 
+Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const simulation::Tap& tap, double observation_s,
+                                                       TapPlant& plant, const RealTimeStreams& streams) {
+  const Teleoperator::Params& params = tap.params;
+  const auto clock = simulation::Clock::make(params.servo, params.plant);
+  if (!clock) return clock.error();
+  auto loop = LocalTeleoperator::make(params.control, params.channel, Seconds{clock->tick_s},
+                                      params.control.position_scale * tap.path.start_m, plant.master(), plant.slave());
+  if (!loop) return loop.error();
+  return std::unique_ptr<RealTimeTap>(new RealTimeTap(tap, observation_s, streams, *clock, plant, *std::move(loop)));
+}
+
 RealTimeTap::RealTimeTap(const simulation::Tap& tap, double observation_s, const RealTimeStreams& streams,
-                         const simulation::Clock& clock, const simulation::MasterPlant& master,
-                         const simulation::SlavePlant& slave)
-    : clock_(clock),
-      master_(master, clock, tap.path,
-              {.force_N = tap.params.master.amplifier.limit_N,
-               .handle_force_N = tap.params.master.handle_actuator.limit_N}),
-      slave_(slave, clock, {.force_N = tap.params.slave.amplifier.limit_N}),
-      observer_(tap, observation_s),
-      streams_(streams) {
+                         const simulation::Clock& clock, TapPlant& plant, LocalTeleoperator loop)
+    : clock_(clock), plant_(&plant), loop_(std::move(loop)), observer_(tap, observation_s), streams_(streams) {
   // Filled and emptied, so that every page of it is there.
   trace_.resize(observer_.most_ticks());
   trace_.clear();
 }
 
-bool RealTimeTap::complete() noexcept {
-  Teleoperator::add_contact(record_, slave_.plant().contact(), clock_);
+bool RealTimeTap::complete(const SimulatedTruth& truth) noexcept {
+  Teleoperator::add_contact(record_,
+                            {.sum_N = truth.contact_sum_N,
+                             .peak_N = truth.contact_peak_N,
+                             .touched = truth.touched != 0,
+                             .touched_substep = static_cast<int>(truth.touched_substep),
+                             .touched_after_s = truth.touched_after_s},
+                            clock_);
   trace_.push_back(record_);
   if (streams_.teleoperator != nullptr) {
     const auto since_start_ns = static_cast<std::int64_t>(std::llround(1e9 * record_.time_s));
     streams_.teleoperator->push(static_cast<std::uint64_t>(start_ns_ + since_start_ns), record_);
   }
-  return observer_.observe(record_, loop_->healthy());
+  ++plant_ticks_;
+  return observer_.observe(record_, loop_.healthy());
 }
 
 bool RealTimeTap::step(const Tick& tick) noexcept {
@@ -58,27 +71,24 @@ bool RealTimeTap::step(const Tick& tick) noexcept {
   // Time counts from the first step, as the devices' does.
   Tick own = tick;
   own.number -= first_tick_;
-  while (master_.ticks() < own.number) {
-    master_.advance();
-    slave_.advance();
-    if (!complete()) {
-      loop_->release();
+  while (const auto truth = plant_->next(own)) {
+    if (!complete(*truth)) {
+      loop_.release();
       return false;
     }
-    record_.time_s = static_cast<double>(master_.ticks()) * clock_.tick_s;
-    record_.tip_position_m = slave_.plant().tip_position_m();
+    record_.time_s = static_cast<double>(plant_ticks_) * clock_.tick_s;
+    record_.tip_position_m = truth->tip_position_m;
   }
-  const LocalTeleoperator::Output output = loop_->step(own);
-  const double time_s = static_cast<double>(own.number) * clock_.tick_s;
+  const LocalTeleoperator::Output output = loop_.step(own);
   record_ = Teleoperator::recorded(
-      time_s,
+      static_cast<double>(plant_ticks_) * clock_.tick_s,
       {.motor_position_m = output.master.position_m, .hand_force_N = output.master.force_N, .grip = output.master.grip},
       {.motor_position_m = output.slave.position_m, .tip_force_N = output.slave.force_N}, output.sites);
-  record_.tip_position_m = slave_.plant().tip_position_m();
+  record_.tip_position_m = plant_->tip_position_m();
   const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - streams_.origin_ns);
   if (streams_.sites != nullptr) streams_.sites->push(due_ns, recorded(streams_.tap, own, output));
   if (streams_.servo != nullptr) streams_.servo->push(due_ns, recorded(own));
-  return true;
+  return !(plant_->lost() && is_at_rest(output));
 }
 
 }  // namespace tactus::runtime

@@ -2,7 +2,7 @@
 
 #include <tactus/runtime/local_teleoperator.hpp>
 #include <tactus/runtime/servo_record.hpp>
-#include <tactus/runtime/simulated_devices.hpp>
+#include <tactus/runtime/simulated_plant.hpp>
 #include <tactus/runtime/sites_record.hpp>
 #include <tactus/simulation/tap_observer.hpp>
 #include <tactus/telemetry/recorder.hpp>
@@ -25,15 +25,19 @@ struct RealTimeStreams {
   std::int64_t origin_ns = 0;  ///< of the times in the log, on CLOCK_MONOTONIC
 };
 
-/// One tap through simulated devices in real time: the step of a servo thread. It owns both devices.
+/// One tap through simulated devices in real time: the step of a servo thread.
 ///
-/// The record of a tick is complete when the plants have been advanced to the next. Ticks that were missed have a
-/// record too, with the readings and commands that held. With none missed, the records are bit for bit those of virtual
-/// time.
+/// The record of a tick is complete when the plant has gone on to the next. Ticks that were missed have a record too,
+/// with the readings and commands that held. With devices of its own and none missed, the records are bit for bit those
+/// of virtual time.
 class RealTimeTap {
  public:
-  /// Errors: those of plants and sites.
+  /// With devices of its own. Errors: those of plants and sites.
   static Result<std::unique_ptr<RealTimeTap>> make(const simulation::Tap& tap, double observation_s,
+                                                   const RealTimeStreams& streams = {});
+  /// Through a plant that outlives it and stands at the start of the tap. Where the plant is lost, the sites let go at
+  /// the rate limit and the tap is over. Errors: those of the sites.
+  static Result<std::unique_ptr<RealTimeTap>> make(const simulation::Tap& tap, double observation_s, TapPlant& plant,
                                                    const RealTimeStreams& streams = {});
   RealTimeTap(const RealTimeTap&) = delete;
   RealTimeTap& operator=(const RealTimeTap&) = delete;
@@ -47,20 +51,20 @@ class RealTimeTap {
 
  private:
   RealTimeTap(const simulation::Tap& tap, double observation_s, const RealTimeStreams& streams,
-              const simulation::Clock& clock, const simulation::MasterPlant& master,
-              const simulation::SlavePlant& slave);
-  /// Ends the open record with what the plants did, and hands it on; false once the tap is over.
-  bool complete() noexcept;
+              const simulation::Clock& clock, TapPlant& plant, LocalTeleoperator loop);
+  /// Ends the open record with what the plant did, and hands it on; false once the tap is over.
+  bool complete(const SimulatedTruth& truth) noexcept;
 
   simulation::Clock clock_;
-  SimulatedMaster master_;
-  SimulatedSlave slave_;
-  std::unique_ptr<LocalTeleoperator> loop_;
+  std::unique_ptr<SimulatedPlant> own_;
+  TapPlant* plant_;
+  LocalTeleoperator loop_;
   simulation::TapObserver observer_;
   RealTimeStreams streams_;
   simulation::Teleoperator::Record record_;
   std::vector<simulation::Teleoperator::Record> trace_;
   std::int64_t first_tick_ = -1;
+  std::int64_t plant_ticks_ = 0;
   std::int64_t start_ns_ = 0;  ///< of the first tick, after the origin
 };
 

@@ -2,6 +2,7 @@
 #include <tactus/runtime/real_time_tap.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
+#include <tactus/runtime/shared_plant.hpp>
 #include <tactus/simulation/presentation.hpp>
 #include <tactus/simulation/tapping.hpp>
 #include <tactus/simulation/tapping_presentation.hpp>
@@ -23,6 +24,7 @@ using simulation::TappingRun;
 using simulation::TapResult;
 
 struct Prepared {
+  TappingParams params;
   TappingEnsemble ensemble;
   double observation_s;
   ServoThreadParams servo;
@@ -58,6 +60,16 @@ Check refuse_long_runs(const Cases& cases) {
                  .place = "--vary"};
   }
   return std::nullopt;
+}
+
+/// The plant that all runs go through.
+Result<std::unique_ptr<SharedPlant>> attach_plant(const PlantChoice& choice, const Cases& cases) {
+  auto plant = SharedPlant::attach(choice.name, choice.silence);
+  if (!plant) return plant.error();
+  for (const auto& one : cases.all) {
+    if (auto error = (*plant)->check(one.prepared.params)) return *std::move(error);
+  }
+  return plant;
 }
 
 /// The recorder with three streams for each run.
@@ -106,7 +118,8 @@ struct RealTimeRun {
   ServoReport servo;
 };
 
-Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, RealTimeStreams streams,
+/// With `plant` null, through devices of its own.
+Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, SharedPlant* plant, RealTimeStreams streams,
                              const std::function<void()>& tap_done) {
   const auto& [settings, prepared] = one;
   RealTimeRun done;
@@ -114,11 +127,20 @@ Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, RealTimeStre
   std::vector<std::vector<simulation::Teleoperator::Record>> traces;
   for (std::size_t tap = 0; tap < prepared.ensemble.size(); ++tap) {
     streams.tap = static_cast<std::int64_t>(tap);
-    auto made = RealTimeTap::make(prepared.ensemble.tap(tap), prepared.observation_s, streams);
+    const simulation::Tap& drawn = prepared.ensemble.tap(tap);
+    if (plant != nullptr) {
+      if (auto error = plant->begin(tap)) return *std::move(error);
+    }
+    auto made = plant != nullptr ? RealTimeTap::make(drawn, prepared.observation_s, *plant, streams)
+                                 : RealTimeTap::make(drawn, prepared.observation_s, streams);
     if (!made) return made.error();
     RealTimeTap& running = **made;
     const auto report = run_servo(prepared.servo, [&running](const Tick& tick) noexcept { return running.step(tick); });
     if (!report) return report.error();
+    if (plant != nullptr) {
+      if (plant->lost()) return plant->why_lost();
+      plant->end();
+    }
     done.servo.add(*report);
     results.push_back(running.result());
     if (traces.size() < most_traces) traces.push_back(running.trace());
@@ -134,10 +156,11 @@ Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, RealTimeStre
   return done;
 }
 
-std::string json_of(const simulation::Request& request, const std::vector<TappingRun>& runs,
-                    const std::vector<ServoReport>& servos) {
+std::string json_of(const simulation::Request& request, const std::optional<PlantChoice>& plant,
+                    const std::vector<TappingRun>& runs, const std::vector<ServoReport>& servos) {
   auto document = nlohmann::ordered_json::parse(simulation::tapping_json(request, runs));
   document["clock"] = "real";
+  if (plant) document["plant"] = plant->name;
   for (std::size_t i = 0; i < servos.size(); ++i) {
     document["runs"][i]["servo"] = nlohmann::ordered_json::parse(servo_json(servos[i]));
   }
@@ -167,10 +190,17 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
         if (auto error = check_servo_thread(servo)) return *std::move(error);
         auto ensemble = TappingEnsemble::make(params);
         if (!ensemble) return ensemble.error();
-        return Prepared{*std::move(ensemble), params.task.observation_s, servo};
+        return Prepared{params, *std::move(ensemble), params.task.observation_s, servo};
       });
   if (!cases) return cases.error();
   if (auto error = refuse_long_runs(*cases)) return *std::move(error);
+
+  std::unique_ptr<SharedPlant> plant;
+  if (options.plant) {
+    auto attached = attach_plant(*options.plant, *cases);
+    if (!attached) return attached.error();
+    plant = *std::move(attached);
+  }
 
   std::unique_ptr<Log> log;
   if (options.log) {
@@ -188,8 +218,11 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
   std::vector<ServoReport> servos;
   ServoReport all;
   for (std::size_t i = 0; i < cases->all.size(); ++i) {
-    auto done = run_taps(cases->all[i], log ? log->streams[i] : RealTimeStreams{}, tap_done);
-    if (!done) return done.error();
+    auto done = run_taps(cases->all[i], plant.get(), log ? log->streams[i] : RealTimeStreams{}, tap_done);
+    if (!done) {
+      if (log) (void)close_log(*log, *options.log);  // it shows how it came to that
+      return done.error();
+    }
     all.add(done->servo);
     runs.push_back(std::move(done->run));
     servos.push_back(std::move(done->servo));
@@ -205,14 +238,15 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
   report::Page page = simulation::tapping_page(request, table, figures);
   page.heading("How time was kept");
   page.paragraph(
-      "The sites ran on a servo thread at deadlines of the real clock, the devices were simulated beside them.");
+      std::string("The sites ran on a servo thread at deadlines of the real clock, the devices were simulated ") +
+      (options.plant ? "in the process of the plant '" + options.plant->name + "'." : "beside them."));
   page.table(timing);
   page.table(late);
   page.table(rights_table(all));
   simulation::add_provenance(page, request, cases->first_configuration);
   std::string text = table.to_text() + "\n" + timing.to_text() + "\n" + late.to_text() + losses_of(all);
   return RealTimeOutcome{.outcome = {.text = std::move(text),
-                                     .json = json_of(request, runs, servos),
+                                     .json = json_of(request, options.plant, runs, servos),
                                      .html = page.to_html(),
                                      .figures = std::move(figures),
                                      .traces = {},

@@ -2,6 +2,7 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/runtime/servo_thread.hpp>
+#include <tactus/runtime/shared_device.hpp>
 #include <tactus/simulation/experiment.hpp>
 
 #include <filesystem>
@@ -11,11 +12,18 @@
 
 namespace tactus::runtime {
 
+/// A plant that another process owns.
+struct PlantChoice {
+  std::string name;
+  Seconds silence = usual_silence;  ///< the longest that it may be silent
+};
+
 /// How an experiment is to be run in real time.
 struct RealTimeOptions {
   ServoThreadParams servo;                   ///< the rate is that of the experiment
   std::optional<std::filesystem::path> log;  ///< file that takes every tick while it runs; its folder is made
   std::map<std::string, std::string> about;  ///< for the log, beside the configuration
+  std::optional<PlantChoice> plant{};        ///< else devices are simulated on the servo thread
 };
 
 /// What came out, and what became of the log.
@@ -33,8 +41,8 @@ inline constexpr std::size_t most_real_time_runs = 64;
 /// topics
 /// `/teleoperator`, `/sites` and `/servo`, with several runs `/run_1/teleoperator` and so on.
 ///
-/// Errors: another kind of experiment, more taps or runs than the limits, those of the experiment and of the log. A log
-/// that fails on the way stops nothing.
+/// Errors: another kind of experiment, more taps or runs than the limits, those of the experiment, of the log and of
+/// the plant. A log that fails on the way stops nothing; a plant that is lost ends the run, and the log has all of it.
 Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, const RealTimeOptions& options,
                                          const simulation::Progress& progress);
 

@@ -36,6 +36,7 @@ class Command : public ::testing::Test {
 
   /// Writes a file into the folder and returns its name.
   std::string write(std::string_view name, std::string_view content) const;
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   void make_folder(const std::filesystem::path& name) const;
   [[nodiscard]] std::string content(const std::filesystem::path& name) const;
   /// Everything in the folder, paths relative to it, sorted.

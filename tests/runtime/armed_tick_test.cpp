@@ -1,12 +1,17 @@
+#include <tactus/runtime/plant_server.hpp>
 #include <tactus/runtime/real_time_tap.hpp>
+#include <tactus/runtime/shared_plant.hpp>
 #include <tactus/simulation/tapping.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <optional>
+#include <string>
 #include <thread>
 
 #include "tests/runtime/tick_guard.hpp"
@@ -40,9 +45,48 @@ void prepare() noexcept {
   spare = std::malloc(64);
 }
 
+/// A plant that another thread owns, as another process would, and this one drives.
+class OwnedPlant {
+ public:
+  explicit OwnedPlant(const simulation::TappingParams& params)
+      : server_(*PlantServer::make(name(), params, patient)), servo_(*Servo::start({.priority = 10}, Step{*server_})) {
+    driven_ = *SharedPlant::attach(name(), patient);
+  }
+  /// At the start of the first tap.
+  SharedPlant& begin() {
+    std::atomic<bool> begun{false};
+    std::thread maker([&] {
+      for (; !begun; std::this_thread::sleep_for(std::chrono::milliseconds(1))) server_->serve();
+    });
+    const Check refused = driven_->begin(0);
+    begun = true;
+    maker.join();
+    if (refused) _exit(5);
+    return *driven_;
+  }
+
+ private:
+  struct Step {
+    PlantServer& server;
+    bool operator()(const Tick& tick) const noexcept {
+      server.step(tick);
+      return true;
+    }
+  };
+  using Servo = ServoThread<Step>;
+  static constexpr Seconds patient{5.0};
+  static std::string name() { return "test-armed-" + std::to_string(getpid()); }
+
+  std::unique_ptr<PlantServer> server_;
+  std::unique_ptr<Servo> servo_;
+  std::unique_ptr<SharedPlant> driven_;
+};
+
+enum class Devices { own, of_another };
+
 /// The whole armed loop in a process of its own: servo thread, both sites, simulated devices, log. `fault` runs in one
 /// of its ticks.
-Deeds watch(void (*fault)() noexcept) {
+Deeds watch(void (*fault)() noexcept, Devices devices = Devices::own) {
   void* shared = mmap(nullptr, sizeof(Deeds), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   auto* result = new (shared) Deeds;
   result->system_calls = -1;  // until the child has reported
@@ -61,7 +105,10 @@ Deeds watch(void (*fault)() noexcept) {
                                   .servo = &recorder->add<ServoRecord>("/servo", "tactus_msgs/msg/ServoRecord"),
                                   .origin_ns = monotonic_ns()};
     recorder->start();
-    const auto tap = RealTimeTap::make(ensemble->tap(0), longest_s, streams);
+    std::optional<OwnedPlant> plant;
+    if (devices == Devices::of_another) plant.emplace(params);
+    const auto tap = plant ? RealTimeTap::make(ensemble->tap(0), longest_s, plant->begin(), streams)
+                           : RealTimeTap::make(ensemble->tap(0), longest_s, streams);
     if (!tap) _exit(3);
     RealTimeTap& running = **tap;
     int steps = 0;
@@ -88,14 +135,17 @@ Deeds watch(void (*fault)() noexcept) {
   return deeds;
 }
 
-TEST(ArmedTick, DoesNotAllocateLockFaultOrCallTheSystem) {
-  const Deeds deeds = watch(nullptr);
+void expect_no_deed(const Deeds& deeds) {
   EXPECT_EQ(deeds.allocations, 0);
   EXPECT_EQ(deeds.locks, 0);
   EXPECT_EQ(deeds.minor_faults, 0);
   EXPECT_EQ(deeds.major_faults, 0);
   EXPECT_EQ(deeds.system_calls, 0) << "the first was number " << deeds.first_system_call;
 }
+
+TEST(ArmedTick, DoesNotAllocateLockFaultOrCallTheSystem) { expect_no_deed(watch(nullptr)); }
+
+TEST(ArmedTick, DoesNeitherWhereAnotherProcessOwnsTheDevices) { expect_no_deed(watch(nullptr, Devices::of_another)); }
 
 struct Fault {
   const char* name;

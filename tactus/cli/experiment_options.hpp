@@ -1,0 +1,28 @@
+#pragma once
+
+#include <tactus/configuration/document.hpp>
+#include <tactus/core/result.hpp>
+
+#include <string>
+#include <vector>
+
+namespace CLI {  // NOLINT: the name is not ours
+class App;
+}
+
+namespace tactus::cli {
+
+/// An experiment as a command line names it.
+struct ExperimentOptions {
+  std::string file;
+  std::vector<std::string> with;
+  std::vector<std::string> set;
+};
+
+/// Adds it to a verb: `EXPERIMENT`, `--with`, `--set`.
+void add_experiment_options(CLI::App& verb, ExperimentOptions& options);
+
+/// The file, the keys of others in the place of its own, and the values on top. Errors: those of `Document`.
+Result<configuration::Document> load_experiment(const ExperimentOptions& options);
+
+}  // namespace tactus::cli

@@ -1,0 +1,150 @@
+#include <tactus/cli/experiment_options.hpp>
+#include <tactus/cli/interruption.hpp>
+#include <tactus/cli/servo_options.hpp>
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/verbs.hpp>
+#include <tactus/report/table.hpp>
+#include <tactus/runtime/plant_server.hpp>
+#include <tactus/runtime/servo_presentation.hpp>
+
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+using runtime::PlantStatus;
+
+struct PlantOptions {
+  ExperimentOptions experiment;
+  std::string name = "plant";
+  double duration_s = 0.0;
+  double silence_s = runtime::usual_silence.value;
+  bool json = false;
+  runtime::ServoThreadParams servo;
+};
+
+std::string line_of(const PlantStatus& now, const PlantStatus& before, std::int64_t second) {
+  return std::to_string(second) + " s: " + std::to_string(now.readings - before.readings) + " readings, " +
+         std::to_string(now.commands - before.commands) + " commands, " +
+         (now.controller ? "driven by process " + std::to_string(*now.controller) : "nobody drives") + ", " +
+         std::to_string(now.missed - before.missed) + " ticks missed" +
+         (now.let_go > before.let_go ? ", let go: commands stopped coming" : "") + "\n";
+}
+
+std::string text_of(const std::string& name, const PlantStatus& status, const runtime::ServoReport& servo) {
+  report::Table table({{"readings"}, {"commands"}, {"taps"}, {"let go"}, {"ticks missed"}}, "Plant '" + name + "'");
+  table.add_row({std::to_string(status.readings), std::to_string(status.commands), std::to_string(status.taps),
+                 std::to_string(status.let_go), std::to_string(status.missed)});
+  return table.to_text() + "\n" + runtime::timing_text(servo);
+}
+
+std::string json_of(const std::string& name, const PlantStatus& status, const runtime::ServoReport& servo) {
+  const nlohmann::ordered_json document{{"name", name},
+                                        {"readings", status.readings},
+                                        {"commands", status.commands},
+                                        {"taps", status.taps},
+                                        {"let_go", status.let_go},
+                                        {"missed", status.missed},
+                                        {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}};
+  return document.dump(2) + "\n";
+}
+
+Result<simulation::TappingParams> params_of(const PlantOptions& options) {
+  const auto document = load_experiment(options.experiment);
+  if (!document) return document.error();
+  auto params = document->read<simulation::TappingParams>();
+  if (!params) return params.error();
+  if (const auto ensemble = simulation::TappingEnsemble::make(*params); !ensemble) {
+    return document->locate(ensemble.error());
+  }
+  return params;
+}
+
+Check check_duration(double duration_s) {
+  constexpr Bounds durations = between(0.0, 1e6);
+  if (durations.contain(duration_s)) return std::nullopt;
+  Error error = out_of_bounds({}, duration_s, durations, units::second);
+  error.place = "--duration-s";
+  return error;
+}
+
+Check own_plant(const PlantOptions& options) {
+  if (auto error = check_duration(options.duration_s)) return error;
+  const auto params = params_of(options);
+  if (!params) return params.error();
+  const auto plant = runtime::PlantServer::make(options.name, *params, Seconds{options.silence_s});
+  if (!plant) return plant.error();
+  runtime::PlantServer& server = **plant;
+  runtime::ServoThreadParams keep = options.servo;
+  keep.rate_Hz = params->servo.rate_Hz;
+
+  const Interruption interruption;
+  const auto step = [&server](const runtime::Tick& tick) noexcept {
+    server.step(tick);
+    return true;
+  };
+  const auto servo = runtime::ServoThread<decltype(step)>::start(keep, step);
+  if (!servo) return servo.error();
+  std::ostream& lines = options.json ? std::cerr : std::cout;
+  lines << "Plant '" << options.name << "': tactus run " << options.experiment.file << " --realtime --plant "
+        << options.name << std::endl;
+
+  using std::chrono::steady_clock;
+  const auto start = steady_clock::now();
+  PlantStatus before;
+  std::int64_t second = 1;
+  while (!interruption.asked()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    server.serve();
+    const std::chrono::duration<double> elapsed = steady_clock::now() - start;
+    if (elapsed.count() >= static_cast<double>(second)) {
+      const PlantStatus now = server.status();
+      lines << line_of(now, before, second) << std::flush;
+      before = now;
+      second = static_cast<std::int64_t>(elapsed.count()) + 1;
+    }
+    if (options.duration_s > 0.0 && elapsed.count() >= options.duration_s) break;
+  }
+  (*servo)->stop();
+  const runtime::ServoReport& report = (*servo)->finish();
+  std::cout << (options.json ? json_of(options.name, server.status(), report)
+                             : "\n" + text_of(options.name, server.status(), report));
+  return flush_standard_output();
+}
+
+}  // namespace
+
+void add_plant(CLI::App& app, int& status) {
+  auto options = std::make_shared<PlantOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "plant", "Own the simulated devices of an experiment, for a `tactus run --realtime --plant` in another process");
+  add_experiment_options(*verb, options->experiment);
+  verb->add_option("--name", options->name, "Name that the other process asks for")
+      ->type_name("NAME")
+      ->capture_default_str();
+  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")
+      ->type_name("S")
+      ->capture_default_str();
+  verb->add_option("--silence-s", options->silence_s,
+                   "The longest silence of the other process before the motors get no force, 0.001 to 10")
+      ->type_name("S")
+      ->capture_default_str();
+  add_servo_options(*verb, options->servo);
+  verb->add_flag("--json", options->json, "Print one JSON document; the lines go to standard error");
+  verb->callback([options, &app, &status] {
+    if (const auto error = own_plant(*options)) {
+      std::cerr << app.get_name() << ": " << describe(*error) << "\n";
+      status = exit_status(*error);
+    }
+  });
+}
+
+}  // namespace tactus::cli

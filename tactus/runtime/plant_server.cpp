@@ -1,0 +1,105 @@
+#include <tactus/runtime/plant_server.hpp>
+
+namespace tactus::runtime {
+
+Result<std::unique_ptr<PlantServer>> PlantServer::make(const std::string& name, const simulation::TappingParams& params,
+                                                       Seconds silence) {
+  if (!silence_bounds.contain(silence.value)) {
+    Error error = out_of_bounds({}, silence.value, silence_bounds, units::second);
+    error.place = "--silence-s";
+    return error;
+  }
+  auto ensemble = simulation::TappingEnsemble::make(params);
+  if (!ensemble) return ensemble.error();
+  auto first = SimulatedPlant::make(ensemble->tap(0));
+  if (!first) return first.error();
+  auto segment = PlantSegment::create(name, {.master = first->master().limits(),
+                                             .slave = first->slave().limits(),
+                                             .taps = params.task.taps,
+                                             .configuration = plant_configuration(params)});
+  if (!segment) return segment.error();
+  return std::unique_ptr<PlantServer>(new PlantServer(*std::move(ensemble), *first, *std::move(segment), silence));
+}
+
+PlantServer::PlantServer(simulation::TappingEnsemble ensemble, const SimulatedPlant& first, PlantSegment segment,
+                         Seconds silence)
+    : ensemble_(std::move(ensemble)),
+      plants_{first, first},
+      segment_(std::move(segment)),
+      master_(segment_->master, silence),
+      slave_(segment_->slave, silence) {
+  read();
+}
+
+void PlantServer::serve() {
+  if (made_.load(std::memory_order_acquire) != 0) return;
+  const PlantRequest request = segment_.request();
+  if (!request.tap || *request.tap >= ensemble_.size() || request.session == served_) return;
+  const auto plant = SimulatedPlant::make(ensemble_.tap(*request.tap));
+  if (!plant) return;
+  served_ = request.session;
+  plants_[1 - current_] = *plant;
+  made_.store(request.session, std::memory_order_release);
+}
+
+void PlantServer::begin(const PlantRequest& request) noexcept {
+  session_ = request.session;
+  running_ = false;
+  master_.begin(session_);
+  slave_.begin(session_);
+  if (!request.tap) return;
+  taps_.fetch_add(1, std::memory_order_relaxed);
+  segment_->simulated_truth.publish(plants_[current_].truth());
+  read();
+}
+
+void PlantServer::read() noexcept {
+  SimulatedPlant& plant = plants_[current_];
+  const Tick now{.number = plant.ticks()};
+  master_reading_ = plant.master().read(now);
+  slave_reading_ = plant.slave().read(now);
+}
+
+void PlantServer::step(const Tick& tick) noexcept {
+  const PlantRequest request = segment_.request();
+  if (!request.tap && request.session != session_) begin(request);
+  if (const std::uint64_t made = made_.load(std::memory_order_acquire); made != 0) {
+    if (made == request.session) {
+      current_ = 1 - current_;
+      begin(request);
+    }
+    made_.store(0, std::memory_order_release);
+  }
+
+  const bool gave_up = master_.gave_up() || slave_.gave_up();
+  SimulatedPlant& plant = plants_[current_];
+  plant.master().write(master_.command(tick));
+  plant.slave().write(slave_.command(tick));
+  if (!gave_up && (master_.gave_up() || slave_.gave_up())) let_go_.fetch_add(1, std::memory_order_relaxed);
+
+  if (!running_ && master_.obeyed() && slave_.obeyed()) {
+    running_ = true;
+    start_tick_ = tick.number - 1;
+  }
+  Tick own = tick;
+  own.number = running_ ? tick.number - start_tick_ : 0;
+  const std::int64_t before = plant.ticks();
+  while (const auto truth = plant.next(own)) segment_->simulated_truth.publish(*truth);
+  // Once for each instant of the plant: a sample draws noise.
+  if (plant.ticks() > before) read();
+  master_.publish(tick, plant.ticks(), master_reading_);
+  slave_.publish(tick, plant.ticks(), slave_reading_);
+  missed_.fetch_add(tick.missed, std::memory_order_relaxed);
+  segment_->answer.store(session_, std::memory_order_release);
+}
+
+PlantStatus PlantServer::status() const {
+  return {.readings = segment_->master.readings.published(),
+          .commands = segment_->master.commands.published(),
+          .missed = missed_.load(std::memory_order_relaxed),
+          .taps = taps_.load(std::memory_order_relaxed),
+          .let_go = let_go_.load(std::memory_order_relaxed),
+          .controller = segment_.living_controller()};
+}
+
+}  // namespace tactus::runtime

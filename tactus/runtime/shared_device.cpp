@@ -1,0 +1,81 @@
+#include <tactus/runtime/shared_device.hpp>
+
+#include <cmath>
+
+namespace tactus::runtime {
+
+namespace {
+
+std::int64_t in_ns(Seconds time) noexcept { return std::llround(1e9 * time.value); }
+
+/// Told too long ago; or in the future, by a process with another clock.
+bool too_old(std::int64_t told_ns, std::int64_t now_ns, std::int64_t silence_ns) noexcept {
+  return now_ns - told_ns > silence_ns || told_ns - now_ns > silence_ns;
+}
+
+bool is_finite(const DeviceReading& reading) noexcept {
+  return std::isfinite(reading.position_m) && std::isfinite(reading.force_N) && std::isfinite(reading.grip);
+}
+
+bool is_finite(const DeviceCommand& command) noexcept {
+  return std::isfinite(command.force_N) && std::isfinite(command.handle_force_N);
+}
+
+}  // namespace
+
+SharedDevice::SharedDevice(DeviceSlots& slots, const DeviceLimits& limits, Seconds silence) noexcept
+    : slots_(&slots), limits_(limits), silence_ns_(in_ns(silence)) {}
+
+void SharedDevice::begin(std::uint64_t session) noexcept {
+  session_ = session;
+  last_ = {};
+  health_ = DeviceHealth::degraded;
+}
+
+bool SharedDevice::given_up_by_owner() const noexcept { return session_ != 0 && last_.gave_up_on == session_; }
+
+DeviceReading SharedDevice::read(const Tick& tick) noexcept {
+  now_ns_ = tick.began_ns;
+  const auto newest = slots_->readings.newest();
+  if (health_ == DeviceHealth::lost) return last_.reading;
+  health_ = DeviceHealth::degraded;
+  if (newest && newest->time_ns > last_.time_ns) {
+    if (is_finite(newest->reading)) {
+      last_ = *newest;
+      health_ = DeviceHealth::good;
+    } else {
+      health_ = DeviceHealth::lost;
+    }
+  }
+  if (too_old(last_.time_ns, now_ns_, silence_ns_) || given_up_by_owner()) health_ = DeviceHealth::lost;
+  return last_.reading;
+}
+
+void SharedDevice::write(const DeviceCommand& command) noexcept {
+  slots_->commands.publish({.command = command, .time_ns = now_ns_, .session = session_});
+}
+
+DeviceServer::DeviceServer(DeviceSlots& slots, Seconds silence) noexcept
+    : slots_(&slots), silence_ns_(in_ns(silence)) {}
+
+void DeviceServer::begin(std::uint64_t session) noexcept {
+  session_ = session;
+  command_ = {};
+  gave_up_ = false;
+}
+
+DeviceCommand DeviceServer::command(const Tick& tick) noexcept {
+  const auto newest = slots_->commands.newest();
+  // The last one of a loop, which lets go, has the time of the one before.
+  if (newest && newest->session == session_ && newest->time_ns >= command_.time_ns) command_ = *newest;
+  if (!obeyed()) return {};
+  gave_up_ = gave_up_ || !is_finite(command_.command) || too_old(command_.time_ns, tick.began_ns, silence_ns_);
+  return gave_up_ ? DeviceCommand{} : command_.command;
+}
+
+void DeviceServer::publish(const Tick& tick, std::int64_t device_tick, const DeviceReading& reading) noexcept {
+  slots_->readings.publish(
+      {.reading = reading, .tick = device_tick, .time_ns = tick.began_ns, .gave_up_on = gave_up_ ? session_ : 0});
+}
+
+}  // namespace tactus::runtime
