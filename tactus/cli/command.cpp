@@ -62,7 +62,7 @@ int run_command(int argc, char** argv) {
   add_stability(app, command, status);
   add_doctor(app, command, status);
   add_schema(app, status);
-  add_serve(app, status);
+  add_serve(app, command, status);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) return refuse(name, "A command is required");

@@ -1,11 +1,14 @@
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/run_log.hpp>
+#include <tactus/cli/serve_report.hpp>
 #include <tactus/cli/verbs.hpp>
-#include <tactus/core/version.hpp>
 #include <tactus/live/live_view.hpp>
 #include <tactus/live/server.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -32,7 +35,7 @@ struct ServeOptions {
   live::ServerOptions server;
   bool allow_tuning = false;
   std::string page;
-  std::string out;
+  std::optional<std::string> out;
   double duration_s = 0.0;
 };
 
@@ -57,7 +60,10 @@ Result<configuration::Document> experiment_of(const ServeOptions& options) {
   return document;
 }
 
-Check serve(const ServeOptions& options) {
+Check serve(const ServeOptions& options, const std::string& command) {
+  if (options.out) {
+    if (auto error = check_writable(*options.out)) return error;
+  }
   const auto document = experiment_of(options);
   if (!document) return document.error();
   const auto settings = live::Settings::make(*document);
@@ -66,6 +72,7 @@ Check serve(const ServeOptions& options) {
       options.experiment.empty() ? "tapping" : std::filesystem::path(options.experiment).stem().string();
   const auto view = live::LiveView::make(*settings, {.allow_tuning = options.allow_tuning, .experiment = name});
   if (!view) return document->locate(view.error());
+  const std::string configuration = configuration::to_toml(*document->read<simulation::TappingParams>());
 
   live::StaticFiles page;
   const std::filesystem::path folder = options.page.empty() ? usual_page() : std::filesystem::path(options.page);
@@ -78,18 +85,21 @@ Check serve(const ServeOptions& options) {
 
   std::optional<telemetry::Recorder> log;
   std::filesystem::path log_file;
-  if (!options.out.empty()) {
-    log_file = std::filesystem::path(options.out) / "log.mcap";
-    if (auto error = report::prepare_directory(options.out)) return error;
+  if (options.out) {
+    log_file = std::filesystem::path(*options.out) / "log" / "log.mcap";
+    if (auto error = report::prepare_directory(log_file.parent_path())) return error;
     auto recorder = telemetry::Recorder::create(log_file);
     if (!recorder) return recorder.error();
     log.emplace(*std::move(recorder));
-    log->add_metadata("tactus", {{"version", std::string(version())}, {"experiment", name}});
+    auto about = log_origin();
+    about["experiment"] = name;
+    about["configuration"] = configuration;
+    log->add_metadata("tactus", about);
     (*view)->engine().log_to(*log);
     log->start();
   }
 
-  Check failure;
+  ServeSession session;
   {
     const auto server = live::Server::start(options.server, std::move(page), **view);
     if (!server) return server.error();
@@ -105,16 +115,23 @@ Check serve(const ServeOptions& options) {
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       return !interruption.asked() && (options.duration_s == 0.0 || elapsed.count() < options.duration_s);
     });
-    const live::ServerCounts counts = server->counts();
-    std::cout << "Connections: " << counts.accepted << " taken, " << counts.turned_away << " turned away, "
-              << counts.refused << " refused. Messages dropped for slow clients: " << counts.dropped << ".\n";
+    session.server = server->counts();
+  }
+  const live::Engine& engine = (*view)->engine();
+  session.duration_s = std::max(engine.newest(0).time_s, engine.newest(1).time_s);
+  session.lost_ticks = engine.dropped(0) + engine.dropped(1);
+  const simulation::Request request{.document = *document, .variations = {}, .name = name, .command = command};
+  if (auto error = write_outcome(
+          options.out, serve_outcome(session, (*view)->history(), settings->descriptions(), request, configuration),
+          false)) {
+    return error;
   }
   if (log) {
     if (auto error = log->stop()) return error;
     std::uint64_t dropped = 0;
     for (const std::uint64_t count : log->dropped()) dropped += count;
-    std::cout << "Log: " << log_file.string() << ", " << log->log().acknowledged() << " records, " << dropped
-              << " dropped\n";
+    std::cout << "Log: " << log_file.parent_path().string() << ", " << log->log().acknowledged() << " records, "
+              << dropped << " dropped\n";
     return telemetry::write_bag_metadata(log_file, log->log());
   }
   return std::nullopt;
@@ -122,7 +139,7 @@ Check serve(const ServeOptions& options) {
 
 }  // namespace
 
-void add_serve(CLI::App& app, int& status) {
+void add_serve(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<ServeOptions>();
   CLI::App* verb = app.add_subcommand("serve", "Serve the live page: be the operator in a browser");
   verb->add_option("EXPERIMENT", options->experiment,
@@ -137,12 +154,13 @@ void add_serve(CLI::App& app, int& status) {
       ->capture_default_str();
   verb->add_flag("--allow-tuning", options->allow_tuning, "Let clients change parameters, within their bounds");
   verb->add_option("--page", options->page, "Folder of the built page")->type_name("DIR");
-  verb->add_option("--out", options->out, "Folder for a log of every tick")->type_name("DIR");
+  verb->add_option("--out", options->out, "Folder for report.html, results.json, the figure and a log of every tick")
+      ->type_name("DIR");
   verb->add_option("--duration", options->duration_s, "Seconds to serve; 0 is until interrupted")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
-  verb->callback([options, &app, &status] {
-    if (const auto error = serve(*options)) {
+  verb->callback([options, &app, &command, &status] {
+    if (const auto error = serve(*options, command)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";
       status = exit_status(*error);
     }

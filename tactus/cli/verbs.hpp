@@ -24,6 +24,6 @@ void add_relay(CLI::App& app, int& status);
 void add_replay(CLI::App& app, int& status);
 void add_stability(CLI::App& app, const std::string& command, int& status);
 void add_schema(CLI::App& app, int& status);
-void add_serve(CLI::App& app, int& status);
+void add_serve(CLI::App& app, const std::string& command, int& status);
 
 }  // namespace tactus::cli

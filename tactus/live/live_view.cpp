@@ -83,7 +83,11 @@ Result<std::unique_ptr<LiveView>> LiveView::make(const Settings& settings, const
 
 LiveView::LiveView(const Settings& settings, const Options& options, LoopParams params, std::unique_ptr<Engine> engine,
                    const ContactJudge& judge, const VibrationEnergy& energy)
-    : settings_(settings), options_(options), params_(std::move(params)), engine_(std::move(engine)) {
+    : settings_(settings),
+      options_(options),
+      params_(std::move(params)),
+      engine_(std::move(engine)),
+      history_(settings.parameters()) {
   const std::string package = "tactus_msgs/msg/";
   for (const char* loop : loop_names) {
     const std::string prefix = std::string("/") + loop + "/";
@@ -165,6 +169,7 @@ Check LiveView::apply(const Settings& settings) {
   }
   settings_ = settings;
   params_ = *std::move(params);
+  history_.set(settings_.parameters());
   return std::nullopt;
 }
 
@@ -239,7 +244,7 @@ void LiveView::collect(const std::function<bool(std::size_t topic)>& is_wanted, 
     const bool wants_all = is_wanted(first_topic + full_rate);
     LoopTick tick;
     while (engine_->next(i, tick)) {
-      watch(watched, tick);
+      watch(i, tick);
       if (wants_all) {
         const auto bytes = telemetry::to_cdr(tick.record);
         publish(first_topic + full_rate, tick.time_ns, shared(std::string(bytes.begin(), bytes.end())));
@@ -261,18 +266,25 @@ void LiveView::collect(const std::function<bool(std::size_t topic)>& is_wanted, 
   }
 }
 
-void LiveView::watch(Watched& watched, const LoopTick& tick) {
+void LiveView::watch(std::size_t loop, const LoopTick& tick) {
+  Watched& watched = watched_[loop];
   const Engine::Record& record = tick.record;
   LiveState& shown = watched.state;
   if (tick.run != watched.run) {
     watched.run = tick.run;
     watched.judge.reset();
     watched.energy.reset(record.master_position_m);
+    history_.start_over(loop);
   }
   watched.judge.step(record.contact_force_N, record.touched);
   watched.energy.step(record.displayed_force_N, record.master_position_m);
   if (watched.judge.has_begun()) watched.energy.begin();
   shown.vibration_energy_J = watched.energy.energy_J();
+  history_.watch(loop,
+                 {.time_s = record.time_s,
+                  .contact_force_N = record.contact_force_N,
+                  .vibration_energy_J = shown.vibration_energy_J},
+                 watched.judge);
   shown.time_s = record.time_s;
   shown.hand_position_m = tick.hand_position_m;
   shown.master_position_m = record.master_position_m;

@@ -4,6 +4,7 @@
 #include <tactus/live/contact_judge.hpp>
 #include <tactus/live/engine.hpp>
 #include <tactus/live/messages.hpp>
+#include <tactus/live/session_history.hpp>
 #include <tactus/live/settings.hpp>
 #include <tactus/live/vibration_energy.hpp>
 
@@ -36,6 +37,8 @@ class LiveView final : public Application {
 
   /// The loops. `Engine::run` is for another thread than the server's.
   [[nodiscard]] Engine& engine() { return *engine_; }
+  /// What visitors tried so far. On the view's thread, or after its end.
+  [[nodiscard]] const SessionHistory& history() const { return history_; }
 
   [[nodiscard]] const std::vector<Topic>& topics() const override { return topics_; }
   [[nodiscard]] std::map<std::string, std::string> metadata() const override;
@@ -67,7 +70,7 @@ class LiveView final : public Application {
   std::optional<Status> command(std::string_view bytes);
   std::optional<Status> start_over(const std::optional<ScriptedTap>& tap);
   Check apply(const Settings& settings);
-  void watch(Watched& watched, const LoopTick& tick);
+  void watch(std::size_t loop, const LoopTick& tick);
 
   Settings settings_;
   Options options_;
@@ -76,6 +79,7 @@ class LiveView final : public Application {
   std::vector<Topic> topics_;
   std::vector<Watched> watched_;
   std::optional<ClientId> holder_;
+  SessionHistory history_;
 };
 
 }  // namespace tactus::live
