@@ -127,6 +127,8 @@ Deeds watch(void (*fault)() noexcept, Devices devices = Devices::own) {
   }
   int status = 0;
   waitpid(child, &status, 0);
+  // The child ends in the middle of a tick and leaves its plant behind.
+  shm_unlink(("/tactus-plant-test-armed-" + std::to_string(child)).c_str());
   const Deeds deeds = *result;
   munmap(shared, sizeof(Deeds));
   std::filesystem::remove(file);

@@ -258,6 +258,8 @@ TEST(SharedPlant, WhenThePlantIsKilledInMidRunBothSitesLetGoAtTheRateLimitAndThe
   EXPECT_TRUE(plant->lost());
   EXPECT_NE(plant->why_lost().message.find("died"), std::string::npos) << plant->why_lost().message;
 
+  EXPECT_TRUE(PlantServer::make(name, params, patient)) << "the next one takes its place, and leaves nothing";
+
   const auto log = telemetry::read_log(file);
   const auto replayed = replay(file);
   std::filesystem::remove(file);
