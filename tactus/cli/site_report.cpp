@@ -70,6 +70,7 @@ report::Table site_table(const std::string& site, const SiteTotals& totals) {
   table.add_row({"late, not applied", count(totals.link.inbound.late), ""});
   table.add_row({"repeated, not applied", count(totals.link.inbound.repeated), ""});
   table.add_row({"too old, not applied", count(totals.link.inbound.stale), ""});
+  table.add_row({"dropped by the kernel", count(totals.link.dropped), ""});
   table.add_row({"not authentic or malformed", count(totals.link.secure.refused + totals.link.malformed), ""});
   table.add_row({"hand-shakes", count(totals.link.secure.handshakes), ""});
   table.add_row({"old messages applied", count(totals.stale_applied), ""});
@@ -160,6 +161,7 @@ std::string json_of(const std::string& site, const SiteTotals& totals, const run
                                           {"foreign", link.inbound.foreign},
                                           {"sessions", link.inbound.sessions},
                                           {"malformed", link.malformed},
+                                          {"dropped", link.dropped},
                                           {"authentic", link.secure.opened},
                                           {"refused", link.secure.refused},
                                           {"handshake_packets", link.secure.handshake_packets},

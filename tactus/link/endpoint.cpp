@@ -1,4 +1,5 @@
 #include <tactus/link/endpoint.hpp>
+#include <tactus/link/packet_filter.hpp>
 
 #include <utility>
 
@@ -31,6 +32,9 @@ Result<Endpoint> Endpoint::make(const Settings& settings) {
                  .place = {}};
   }
   Endpoint endpoint(settings, std::make_unique<Socket>(*std::move(socket)), session);
+  // Without a filter more is judged here, that is all.
+  const int descriptor = endpoint.socket_->descriptor();
+  static_cast<void>(settings.key ? admit_records(descriptor, datagram_bytes) : admit_datagrams(descriptor));
   if (settings.key) {
     const auto role = settings.site == SiteName::master ? HandshakeRole::client : HandshakeRole::server;
     auto secure = SecureChannel::make(role, *settings.key, *endpoint.socket_, datagram_bytes);
@@ -97,6 +101,7 @@ Endpoint::Counters Endpoint::counters() const noexcept {
           .sent = sent_,
           .unsent = unsent_,
           .malformed = malformed_,
+          .dropped = socket_->dropped(),
           .expected = inbound_.arrived() > 0 ? inbound_.expected() : 0,
           .arrived = inbound_.arrived()};
 }
