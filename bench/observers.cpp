@@ -220,7 +220,7 @@ Window observed(const Options& options, const Observers& who, Seen& seen) {
       });
   Seen now;
   if (watcher) {
-    now.live_dropped = server->counts().dropped + engine.dropped(0) + engine.dropped(1);
+    now.live_dropped = server->counts().dropped + view->lost_ticks();
     server.reset();
     watcher->join();
     now.shown = watcher->messages();

@@ -6,6 +6,8 @@ namespace tactus::link {
 
 namespace {
 
+constexpr std::uint32_t magic = 0x31544354;  // "TCT1" in the order of the bytes
+
 /// Writes numbers one after the other, lowest byte first.
 class Writer {
  public:
@@ -45,7 +47,7 @@ class Reader {
 DatagramBytes encode(const Datagram& datagram) noexcept {
   DatagramBytes bytes;
   Writer out(bytes);
-  out.put(datagram_magic);
+  out.put(magic);
   out.put(datagram_version);
   out.put(static_cast<std::uint8_t>(datagram.site));
   out.put(static_cast<std::uint8_t>(datagram.standing));
@@ -68,7 +70,7 @@ DatagramBytes encode(const Datagram& datagram) noexcept {
 Refusal decode(std::span<const std::byte> bytes, Datagram& datagram) noexcept {
   if (bytes.size() != datagram_bytes) return Refusal::size;
   Reader in(bytes);
-  if (in.get<std::uint32_t>() != datagram_magic) return Refusal::magic;
+  if (in.get<std::uint32_t>() != magic) return Refusal::magic;
   if (in.get<std::uint16_t>() != datagram_version) return Refusal::version;
   const auto site = in.get<std::uint8_t>();
   if (site != static_cast<std::uint8_t>(SiteName::master) && site != static_cast<std::uint8_t>(SiteName::slave)) {

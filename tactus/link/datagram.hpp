@@ -46,8 +46,6 @@ enum class Refusal : std::uint8_t {
 
 /// Bytes of every datagram: all have the same size.
 inline constexpr std::size_t datagram_bytes = 104;
-/// "TCT1" in the order of the bytes, the begin of every datagram.
-inline constexpr std::uint32_t datagram_magic = 0x31544354;
 /// The version of the format that this library speaks.
 inline constexpr std::uint16_t datagram_version = 1;
 using DatagramBytes = std::array<std::byte, datagram_bytes>;

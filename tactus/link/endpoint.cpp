@@ -32,14 +32,13 @@ Result<Endpoint> Endpoint::make(const Settings& settings) {
                  .place = {}};
   }
   Endpoint endpoint(settings, std::make_unique<Socket>(*std::move(socket)), session);
-  // Without a filter more is judged here, that is all.
-  const int descriptor = endpoint.socket_->descriptor();
-  static_cast<void>(settings.key ? admit_records(descriptor, datagram_bytes) : admit_datagrams(descriptor));
   if (settings.key) {
     const auto role = settings.site == SiteName::master ? HandshakeRole::client : HandshakeRole::server;
     auto secure = SecureChannel::make(role, *settings.key, *endpoint.socket_, datagram_bytes);
     if (!secure) return secure.error();
     endpoint.secure_ = *std::move(secure);
+    // Without a filter more is judged here, that is all. Plain text stays on the loopback and needs none.
+    static_cast<void>(admit_records(endpoint.socket_->descriptor(), datagram_bytes));
   }
   return endpoint;
 }

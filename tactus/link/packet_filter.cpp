@@ -1,4 +1,3 @@
-#include <tactus/link/datagram.hpp>
 #include <tactus/link/packet_filter.hpp>
 #include <tactus/link/secure_channel.hpp>
 
@@ -37,12 +36,6 @@ bool attach(int descriptor, std::array<sock_filter, Count> instructions) noexcep
 }
 
 }  // namespace
-
-bool admit_datagrams(int descriptor) noexcept {
-  return attach(descriptor, std::array{load_size(), equal(udp_head + datagram_bytes, 0, 3),             //
-                                       load(BPF_W, 0), equal(__builtin_bswap32(datagram_magic), 0, 1),  //
-                                       admit(), drop()});
-}
 
 bool admit_records(int descriptor, std::size_t message_bytes) noexcept {
   constexpr std::uint32_t content_type = 23, first_handshake_type = 20, other_types = 24;

@@ -7,6 +7,7 @@
 #include <tactus/live/settings.hpp>
 
 #include <array>
+#include <atomic>
 #include <map>
 #include <memory>
 #include <optional>
@@ -35,6 +36,8 @@ class LiveView final : public Application {
 
   /// The loops. `Engine::run` is for another thread than the server's.
   [[nodiscard]] Engine& engine() { return *engine_; }
+  /// Ticks that were lost on the way here. Any thread.
+  [[nodiscard]] std::uint64_t lost_ticks() const { return lost_ticks_.load(std::memory_order_relaxed); }
 
   [[nodiscard]] const std::vector<Topic>& topics() const override { return topics_; }
   [[nodiscard]] std::map<std::string, std::string> metadata() const override;
@@ -43,6 +46,7 @@ class LiveView final : public Application {
   std::optional<Status> receive(ClientId client, std::string_view topic, std::string_view encoding,
                                 std::string_view bytes) override;
   void leave(ClientId client) override;
+  /// Shows what the loops did since it was first called.
   void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) override;
 
  private:
@@ -67,6 +71,7 @@ class LiveView final : public Application {
   std::optional<Status> start_over(const std::optional<ScriptedTap>& tap);
   Check apply(const Settings& settings);
   void watch(Watched& watched, const LoopTick& tick);
+  void show(std::size_t loop, const LoopTick& tick, bool every_tick, const Publish& publish);
 
   Settings settings_;
   Options options_;
@@ -74,6 +79,8 @@ class LiveView final : public Application {
   std::unique_ptr<Engine> engine_;
   std::vector<Topic> topics_;
   std::vector<Watched> watched_;
+  std::optional<Engine::Ticks::Reader> ticks_;
+  std::atomic<std::uint64_t> lost_ticks_{0};
   std::optional<ClientId> holder_;
 };
 

@@ -12,7 +12,7 @@ namespace tactus::ros2 {
 namespace {
 
 /// How long the thread waits for a command before it looks for snapshots.
-constexpr Seconds look_every{0.001};
+constexpr Seconds look_every{0.002};
 /// The state is told when it changes and this often, for those who come late.
 constexpr std::int64_t state_every_ns = 100'000'000;
 
@@ -41,6 +41,13 @@ Result<DeviceWriters> open_writers(Participant& participant, const std::string& 
   if (!measured_cf) return measured_cf.error();
   return DeviceWriters{*measured_js, *setpoint_js, *measured_cf};
 }
+
+/// A snapshot that is told, and as what.
+struct Told {
+  Snapshot at;
+  bool measured = false;  ///< as measured signals
+  bool state = false;
+};
 
 /// All that is open.
 struct Endpoints {
@@ -73,7 +80,7 @@ struct Bridge::State {
   Endpoints dds;
   std::int64_t period_ns;
 
-  telemetry::Ring<Snapshot, 4096> snapshots;
+  telemetry::Ring<Told, 1024> snapshots;
   telemetry::Ring<double, 64> wished_m;
   std::atomic<std::uint64_t> published{0};
   std::atomic<std::uint64_t> lost{0};
@@ -82,7 +89,7 @@ struct Bridge::State {
   std::atomic<bool> stop{false};
   std::thread thread;
 
-  // Of the thread alone.
+  // Of the thread that publishes.
   std::int64_t due_ns = 0;
   std::int64_t state_due_ns = 0;
   bool told_healthy = true;
@@ -92,12 +99,27 @@ struct Bridge::State {
     if (writer.write(message)) lost.fetch_add(1, std::memory_order_relaxed);
   }
 
-  void tell(const Snapshot& at) {
+  /// Passes on what is due; most ticks are not.
+  void publish(const Snapshot& at) noexcept {
     const bool clock_was_set_back = at.stamp_ns < due_ns - period_ns;
-    if (at.stamp_ns >= due_ns || clock_was_set_back) {
+    const bool measured = at.stamp_ns >= due_ns || clock_was_set_back;
+    const bool state = at.stamp_ns >= state_due_ns || clock_was_set_back || at.healthy != told_healthy;
+    if (!measured && !state) return;
+    if (!snapshots.try_push({.at = at, .measured = measured, .state = state})) return;
+    if (measured) {
       // Counted from when it was due, so that the mean rate is kept; a gap is not made up for.
       const bool in_time = !clock_was_set_back && at.stamp_ns < due_ns + period_ns;
       due_ns = (in_time ? due_ns : at.stamp_ns) + period_ns;
+    }
+    if (state) {
+      state_due_ns = at.stamp_ns + state_every_ns;
+      told_healthy = at.healthy;
+    }
+  }
+
+  void tell(const Told& told) {
+    const Snapshot& at = told.at;
+    if (told.measured) {
       JointState measured = joint_state(at, "master");
       measured.position = {at.master_position_m};
       send(dds.master.measured_js, measured);
@@ -114,16 +136,12 @@ struct Bridge::State {
       send(dds.slave.measured_cf, wrench(at, "slave", -at.environment_force_N));
       published.fetch_add(1, std::memory_order_relaxed);
     }
-    if (at.stamp_ns >= state_due_ns || clock_was_set_back || at.healthy != told_healthy) {
-      state_due_ns = at.stamp_ns + state_every_ns;
-      told_healthy = at.healthy;
-      send(dds.state, {at.healthy ? "ENABLED" : "FAULT"});
-    }
+    if (told.state) send(dds.state, {at.healthy ? "ENABLED" : "FAULT"});
   }
 
   void drain() {
-    Snapshot at;
-    while (snapshots.try_pop(at)) tell(at);
+    Told told;
+    while (snapshots.try_pop(told)) tell(told);
   }
 
   void listen() {
@@ -170,7 +188,7 @@ Result<Bridge> Bridge::create(const Params& params) {
   return Bridge(std::move(state));
 }
 
-void Bridge::publish(const Snapshot& snapshot) noexcept { state_->snapshots.try_push(snapshot); }
+void Bridge::publish(const Snapshot& snapshot) noexcept { state_->publish(snapshot); }
 
 std::optional<double> Bridge::take_wish() noexcept {
   std::optional<double> newest;

@@ -39,7 +39,7 @@ class Bridge {
   struct Counts {
     std::uint64_t published = 0;  ///< snapshots, each a message on every topic of a device
     std::uint64_t lost = 0;       ///< messages that DDS did not take
-    std::uint64_t dropped = 0;    ///< snapshots that found the ring full
+    std::uint64_t dropped = 0;    ///< snapshots that were due and found the ring full
     std::uint64_t wishes = 0;     ///< that could be used
     std::uint64_t refused = 0;    ///< commands that could not: not exactly one finite position
   };
@@ -51,7 +51,8 @@ class Bridge {
   Bridge& operator=(Bridge&&) = delete;
   ~Bridge();  ///< closes
 
-  /// One thread only. Real-time safe: wait-free, no allocation, no system call.
+  /// Passes a snapshot on where one is due by `rate_Hz` and its stamp, or the state has changed. One thread only.
+  /// Real-time safe: wait-free, no allocation, no system call.
   void publish(const Snapshot& snapshot) noexcept;
   /// The newest position in m that another program wished since the last call, always finite and not bounded otherwise.
   /// The same thread. Real-time safe.
