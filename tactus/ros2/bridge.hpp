@@ -27,8 +27,9 @@ struct Snapshot {
 /// and subscribes to `operator/servo_jp` (`sensor_msgs/msg/JointState` with one position in m): where another program
 /// means the operator's hand to be.
 ///
-/// The thread that steps the teleoperator calls `publish` and `take_wish`, which touch two wait-free rings and nothing
-/// else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and counted.
+/// The thread that steps the teleoperator calls `publish` and `take_wish`, which touch a wait-free ring, the newest
+/// wish and nothing else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and
+/// counted.
 class Bridge {
  public:
   struct Params {
