@@ -2,11 +2,14 @@
 #include <tactus/simulation/contact_metrics.hpp>
 
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "sample_view.hpp"
 #include <gtest/gtest.h>
 #include <tests/allocation_counter.hpp>
+#include <tests/scratch_path.hpp>
 
 namespace tactus::live {
 namespace {
@@ -97,6 +100,20 @@ TEST(Engine, AViewThatIsStuckLosesTicksAndTheLoopIsAsItWas) {
   const auto other = run(stuck->engine(), 0, 0.1);
   ASSERT_EQ(one.size(), other.size());
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_TRUE(are_equal(one[i].record, other[i].record));
+}
+
+TEST(Engine, ALogThatIsStuckLosesTicksCountsThemAndThePageSeesAllOfThem) {
+  const auto file = scratch_path().concat(".mcap");
+  const auto view = sample_view();
+  auto log = telemetry::Recorder::create(file).value();
+  view->engine().log_to(log);
+  EXPECT_EQ(run(view->engine(), 0, 1.0).size(), 5000U);
+  log.start();
+  EXPECT_FALSE(log.stop());
+  EXPECT_EQ(log.dropped(), (std::vector<std::uint64_t>{5000 - 4096, 5000 - 4096}));
+  EXPECT_EQ(log.log().counts()[0].written, 4096U);
+  EXPECT_EQ(log.log().counts()[1].written, 4096U);
+  std::filesystem::remove(file);
 }
 
 TEST(Engine, ATickAllocatesNothingNotEvenOneThatTakesAChange) {
