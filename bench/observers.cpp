@@ -1,4 +1,5 @@
-// The same real-time loop with all observers and with none, in alternating windows: scripts/compare-with-observers.
+// The same real-time loop with observers, with none, and beside a load that has nothing to do with it, in alternating
+// windows: scripts/compare-with-observers.
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/live/live_view.hpp>
@@ -19,7 +20,9 @@
 #include <utility>
 #include <vector>
 
+#include <sys/resource.h>
 #include <tests/live/raw_client.hpp>
+#include <time.h>
 #include <unistd.h>
 
 namespace {
@@ -30,6 +33,7 @@ struct Options {
   int windows = 8;
   double seconds = 5.0;
   std::int64_t core = 0;
+  bool each = false;
   std::string experiment = "experiments/tapping.toml";
 };
 
@@ -90,9 +94,30 @@ std::unique_ptr<live::LiveView> make_view(const Options& options) {
   return demand(live::LiveView::make(demand(live::Settings::make(document)), {.experiment = "tapping"}));
 }
 
+/// What the other threads of the process used beside the servo thread, per second of a window.
+struct Load {
+  double processor_s = 0.0;
+  double wakes = 0.0;
+};
+
+std::int64_t cpu_ns(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
+}
+
+/// One window: how the servo thread kept time, and what the whole process used per second.
+struct Window {
+  runtime::ServoReport report;
+  Load used;
+};
+
 /// Steps `step` for a window on a servo thread, with a tap each second.
 template <class Step, class Tap>
-runtime::ServoReport window(const Options& options, const live::Engine& engine, Step step, const Tap& tap) {
+Window window(const Options& options, const live::Engine& engine, Step step, const Tap& tap) {
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  const std::int64_t cpu_before_ns = cpu_ns(CLOCK_PROCESS_CPUTIME_ID);
   auto servo = demand(
       runtime::ServoThread<Step>::start({.rate_Hz = 1.0 / engine.tick_s(), .core = options.core}, std::move(step)));
   for (double left_s = options.seconds; left_s > 0.0; left_s -= 1.0) {
@@ -100,12 +125,49 @@ runtime::ServoReport window(const Options& options, const live::Engine& engine, 
     std::this_thread::sleep_for(std::chrono::duration<double>(std::min(1.0, left_s)));
   }
   servo->stop();
-  return servo->finish();
+  const auto& report = servo->finish();
+  getrusage(RUSAGE_SELF, &after);
+  return {.report = report,
+          .used = {.processor_s =
+                       1e-9 * static_cast<double>(cpu_ns(CLOCK_PROCESS_CPUTIME_ID) - cpu_before_ns) / options.seconds,
+                   .wakes = static_cast<double>(after.ru_nvcsw - before.ru_nvcsw) / options.seconds}};
 }
 
-runtime::ServoReport unobserved(const Options& options) {
+/// Threads that wake as often as the observers and use as much processor time, and touch no memory.
+class BusyThreads {
+ public:
+  explicit BusyThreads(const Load& load) {
+    if (load.wakes < 1.0 || load.processor_s <= 0.0) return;
+    const std::chrono::duration<double> period(static_cast<double>(threads_.size()) / load.wakes);
+    const double burn_ns = 1e9 * load.processor_s / load.wakes;
+    for (std::thread& thread : threads_) thread = std::thread([this, period, burn_ns] { run(period, burn_ns); });
+  }
+  BusyThreads(const BusyThreads&) = delete;
+  BusyThreads& operator=(const BusyThreads&) = delete;
+  ~BusyThreads() {
+    stop_ = true;
+    for (std::thread& thread : threads_) {
+      if (thread.joinable()) thread.join();
+    }
+  }
+
+ private:
+  void run(std::chrono::duration<double> period, double burn_ns) {
+    // Of the thread's own processor time, so that waking counts too and no burn follows a late one.
+    for (double due_ns = burn_ns; !stop_; due_ns += burn_ns) {
+      while (static_cast<double>(cpu_ns(CLOCK_THREAD_CPUTIME_ID)) < due_ns) {
+      }
+      std::this_thread::sleep_for(period - std::chrono::duration<double>(1e-9 * burn_ns));
+    }
+  }
+  std::atomic<bool> stop_{false};
+  std::array<std::thread, 4> threads_;
+};
+
+Window unobserved(const Options& options, const Load& beside) {
   const auto view = make_view(options);
   live::Engine& engine = view->engine();
+  const BusyThreads busy(beside);
   return window(
       options, engine,
       [&engine](const runtime::Tick&) noexcept {
@@ -115,44 +177,78 @@ runtime::ServoReport unobserved(const Options& options) {
       [&view] { view->receive(1, "/operator/command", "json", R"({"command":"tap"})"); });
 }
 
-runtime::ServoReport observed(const Options& options, Seen& seen) {
+/// Who watches in a window.
+struct Observers {
+  bool log = false, page = false, ros2 = false;
+};
+
+Window observed(const Options& options, const Observers& who, Seen& seen) {
   const auto file = std::filesystem::temp_directory_path() / ("bench_observers_" + std::to_string(getpid()) + ".mcap");
   const auto view = make_view(options);
   live::Engine& engine = view->engine();
-  auto log = demand(telemetry::Recorder::create(file));
-  engine.log_to(log);
-  log.start();
-  auto bridge = demand(ros2::Bridge::create({.network = demand(ros2::network_of(ros2::environment()))}));
-  runtime::ServoReport report;
-  Seen now;
-  {
-    std::optional<live::Server> server(demand(live::Server::start({.port = 0, .conversation = {}}, {}, *view)));
-    Watcher watcher(server->port());
-    report = window(
-        options, engine,
-        [&engine, &bridge](const runtime::Tick& tick) noexcept {
-          engine.step();
-          bridge.publish(cli::snapshot_of(engine.newest(0), tick.deadline_ns, true));
-          static_cast<void>(bridge.take_wish());
-          return true;
-        },
-        [&watcher] { watcher.tap(); });
-    now.live_dropped = server->counts().dropped + engine.dropped(0) + engine.dropped(1);
-    server.reset();
-    watcher.join();
-    now.shown = watcher.messages();
+  std::optional<telemetry::Recorder> log;
+  if (who.log) {
+    log.emplace(demand(telemetry::Recorder::create(file)));
+    engine.log_to(*log);
+    log->start();
   }
-  bridge.close();
-  now.published = bridge.counts().published;
-  now.ros2_dropped = bridge.counts().dropped;
-  if (const auto error = log.stop()) give_up(describe(*error));
-  now.logged = log.log().acknowledged();
-  for (const std::uint64_t dropped : log.dropped()) now.log_dropped += dropped;
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
+  std::optional<ros2::Bridge> bridge;
+  if (who.ros2)
+    bridge.emplace(demand(ros2::Bridge::create({.network = demand(ros2::network_of(ros2::environment()))})));
+  std::optional<live::Server> server;
+  std::optional<Watcher> watcher;
+  if (who.page) {
+    server.emplace(demand(live::Server::start({.port = 0, .conversation = {}}, {}, *view)));
+    watcher.emplace(server->port());
+  }
+  Window result = window(
+      options, engine,
+      [&engine, bridge = bridge ? &*bridge : nullptr](const runtime::Tick& tick) noexcept {
+        engine.step();
+        if (bridge != nullptr) {
+          bridge->publish(cli::snapshot_of(engine.newest(0), tick.deadline_ns, true));
+          static_cast<void>(bridge->take_wish());
+        }
+        return true;
+      },
+      [&] {
+        if (watcher) {
+          watcher->tap();
+        } else {
+          view->receive(1, "/operator/command", "json", R"({"command":"tap"})");
+        }
+      });
+  Seen now;
+  if (watcher) {
+    now.live_dropped = server->counts().dropped + view->lost_ticks();
+    server.reset();
+    watcher->join();
+    now.shown = watcher->messages();
+  }
+  if (bridge) {
+    bridge->close();
+    now.published = bridge->counts().published;
+    now.ros2_dropped = bridge->counts().dropped;
+  }
+  if (log) {
+    if (const auto error = log->stop()) give_up(describe(*error));
+    now.logged = log->log().acknowledged();
+    for (const std::uint64_t dropped : log->dropped()) now.log_dropped += dropped;
+    std::error_code ignored;
+    std::filesystem::remove(file, ignored);
+  }
   seen.add(now);
-  return report;
+  return result;
 }
+
+/// One column of the comparison.
+struct Condition {
+  const char* name;
+  Observers who = {};
+  bool beside_load = false;
+  std::vector<Window> windows = {};
+  Seen seen = {};
+};
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -170,63 +266,105 @@ Options read_options(int count, char** words) {
       options.seconds = std::max(1.0, std::atof(words[i + 1]));
     else if (name == "--core")
       options.core = std::atoi(words[i + 1]);
+    else if (name == "--each")
+      options.each = std::atoi(words[i + 1]) != 0;
     else if (name == "--experiment")
       options.experiment = words[i + 1];
     else
-      give_up("unknown option " + name + ": choose among --windows, --seconds, --core, --experiment");
+      give_up("unknown option " + name + ": choose among --windows, --seconds, --core, --each, --experiment");
   }
   if (count % 2 == 0) give_up("each option has one value");
   return options;
+}
+
+/// The quantile of each window, in us.
+std::vector<double> quantiles(const Condition& condition, runtime::DurationHistogram runtime::ServoReport::*histogram,
+                              double q) {
+  std::vector<double> values;
+  for (const Window& one : condition.windows) values.push_back(1e-3 * (one.report.*histogram).quantile_ns(q));
+  return values;
+}
+
+void print(const Options& options, const std::vector<Condition>& conditions) {
+  const Condition &off = conditions[0], &on = conditions[1], &load = conditions[2];
+  std::printf("Two loops on one servo thread; medians of %d windows of %g s each, core %d\n", options.windows,
+              options.seconds, static_cast<int>(options.core));
+  std::printf("%-16s", "us");
+  for (const Condition& condition : conditions) std::printf("%10s", condition.name);
+  std::printf("%10s%22s%10s   goal\n", "on/off", "each window", "load/off");
+  const auto row = [&](const char* name, auto histogram, double q) {
+    std::printf("%-16s", name);
+    for (const Condition& condition : conditions) std::printf("%10.2f", median(quantiles(condition, histogram, q)));
+    const std::vector<double> with = quantiles(on, histogram, q), without = quantiles(off, histogram, q);
+    std::vector<double> ratios;
+    for (std::size_t i = 0; i < with.size(); ++i) ratios.push_back(with[i] / without[i]);
+    const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+    const double ratio = median(with) / median(without);
+    std::printf("%10.3f%13.3f to %5.3f%10.3f   <= 1.05: %s\n", ratio, *least, *most,
+                median(quantiles(load, histogram, q)) / median(without), ratio <= 1.05 ? "reached" : "missed");
+  };
+  row("step, p50", &runtime::ServoReport::duration, 0.5);
+  row("step, p99", &runtime::ServoReport::duration, 0.99);
+  row("lateness, p50", &runtime::ServoReport::lateness, 0.5);
+  row("lateness, p99", &runtime::ServoReport::lateness, 0.99);
+  const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+  for (const Condition& condition : conditions) {
+    runtime::ServoReport all;
+    std::vector<double> processor_s, wakes;
+    for (const Window& one : condition.windows) {
+      all.add(one.report);
+      processor_s.push_back(one.used.processor_s);
+      wakes.push_back(one.used.wakes);
+    }
+    std::printf(
+        "%-8s %4.1f %% of a core, %6.0f waits a second; late ticks: %lld of ours, %lld of the machine's, of %lld\n",
+        condition.name, 100.0 * median(processor_s), median(wakes), static_cast<long long>(all.late_ours()),
+        static_cast<long long>(all.late_machine()), static_cast<long long>(all.ticks));
+    const Seen& seen = condition.seen;
+    if (condition.who.log)
+      std::printf("         log %llu records (%llu dropped)\n", number(seen.logged), number(seen.log_dropped));
+    if (condition.who.page) {
+      std::printf("         live client %llu messages (%llu dropped)\n", number(seen.shown), number(seen.live_dropped));
+    }
+    if (condition.who.ros2) {
+      std::printf("         ROS 2 %llu snapshots (%llu dropped)\n", number(seen.published), number(seen.ros2_dropped));
+    }
+  }
+  for (const auto& right : on.windows.front().report.rights) {
+    if (!right.held) std::printf("not granted: %s\n", right.what.c_str());
+  }
 }
 
 }  // namespace
 
 int main(int count, char** words) {
   const Options options = read_options(count, words);
-  std::vector<runtime::ServoReport> on, off;
-  Seen seen;
+  std::vector<Condition> conditions{{.name = "all off"},
+                                    {.name = "all on", .who = {.log = true, .page = true, .ros2 = true}},
+                                    {.name = "load", .beside_load = true}};
+  if (options.each) {
+    conditions.push_back({.name = "log", .who = {.log = true}});
+    conditions.push_back({.name = "page", .who = {.page = true}});
+    conditions.push_back({.name = "ROS 2", .who = {.ros2 = true}});
+  }
+  const Condition &off = conditions[0], &on = conditions[1];
+  // The load is that of the windows before, so one pair comes first that does not count.
+  Seen uncounted;
+  Load off_used = unobserved(options, {}).used, on_used = observed(options, on.who, uncounted).used;
   for (int i = 0; i < options.windows; ++i) {
-    // Which of the two comes first changes too.
-    if (i % 2 == 1) on.push_back(observed(options, seen));
-    off.push_back(unobserved(options));
-    if (i % 2 == 0) on.push_back(observed(options, seen));
-  }
-  std::printf("Two loops on one servo thread, us; medians of %d windows of %g s each, core %d\n", options.windows,
-              options.seconds, static_cast<int>(options.core));
-  std::printf("%-16s%10s%10s%8s%22s   goal\n", "", "all off", "all on", "ratio", "ratio, each window");
-  const auto row = [&](const char* name, auto histogram, double q) {
-    std::vector<double> with, without, ratio;
-    for (std::size_t i = 0; i < on.size(); ++i) {
-      with.push_back(1e-3 * (on[i].*histogram).quantile_ns(q));
-      without.push_back(1e-3 * (off[i].*histogram).quantile_ns(q));
-      ratio.push_back(with.back() / without.back());
+    for (std::size_t k = 0; k < conditions.size(); ++k) {
+      // Which comes first changes too.
+      Condition& condition = conditions[(k + static_cast<std::size_t>(i)) % conditions.size()];
+      if (condition.beside_load) {
+        condition.windows.push_back(unobserved(options, {.processor_s = on_used.processor_s - off_used.processor_s,
+                                                         .wakes = on_used.wakes - off_used.wakes}));
+      } else {
+        condition.windows.push_back(observed(options, condition.who, condition.seen));
+      }
     }
-    const double overall = median(with) / median(without);
-    const auto [least, most] = std::minmax_element(ratio.begin(), ratio.end());
-    std::printf("%-16s%10.2f%10.2f%8.3f%13.3f to %5.3f   <= 1.05: %s\n", name, median(without), median(with), overall,
-                *least, *most, overall <= 1.05 ? "reached" : "missed");
-  };
-  row("step, p50", &runtime::ServoReport::duration, 0.5);
-  row("step, p99", &runtime::ServoReport::duration, 0.99);
-  row("lateness, p50", &runtime::ServoReport::lateness, 0.5);
-  row("lateness, p99", &runtime::ServoReport::lateness, 0.99);
-  runtime::ServoReport with = on.front(), without = off.front();
-  for (std::size_t i = 1; i < on.size(); ++i) {
-    with.add(on[i]);
-    without.add(off[i]);
+    off_used = off.windows.back().used;
+    on_used = on.windows.back().used;
   }
-  std::printf("late ticks: all off %lld of ours, %lld of the machine's; all on %lld and %lld; of %lld and %lld ticks\n",
-              static_cast<long long>(without.late_ours()), static_cast<long long>(without.late_machine()),
-              static_cast<long long>(with.late_ours()), static_cast<long long>(with.late_machine()),
-              static_cast<long long>(without.ticks), static_cast<long long>(with.ticks));
-  const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-  std::printf(
-      "seen: log %llu records (%llu dropped), live client %llu messages (%llu dropped), ROS 2 %llu snapshots "
-      "(%llu dropped)\n",
-      number(seen.logged), number(seen.log_dropped), number(seen.shown), number(seen.live_dropped),
-      number(seen.published), number(seen.ros2_dropped));
-  for (const auto& right : on.front().rights) {
-    if (!right.held) std::printf("not granted: %s\n", right.what.c_str());
-  }
+  print(options, conditions);
   return 0;
 }

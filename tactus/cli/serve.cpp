@@ -119,7 +119,7 @@ Check serve(const ServeOptions& options, const std::string& command) {
   }
   const live::Engine& engine = (*view)->engine();
   session.duration_s = std::max(engine.newest(0).time_s, engine.newest(1).time_s);
-  session.lost_ticks = engine.dropped(0) + engine.dropped(1);
+  session.lost_ticks = (*view)->lost_ticks();
   const simulation::Request request{.document = *document, .variations = {}, .name = name, .command = command};
   if (auto error = write_outcome(
           options.out, serve_outcome(session, (*view)->history(), settings->descriptions(), request, configuration),

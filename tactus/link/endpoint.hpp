@@ -43,6 +43,7 @@ class Endpoint {
     std::uint64_t sent = 0;
     std::uint64_t unsent = 0;     ///< not taken by the kernel, or no keys yet
     std::uint64_t malformed = 0;  ///< plain text or authentic, but no datagram
+    std::uint64_t dropped = 0;    ///< by the kernel: no packet of the link by size and first bytes, or no room
     std::uint64_t expected = 0;   ///< of the other's session so far
     std::uint64_t arrived = 0;    ///< of those
   };
@@ -64,6 +65,7 @@ class Endpoint {
   /// Drawn by `make`, never 0: for the site whose packets are sent.
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
   [[nodiscard]] const Socket& socket() const noexcept { return *socket_; }
+  /// Real-time safe: one system call.
   [[nodiscard]] Counters counters() const noexcept;
 
   /// Bounds the time that a flood can take of a tick.

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include <linux/sock_diag.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -120,30 +121,16 @@ std::string Address::text() const {
   return text;
 }
 
-/// What `recvmmsg` writes into.
-struct Socket::Buffers {
-  std::array<Packet, packets_at_once> packets;
-  std::array<iovec, packets_at_once> parts{};
-  std::array<mmsghdr, packets_at_once> headers{};
-  Buffers() {
-    for (std::size_t i = 0; i < packets_at_once; ++i) {
-      parts[i] = {.iov_base = packets[i].data.data(), .iov_len = Packet::longest};
-      headers[i].msg_hdr.msg_iov = &parts[i];
-      headers[i].msg_hdr.msg_iovlen = 1;
-    }
-  }
-};
-
 Socket::Socket(int descriptor, bool on_loopback)
-    : descriptor_(descriptor), on_loopback_(on_loopback), buffers_(std::make_unique<Buffers>()) {}
+    : descriptor_(descriptor), on_loopback_(on_loopback), packets_(std::make_unique<Packets>()) {}
 Socket::Socket(Socket&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       on_loopback_(other.on_loopback_),
-      buffers_(std::move(other.buffers_)) {}
+      packets_(std::move(other.packets_)) {}
 Socket& Socket::operator=(Socket&& other) noexcept {
   std::swap(descriptor_, other.descriptor_);
   std::swap(on_loopback_, other.on_loopback_);
-  std::swap(buffers_, other.buffers_);
+  std::swap(packets_, other.packets_);
   return *this;
 }
 Socket::~Socket() {
@@ -173,14 +160,20 @@ Result<Socket> Socket::open(const Address& local, const Address& peer) {
 }
 
 std::span<const Packet> Socket::receive() noexcept {
-  const int count = recvmmsg(descriptor_, buffers_->headers.data(), packets_at_once, MSG_DONTWAIT, nullptr);
-  if (count <= 0) return {};
-  const auto taken = static_cast<std::size_t>(count);
-  for (std::size_t i = 0; i < taken; ++i) {
-    mmsghdr& header = buffers_->headers[i];
-    buffers_->packets[i].size = (header.msg_hdr.msg_flags & MSG_TRUNC) != 0 ? 0 : header.msg_len;
+  std::size_t taken = 0;
+  for (; taken < packets_at_once; ++taken) {
+    Packet& packet = (*packets_)[taken];
+    const ssize_t size = recv(descriptor_, packet.data.data(), Packet::longest, MSG_DONTWAIT | MSG_TRUNC);
+    if (size < 0) break;
+    packet.size = static_cast<std::size_t>(size) <= Packet::longest ? static_cast<std::size_t>(size) : 0;
   }
-  return {buffers_->packets.data(), taken};
+  return {packets_->data(), taken};
+}
+
+std::uint64_t Socket::dropped() const noexcept {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> about{};
+  socklen_t size = sizeof(about);
+  return getsockopt(descriptor_, SOL_SOCKET, SO_MEMINFO, about.data(), &size) == 0 ? about[SK_MEMINFO_DROPS] : 0;
 }
 
 bool Socket::send(std::span<const std::byte> bytes) const noexcept {

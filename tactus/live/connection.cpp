@@ -3,6 +3,10 @@
 #include <array>
 #include <utility>
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
 namespace tactus::live {
 
 namespace {
@@ -80,7 +84,9 @@ void Server::State::Client::count_losses() {
 void Server::State::Client::write() {
   Outbox& outbox = conversation_.outbox();
   if (conversation_.is_hopeless()) return close();
-  if (!open_ || Clock::now() < speaks_from_ || outbox.is_sending() || outbox.empty()) return;
+  if (!open_ || Clock::now() < speaks_from_ || outbox.is_sending()) return;
+  if (outbox.empty() == corked_) cork(!outbox.empty());
+  if (outbox.empty()) return;
   const Frame& frame = outbox.begin_sending();
   stream_.binary(frame.binary);
   const std::array<asio::const_buffer, 2> bytes{asio::buffer(frame.head),
@@ -90,6 +96,14 @@ void Server::State::Client::write() {
     self->conversation_.outbox().sent();
     self->write();
   });
+}
+
+void Server::State::Client::cork(bool corked) {
+  corked_ = corked;
+  const int value = corked ? 1 : 0;
+  // Where the kernel refuses, frames go out one by one.
+  static_cast<void>(setsockopt(beast::get_lowest_layer(stream_).socket().native_handle(), IPPROTO_TCP, TCP_CORK, &value,
+                               sizeof(value)));
 }
 
 void Server::State::Client::close() {

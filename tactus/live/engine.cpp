@@ -8,6 +8,37 @@
 
 namespace tactus::live {
 
+namespace {
+
+/// One loop's ticks on their way to a log. The number of a tick is its place in the sequence.
+class LoopStream final : public telemetry::Stream {
+ public:
+  LoopStream(Engine::Ticks::Reader ticks, std::size_t loop, std::uint16_t channel)
+      : ticks_(std::move(ticks)), loop_(loop), channel_(channel) {}
+
+  void drain(telemetry::LogWriter& log) override {
+    EngineTick tick;
+    while (ticks_.next(tick)) {
+      const LoopTick& own = tick.loop[loop_];
+      if (!tick.ran[loop_]) continue;
+      dropped_.fetch_add(own.number - next_, std::memory_order_relaxed);
+      next_ = own.number + 1;
+      log.write(channel_, own.number, own.time_ns, telemetry::to_cdr(own.record));
+    }
+  }
+
+  [[nodiscard]] std::uint64_t dropped() const noexcept override { return dropped_.load(std::memory_order_relaxed); }
+
+ private:
+  Engine::Ticks::Reader ticks_;
+  std::size_t loop_;
+  std::uint16_t channel_;
+  std::uint32_t next_ = 0;
+  std::atomic<std::uint64_t> dropped_{0};
+};
+
+}  // namespace
+
 Result<std::unique_ptr<Engine>> Engine::make(Setup setup) {
   const double tick_s = setup.teleoperators[0].tick_s();
   auto hand = Hand::make(Seconds{tick_s});
@@ -26,9 +57,16 @@ Engine::~Engine() {
 
 void Engine::log_to(telemetry::Recorder& recorder) {
   for (std::size_t i = 0; i < loops; ++i) {
-    log_[i] =
-        &recorder.add<Record>(std::string("/") + loop_names[i] + "/teleoperator", "tactus_msgs/msg/TeleoperatorRecord");
+    recorder.add({.topic = std::string("/") + loop_names[i] + "/teleoperator",
+                  .type_name = "tactus_msgs/msg/TeleoperatorRecord",
+                  .columns = telemetry::columns_of<Record>()},
+                 [&](std::uint16_t channel) { return std::make_unique<LoopStream>(watch(), i, channel); });
   }
+}
+
+Engine::Ticks::Reader Engine::watch() {
+  watched_.store(true, std::memory_order_relaxed);
+  return Ticks::Reader(ticks_);
 }
 
 bool Engine::aim(double target_m) noexcept { return orders_.try_push({.target_m = target_m}); }
@@ -65,8 +103,8 @@ void Engine::apply(Change& change) noexcept {
       setup_.teleoperators[i].exchange(*loop.made, *loop.parts);
     } else if (loop.made) {
       std::swap(setup_.teleoperators[i], *loop.made);
-      stopped_[i] = false;
-      ++starts_[i];
+      tick_.loop[i].stopped = false;
+      ++tick_.loop[i].run;
     }
     setup_.runs[i] = change.runs[i].value_or(setup_.runs[i]);
   }
@@ -82,27 +120,27 @@ void Engine::step() noexcept {
   const auto [path_m, path_at_next_tick_m] = hand_.step();
   ++ticks_done_;
   for (std::size_t i = 0; i < loops; ++i) {
+    tick_.ran[i] = setup_.runs[i];
     if (!setup_.runs[i]) continue;
-    Record& record = records_[i];
-    if (!stopped_[i]) {
+    LoopTick& tick = tick_.loop[i];
+    Record& record = tick.record;
+    if (!tick.stopped) {
       record = setup_.teleoperators[i].step(path_m, path_at_next_tick_m);
       // Written so that a NaN counts as outside.
       const bool inside = std::fabs(record.master_position_m) < setup_.reach_m[i] &&
                           std::fabs(record.tip_position_m) < setup_.reach_m[i];
-      stopped_[i] = !inside || !setup_.teleoperators[i].healthy();
+      tick.stopped = !inside || !setup_.teleoperators[i].healthy();
       // A loop that started over counts from zero; the log and the view do not.
       if (record.touched) record.touched_at_s += time_s - record.time_s;
     }
     record.time_s = time_s;
-    if (log_[i] != nullptr) log_[i]->push(time_ns, record);
-    ticks_[i].try_push({.time_ns = time_ns,
-                        .record = record,
-                        .hand_position_m = target_m,
-                        .wall_position_m = setup_.wall_m,
-                        .real_time_ratio = real_time_ratio_,
-                        .run = starts_[i],
-                        .stopped = stopped_[i]});
+    tick.time_ns = time_ns;
+    tick.hand_position_m = target_m;
+    tick.wall_position_m = setup_.wall_m;
+    tick.real_time_ratio = real_time_ratio_;
+    tick.number = ticks_of_[i]++;
   }
+  if (watched_.load(std::memory_order_relaxed)) ticks_->push(tick_);
 }
 
 void Engine::run(const std::function<bool()>& keep_going) {

@@ -4,10 +4,12 @@
 #include <tactus/live/hand.hpp>
 #include <tactus/live/messages.hpp>
 #include <tactus/simulation/teleoperator.hpp>
+#include <tactus/telemetry/broadcast.hpp>
 #include <tactus/telemetry/recorder.hpp>
 #include <tactus/telemetry/ring.hpp>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -32,15 +34,24 @@ struct Change {
   std::optional<ScriptedTap> tap;
 };
 
+/// What both loops did in one tick, on its way from their thread to all that watch.
+struct EngineTick {
+  std::array<LoopTick, loops> loop;
+  std::array<bool, loops> ran{};  ///< of each loop, whether it runs
+};
+
 /// Teleoperators in virtual time, paced to real time.
 ///
-/// Two threads: the loop's, which calls `run`, and that of the view, which calls all else. Between them are wait-free
-/// rings, so the view can be slow, stuck or gone: then ticks are missing in the view, and counted, and the loop is as
-/// it was. A change is made on the view's thread, taken between two ticks, and what it replaced goes back there to be
-/// destroyed: the loop's thread allocates and frees nothing.
+/// Two threads: the loop's, which calls `run`, and that of the view, which calls all else. Between them is a broadcast
+/// of each tick, one copy for the view and the log, and wait-free rings for what is asked of the loop. So the view can
+/// be slow, stuck or gone: then ticks are missing in the view, and counted, and the loop is as it was. A change is made
+/// on the view's thread, taken between two ticks, and what it replaced goes back there to be destroyed: the loop's
+/// thread allocates and frees nothing.
 class Engine {
  public:
   using Record = simulation::Teleoperator::Record;
+  /// At 5 kHz it holds 0.8 s.
+  using Ticks = telemetry::Broadcast<EngineTick, 4096>;
 
   struct Setup {
     std::array<simulation::Teleoperator, loops> teleoperators;
@@ -53,8 +64,7 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
   ~Engine();
 
-  /// Logs every tick of both loops too, on the topics `/left/teleoperator` and `/right/teleoperator`. Before `run`; the
-  /// recorder must outlive the engine.
+  /// Logs every tick of both loops too, on the topics `/left/teleoperator` and `/right/teleoperator`. Before `run`.
   void log_to(telemetry::Recorder& recorder);
 
   /// The loop's thread: steps until `keep_going` returns false, which is asked every millisecond. Where the machine
@@ -67,13 +77,11 @@ class Engine {
   bool aim(double target_m) noexcept;
   /// View's thread. False, and `change` is lost, where the loop has not taken what was said before.
   bool change(std::unique_ptr<Change> change);
-  /// The next tick of a loop, if there is one. View's thread.
-  bool next(std::size_t loop, LoopTick& tick) noexcept { return ticks_[loop].try_pop(tick); }
-  /// Ticks that found the view behind. Any thread.
-  [[nodiscard]] std::uint64_t dropped(std::size_t loop) const noexcept { return ticks_[loop].dropped(); }
+  /// Shows every tick from now on. Before anybody asks for that, a tick is not copied. Any thread.
+  [[nodiscard]] Ticks::Reader watch();
 
   /// What a loop did in its newest tick. The loop's thread.
-  [[nodiscard]] const Record& newest(std::size_t loop) const noexcept { return records_[loop]; }
+  [[nodiscard]] const Record& newest(std::size_t loop) const noexcept { return tick_.loop[loop].record; }
   [[nodiscard]] double tick_s() const noexcept { return tick_s_; }
   [[nodiscard]] double wall_m() const noexcept { return setup_.wall_m; }
 
@@ -82,7 +90,6 @@ class Engine {
     double target_m = 0.0;
     Change* change = nullptr;
   };
-  using Stream = telemetry::RecordStream<Record>;
 
   Engine(Setup setup, const Hand& hand);
   void take_orders() noexcept;
@@ -92,13 +99,12 @@ class Engine {
   Setup setup_;
   double tick_s_;
   Hand hand_;
-  std::array<Record, loops> records_;
-  std::array<bool, loops> stopped_{};
-  std::array<std::uint32_t, loops> starts_{};
-  std::array<Stream*, loops> log_{};
+  EngineTick tick_;
+  std::array<std::uint32_t, loops> ticks_of_{};
   std::uint64_t ticks_done_ = 0;
   double real_time_ratio_ = 1.0;
-  std::array<telemetry::Ring<LoopTick, 4096>, loops> ticks_;
+  std::shared_ptr<Ticks> ticks_ = std::make_shared<Ticks>();
+  std::atomic<bool> watched_{false};
   telemetry::Ring<Order, 256> orders_;
   telemetry::Ring<Change*, 512> returned_;
 };

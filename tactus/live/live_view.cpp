@@ -237,33 +237,39 @@ void LiveView::leave(ClientId client) {
 }
 
 void LiveView::collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) {
-  const auto state_ticks = static_cast<std::size_t>(std::max(1L, std::lround(state_every_s / engine_->tick_s())));
-  for (std::size_t i = 0; i < loops; ++i) {
-    Watched& watched = watched_[i];
-    const std::size_t first_topic = i * topics_of_loop;
-    const bool wants_all = is_wanted(first_topic + full_rate);
-    LoopTick tick;
-    while (engine_->next(i, tick)) {
-      watch(i, tick);
-      if (wants_all) {
-        const auto bytes = telemetry::to_cdr(tick.record);
-        publish(first_topic + full_rate, tick.time_ns, shared(std::string(bytes.begin(), bytes.end())));
-      }
-      if (watched.block.add(tick)) {
-        BlockBuilder::Block built = watched.block.take();
-        publish(first_topic + block, built.time_ns, shared(std::move(built.live_block)));
-        publish(first_topic + hand_force, built.time_ns, shared(std::move(built.hand_force)));
-      }
-      if (++watched.ticks_to_state >= state_ticks) {
-        watched.ticks_to_state = 0;
-        watched.state.dropped = engine_->dropped(i);
-        watched.state.verdict = tick.stopped ? "stopped" : word_of(watched.judge.verdict());
-        watched.state.cause = tick.stopped ? "A safety gate closed or a device left its workspace; reset starts over."
-                                           : watched.judge.cause();
-        publish(first_topic + state, tick.time_ns, shared(to_cdr(watched.state)));
-      }
+  if (!ticks_) ticks_.emplace(engine_->watch());
+  std::array<bool, loops> every_tick;
+  for (std::size_t i = 0; i < loops; ++i) every_tick[i] = is_wanted(i * topics_of_loop + full_rate);
+  EngineTick tick;
+  while (ticks_->next(tick)) {
+    lost_ticks_.store(ticks_->lost(), std::memory_order_relaxed);
+    for (std::size_t i = 0; i < loops; ++i) {
+      if (tick.ran[i]) show(i, tick.loop[i], every_tick[i], publish);
     }
   }
+}
+
+void LiveView::show(std::size_t loop, const LoopTick& tick, bool every_tick, const Publish& publish) {
+  const auto state_ticks = static_cast<std::size_t>(std::max(1L, std::lround(state_every_s / engine_->tick_s())));
+  Watched& watched = watched_[loop];
+  const std::size_t first_topic = loop * topics_of_loop;
+  watch(loop, tick);
+  if (every_tick) {
+    const auto bytes = telemetry::to_cdr(tick.record);
+    publish(first_topic + full_rate, tick.time_ns, shared(std::string(bytes.begin(), bytes.end())));
+  }
+  if (watched.block.add(tick)) {
+    BlockBuilder::Block built = watched.block.take();
+    publish(first_topic + block, built.time_ns, shared(std::move(built.live_block)));
+    publish(first_topic + hand_force, built.time_ns, shared(std::move(built.hand_force)));
+  }
+  if (++watched.ticks_to_state < state_ticks) return;
+  watched.ticks_to_state = 0;
+  watched.state.dropped = lost_ticks();
+  watched.state.verdict = tick.stopped ? "stopped" : word_of(watched.judge.verdict());
+  watched.state.cause =
+      tick.stopped ? "A safety gate closed or a device left its workspace; reset starts over." : watched.judge.cause();
+  publish(first_topic + state, tick.time_ns, shared(to_cdr(watched.state)));
 }
 
 void LiveView::watch(std::size_t loop, const LoopTick& tick) {

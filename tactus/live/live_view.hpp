@@ -9,6 +9,7 @@
 #include <tactus/live/vibration_energy.hpp>
 
 #include <array>
+#include <atomic>
 #include <map>
 #include <memory>
 #include <optional>
@@ -39,6 +40,8 @@ class LiveView final : public Application {
   [[nodiscard]] Engine& engine() { return *engine_; }
   /// What visitors tried so far. On the view's thread, or after its end.
   [[nodiscard]] const SessionHistory& history() const { return history_; }
+  /// Ticks that were lost on the way here. Any thread.
+  [[nodiscard]] std::uint64_t lost_ticks() const { return lost_ticks_.load(std::memory_order_relaxed); }
 
   [[nodiscard]] const std::vector<Topic>& topics() const override { return topics_; }
   [[nodiscard]] std::map<std::string, std::string> metadata() const override;
@@ -47,6 +50,7 @@ class LiveView final : public Application {
   std::optional<Status> receive(ClientId client, std::string_view topic, std::string_view encoding,
                                 std::string_view bytes) override;
   void leave(ClientId client) override;
+  /// Shows what the loops did since it was first called.
   void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) override;
 
  private:
@@ -71,6 +75,7 @@ class LiveView final : public Application {
   std::optional<Status> start_over(const std::optional<ScriptedTap>& tap);
   Check apply(const Settings& settings);
   void watch(std::size_t loop, const LoopTick& tick);
+  void show(std::size_t loop, const LoopTick& tick, bool every_tick, const Publish& publish);
 
   Settings settings_;
   Options options_;
@@ -78,6 +83,8 @@ class LiveView final : public Application {
   std::unique_ptr<Engine> engine_;
   std::vector<Topic> topics_;
   std::vector<Watched> watched_;
+  std::optional<Engine::Ticks::Reader> ticks_;
+  std::atomic<std::uint64_t> lost_ticks_{0};
   std::optional<ClientId> holder_;
   SessionHistory history_;
 };

@@ -12,13 +12,14 @@
 /// The messages of the live view beside the full-rate records.
 namespace tactus::live {
 
-/// What one loop did in one tick, on its way from the loop's thread to the view.
+/// What one loop did in one tick.
 struct LoopTick {
   std::uint64_t time_ns = 0;
   simulation::Teleoperator::Record record;
   double hand_position_m = 0.0;  ///< where the visitor, or the script, wants the hand
   double wall_position_m = 0.0;  ///< as the master's hand sees it
   double real_time_ratio = 0.0;  ///< virtual time over real time, over the last second
+  std::uint32_t number = 0;      ///< of the ticks of this loop, from 0
   std::uint32_t run = 0;         ///< grows each time the loop starts over
   bool stopped = false;          ///< a safety gate latched, or a device left its workspace
 };

@@ -8,7 +8,7 @@ namespace tactus::live {
 namespace {
 
 /// How often losses are counted and told: about once a second.
-constexpr std::uint64_t collections_between_counts = 200;
+constexpr std::uint64_t collections_between_counts = 100;
 
 }  // namespace
 

@@ -21,7 +21,7 @@ struct ServerOptions {
   std::size_t header_bytes = 8192;    ///< longest head of an HTTP request
   double request_within_s = 5.0;      ///< time for a request to arrive and its answer to be taken
   double silence_s = 20.0;            ///< a client that answers no ping for so long is closed
-  double collect_every_s = 0.005;     ///< how often the application is asked for what is new
+  double collect_every_s = 0.01;      ///< how often the application is asked for what is new
   ConversationLimits conversation;
 };
 

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <thread>
 #include <utility>
 
@@ -12,7 +13,7 @@ namespace tactus::ros2 {
 namespace {
 
 /// How long the thread waits for a command before it looks for snapshots.
-constexpr Seconds look_every{0.001};
+constexpr Seconds look_every{0.002};
 /// The state is told when it changes and this often, for those who come late.
 constexpr std::int64_t state_every_ns = 100'000'000;
 
@@ -42,6 +43,16 @@ Result<DeviceWriters> open_writers(Participant& participant, const std::string& 
   return DeviceWriters{*measured_js, *setpoint_js, *measured_cf};
 }
 
+/// A snapshot that is told, and as what.
+struct Told {
+  Snapshot at;
+  bool measured = false;  ///< as measured signals
+  bool state = false;
+};
+
+/// In the place of a wish where there is none.
+constexpr double nothing_m = std::numeric_limits<double>::quiet_NaN();
+
 /// All that is open.
 struct Endpoints {
   Participant participant;
@@ -68,13 +79,17 @@ Result<Endpoints> open(const Bridge::Params& params) {
 }  // namespace
 
 struct Bridge::State {
-  State(Endpoints opened, double rate_Hz) : dds(std::move(opened)), period_ns(std::llround(1e9 / rate_Hz)) {}
+  State(Endpoints opened, double rate_Hz) : period_ns(std::llround(1e9 / rate_Hz)), dds(std::move(opened)) {}
 
-  Endpoints dds;
-  std::int64_t period_ns;
+  // All that the thread that publishes touches in a tick in which nothing is due, on one cache line.
+  alignas(64) std::int64_t period_ns;
+  std::int64_t due_ns = 0;
+  std::int64_t state_due_ns = 0;
+  bool told_healthy = true;
+  std::atomic<double> wished_m{nothing_m};  ///< the newest that was not taken
 
-  telemetry::Ring<Snapshot, 4096> snapshots;
-  telemetry::Ring<double, 64> wished_m;
+  alignas(64) Endpoints dds;
+  telemetry::Ring<Told, 1024> snapshots;
   std::atomic<std::uint64_t> published{0};
   std::atomic<std::uint64_t> lost{0};
   std::atomic<std::uint64_t> wishes{0};
@@ -82,22 +97,32 @@ struct Bridge::State {
   std::atomic<bool> stop{false};
   std::thread thread;
 
-  // Of the thread alone.
-  std::int64_t due_ns = 0;
-  std::int64_t state_due_ns = 0;
-  bool told_healthy = true;
-
   template <class Message>
   void send(Writer<Message>& writer, const Message& message) {
     if (writer.write(message)) lost.fetch_add(1, std::memory_order_relaxed);
   }
 
-  void tell(const Snapshot& at) {
+  /// Passes on what is due; most ticks are not.
+  void publish(const Snapshot& at) noexcept {
     const bool clock_was_set_back = at.stamp_ns < due_ns - period_ns;
-    if (at.stamp_ns >= due_ns || clock_was_set_back) {
+    const bool measured = at.stamp_ns >= due_ns || clock_was_set_back;
+    const bool state = at.stamp_ns >= state_due_ns || clock_was_set_back || at.healthy != told_healthy;
+    if (!measured && !state) return;
+    if (!snapshots.try_push({.at = at, .measured = measured, .state = state})) return;
+    if (measured) {
       // Counted from when it was due, so that the mean rate is kept; a gap is not made up for.
       const bool in_time = !clock_was_set_back && at.stamp_ns < due_ns + period_ns;
       due_ns = (in_time ? due_ns : at.stamp_ns) + period_ns;
+    }
+    if (state) {
+      state_due_ns = at.stamp_ns + state_every_ns;
+      told_healthy = at.healthy;
+    }
+  }
+
+  void tell(const Told& told) {
+    const Snapshot& at = told.at;
+    if (told.measured) {
       JointState measured = joint_state(at, "master");
       measured.position = {at.master_position_m};
       send(dds.master.measured_js, measured);
@@ -114,23 +139,19 @@ struct Bridge::State {
       send(dds.slave.measured_cf, wrench(at, "slave", -at.environment_force_N));
       published.fetch_add(1, std::memory_order_relaxed);
     }
-    if (at.stamp_ns >= state_due_ns || clock_was_set_back || at.healthy != told_healthy) {
-      state_due_ns = at.stamp_ns + state_every_ns;
-      told_healthy = at.healthy;
-      send(dds.state, {at.healthy ? "ENABLED" : "FAULT"});
-    }
+    if (told.state) send(dds.state, {at.healthy ? "ENABLED" : "FAULT"});
   }
 
   void drain() {
-    Snapshot at;
-    while (snapshots.try_pop(at)) tell(at);
+    Told told;
+    while (snapshots.try_pop(told)) tell(told);
   }
 
   void listen() {
     for (const JointState& command : dds.servo_jp.take()) {
       if (command.position.size() == 1 && std::isfinite(command.position.front())) {
         wishes.fetch_add(1, std::memory_order_relaxed);
-        wished_m.try_push(command.position.front());
+        wished_m.store(command.position.front(), std::memory_order_relaxed);
       } else {
         refused.fetch_add(1, std::memory_order_relaxed);
       }
@@ -170,13 +191,12 @@ Result<Bridge> Bridge::create(const Params& params) {
   return Bridge(std::move(state));
 }
 
-void Bridge::publish(const Snapshot& snapshot) noexcept { state_->snapshots.try_push(snapshot); }
+void Bridge::publish(const Snapshot& snapshot) noexcept { state_->publish(snapshot); }
 
 std::optional<double> Bridge::take_wish() noexcept {
-  std::optional<double> newest;
-  double wished_m = 0.0;
-  while (state_->wished_m.try_pop(wished_m)) newest = wished_m;
-  return newest;
+  // Looked at before it is exchanged, for that takes the cache line from the other thread.
+  if (std::isnan(state_->wished_m.load(std::memory_order_relaxed))) return std::nullopt;
+  return state_->wished_m.exchange(nothing_m, std::memory_order_relaxed);
 }
 
 void Bridge::close() {

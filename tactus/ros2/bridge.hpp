@@ -27,8 +27,9 @@ struct Snapshot {
 /// and subscribes to `operator/servo_jp` (`sensor_msgs/msg/JointState` with one position in m): where another program
 /// means the operator's hand to be.
 ///
-/// The thread that steps the teleoperator calls `publish` and `take_wish`, which touch two wait-free rings and nothing
-/// else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and counted.
+/// The thread that steps the teleoperator calls `publish` and `take_wish`, which touch a wait-free ring, the newest
+/// wish and nothing else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and
+/// counted.
 class Bridge {
  public:
   struct Params {
@@ -39,7 +40,7 @@ class Bridge {
   struct Counts {
     std::uint64_t published = 0;  ///< snapshots, each a message on every topic of a device
     std::uint64_t lost = 0;       ///< messages that DDS did not take
-    std::uint64_t dropped = 0;    ///< snapshots that found the ring full
+    std::uint64_t dropped = 0;    ///< snapshots that were due and found the ring full
     std::uint64_t wishes = 0;     ///< that could be used
     std::uint64_t refused = 0;    ///< commands that could not: not exactly one finite position
   };
@@ -51,7 +52,8 @@ class Bridge {
   Bridge& operator=(Bridge&&) = delete;
   ~Bridge();  ///< closes
 
-  /// One thread only. Real-time safe: wait-free, no allocation, no system call.
+  /// Passes a snapshot on where one is due by `rate_Hz` and its stamp, or the state has changed. One thread only.
+  /// Real-time safe: wait-free, no allocation, no system call.
   void publish(const Snapshot& snapshot) noexcept;
   /// The newest position in m that another program wished since the last call, always finite and not bounded otherwise.
   /// The same thread. Real-time safe.

@@ -7,8 +7,9 @@ namespace tactus::telemetry {
 
 namespace {
 
-/// How long the writer sleeps between two looks into the rings: a small part of what they hold.
-constexpr std::chrono::milliseconds look_every{2};
+/// How long the writer sleeps between two looks into the rings: a small part of what they hold, and seldom enough that
+/// it hardly disturbs who shares its core.
+constexpr std::chrono::milliseconds look_every{10};
 
 }  // namespace
 

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -41,7 +42,7 @@ class Stream {
   virtual ~Stream() = default;
   /// Moves what is waiting into the log. Writer thread only.
   virtual void drain(LogWriter& log) = 0;
-  /// Records that found the ring full. Any thread.
+  /// Records that were lost on the way to the log. Any thread.
   [[nodiscard]] virtual std::uint64_t dropped() const noexcept = 0;
 };
 
@@ -97,6 +98,11 @@ class Recorder {
     auto& added = *stream;
     add_stream(std::move(stream));
     return added;
+  }
+  /// The same for records that come another way: `make` is given the number of the channel.
+  void add(const ChannelDescription& channel,
+           const std::function<std::unique_ptr<Stream>(std::uint16_t channel)>& make) {
+    add_stream(make(add_channel(channel)));
   }
   void add_metadata(const std::string& name, const std::map<std::string, std::string>& content);
 

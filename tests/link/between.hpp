@@ -22,6 +22,9 @@ class Between {
     slave_side_.emplace(Socket::open(loopback(for_slave), loopback(slave_port)).value());
     master.emplace(open(SiteRole::master, {.master = master_port, .slave = for_master}, test_key()));
     slave.emplace(open(SiteRole::slave, {.master = for_slave, .slave = slave_port}, test_key()));
+    const std::uint16_t elsewhere_port = free_port();
+    elsewhere_.emplace(Socket::open(loopback(elsewhere_port), loopback(free_port())).value());
+    to_elsewhere_.emplace(Socket::open(loopback(free_port()), loopback(elsewhere_port)).value());
   }
 
   /// Passes on what both sites have sent; the attacker hears it.
@@ -52,6 +55,8 @@ class Between {
     return slave->counters().inbound.counted >= 50;
   }
   void attack(int kind = -1) { slave_side_->send(attacker.next(kind)); }
+  /// The same packets to a port that has nothing to do with the link.
+  void attack_elsewhere() { to_elsewhere_->send(attacker.next()); }
 
   std::optional<Endpoint> master, slave;
   Attacker attacker{1};
@@ -59,7 +64,7 @@ class Between {
   control::Packet last;               ///< that came to the slave
 
  private:
-  std::optional<Socket> master_side_, slave_side_;
+  std::optional<Socket> master_side_, slave_side_, elsewhere_, to_elsewhere_;
 };
 
 }  // namespace tactus::link::testing

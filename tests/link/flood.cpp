@@ -1,12 +1,14 @@
 // flood_link [PACKETS [PER_SECOND]]: an encrypted link of two sites at 5 kHz, and an attacker on the way who sends so
-// many hostile packets to the slave, in windows of a second that alternate with quiet ones. Prints what was accepted,
-// the slave's time for receiving and sending in a tick, and its memory. Status 1 where anything was accepted, the link
-// did not go on, or memory grew.
+// many hostile packets to the slave. Windows of a second take turns: quiet, the same flood to a port that has nothing
+// to do with the link, the flood. Prints what was accepted, the slave's time for receiving and sending in a tick, and
+// its memory. Status 1 where anything was accepted, the link did not go on, or memory grew.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <malloc.h>
@@ -19,30 +21,42 @@ using namespace tactus::link;
 constexpr std::int64_t tick_ns = 200'000;
 constexpr std::int64_t window_ns = 1'000'000'000;
 
-/// Quantiles of the time of a tick in us.
-void print_times(const char* name, std::vector<double> times_us) {
-  if (times_us.empty()) return;
-  std::sort(times_us.begin(), times_us.end());
-  const auto at = [&](double share) {
-    return times_us[static_cast<std::size_t>(share * static_cast<double>(times_us.size() - 1))];
-  };
-  std::printf("%-12s %9zu ticks   p50 %7.2f   p99 %7.2f   p99.9 %7.2f us\n", name, times_us.size(), at(0.5), at(0.99),
-              at(0.999));
+/// What the attacker does.
+enum class Phase : std::uint8_t { quiet, elsewhere, flooded };
+constexpr std::array phase_names{"quiet", "elsewhere", "flooded"};
+using Times = std::array<std::vector<double>, phase_names.size()>;
+
+double quantile(const std::vector<double>& sorted, double share) {
+  return sorted.empty() ? 0.0 : sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+/// Quantiles of the time of a tick in us, and what they are of those of the quiet windows.
+void print_times(Times& times_us) {
+  for (auto& times : times_us) std::sort(times.begin(), times.end());
+  const auto& quiet = times_us[0];
+  for (std::size_t i = 0; i < times_us.size(); ++i) {
+    std::printf("%-10s %9zu ticks", phase_names[i], times_us[i].size());
+    for (const auto& [name, share] : {std::pair{"p50", 0.5}, {"p99", 0.99}, {"p99.9", 0.999}}) {
+      const double at_us = quantile(times_us[i], share);
+      std::printf("   %s %7.2f us (%.2f)", name, at_us, at_us / quantile(quiet, share));
+    }
+    std::printf("\n");
+  }
 }
 
 /// A site that ticks until it is told to stop.
 class TickingSite {
  public:
-  TickingSite(Endpoint& endpoint, const std::atomic<bool>& flooded, std::size_t most_ticks)
-      : endpoint_(endpoint), flooded_(flooded) {
-    for (auto* times : {&quiet_us, &flooded_us}) times->reserve(most_ticks);
+  TickingSite(Endpoint& endpoint, const std::atomic<Phase>& phase, std::size_t most_ticks)
+      : endpoint_(endpoint), phase_(phase) {
+    for (auto& times : times_us) times.reserve(most_ticks);
     thread_ = std::thread([this] { run(); });
   }
   void stop() {
     stop_ = true;
     thread_.join();
   }
-  std::vector<double> quiet_us, flooded_us;
+  Times times_us;
   std::uint64_t wrong = 0;  ///< messages that nobody sent
 
  private:
@@ -55,13 +69,13 @@ class TickingSite {
       const std::int64_t began_ns = monotonic_ns();
       const auto received = testing::tick(endpoint_, 1.0);
       const double took_us = static_cast<double>(monotonic_ns() - began_ns) * 1e-3;
-      auto& times = flooded_ ? flooded_us : quiet_us;
+      auto& times = times_us[static_cast<std::size_t>(phase_.load())];
       if (times.size() < times.capacity()) times.push_back(took_us);
       if (received && received->message.position_m != 1.0) ++wrong;
     }
   }
   Endpoint& endpoint_;
-  const std::atomic<bool>& flooded_;
+  const std::atomic<Phase>& phase_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
@@ -77,33 +91,35 @@ int main(int count, char** arguments) {
     return 2;
   }
   const auto most_ticks = static_cast<std::size_t>(static_cast<double>(packets) / per_second * 5000.0 * 1.5) + 10'000;
-  std::atomic<bool> flooded{false};
-  TickingSite slave(*between.slave, flooded, most_ticks);
-  TickingSite master(*between.master, flooded, 1);
+  std::atomic<Phase> phase{Phase::quiet};
+  TickingSite slave(*between.slave, phase, most_ticks);
+  TickingSite master(*between.master, phase, 1);
 
-  long long sent = 0;
+  long long sent = 0, sent_elsewhere = 0;
   std::size_t memory_before = 0;
-  double flooded_s = 0.0;
+  std::array<double, phase_names.size()> lasted_s{};
   std::int64_t last_ns = monotonic_ns(), window_end_ns = last_ns + 2 * window_ns;
   while (sent < packets) {
     between.pass_on();
     const std::int64_t now_ns = monotonic_ns();
-    if (flooded) flooded_s += static_cast<double>(now_ns - last_ns) * 1e-9;
+    const Phase now = phase;
+    double& now_s = lasted_s[static_cast<std::size_t>(now)];
+    now_s += static_cast<double>(now_ns - last_ns) * 1e-9;
     last_ns = now_ns;
     if (now_ns >= window_end_ns) {
       if (memory_before == 0) memory_before = mallinfo2().uordblks;
-      flooded = !flooded;
+      phase = static_cast<Phase>((static_cast<std::size_t>(now) + 1) % phase_names.size());
       window_end_ns = now_ns + window_ns;
     }
-    int burst = 0;
-    while (flooded && burst < 64 && static_cast<double>(sent) < flooded_s * per_second && sent < packets) {
-      between.attack();
-      ++sent;
-      ++burst;
+    long long& counted = now == Phase::flooded ? sent : sent_elsewhere;
+    for (int burst = 0; now != Phase::quiet && burst < 64; ++burst) {
+      if (static_cast<double>(counted) >= now_s * per_second || sent >= packets) break;
+      now == Phase::flooded ? between.attack() : between.attack_elsewhere();
+      ++counted;
     }
     std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
-  flooded = false;
+  phase = Phase::quiet;
   for (int i = 0; i < 10'000; ++i) {
     between.pass_on();
     std::this_thread::sleep_for(std::chrono::microseconds(100));
@@ -117,17 +133,19 @@ int main(int count, char** arguments) {
                         counters.inbound.sessions != 1;
   const bool went_on = counters.secure.handshakes >= 1 && counters.inbound.counted > 1000;
   const bool grew = memory > memory_before + 1'000'000;
-  std::printf("hostile packets sent %lld, %.0f a second; refused %llu, passed to the hand-shakes %llu, no room %llu\n",
-              sent, static_cast<double>(sent) / flooded_s, static_cast<unsigned long long>(counters.secure.refused),
-              static_cast<unsigned long long>(counters.secure.handshake_packets),
-              static_cast<unsigned long long>(counters.secure.overflowed));
+  std::printf(
+      "hostile packets sent %lld, %.0f a second; dropped by the kernel %llu, refused %llu, passed to the "
+      "hand-shakes %llu, no room %llu\n",
+      sent, static_cast<double>(sent) / lasted_s[static_cast<std::size_t>(Phase::flooded)],
+      static_cast<unsigned long long>(counters.dropped), static_cast<unsigned long long>(counters.secure.refused),
+      static_cast<unsigned long long>(counters.secure.handshake_packets),
+      static_cast<unsigned long long>(counters.secure.overflowed));
   std::printf("accepted: %s; authentic %llu of %llu passed on; sessions %llu, hand-shakes %llu\n",
               accepted ? "SOME" : "0", static_cast<unsigned long long>(counters.secure.opened),
               static_cast<unsigned long long>(between.passed_to_slave),
               static_cast<unsigned long long>(counters.inbound.sessions),
               static_cast<unsigned long long>(counters.secure.handshakes));
   std::printf("heap: %zu bytes before, %zu after\n", memory_before, memory);
-  print_times("quiet", slave.quiet_us);
-  print_times("flooded", slave.flooded_us);
+  print_times(slave.times_us);
   return accepted || !went_on || grew ? 1 : 0;
 }

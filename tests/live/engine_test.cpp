@@ -2,11 +2,14 @@
 #include <tactus/simulation/contact_metrics.hpp>
 
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "sample_view.hpp"
 #include <gtest/gtest.h>
 #include <tests/allocation_counter.hpp>
+#include <tests/scratch_path.hpp>
 
 namespace tactus::live {
 namespace {
@@ -14,13 +17,12 @@ namespace {
 /// Steps the loops and takes every tick of one.
 std::vector<LoopTick> run(Engine& engine, std::size_t loop, double duration_s) {
   std::vector<LoopTick> all;
-  LoopTick tick;
+  auto ticks = engine.watch();
+  EngineTick tick;
   for (auto i = std::lround(duration_s / engine.tick_s()); i > 0; --i) {
     engine.step();
-    for (std::size_t one = 0; one < loops; ++one) {
-      while (engine.next(one, tick)) {
-        if (one == loop) all.push_back(tick);
-      }
+    while (ticks.next(tick)) {
+      if (tick.ran[loop]) all.push_back(tick.loop[loop]);
     }
   }
   return all;
@@ -83,17 +85,35 @@ TEST(Engine, AViewThatIsStuckLosesTicksAndTheLoopIsAsItWas) {
   const auto stuck = sample_view();
   EXPECT_FALSE(publish(*watched, "/operator/command", R"({"command":"tap"})"));
   EXPECT_FALSE(publish(*stuck, "/operator/command", R"({"command":"tap"})"));
+  std::uint64_t shown = 0;
+  const auto collect = [&shown](LiveView& view) {
+    view.collect([](std::size_t topic) { return topic == 3; },
+                 [&shown](std::size_t topic, std::uint64_t, const Payload&) { shown += topic == 3 ? 1 : 0; });
+  };
+  collect(*stuck);
   run(watched->engine(), 0, 1.0);
   for (int i = 0; i < 5000; ++i) stuck->engine().step();
-  EXPECT_EQ(watched->engine().dropped(0), 0U);
-  EXPECT_EQ(stuck->engine().dropped(0), 5000U - 4096U);
-  LoopTick tick;
-  while (stuck->engine().next(0, tick) || stuck->engine().next(1, tick)) {
-  }
+  collect(*stuck);
+  EXPECT_EQ(stuck->lost_ticks(), 5000U - 4096U);
+  EXPECT_EQ(shown, 4096U);
   const auto one = run(watched->engine(), 0, 0.1);
   const auto other = run(stuck->engine(), 0, 0.1);
   ASSERT_EQ(one.size(), other.size());
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_TRUE(are_equal(one[i].record, other[i].record));
+}
+
+TEST(Engine, ALogThatIsStuckLosesTicksCountsThemAndThePageSeesAllOfThem) {
+  const auto file = scratch_path().concat(".mcap");
+  const auto view = sample_view();
+  auto log = telemetry::Recorder::create(file).value();
+  view->engine().log_to(log);
+  EXPECT_EQ(run(view->engine(), 0, 1.0).size(), 5000U);
+  log.start();
+  EXPECT_FALSE(log.stop());
+  EXPECT_EQ(log.dropped(), (std::vector<std::uint64_t>{5000 - 4096, 5000 - 4096}));
+  EXPECT_EQ(log.log().counts()[0].written, 4096U);
+  EXPECT_EQ(log.log().counts()[1].written, 4096U);
+  std::filesystem::remove(file);
 }
 
 TEST(Engine, ATickAllocatesNothingNotEvenOneThatTakesAChange) {

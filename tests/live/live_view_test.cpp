@@ -49,6 +49,8 @@ using Messages = std::map<std::string, std::vector<std::string>>;
 
 Messages collect(LiveView& view, double duration_s, bool all = true) {
   Messages messages;
+  const auto nobody = [](std::size_t) { return false; };
+  view.collect(nobody, [](std::size_t, std::uint64_t, const Payload&) {});
   for (auto i = std::lround(duration_s / view.engine().tick_s()); i > 0; --i) {
     view.engine().step();
     if (i % 100 != 1) continue;

@@ -94,6 +94,9 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
 
  private:
   void read();
+  /// Whether the kernel waits for more to come before it sends less than a full segment. So a hundred frames are one
+  /// segment, and wake the other side once.
+  void cork(bool corked);
 
   State& server_;
   ClientId id_;
@@ -102,6 +105,7 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
   Conversation conversation_;
   std::uint64_t counted_ = 0;
   bool open_ = false;
+  bool corked_ = false;
   std::chrono::steady_clock::time_point speaks_from_;
 };
 

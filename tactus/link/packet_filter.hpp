@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstddef>
+
+namespace tactus::link {
+
+/// What a socket lets in is decided by the kernel before it wakes or costs this program anything: a packet that cannot
+/// be one of the link by its size and first bytes is dropped where it arrives, and counted by `Socket::dropped`. What
+/// passes is judged as if there were no filter.
+
+/// Lets in records of DTLS 1.2 (RFC 6347, Sec. 4.1): those of a hand-shake, and those with `message_bytes` of content
+/// in epoch 1, the only one that has content where nobody renegotiates. False where the kernel has no such filter.
+bool admit_records(int descriptor, std::size_t message_bytes) noexcept;
+
+}  // namespace tactus::link
