@@ -98,11 +98,14 @@ class Person {
     open_ = size > 0;
     if (open_) {
       typed_.append(text.data(), static_cast<std::size_t>(size));
+      // No word is that long: what is piped in without an end of line shall not fill the memory.
+      if (typed_.size() > longest_line && typed_.find('\n') == std::string::npos) typed_ += '\n';
     } else if (!typed_.empty()) {
       typed_ += '\n';
     }
   }
 
+  static constexpr std::size_t longest_line = 1000;
   control::SiteRole role_;
   std::string typed_;
   bool open_ = true;

@@ -19,7 +19,6 @@ namespace tactus::cli {
 
 namespace {
 
-using Align = report::Column::Align;
 using live::LiveVerdict;
 using live::SessionHistory;
 
@@ -74,7 +73,7 @@ std::vector<Group> groups_of(const SessionHistory& history) {
 }
 
 report::Table settings_table(const SessionHistory& history, const std::vector<live::ParameterDescription>& parameters) {
-  std::vector<report::Column> columns{{"setting", "", Align::left}};
+  std::vector<report::Column> columns{{"setting", "", report::Column::Align::left}};
   for (const auto& parameter : parameters) columns.push_back({parameter.label, std::string(parameter.unit.symbol)});
   report::Table table(columns, "What was set, where there was a contact");
   for (std::size_t setting = 0; setting < history.settings().size(); ++setting) {
@@ -89,8 +88,8 @@ report::Table settings_table(const SessionHistory& history, const std::vector<li
 }
 
 report::Table contacts_table(const std::vector<Group>& groups) {
-  report::Table table({{"setting", "", Align::left},
-                       {"loop", "", Align::left},
+  report::Table table({{"setting", "", report::Column::Align::left},
+                       {"loop", "", report::Column::Align::left},
                        {"contacts"},
                        {"settled"},
                        {"rang"},
@@ -110,7 +109,8 @@ report::Table contacts_table(const std::vector<Group>& groups) {
 }
 
 report::Table session_table(const ServeSession& session, const SessionHistory& history) {
-  report::Table table({{"", "", Align::left}, {"value"}, {"unit", "", Align::left}}, "Session");
+  report::Table table({{"", "", report::Column::Align::left}, {"value"}, {"unit", "", report::Column::Align::left}},
+                      "Session");
   const auto count = [](std::uint64_t value) { return std::to_string(value); };
   table.add_row({"loops ran", report::number(session.duration_s, 4), "s"});
   table.add_row({"contacts", count(history.contacts().size() + history.forgotten()), ""});

@@ -1,4 +1,5 @@
 #include <tactus/cli/site_buttons.hpp>
+#include <tactus/report/text.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -20,8 +21,9 @@ Result<SiteWord> parse_site_word(std::string_view line, control::SiteRole role) 
   }
   return Error{.code = ErrorCode::syntax,
                .parameter = {},
-               .message = "'" + std::string(word) + "' is no word for the " + name_of(role) + ": type " +
-                          (master ? "one of " : "") + known + (master ? "" : "; the rest is typed at the master"),
+               .message = "'" + report::printable(word.substr(0, 40)) + "' is no word for the " + name_of(role) +
+                          ": type " + (master ? "one of " : "") + known +
+                          (master ? "" : "; the rest is typed at the master"),
                .place = "standard input"};
 }
 

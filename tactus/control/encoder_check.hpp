@@ -36,7 +36,7 @@ class EncoderCheck {
   struct Params {
     double fastest_m_per_s = 100.0;
     double frozen_force_N = 20.0;
-    double unbalanced_force_N = 20.0;
+    double unbalanced_force_N = 200.0;
     double frozen_after_s = 0.01;
     static constexpr auto fields() {
       return std::tuple{

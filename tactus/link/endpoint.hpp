@@ -65,7 +65,9 @@ class Endpoint {
   /// Drawn by `make`, never 0: for the site whose packets are sent.
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
   [[nodiscard]] const Socket& socket() const noexcept { return *socket_; }
-  /// Real-time safe: one system call.
+  /// What came so far. Real-time safe.
+  [[nodiscard]] const Inbound& inbound() const noexcept { return inbound_; }
+  /// All that was counted. Not for a tick: asks the kernel.
   [[nodiscard]] Counters counters() const noexcept;
 
   /// Bounds the time that a flood can take of a tick.

@@ -14,7 +14,7 @@ if [ ! -d "$here/node_modules/@foxglove/ws-protocol-examples" ]; then
 fi
 rm -rf "$folder"
 mkdir -p "$folder"
-"$tactus" serve --port 0 --out "$folder/log" --set plant.longest_step_s=2e-5 >"$folder/said" &
+"$tactus" serve --port 0 --out "$folder/session" --set plant.longest_step_s=2e-5 >"$folder/said" &
 server=$!
 recorder=''
 trap 'kill $server $recorder 2>/dev/null' EXIT
@@ -49,4 +49,4 @@ sleep 2
 kill -TERM "$server"
 wait "$server" || exit 1
 wait "$recorder" || exit 1
-node "$here/read_recording.mjs" "$folder/recorded.mcap" "$folder/log/log.mcap"
+node "$here/read_recording.mjs" "$folder/recorded.mcap" "$folder/session/log/log.mcap"
