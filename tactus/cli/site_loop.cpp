@@ -225,11 +225,11 @@ void SiteLoop::log(const runtime::Tick& tick, const SiteLogRecord& record) noexc
 }
 
 void SiteLoop::end_second() noexcept {
-  const link::Inbound& inbound = endpoint_.inbound();
+  const auto counters = endpoint_.counters();
   // The other's session may have begun anew; its counts then start from zero.
-  const bool same = inbound.expected() >= second_expected_ && inbound.arrived() >= second_arrived_;
-  const double expected = static_cast<double>(inbound.expected() - (same ? second_expected_ : 0));
-  const double arrived = static_cast<double>(inbound.arrived() - (same ? second_arrived_ : 0));
+  const bool same = counters.expected >= second_expected_ && counters.arrived >= second_arrived_;
+  const double expected = static_cast<double>(counters.expected - (same ? second_expected_ : 0));
+  const double arrived = static_cast<double>(counters.arrived - (same ? second_arrived_ : 0));
   exchange_->seconds.try_push({.time_s = totals_.duration_s,
                                .state = static_cast<control::SiteState>(last_.state),
                                .cause = static_cast<control::SiteCause>(last_.cause),
@@ -242,8 +242,8 @@ void SiteLoop::end_second() noexcept {
   second_ = {};
   second_ticks_ = 0;
   second_peak_N_ = 0.0;
-  second_expected_ = inbound.expected();
-  second_arrived_ = inbound.arrived();
+  second_expected_ = counters.expected;
+  second_arrived_ = counters.arrived;
 }
 
 void SiteLoop::finish() noexcept {
@@ -255,6 +255,7 @@ SiteTotals SiteLoop::totals() const {
   totals.round_trip_mean_s = arrivals_.mean(arrivals_.round_trip_sum_s);
   totals.age_mean_s = arrivals_.mean(arrivals_.age_sum_s);
   totals.link = endpoint_.counters();
+  totals.dropped_by_kernel = endpoint_.socket().dropped();
   return totals;
 }
 

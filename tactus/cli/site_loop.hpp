@@ -60,6 +60,7 @@ struct SiteTotals {
   std::int64_t stale_applied = 0;  ///< an older packet after a newer one, or one over age: must be 0
   std::int64_t not_finite = 0;     ///< forces or messages that are not finite: must be 0
   link::Endpoint::Counters link;
+  std::uint64_t dropped_by_kernel = 0;  ///< datagrams: none of the link by size and first bytes, or no room
 };
 
 /// The way a person taps on and on: there, press, back, rest, with the mean speed and depth of an experiment's taps.

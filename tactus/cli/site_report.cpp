@@ -82,7 +82,7 @@ report::Table site_table(const SiteRun& run) {
   }
   table.add_row({"packets: repeated", count(totals.link.inbound.repeated), ""});
   table.add_row({"lost on the way here", report::number(100.0 * loss_of(totals), 3), "%"});
-  table.add_row({"dropped by the kernel", count(totals.link.dropped), ""});
+  table.add_row({"dropped by the kernel", count(totals.dropped_by_kernel), ""});
   table.add_row({"not authentic or malformed", count(totals.link.secure.refused + totals.link.malformed), ""});
   table.add_row({"hand-shakes", count(totals.link.secure.handshakes), ""});
   table.add_row({"old packets applied", count(totals.stale_applied), ""});
@@ -203,7 +203,7 @@ std::string json_of(const SiteRun& run) {
                                     {"foreign", link.inbound.foreign},
                                     {"sessions", link.inbound.sessions},
                                     {"malformed", link.malformed},
-                                    {"dropped", link.dropped},
+                                    {"dropped", totals.dropped_by_kernel},
                                     {"authentic", link.secure.opened},
                                     {"refused", link.secure.refused},
                                     {"handshake_packets", link.secure.handshake_packets},

@@ -85,7 +85,6 @@ Endpoint::Counters Endpoint::counters() const noexcept {
           .sent = sent_,
           .unsent = unsent_,
           .malformed = malformed_,
-          .dropped = socket_->dropped(),
           .expected = inbound_.expected(),
           .arrived = inbound_.arrived()};
 }

@@ -43,7 +43,6 @@ class Endpoint {
     std::uint64_t sent = 0;
     std::uint64_t unsent = 0;     ///< not taken by the kernel, or no keys yet
     std::uint64_t malformed = 0;  ///< plain text or authentic, but no datagram
-    std::uint64_t dropped = 0;    ///< by the kernel: no packet of the link by size and first bytes, or no room
     std::uint64_t expected = 0;   ///< of the other's session so far
     std::uint64_t arrived = 0;    ///< of those
   };
@@ -65,9 +64,7 @@ class Endpoint {
   /// Drawn by `make`, never 0: for the site whose packets are sent.
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
   [[nodiscard]] const Socket& socket() const noexcept { return *socket_; }
-  /// What came so far. Real-time safe.
-  [[nodiscard]] const Inbound& inbound() const noexcept { return inbound_; }
-  /// All that was counted. Not for a tick: asks the kernel.
+  /// Real-time safe.
   [[nodiscard]] Counters counters() const noexcept;
 
   /// Bounds the time that a flood can take of a tick.

@@ -137,7 +137,8 @@ int main(int count, char** arguments) {
       "hostile packets sent %lld, %.0f a second; dropped by the kernel %llu, refused %llu, passed to the "
       "hand-shakes %llu, no room %llu\n",
       sent, static_cast<double>(sent) / lasted_s[static_cast<std::size_t>(Phase::flooded)],
-      static_cast<unsigned long long>(counters.dropped), static_cast<unsigned long long>(counters.secure.refused),
+      static_cast<unsigned long long>(between.slave->socket().dropped()),
+      static_cast<unsigned long long>(counters.secure.refused),
       static_cast<unsigned long long>(counters.secure.handshake_packets),
       static_cast<unsigned long long>(counters.secure.overflowed));
   std::printf("accepted: %s; authentic %llu of %llu passed on; sessions %llu, hand-shakes %llu\n",
