@@ -204,6 +204,7 @@ simulation::Outcome serve_outcome(const ServeSession& session, const SessionHist
     const report::Table contacts = contacts_table(groups_of(history));
     const report::Table settings = settings_table(history, parameters);
     figures.push_back(contacts_figure(history));
+    page.paragraph("The left loop had the method, the right one what it was compared with, under the same hand.");
     page.table(contacts);
     page.figure(figures.back());
     page.table(settings);

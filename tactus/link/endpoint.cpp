@@ -1,5 +1,4 @@
 #include <tactus/link/endpoint.hpp>
-#include <tactus/link/packet_filter.hpp>
 
 #include <utility>
 
@@ -33,8 +32,6 @@ Result<Endpoint> Endpoint::make(const Settings& settings) {
     auto secure = SecureChannel::make(role, *settings.key, *endpoint.socket_, datagram_bytes);
     if (!secure) return secure.error();
     endpoint.secure_ = *std::move(secure);
-    // Without a filter more is judged here, that is all. Plain text stays on the loopback and needs none.
-    static_cast<void>(admit_records(endpoint.socket_->descriptor(), datagram_bytes));
   }
   return endpoint;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace tactus::link {
 
@@ -9,7 +10,8 @@ namespace tactus::link {
 /// passes is judged as if there were no filter.
 
 /// Lets in records of DTLS 1.2 (RFC 6347, Sec. 4.1): those of a hand-shake, and those with `message_bytes` of content
-/// in epoch 1, the only one that has content where nobody renegotiates. False where the kernel has no such filter.
-bool admit_records(int descriptor, std::size_t message_bytes) noexcept;
+/// in epoch 1, the only one that has content where nobody renegotiates, with `least` or a higher number. In place of
+/// what the socket let in before. False where the kernel has no such filter.
+bool admit_records(int descriptor, std::size_t message_bytes, std::uint64_t least) noexcept;
 
 }  // namespace tactus::link

@@ -1,4 +1,5 @@
 #include <tactus/link/dtls_wire.hpp>
+#include <tactus/link/packet_filter.hpp>
 #include <tactus/link/secure_channel.hpp>
 #include <tactus/telemetry/ring.hpp>
 
@@ -33,6 +34,8 @@ constexpr std::size_t record_header_bytes = 13;
 constexpr std::size_t number_at = 5, number_end = 11;
 /// OpenSSL knows of so many numbers up to the newest which it has seen, and refuses all before.
 constexpr std::uint64_t window = 64;
+/// How often the kernel is told from which number on records are let in.
+constexpr std::int64_t filter_every_ns = 50'000'000;
 constexpr std::byte change_cipher_spec{20}, alert{21}, handshake{22}, application_data{23};
 
 template <class T, void (*Free)(T*)>
@@ -49,8 +52,6 @@ struct Connection {
   DtlsWire wire;
   Ssl ssl;
   std::int64_t begun_ns = 0;
-  std::uint64_t newest = 0;  ///< number of an authentic record
-
   void feed(std::span<const std::byte> packet) noexcept { wire.packet = packet; }
 };
 
@@ -107,6 +108,7 @@ class SecureChannel::Implementation {
   void advance();
   void publish();
   void drop_pending();
+  void filter(std::int64_t now_ns);
   bool draw_cookie() { return RAND_bytes(cookie_.data(), cookie_bytes) == 1; }
 
   static Implementation& of(const SSL* ssl) {
@@ -130,12 +132,15 @@ class SecureChannel::Implementation {
   Counters counters_;                    ///< of the servo's thread
   std::unique_ptr<Connection> pending_;  ///< of the other one
   bool shaken_ = false;                  ///< the pending one has its keys; the server waits for proof of the other's
+  std::uint64_t admitted_ = 0;           ///< the least number that the kernel lets in
+  std::int64_t filtered_ns_ = 0;         ///< when it was told
 
   telemetry::Ring<HandshakePacket, 16> handshake_packets_;
   std::atomic<Connection*> ready_{nullptr};    ///< with new keys, for the servo to pick up
   std::atomic<Connection*> retired_{nullptr};  ///< with old keys, for the other thread to free
   std::atomic<bool> wants_proof_{false};       ///< an open hand-shake may be what a message is sealed for
   std::atomic<std::int64_t> heard_ns_{0};      ///< when the last authentic message came
+  std::atomic<std::uint64_t> newest_{0};       ///< number of an authentic record of the current connection
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
@@ -193,6 +198,7 @@ Check SecureChannel::Implementation::start() {
                             ": install OpenSSL 3 with its default provider",
                  .place = {}};
   }
+  static_cast<void>(admit_records(socket_->descriptor(), message_bytes_, 0));
   thread_ = std::thread([this] { shake_hands(); });
   return std::nullopt;
 }
@@ -209,12 +215,13 @@ bool SecureChannel::Implementation::open(const Packet& packet, std::span<std::by
   if (record && type == application_data && packet.size == message_bytes_ + overhead_bytes) {
     const std::uint64_t number = number_of(packet);
     // What OpenSSL would refuse for its number costs less when it is refused here.
-    if (current_ != nullptr && number + window > current_->newest) {
+    const std::uint64_t newest = newest_.load(std::memory_order_relaxed);
+    if (current_ != nullptr && number + window > newest) {
       current_->feed(packet.bytes());
       const int size = SSL_read(current_->ssl.get(), message.data(), static_cast<int>(message.size()));
       if (size == static_cast<int>(message_bytes_)) {
         ++counters_.opened;
-        current_->newest = std::max(current_->newest, number);
+        newest_.store(std::max(newest, number), std::memory_order_relaxed);
         heard_ns_.store(monotonic_ns(), std::memory_order_relaxed);
         return true;
       }
@@ -239,6 +246,7 @@ bool SecureChannel::Implementation::send(std::span<const std::byte> message) noe
 
 void SecureChannel::Implementation::adopt() noexcept {
   if (ready_.load(std::memory_order_relaxed) == nullptr || retired_.load(std::memory_order_acquire) != nullptr) return;
+  newest_.store(0, std::memory_order_relaxed);  // before it is seen that nothing is ready: see `filter`
   Connection* fresh = ready_.exchange(nullptr, std::memory_order_acq_rel);
   retired_.store(std::exchange(current_, fresh), std::memory_order_release);
   ++counters_.handshakes;
@@ -275,6 +283,7 @@ void SecureChannel::Implementation::shake_hands() {
         }
       }
     }
+    filter(now_ns);
     ERR_clear_error();
     std::this_thread::sleep_for(pending_ ? 1ms : 5ms);
   }
@@ -350,6 +359,18 @@ void SecureChannel::Implementation::drop_pending() {
   shaken_ = false;
   pending_.reset();
   draw_cookie();
+}
+
+/// What OpenSSL would refuse for its number does not get to the servo's thread. While other keys may come, whose
+/// numbers begin anew, all numbers do. Without a filter more is judged there, that is all.
+void SecureChannel::Implementation::filter(std::int64_t now_ns) {
+  const bool settled = !pending_ && ready_.load(std::memory_order_acquire) == nullptr;
+  const std::uint64_t newest = settled ? newest_.load(std::memory_order_relaxed) : 0;
+  const std::uint64_t least = newest > window ? newest - window : 0;
+  if (least == admitted_ || (least > 0 && now_ns - filtered_ns_ < filter_every_ns)) return;
+  static_cast<void>(admit_records(socket_->descriptor(), message_bytes_, least));
+  admitted_ = least;
+  filtered_ns_ = now_ns;
 }
 
 SecureChannel::SecureChannel(std::unique_ptr<Implementation> implementation)

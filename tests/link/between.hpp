@@ -55,6 +55,7 @@ class Between {
     return slave->counters().inbound.counted >= 50;
   }
   void attack(int kind = -1) { slave_side_->send(attacker.next(kind)); }
+  void send_to_slave(std::span<const std::byte> packet) { slave_side_->send(packet); }
   /// The same packets to a port that has nothing to do with the link.
   void attack_elsewhere() { to_elsewhere_->send(attacker.next()); }
 

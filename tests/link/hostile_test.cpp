@@ -1,8 +1,11 @@
 #include <tactus/link/endpoint.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -35,6 +38,31 @@ TEST_F(Between, OfAHundredThousandHostilePacketsNoneIsAcceptedAndTheLinkGoesOn) 
   EXPECT_GT(slave->counters().inbound.counted, counted + 50);
   // A busy machine may make the master begin another; the attacker completes none.
   EXPECT_LE(slave->counters().secure.handshakes, master->counters().secure.handshakes);
+}
+
+TEST_F(Between, WhatWasRecordedLongAgoIsDroppedByTheKernel) {
+  ASSERT_TRUE(meet());
+  const auto heard = attacker.next(0);
+  const std::vector<std::byte> recorded(heard.begin(), heard.end());
+  const std::uint64_t before = slave->socket().dropped();
+  const auto dropped_now = [&] {
+    const std::uint64_t counted = slave->counters().secure.refused + slave->counters().secure.handshake_packets;
+    for (int i = 0; i < 20; ++i) send_to_slave(recorded);
+    for (int i = 0; i < 5; ++i) slave->receive(monotonic_ns());
+    return slave->counters().secure.refused + slave->counters().secure.handshake_packets == counted;
+  };
+  // As soon as the link has gone on by more than a window and the kernel has been told so.
+  bool dropped = false;
+  for (int i = 0; i < 20'000 && !dropped; ++i) {
+    tick_both();
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    if (i % 500 == 499) dropped = dropped_now();
+  }
+  EXPECT_TRUE(dropped);
+  EXPECT_GE(slave->socket().dropped(), before + 20);
+  const auto counted = slave->counters().inbound.counted;
+  for (int i = 0; i < 50; ++i) tick_both();
+  EXPECT_GT(slave->counters().inbound.counted, counted + 20) << "the link goes on";
 }
 
 TEST_F(Between, HostileRecordsOfTheRightTypeCostNoMemory) {
