@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
+#include <system_error>
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -37,7 +37,7 @@ Error segment_error(ErrorCode code, const char* option, std::string message) {
 
 Error system_error(const char* option, const std::string& name, const char* what) {
   return segment_error(ErrorCode::failed, option,
-                       "plant '" + name + "': " + what + " failed (" + std::strerror(errno) +
+                       "plant '" + name + "': " + what + " failed (" + std::system_category().message(errno) +
                            "): look at /dev/shm, its free space and who may write there");
 }
 
