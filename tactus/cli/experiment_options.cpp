@@ -4,14 +4,25 @@
 
 namespace tactus::cli {
 
+void add_set_option(CLI::App& verb, std::vector<std::string>& set) {
+  verb.add_option("--set", set, "Override one value: key=value")->type_name("KEY=VALUE")->allow_extra_args(false);
+}
+
+Result<configuration::Document> with_set(Result<configuration::Document> document,
+                                         const std::vector<std::string>& set) {
+  if (!document) return document;
+  for (const std::string& assignment : set) {
+    if (auto error = document->set(assignment)) return *std::move(error);
+  }
+  return document;
+}
+
 void add_experiment_options(CLI::App& verb, ExperimentOptions& options) {
   verb.add_option("EXPERIMENT", options.file, "Experiment file (TOML)")->required();
   verb.add_option("--with", options.with, "File whose keys take the place of the experiment's, as an identified model")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  verb.add_option("--set", options.set, "Override one value: key=value")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_set_option(verb, options.set);
 }
 
 Result<configuration::Document> load_experiment(const ExperimentOptions& options) {
@@ -22,10 +33,7 @@ Result<configuration::Document> load_experiment(const ExperimentOptions& options
     if (!other) return other.error();
     if (auto error = document->merge(*other)) return *std::move(error);
   }
-  for (const std::string& assignment : options.set) {
-    if (auto error = document->set(assignment)) return *std::move(error);
-  }
-  return document;
+  return with_set(std::move(document), options.set);
 }
 
 }  // namespace tactus::cli

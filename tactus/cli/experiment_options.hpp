@@ -19,6 +19,11 @@ struct ExperimentOptions {
   std::vector<std::string> set;
 };
 
+/// Adds `--set` to a verb.
+void add_set_option(CLI::App& verb, std::vector<std::string>& set);
+/// The document with these values, each `key=value`, on top. Errors: those of `document` and of `Document::set`.
+Result<configuration::Document> with_set(Result<configuration::Document> document, const std::vector<std::string>& set);
+
 /// Adds it to a verb: `EXPERIMENT`, `--with`, `--set`.
 void add_experiment_options(CLI::App& verb, ExperimentOptions& options);
 

@@ -1,3 +1,4 @@
+#include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/servo_options.hpp>
@@ -31,12 +32,10 @@ struct FaultsOptions {
 };
 
 Check run(const FaultsOptions& options, const std::string& command) {
-  auto document = options.file ? configuration::Document::load(*options.file)
-                               : configuration::Document::parse("[task]\nkind = \"faults\"\n", "built in");
+  auto document = with_set(options.file ? configuration::Document::load(*options.file)
+                                        : configuration::Document::parse("[task]\nkind = \"faults\"\n", "built in"),
+                           options.set);
   if (!document) return document.error();
-  for (const std::string& assignment : options.set) {
-    if (auto error = document->set(assignment)) return error;
-  }
   if (options.seeds) {
     if (auto error = document->set("task.seeds=" + std::to_string(*options.seeds))) return error;
   }
@@ -64,9 +63,7 @@ void add_faults(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<FaultsOptions>();
   CLI::App* faults = app.add_subcommand("faults", "Faults on purpose: how many are survived, and how");
   faults->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind faults; else the built-in one");
-  faults->add_option("--set", options->set, "Override one value: key=value")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_set_option(*faults, options->set);
   faults->add_option("--seeds", options->seeds, "Runs of each fault");
   faults->add_option("--out", options->out, "Folder for report.html, results.json and the figure")->type_name("DIR");
   faults->add_flag("--json", options->json, "Print one JSON document and nothing else");

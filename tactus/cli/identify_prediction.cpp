@@ -1,3 +1,4 @@
+#include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/configuration/document.hpp>
@@ -108,11 +109,8 @@ Check identify(const PredictionOptions& options, const std::string& command) {
   if (options.out) {
     if (auto error = check_writable(*options.out)) return error;
   }
-  auto document = configuration::Document::load(options.experiment);
+  auto document = with_set(configuration::Document::load(options.experiment), options.set);
   if (!document) return document.error();
-  for (const std::string& assignment : options.set) {
-    if (auto error = document->set(assignment)) return error;
-  }
   const auto params = document->read<simulation::InverseModelChirpParams>();
   if (!params) return params.error();
   if (Check error = simulation::check(*params)) return document->locate(*std::move(error));
@@ -149,9 +147,7 @@ void add_identify_prediction(CLI::App& identify_verb, const std::string& name, c
   CLI::App* verb =
       identify_verb.add_subcommand("prediction", "Time constant of prediction blocks: closed form, limit, from data");
   verb->add_option("EXPERIMENT", options->experiment, "inverse-model-chirp file: slave and estimator")->required();
-  verb->add_option("--set", options->set, "Override one value: key=value")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_set_option(*verb, options->set);
   verb->add_option("--blocks", options->blocks, "Blocks in series, 1 to 4");
   verb->add_option("--band", options->band_Hz, "Where the simulated chirp ends, in Hz")->check(CLI::Range(0.1, 100.0));
   auto* recording =

@@ -1,3 +1,4 @@
+#include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/passages.hpp>
 #include <tactus/cli/standard_output.hpp>
@@ -147,11 +148,8 @@ void print(const Way::Counters& to_slave, const Way::Counters& to_master, bool j
 }
 
 Check run(const RelayOptions& options) {
-  auto document = configuration::Document::load(options.file);
+  auto document = with_set(configuration::Document::load(options.file), options.set);
   if (!document) return document.error();
-  for (const std::string& assignment : options.set) {
-    if (auto error = document->set(assignment)) return error;
-  }
   const auto params = document->read<simulation::TappingParams>();
   if (!params) return params.error();
   auto master = socket_between(options.for_master, options.master);
@@ -185,9 +183,7 @@ void add_relay(CLI::App& app, int& status) {
   auto options = std::make_shared<RelayOptions>();
   CLI::App* verb = app.add_subcommand("relay", "Stand between two sites and lose, delay, reorder and double packets");
   verb->add_option("EXPERIMENT", options->file, "Experiment file whose section [channel] says what to do")->required();
-  verb->add_option("--set", options->set, "Override one value: key=value")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_set_option(*verb, options->set);
   const auto address = [&](const char* name, std::string& value, const char* help) {
     verb->add_option(name, value, help)->type_name("HOST:PORT")->required();
   };

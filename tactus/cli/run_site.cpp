@@ -89,10 +89,11 @@ class Person {
   }
 
  private:
-  /// A standard input that has ended is left alone, after its last line.
+  /// No more than a line ahead of what was passed on. A standard input that has ended is left alone, after its last
+  /// line.
   void read_what_waits() {
     pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-    if (!open_ || poll(&input, 1, 0) <= 0) return;
+    if (!open_ || typed_.find('\n') != std::string::npos || poll(&input, 1, 0) <= 0) return;
     std::array<char, 256> text{};
     const ssize_t size = read(STDIN_FILENO, text.data(), text.size());
     open_ = size > 0;

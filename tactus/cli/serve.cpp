@@ -1,3 +1,4 @@
+#include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/run_log.hpp>
@@ -51,13 +52,9 @@ std::filesystem::path usual_page() {
 }
 
 Result<configuration::Document> experiment_of(const ServeOptions& options) {
-  auto document = options.experiment.empty() ? configuration::Document::parse(default_experiment, "tapping.toml")
-                                             : configuration::Document::load(options.experiment);
-  if (!document) return document.error();
-  for (const std::string& assignment : options.set) {
-    if (auto error = document->set(assignment)) return *std::move(error);
-  }
-  return document;
+  return with_set(options.experiment.empty() ? configuration::Document::parse(default_experiment, "tapping.toml")
+                                             : configuration::Document::load(options.experiment),
+                  options.set);
 }
 
 Check serve(const ServeOptions& options, const std::string& command) {
@@ -144,9 +141,7 @@ void add_serve(CLI::App& app, const std::string& command, int& status) {
   CLI::App* verb = app.add_subcommand("serve", "Serve the live page: be the operator in a browser");
   verb->add_option("EXPERIMENT", options->experiment,
                    "Experiment file of the kind tapping; its own, where none is named");
-  verb->add_option("--set", options->set, "Override one value: key=value")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_set_option(*verb, options->set);
   verb->add_option("--port", options->server.port, "Port to listen on; 0 takes any that is free")
       ->capture_default_str();
   verb->add_option("--listen", options->server.address, "Address of this machine to listen on")

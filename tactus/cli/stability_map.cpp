@@ -1,3 +1,4 @@
+#include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/stability.hpp>
 #include <tactus/cli/standard_output.hpp>
@@ -87,11 +88,8 @@ Check present(const MapOptions& options, const stability::MapResult& map, const 
 }
 
 Check run(const MapOptions& options, const std::string& command) {
-  auto document = configuration::Document::load(options.file);
+  auto document = with_set(configuration::Document::load(options.file), options.set);
   if (!document) return document.error();
-  for (const std::string& assignment : options.set) {
-    if (auto error = document->set(assignment)) return error;
-  }
   const auto request = make_request(options, *document);
   if (!request) return request.error();
   const auto start = std::chrono::steady_clock::now();
@@ -115,9 +113,7 @@ void add_stability_map(CLI::App& stability, const std::string& name, const std::
   auto options = std::make_shared<MapOptions>();
   CLI::App* verb = stability.add_subcommand("map", "Run a tap at every point of a grid and draw where it is stable");
   verb->add_option("EXPERIMENT", options->file, "File of kind stability-map (TOML)")->required();
-  verb->add_option("--set", options->set, "Override one value: key=value")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_set_option(*verb, options->set);
   verb->add_option("--vary", options->vary, "An axis: key=from:to:count, key=from:to:count[log] or key=a,b,c")
       ->type_name("AXIS")
       ->required()

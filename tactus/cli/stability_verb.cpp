@@ -1,3 +1,4 @@
+#include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/stability_verb.hpp>
@@ -24,11 +25,8 @@ struct StabilityOptions {
 };
 
 Check run(const StabilityOptions& options, const StabilityReport& report, const std::string& command) {
-  auto document = configuration::Document::load(options.file);
+  auto document = with_set(configuration::Document::load(options.file), options.set);
   if (!document) return document.error();
-  for (const std::string& assignment : options.set) {
-    if (auto error = document->set(assignment)) return error;
-  }
   if (options.out) {
     if (auto error = check_writable(*options.out)) return error;
   }
@@ -52,9 +50,7 @@ void add_stability_verb(CLI::App& stability, const std::string& verb, const std:
   auto options = std::make_shared<StabilityOptions>();
   CLI::App* added = stability.add_subcommand(verb, summary);
   added->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind tapping")->required();
-  added->add_option("--set", options->set, "Override one value: key=value")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  add_set_option(*added, options->set);
   added
       ->add_option("--friction-speed", options->report.linearisation.friction_speed_m_per_s,
                    "Velocity amplitude of friction's describing function, in m/s; 0 leaves friction out")

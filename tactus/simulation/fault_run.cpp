@@ -1,6 +1,7 @@
 #include <tactus/simulation/bad_number.hpp>
 #include <tactus/simulation/fault_run.hpp>
 #include <tactus/simulation/fault_witness.hpp>
+#include <tactus/simulation/internal/fault_schedule.hpp>
 #include <tactus/simulation/packet_relay.hpp>
 
 #include <algorithm>
@@ -15,31 +16,7 @@ namespace tactus::simulation {
 namespace {
 
 using control::SiteState;
-
-/// When the person at the sites presses what, before the fault.
-constexpr double align_s = 0.05, arm_s = 0.10, press_s = 0.15, button_s = 0.01;
-/// After the fault: what is looked at first, then cleared, aligned, armed, pressed.
-constexpr double look_after_s = 0.25, realign_after_s = 0.29, rearm_after_s = 0.34, repress_after_s = 0.40;
-constexpr double settled_after_s = 0.75, end_after_s = 0.9;
-constexpr double resume_watch_s = 0.02;
-
-/// The state that a bad number is to meet, and what brings a site there.
-double bad_number_at_s(SiteState state) {
-  switch (state) {
-    case SiteState::configure:
-      return 0.5 * align_s;
-    case SiteState::align:
-      return 0.5 * (align_s + arm_s);
-    case SiteState::armed:
-      return 0.5 * (arm_s + press_s);
-    case SiteState::active:
-    case SiteState::hold:
-    case SiteState::fault:
-      break;
-  }
-  return 0.9;
-}
-constexpr double prelude_s = 0.6, prelude_length_s = 0.15;
+using namespace fault_schedule;
 
 }  // namespace
 
