@@ -1,4 +1,4 @@
-#include <tactus/control/site_supervisor.hpp>
+#include <tactus/control/protective_limits.hpp>
 #include <tactus/runtime/local_teleoperator.hpp>
 
 #include <algorithm>
@@ -32,8 +32,8 @@ Result<std::unique_ptr<GuardedDevice>> wall_before(Device& device, const control
   if (auto error = check_limits(device)) {
     return under(role == control::SiteRole::master ? "master" : "slave", *std::move(error));
   }
-  static_cast<void>(control);
   if (device.simulated()) return std::unique_ptr<GuardedDevice>();
+  if (auto error = control::refuse_default_limits(control, role)) return under("control", *std::move(error));
   return std::make_unique<GuardedDevice>(device);
 }
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <filesystem>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 #include "tests/scratch_path.hpp"
@@ -143,23 +146,86 @@ TEST(RealTimeTap, OnAServoThreadItRunsToItsEndAndIsLoggedToTheLastTick) {
   }
 }
 
-/// A simulation that says what it is told to say.
+/// A device that says what it is told to say.
 class ScriptedDevice final : public Device {
  public:
   [[nodiscard]] DeviceLimits limits() const override { return limits_; }
-  [[nodiscard]] bool simulated() const noexcept override { return true; }
+  [[nodiscard]] bool simulated() const noexcept override { return simulated_; }
   DeviceReading read(const Tick&) noexcept override { return reading; }
   void write(const DeviceCommand& given) noexcept override { command = given; }
   [[nodiscard]] DeviceHealth health() const noexcept override { return state; }
 
-  explicit ScriptedDevice(const DeviceLimits& limits) : limits_(limits) {}
+  explicit ScriptedDevice(const DeviceLimits& limits, bool simulated = true) : limits_(limits), simulated_(simulated) {}
   DeviceReading reading;
   DeviceCommand command;
   DeviceHealth state = DeviceHealth::good;
 
  private:
   DeviceLimits limits_;
+  bool simulated_;
 };
+
+/// Every number that is no time, half of its default.
+template <Described T>
+void choose(T& params) {
+  for_each_field<T>([&](const auto& f) {
+    using Value = typename std::remove_cvref_t<decltype(f)>::value_type;
+    if constexpr (Described<Value>) {
+      choose(params.*f.member);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      if (std::string(f.unit.suffix) != units::second.suffix) params.*f.member *= 0.5;
+    }
+  });
+}
+
+TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedIsRefusedUntilSomebodyChoseItsLimits) {
+  constexpr DeviceLimits limits{.force_N = 2.0, .rate_N_per_s = 1000.0, .velocity_m_per_s = 2.0, .position_m = 0.05};
+  DeviceLimits no_rate = limits;
+  no_rate.rate_N_per_s = 0.0;
+  ScriptedDevice simulation({.force_N = 5.0});
+  ScriptedDevice real(limits, false);
+  ScriptedDevice unlimited(no_rate, false);
+  const auto refused_for = [&](const control::ControlParams& control, Device& master, Device& slave) {
+    const auto made = LocalTeleoperator::make(control, {}, Seconds{200e-6}, 0.0, master, slave);
+    return made ? std::string("nothing") : made.error().parameter;
+  };
+  EXPECT_EQ(refused_for({}, simulation, simulation), "nothing");
+  EXPECT_EQ(refused_for({}, real, simulation), "control.gate.force_limit_N");
+  EXPECT_EQ(refused_for({}, simulation, real), "control.slave_gate.force_limit_N");
+  control::ControlParams chosen;
+  choose(chosen.gate);
+  choose(chosen.slave_gate);
+  chosen.supervision.force_sensor.residual_limit_N = 0.5;
+  chosen.supervision.probe.force_N = 0.2;
+  EXPECT_EQ(refused_for(chosen, real, simulation), "nothing");
+  EXPECT_EQ(refused_for(chosen, simulation, real), "nothing");
+  EXPECT_EQ(refused_for(chosen, unlimited, simulation), "master.rate_N_per_s");
+}
+
+TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedStandsBehindItsWall) {
+  ScriptedDevice master({.force_N = 5.0});
+  ScriptedDevice slave({.force_N = 2.0, .rate_N_per_s = 1000.0, .velocity_m_per_s = 2.0, .position_m = 0.05}, false);
+  control::ControlParams chosen;
+  choose(chosen.slave_gate);
+  chosen.supervision.force_sensor.residual_limit_N = 0.5;
+  chosen.supervision.probe.force_N = 0.2;
+  auto loop = LocalTeleoperator::make(chosen, {}, Seconds{200e-6}, 0.0, master, slave);
+  ASSERT_TRUE(loop) << describe(loop.error());
+  slave.reading.position_m = -0.01;
+  double before_N = 0.0;
+  for (std::int64_t number = 0; number < 50; ++number) {
+    loop->step(tick(number));
+    EXPECT_LE(std::fabs(slave.command.force_N - before_N), 0.2 * (1.0 + 1e-9));
+    before_N = slave.command.force_N;
+  }
+  EXPECT_GT(slave.command.force_N, 0.1);
+  EXPECT_TRUE(slave.command.enabled);
+  slave.reading.position_m = -0.051;
+  for (std::int64_t number = 50; number < 100; ++number) loop->step(tick(number));
+  EXPECT_EQ(slave.command.force_N, 0.0);
+  EXPECT_FALSE(slave.command.enabled);
+  EXPECT_FALSE(loop->healthy()) << "its site let go too";
+}
 
 TEST(LocalTeleoperator, TheGateIsTightenedToWhatTheDeviceCanDo) {
   ScriptedDevice master({.force_N = 0.25});
