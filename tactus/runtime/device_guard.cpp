@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <string>
-#include <utility>
+#include <tuple>
 
 namespace tactus::runtime {
 

@@ -2,12 +2,14 @@
 #include <tactus/runtime/shared_device.hpp>
 #include <tactus/signal/random.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
-#include <string>
+#include <tuple>
+#include <vector>
 
 #include <gtest/gtest.h>
 
