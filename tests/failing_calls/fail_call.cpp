@@ -147,7 +147,7 @@ bool fails(const char* function) noexcept {
       std::snprintf(site.data(), site.size(), "%lx:%lx", walk.site.inner, walk.site.outer);
     } else {
       Dl_info where{};
-      if (dladdr(reinterpret_cast<void*>(walk.site.inner), &where) == 0) where = {.dli_fname = "?"};
+      if (dladdr(reinterpret_cast<void*>(walk.site.inner), &where) == 0) where.dli_fname = "?";
       const char* name = std::strrchr(where.dli_fname, '/');
       std::snprintf(site.data(), site.size(), "%s+%lx", name == nullptr ? where.dli_fname : name + 1,
                     walk.site.inner - reinterpret_cast<std::uintptr_t>(where.dli_fbase));
