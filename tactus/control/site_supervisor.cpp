@@ -59,6 +59,9 @@ SiteState SiteSupervisor::step(const Input& input) noexcept {
   }
   if (input.fault && state_ != SiteState::fault) {
     go(SiteState::fault, SiteCause::gate, input);
+  } else if (input.requests.leave) {
+    const bool works = state_ != SiteState::configure && state_ != SiteState::fault;
+    if (works) go(SiteState::configure, SiteCause::dead_man, input);
   } else if (state_ == SiteState::configure) {
     if (align) state_ = SiteState::align;
   } else if (state_ == SiteState::align || state_ == SiteState::hold) {

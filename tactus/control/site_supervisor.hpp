@@ -50,6 +50,7 @@ struct SiteRequests {
   bool clear = false;     ///< leave `fault`, to `align`
   bool dead_man = false;  ///< pressed; at the master
   bool clutch = false;    ///< pressed: the hand moves and the slave does not; at the master
+  bool leave = false;     ///< pressed: the site is about to end, in `configure` and without force
 };
 
 /// The state of one site, and why.
@@ -57,7 +58,7 @@ struct SiteRequests {
 ///     configure –align→ align –arm→ armed –dead-man, and the other site armed→ active
 ///     active –dead-man let go→ armed      armed, active –silence, stall, other site, sensor, energy→ hold –arm→ armed
 ///     armed –no answer→ hold
-///     any –safety gate→ fault –clear→ align
+///     any –safety gate→ fault –clear→ align      any but fault –about to end→ configure
 ///
 /// Arming is a number that the master counts up and every packet carries; a restarted master goes on from the number
 /// that it hears the slave has followed. The slave is armed when it sees the number rise, repeats it, and the master
