@@ -106,7 +106,7 @@ TEST_F(Replaying, AStepThatIsMissingIsSaid) {
 /// Three taps in real time, of which the end is asked for after so many.
 RealTimeOutcome ran_until(std::int64_t after) {
   const auto document = configuration::Document::parse(
-      "task = { kind = \"tapping\", taps = 3, observation_s = 0.05 }\nservo.rate_Hz = 1000.0\n", "test");
+      "task = { kind = \"tapping\", taps = 3, observation_s = 0.15 }\nservo.rate_Hz = 1000.0\n", "test");
   EndRequest end;
   if (after == 0) end.ask();
   auto ran = run_in_real_time({.document = document.value(), .variations = {}, .name = "taps", .command = {}},
