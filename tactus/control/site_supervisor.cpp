@@ -63,6 +63,9 @@ SiteState SiteSupervisor::step(const Input& input) noexcept {
   const bool emergency_stop = input.requests.emergency_stop;
   if ((input.fault || emergency_stop) && state_ != SiteState::fault) {
     go(SiteState::fault, emergency_stop ? SiteCause::emergency_stop : SiteCause::gate, input);
+  } else if (input.requests.leave) {
+    const bool works = state_ != SiteState::configure && state_ != SiteState::fault;
+    if (works) go(SiteState::configure, SiteCause::dead_man, input);
   } else if (state_ == SiteState::configure) {
     if (align) state_ = SiteState::align;
   } else if (state_ == SiteState::align || state_ == SiteState::hold) {

@@ -63,6 +63,7 @@ struct SiteRequests {
   bool dead_man = false;        ///< pressed; at the master
   bool clutch = false;          ///< pressed: the hand moves and the slave does not; at the master
   bool emergency_stop = false;  ///< pressed: into `fault`, and no way out of it
+  bool leave = false;           ///< pressed: the site is about to end, in `configure` and without force
 };
 
 /// The state of one site, and why.
@@ -72,6 +73,7 @@ struct SiteRequests {
 ///     armed, active –silence, stall, overload, other site, sensor, energy→ hold –arm→ armed
 ///     armed –no answer, sign probe not passed→ hold
 ///     any –safety gate, emergency stop→ fault –clear→ align
+///     any but fault –about to end→ configure
 ///
 /// Arming is a number that the master counts up and every packet carries; a restarted master goes on from the number
 /// that it hears the slave has followed. The slave is armed when it sees the number rise, repeats it, and the master
