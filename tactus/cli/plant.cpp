@@ -1,9 +1,10 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/servo_options.hpp>
-#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/report/table.hpp>
+#include <tactus/report/text.hpp>
 #include <tactus/runtime/plant_server.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 
@@ -15,6 +16,7 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace tactus::cli {
 
@@ -92,28 +94,31 @@ Check own_plant(const PlantOptions& options) {
   runtime::ServoThreadParams keep = options.servo;
   keep.rate_Hz = params->servo.rate_Hz;
 
-  const Interruption interruption;
+  runtime::EndRequest end;
+  const auto interruption = Interruption::start(end);
+  if (!interruption) return interruption.error();
+  LineWriter output(STDOUT_FILENO), errors(STDERR_FILENO);
   const auto step = [&server](const runtime::Tick& tick) noexcept {
     server.step(tick);
     return true;
   };
   const auto servo = runtime::ServoThread<decltype(step)>::start(keep, step);
   if (!servo) return servo.error();
-  std::ostream& lines = options.json ? std::cerr : std::cout;
-  lines << "Plant '" << options.name << "': tactus run " << options.experiment.file << " --realtime --plant "
-        << options.name << std::endl;
+  LineWriter& lines = options.json ? errors : output;
+  lines.say("Plant '" + options.name + "': tactus run " + report::printable(options.experiment.file) +
+            " --realtime --plant " + options.name + "\n");
 
   using std::chrono::steady_clock;
   const auto start = steady_clock::now();
   PlantStatus before;
   std::int64_t second = 1;
-  while (!interruption.asked()) {
+  while (!end.asked()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     server.serve();
     const std::chrono::duration<double> elapsed = steady_clock::now() - start;
     if (elapsed.count() >= static_cast<double>(second)) {
       const PlantStatus now = server.status();
-      lines << line_of(now, before, second) << std::flush;
+      lines.say(line_of(now, before, second));
       before = now;
       second = static_cast<std::int64_t>(elapsed.count()) + 1;
     }
@@ -122,10 +127,9 @@ Check own_plant(const PlantOptions& options) {
   }
   (*servo)->stop();
   const runtime::ServoReport& report = (*servo)->finish();
-  std::cout << (options.json ? json_of(options.name, server.status(), report)
-                             : "\n" + text_of(options.name, server.status(), report));
-  if (auto error = flush_standard_output()) return error;
-  if (!server.status().cut) return std::nullopt;
+  Check told = output.finish(options.json ? json_of(options.name, server.status(), report)
+                                          : "\n" + text_of(options.name, server.status(), report));
+  if (told || !server.status().cut) return told;
   return Error{.code = ErrorCode::failed,
                .parameter = {},
                .message = "plant '" + options.name +

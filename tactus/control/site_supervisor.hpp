@@ -26,7 +26,8 @@ enum class SiteCause {
   probe_reversed,
   probe_still,
   probe_astray,
-  emergency_stop
+  emergency_stop,
+  disagreement
 };
 constexpr auto enumerators(SiteCause) {
   return std::array{Enumerator{SiteCause::none, "none"},
@@ -44,7 +45,8 @@ constexpr auto enumerators(SiteCause) {
                     Enumerator{SiteCause::probe_reversed, "probe-reversed"},
                     Enumerator{SiteCause::probe_still, "probe-still"},
                     Enumerator{SiteCause::probe_astray, "probe-astray"},
-                    Enumerator{SiteCause::emergency_stop, "emergency-stop"}};
+                    Enumerator{SiteCause::emergency_stop, "emergency-stop"},
+                    Enumerator{SiteCause::disagreement, "disagreement"}};
 }
 
 enum class SiteRole { master, slave };
@@ -61,6 +63,7 @@ struct SiteRequests {
   bool dead_man = false;        ///< pressed; at the master
   bool clutch = false;          ///< pressed: the hand moves and the slave does not; at the master
   bool emergency_stop = false;  ///< pressed: into `fault`, and no way out of it
+  bool leave = false;           ///< pressed: the site is about to end, in `configure` and without force
 };
 
 /// The state of one site, and why.
@@ -70,6 +73,7 @@ struct SiteRequests {
 ///     armed, active –silence, stall, overload, other site, sensor, energy→ hold –arm→ armed
 ///     armed –no answer, sign probe not passed→ hold
 ///     any –safety gate, emergency stop→ fault –clear→ align
+///     any but fault –about to end→ configure
 ///
 /// Arming is a number that the master counts up and every packet carries; a restarted master goes on from the number
 /// that it hears the slave has followed. The slave is armed when it sees the number rise, repeats it, and the master
@@ -77,6 +81,7 @@ struct SiteRequests {
 /// under any while this one is active, or was restarted; so one that was cut off alone does not come back with an
 /// arming that is over, and nothing but a new one leads out. An arming that the slave does not answer is given up. A
 /// site whose motor is tried on arming follows only after the sign probe.
+/// While the other site works by other parameters, nothing is armed; it must be started anew.
 class SiteSupervisor {
  public:
   struct Params {
@@ -91,6 +96,7 @@ class SiteSupervisor {
     std::int64_t session = 0;  ///< of the other site
     SiteState peer = SiteState::configure;
     std::int64_t peer_armings = 0;
+    bool disagrees = false;             ///< the other site works by other parameters
     bool silent = false;                ///< the watchdog barks
     bool unanswered = false;            ///< the slave has not followed the arming for too long
     bool stalled = false;               ///< this site was not stepped for too long

@@ -23,8 +23,8 @@ SiteCause cause_of(ProbeVerdict verdict) {
 
 }  // namespace
 
-Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole role, std::int64_t session,
-                                      Seconds dt) {
+Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt,
+                                      const Agreement& agreement) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
   if (session == 0) {
     return Error{.code = ErrorCode::out_of_bounds,
@@ -55,13 +55,15 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   }
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *probe, *supervisor, role, params, session, dt);
+  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *probe, *supervisor, role, params, session, dt,
+                     agreement);
 }
 
 PacketVerdict Supervision::take(const Packet& packet) noexcept {
   const PacketVerdict verdict = judge_.step(packet);
   if (verdict == PacketVerdict::applied) {
     newest_ = packet;
+    agreement_.take(packet.session, packet.agreement);
     arrived_ = true;
   } else {
     ++refused_;
@@ -93,6 +95,7 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
                     .session = newest_.session,
                     .peer = newest_.state,
                     .peer_armings = newest_.armings,
+                    .disagrees = agreement_.disagrees(),
                     .silent = silent,
                     .unanswered = unanswered(),
                     .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
@@ -139,7 +142,8 @@ Packet Supervision::packet(const Message& message) noexcept {
           .age_s = 0.0,
           .state = state(),
           .armings = answered_arming_,
-          .message = message};
+          .message = message,
+          .agreement = agreement_.own().excerpt(sequence_)};
 }
 
 SiteRecord Supervision::record() const noexcept {
@@ -152,7 +156,8 @@ SiteRecord Supervision::record() const noexcept {
           .fresh = fresh_,
           .silence_s = watchdog_.silence_s(),
           .share = share_,
-          .gap_m = follower_.gap_m()};
+          .gap_m = follower_.gap_m(),
+          .differs = static_cast<std::int64_t>(agreement_.first_difference())};
 }
 
 }  // namespace tactus::control

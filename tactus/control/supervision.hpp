@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/agreement.hpp>
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
 #include <tactus/control/overload_check.hpp>
@@ -109,6 +110,7 @@ struct SiteRecord {
   double offset_m = 0.0;
   double gap_m = 0.0;
   double given_J = 0.0;
+  std::int64_t differs = 0;
   static constexpr auto signals() {
     return std::tuple{
         observed("state", &SiteRecord::state, units::none, "", "", "", state_legend.text),
@@ -130,14 +132,18 @@ struct SiteRecord {
         observed("gap_m", &SiteRecord::gap_m, units::metre, "", "", "toward the environment",
                  "What is still to be caught up of the other's position."),
         observed("given_J", &SiteRecord::given_J, units::joule, "", "", "the motor gave it",
-                 "Account of the passivity monitor.")};
+                 "Account of the passivity monitor."),
+        observed("differs", &SiteRecord::differs, units::none, "", "", "",
+                 "Cell of the agreement in which the other site is known to differ, from 1; 0 for none.")};
   }
 };
 
 /// One site's half of the link, its watchdog and its state: what both sites have in common.
 class Supervision {
  public:
-  static Result<Supervision> make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt);
+  /// A site whose other half does not have `agreement` in common with it is never armed.
+  static Result<Supervision> make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt,
+                                  const Agreement& agreement = {});
 
   /// What the site itself saw, for `decide`.
   struct Sight {
@@ -168,6 +174,8 @@ class Supervision {
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
   [[nodiscard]] SiteState before() const noexcept { return before_; }
+  /// What the other site has in common with this one.
+  [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }
   /// Whether the site leaves what its gate or its controller latched, at this tick.
   [[nodiscard]] bool rearms() const noexcept;
   /// Everything that supervision itself knows; the rest is the site's to fill in.
@@ -179,7 +187,7 @@ class Supervision {
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
               const Watchdog& answer, const OverloadCheck& overload, const SignProbe& probe,
               const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params, std::int64_t session,
-              Seconds dt)
+              Seconds dt, const Agreement& agreement)
       : judge_(judge),
         follower_(follower),
         watchdog_(watchdog),
@@ -194,7 +202,8 @@ class Supervision {
         hold_step_(dt.value /
                    (role == SiteRole::slave ? params.hold.release_s : std::min(params.hold.release_s, params.blend_s))),
         must_be_proved_(params.probe.force_N > 0.0),
-        session_(session) {}
+        session_(session),
+        agreement_(agreement) {}
 
   PacketJudge judge_;
   MessageFollower follower_;
@@ -211,6 +220,7 @@ class Supervision {
   bool must_be_proved_;
   std::int64_t session_;
   std::int64_t sequence_ = 0;
+  AgreementCheck agreement_;
   Packet newest_;
   bool arrived_ = false;
   bool fresh_ = false;

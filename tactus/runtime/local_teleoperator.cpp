@@ -56,7 +56,7 @@ Result<LocalTeleoperator> LocalTeleoperator::make(const control::ControlParams& 
   return LocalTeleoperator(*std::move(sites), {*std::move(master_wall), *std::move(slave_wall)}, master, slave);
 }
 
-LocalTeleoperator::Output LocalTeleoperator::step(const Tick& tick) noexcept {
+LocalTeleoperator::Output LocalTeleoperator::advance(const Tick& tick, double share) noexcept {
   Output output;
   output.master = trusted_reading(*master_, tick);
   output.slave = trusted_reading(*slave_, tick);
@@ -65,7 +65,7 @@ LocalTeleoperator::Output LocalTeleoperator::step(const Tick& tick) noexcept {
                               .grip = output.master.grip,
                               .slave_position_m = output.slave.position_m,
                               .tip_force_N = output.slave.force_N},
-                             tick.missed + 1);
+                             tick.missed + 1, share);
   master_->write({.force_N = output.sites.master.motor_force_N, .handle_force_N = output.sites.master.handle_force_N});
   slave_->write({.force_N = output.sites.slave.motor_force_N});
   return output;

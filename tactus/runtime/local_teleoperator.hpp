@@ -30,8 +30,13 @@ class LocalTeleoperator {
                                         Seconds tick, double slave_start_m, Device& master, Device& slave);
 
   /// One tick. Real-time safe as far as the devices are.
-  Output step(const Tick& tick) noexcept;
-  /// Commands no force: what a loop does last. Real-time safe as far as the devices are.
+  Output step(const Tick& tick) noexcept { return advance(tick, 1.0); }
+  /// The same with sites that want no force: what a loop does from its end on, tick by tick, until it is `at_rest`. The
+  /// force falls at the gates' rate limits. Real-time safe as far as the devices are.
+  Output let_go(const Tick& tick) noexcept { return advance(tick, 0.0); }
+  /// No site commanded a force at the latest tick.
+  [[nodiscard]] bool at_rest() const noexcept { return sites_.at_rest(); }
+  /// Commands no force at once, whatever it was: for an end that cannot wait. Real-time safe as far as the devices are.
   void release() noexcept;
   /// False once a safety gate has latched a fault.
   [[nodiscard]] bool healthy() const noexcept { return sites_.healthy(); }
@@ -43,6 +48,7 @@ class LocalTeleoperator {
         walls_(std::move(walls)),
         master_(walls_[0] ? walls_[0].get() : &master),
         slave_(walls_[1] ? walls_[1].get() : &slave) {}
+  Output advance(const Tick& tick, double share) noexcept;
 
   simulation::SitePair sites_;
   Walls walls_;  ///< before devices that are not simulated
