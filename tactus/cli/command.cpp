@@ -13,6 +13,8 @@
 #include <string_view>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace tactus::cli {
 
@@ -44,6 +46,11 @@ int run(int argc, char** argv) {
   std::string command = shell_word(name);
   for (int i = 1; i < argc; ++i) command += " " + shell_word(argv[i]);
 
+  // Else the number of one that was closed would be given to a log or a socket, which would be read or printed to. This
+  // way round, so that reading from it and printing to it fail as before.
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(standard, F_GETFD) < 0) (void)open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
   // A reader of the results that went away is an error like a full disk and not the end.
   std::signal(SIGPIPE, SIG_IGN);
   int status = 0;

@@ -31,6 +31,7 @@ class RecordedDevice final : public Device {
  public:
   explicit RecordedDevice(const DeviceLimits& limits) : limits_(limits) {}
   [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] bool simulated() const noexcept override { return true; }
   DeviceReading read(const Tick&) noexcept override { return reading; }
   void write(const DeviceCommand&) noexcept override {}
   [[nodiscard]] DeviceHealth health() const noexcept override { return DeviceHealth::good; }
