@@ -92,7 +92,8 @@ struct Walk {
   Site site;
   int depth = 0;
   std::uintptr_t caller = 0;
-  std::array<std::uintptr_t, 16> libraries{};  ///< from the call to the program
+  std::array<std::uintptr_t, 16> libraries{};  ///< on the way
+  std::size_t passed = 0;
 };
 
 _Unwind_Reason_Code look(_Unwind_Context* context, void* data) {
@@ -112,9 +113,8 @@ _Unwind_Reason_Code look(_Unwind_Context* context, void* data) {
     (walk.site.in_program ? walk.site.outer : walk.site.inner) = address - program_base;
     if (walk.site.in_program) return _URC_END_OF_STACK;
     walk.site.in_program = true;
-  }
-  if (!walk.site.in_program && static_cast<std::size_t>(walk.depth) < walk.libraries.size()) {
-    walk.libraries[static_cast<std::size_t>(walk.depth)] = address;
+  } else if (walk.passed < walk.libraries.size()) {
+    walk.libraries[walk.passed++] = address;
   }
   return ++walk.depth > 60 ? _URC_END_OF_STACK : _URC_NO_REASON;
 }
