@@ -38,13 +38,17 @@ std::string line_of(const PlantStatus& now, const PlantStatus& before, std::int6
          std::to_string(now.commands - before.commands) + " commands, " +
          (now.controller ? "driven by process " + std::to_string(*now.controller) : "nobody drives") + ", " +
          std::to_string(now.missed - before.missed) + " ticks missed" +
-         (now.let_go > before.let_go ? ", let go: commands stopped coming" : "") + "\n";
+         (now.held_back > before.held_back
+              ? ", " + std::to_string(now.held_back - before.held_back) + " commands held back to the limits"
+              : "") +
+         (now.let_go > before.let_go ? std::string(", let go: ") + runtime::in_words(now.cause) : "") + "\n";
 }
 
 std::string text_of(const std::string& name, const PlantStatus& status, const runtime::ServoReport& servo) {
-  report::Table table({{"readings"}, {"commands"}, {"taps"}, {"let go"}, {"ticks missed"}}, "Plant '" + name + "'");
+  report::Table table({{"readings"}, {"commands"}, {"taps"}, {"held back"}, {"let go"}, {"ticks missed"}},
+                      "Plant '" + name + "'");
   table.add_row({std::to_string(status.readings), std::to_string(status.commands), std::to_string(status.taps),
-                 std::to_string(status.let_go), std::to_string(status.missed)});
+                 std::to_string(status.held_back), std::to_string(status.let_go), std::to_string(status.missed)});
   return table.to_text() + "\n" + runtime::timing_text(servo);
 }
 
@@ -53,7 +57,9 @@ std::string json_of(const std::string& name, const PlantStatus& status, const ru
                                         {"readings", status.readings},
                                         {"commands", status.commands},
                                         {"taps", status.taps},
+                                        {"held_back", status.held_back},
                                         {"let_go", status.let_go},
+                                        {"cause", name_of(status.cause)},
                                         {"missed", status.missed},
                                         {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}};
   return document.dump(2) + "\n";
@@ -117,11 +123,19 @@ Check own_plant(const PlantOptions& options) {
       second = static_cast<std::int64_t>(elapsed.count()) + 1;
     }
     if (options.duration_s > 0.0 && elapsed.count() >= options.duration_s) break;
+    if (server.status().cut) break;
   }
   (*servo)->stop();
   const runtime::ServoReport& report = (*servo)->finish();
-  return output.finish(options.json ? json_of(options.name, server.status(), report)
-                                    : "\n" + text_of(options.name, server.status(), report));
+  Check told = output.finish(options.json ? json_of(options.name, server.status(), report)
+                                          : "\n" + text_of(options.name, server.status(), report));
+  if (told || !server.status().cut) return told;
+  return Error{.code = ErrorCode::failed,
+               .parameter = {},
+               .message = "plant '" + options.name +
+                          "': another process has shortened its shared memory; the plant let go: start it again, and "
+                          "find out what writes to /dev/shm",
+               .place = "--name"};
 }
 
 }  // namespace

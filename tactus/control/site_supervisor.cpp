@@ -5,10 +5,13 @@
 namespace tactus::control {
 
 SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
+  if (input.disagrees) return SiteCause::disagreement;
   if (input.energy) return SiteCause::energy;
   if (input.force_sensor) return SiteCause::force_sensor;
   if (input.stalled) return SiteCause::stalled;
+  if (input.overloaded) return SiteCause::overloaded;
   if (input.silent) return SiteCause::silent;
+  if (input.probe != SiteCause::none) return input.probe;
   if (input.unanswered) return SiteCause::unanswered;
   const bool stands = input.peer != SiteState::armed && input.peer != SiteState::active;
   // While armed, what stands under another number has not heard of this arming yet.
@@ -26,7 +29,7 @@ void SiteSupervisor::go(SiteState state, SiteCause cause, const Input& input) no
 void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
   const bool master = role_ == SiteRole::master;
   // An energy latch is no obstacle: arming empties the account.
-  const bool may = input.heard && !input.silent && !input.stalled;
+  const bool may = input.heard && !input.disagrees && !input.silent && !input.stalled && !input.overloaded;
   if (!may || !(master ? asked : input.peer_armings != over_ && input.peer == SiteState::armed)) return;
   armings_ = master ? std::max(armings_, input.peer_armings) + 1 : input.peer_armings;
   state_ = SiteState::armed;
@@ -34,12 +37,12 @@ void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
 }
 
 void SiteSupervisor::become_active_where_ready(const Input& input) noexcept {
-  const bool same = input.peer_armings == armings_;
+  const bool ready = input.peer_armings == armings_ && input.proved;
   const bool master = role_ == SiteRole::master;
   if (master) {
     pressed_ = input.requests.dead_man && (pressed_ || !before_.dead_man);
-    if (!pressed_ || !same || (input.peer != SiteState::armed && input.peer != SiteState::active)) return;
-  } else if (!same || input.peer != SiteState::active) {
+    if (!pressed_ || !ready || (input.peer != SiteState::armed && input.peer != SiteState::active)) return;
+  } else if (!ready || input.peer != SiteState::active) {
     return;
   }
   state_ = SiteState::active;
@@ -57,8 +60,9 @@ SiteState SiteSupervisor::step(const Input& input) noexcept {
     // A master that starts anew counts anew.
     if (role_ == SiteRole::slave) armings_ = 0;
   }
-  if (input.fault && state_ != SiteState::fault) {
-    go(SiteState::fault, SiteCause::gate, input);
+  const bool emergency_stop = input.requests.emergency_stop;
+  if ((input.fault || emergency_stop) && state_ != SiteState::fault) {
+    go(SiteState::fault, emergency_stop ? SiteCause::emergency_stop : SiteCause::gate, input);
   } else if (input.requests.leave) {
     const bool works = state_ != SiteState::configure && state_ != SiteState::fault;
     if (works) go(SiteState::configure, SiteCause::dead_man, input);
@@ -66,9 +70,14 @@ SiteState SiteSupervisor::step(const Input& input) noexcept {
     if (align) state_ = SiteState::align;
   } else if (state_ == SiteState::align || state_ == SiteState::hold) {
     arm_where_asked(input, arm);
+    if (input.disagrees) {
+      cause_ = SiteCause::disagreement;
+    } else if (cause_ == SiteCause::disagreement) {
+      cause_ = SiteCause::other_session;
+    }
   } else if (state_ == SiteState::fault) {
     // The gate is re-armed on the way out; a cause that is still there closes it again.
-    if (clear) go(SiteState::align, cause_, input);
+    if (clear && !emergency_stop) go(SiteState::align, cause_, input);
   } else if (const SiteCause cause = other_session ? SiteCause::other_session : reason_to_hold(input);
              cause != SiteCause::none) {
     go(SiteState::hold, cause, input);

@@ -4,8 +4,27 @@
 
 namespace tactus::control {
 
-Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole role, std::int64_t session,
-                                      Seconds dt) {
+namespace {
+
+SiteCause cause_of(ProbeVerdict verdict) {
+  switch (verdict) {
+    case ProbeVerdict::reversed:
+      return SiteCause::probe_reversed;
+    case ProbeVerdict::still:
+      return SiteCause::probe_still;
+    case ProbeVerdict::astray:
+      return SiteCause::probe_astray;
+    case ProbeVerdict::none:
+    case ProbeVerdict::passed:
+      break;
+  }
+  return SiteCause::none;
+}
+
+}  // namespace
+
+Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt,
+                                      const Agreement& agreement) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
   if (session == 0) {
     return Error{.code = ErrorCode::out_of_bounds,
@@ -21,15 +40,30 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   if (!watchdog) return under("watchdog", watchdog.error());
   const auto answer = Watchdog::make({.timeout_s = params.answer_within_s}, dt);
   if (!answer) return answer.error();
+  const auto overload = OverloadCheck::make(params.overload, dt);
+  if (!overload) return under("overload", overload.error());
+  const auto probe = SignProbe::make(params.probe, dt);
+  if (!probe) return under("probe", probe.error());
+  const double tried_after_s = params.blend_s + params.probe.duration_s;
+  if (params.probe.force_N > 0.0 && params.answer_within_s <= tried_after_s) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "answer_within_s",
+                 .message = format_number(params.answer_within_s) +
+                            " s must be more than blend_s and probe.duration_s together, " +
+                            format_number(tried_after_s) + " s: a slave answers once its motor was tried",
+                 .place = {}};
+  }
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return Supervision(*judge, *follower, *watchdog, *answer, *supervisor, role, params, session, dt);
+  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *probe, *supervisor, role, params, session, dt,
+                     agreement);
 }
 
 PacketVerdict Supervision::take(const Packet& packet) noexcept {
   const PacketVerdict verdict = judge_.step(packet);
   if (verdict == PacketVerdict::applied) {
     newest_ = packet;
+    agreement_.take(packet.session, packet.agreement);
     arrived_ = true;
   } else {
     ++refused_;
@@ -55,23 +89,33 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
   // Where a site does not follow, its state is the latch.
   if (!guards && fresh_) watchdog_.reset();
   const bool silent = watchdog_.step({.heard = fresh_, .elapsed_ticks = elapsed_ticks_});
-  return supervisor_.step({.requests = sight.requests,
-                           .heard = newest_.session != 0,
-                           .session = newest_.session,
-                           .peer = newest_.state,
-                           .peer_armings = newest_.armings,
-                           .silent = silent,
-                           .unanswered = unanswered(),
-                           .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
-                           .force_sensor = sight.force_sensor,
-                           .energy = sight.fault == GateFault::energy,
-                           .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
+  proved_ = proved_ || probe_.verdict() == ProbeVerdict::passed;
+  supervisor_.step({.requests = sight.requests,
+                    .heard = newest_.session != 0,
+                    .session = newest_.session,
+                    .peer = newest_.state,
+                    .peer_armings = newest_.armings,
+                    .disagrees = agreement_.disagrees(),
+                    .silent = silent,
+                    .unanswered = unanswered(),
+                    .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
+                    .overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_}),
+                    .force_sensor = sight.force_sensor,
+                    .probe = cause_of(probe_.verdict()),
+                    .proved = proved_,
+                    .energy = sight.fault == GateFault::energy,
+                    .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
+  if (arms_from_rest()) proved_ = !must_be_proved_;
+  if (role_ == SiteRole::master || !probes()) answered_arming_ = supervisor_.armings();
+  return state();
+}
+
+bool Supervision::arms_from_rest() const noexcept {
+  return state() == SiteState::armed && (before_ == SiteState::align || before_ == SiteState::hold);
 }
 
 bool Supervision::rearms() const noexcept {
-  const bool entered = state() != before_;
-  const bool from_rest = before_ == SiteState::align || before_ == SiteState::hold;
-  return entered && (state() == SiteState::align || (state() == SiteState::armed && from_rest));
+  return arms_from_rest() || (state() == SiteState::align && before_ != SiteState::align);
 }
 
 Arrival Supervision::arrival(double offset_m) noexcept {
@@ -80,9 +124,16 @@ Arrival Supervision::arrival(double offset_m) noexcept {
   return follower_.step({.arrival = told, .following = state() == SiteState::active, .elapsed_ticks = elapsed_ticks_});
 }
 
+double Supervision::probe(double position_m, bool force_passes) noexcept {
+  probing_ = probes() && (probing_ || (share_ == 0.0 && !force_passes));
+  return probe_.step({.probing = probing_, .position_m = position_m, .elapsed_ticks = elapsed_ticks_});
+}
+
 double Supervision::blend(bool in) noexcept {
-  const double target = in ? 1.0 : 0.0;
-  return share_ = std::clamp(target, share_ - blend_step_, share_ + blend_step_);
+  if (state() == SiteState::fault) return share_ = 0.0;
+  // After a stall a force goes as far as it should have gone by now, but comes no farther than in one tick.
+  const double out_step = (state() == SiteState::hold ? hold_step_ : blend_step_) * static_cast<double>(elapsed_ticks_);
+  return share_ = in ? std::min(share_ + blend_step_, 1.0) : std::max(share_ - out_step, 0.0);
 }
 
 Packet Supervision::packet(const Message& message) noexcept {
@@ -90,8 +141,9 @@ Packet Supervision::packet(const Message& message) noexcept {
           .sequence = ++sequence_,
           .age_s = 0.0,
           .state = state(),
-          .armings = supervisor_.armings(),
-          .message = message};
+          .armings = answered_arming_,
+          .message = message,
+          .agreement = agreement_.own().excerpt(sequence_)};
 }
 
 SiteRecord Supervision::record() const noexcept {
@@ -104,7 +156,8 @@ SiteRecord Supervision::record() const noexcept {
           .fresh = fresh_,
           .silence_s = watchdog_.silence_s(),
           .share = share_,
-          .gap_m = follower_.gap_m()};
+          .gap_m = follower_.gap_m(),
+          .differs = static_cast<std::int64_t>(agreement_.first_difference())};
 }
 
 }  // namespace tactus::control

@@ -1,17 +1,32 @@
 #pragma once
 
+#include <tactus/control/agreement.hpp>
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
+#include <tactus/control/overload_check.hpp>
 #include <tactus/control/packet.hpp>
+#include <tactus/control/sign_probe.hpp>
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/control/watchdog.hpp>
 #include <tactus/core/signals.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace tactus::control {
+
+/// What becomes of a force in `hold`.
+struct HoldParams {
+  double release_s = 1.0;
+  static constexpr auto fields() {
+    return std::tuple{field("release_s", &HoldParams::release_s, units::second, positive_up_to(60.0),
+                            "Time in which the site's force fades to zero once it holds; a slave that must not sink "
+                            "or swing away needs a brake.")};
+  }
+};
 
 /// The group `[control.supervision]`: what a site makes of the other one and of its own state.
 struct SupervisionParams {
@@ -19,6 +34,9 @@ struct SupervisionParams {
   MessageFollower::Params silence;
   Watchdog::Params watchdog;
   ForceSensorCheck::Params force_sensor;
+  OverloadCheck::Params overload;
+  SignProbe::Params probe;
+  HoldParams hold;
   double longest_stall_s = 0.02;
   double answer_within_s = 1.0;
   double blend_s = 0.1;
@@ -28,16 +46,51 @@ struct SupervisionParams {
         field("silence", &SupervisionParams::silence, "What stands in their place when none come."),
         field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
         field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
+        field("overload", &SupervisionParams::overload, "How many ticks a site may miss before it holds."),
+        field("probe", &SupervisionParams::probe, "The force with which a site tries its motor when it is armed."),
+        field("hold", &SupervisionParams::hold, "What becomes of a force when the site holds."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
         field(
             "answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
             "How long the master waits for the slave to follow an arming before it gives it up and holds; longer than "
-            "the round trip."),
+            "the round trip, and with a sign probe than that, blend_s and probe.duration_s together."),
         field("blend_s", &SupervisionParams::blend_s, units::second, positive_up_to(10.0),
               "How long a force takes to come in when a site becomes active, and to go.")};
   }
 };
+
+/// The words of an enum and the numbers that stand for them in a log, behind `prefix`: "Why: 0 none, 1 started."
+struct Legend {
+  char text[512]{};
+};
+template <NamedEnum E>
+constexpr Legend legend(std::string_view prefix) {
+  Legend made;
+  std::size_t size = 0;
+  const auto add = [&](std::string_view text) {
+    for (const char character : text) made.text[size++] = character;
+  };
+  const auto add_number = [&](int number) {
+    if (number >= 10) made.text[size++] = static_cast<char>('0' + number / 10);
+    made.text[size++] = static_cast<char>('0' + number % 10);
+  };
+  add(prefix);
+  bool first = true;
+  for (const auto& entry : enumerators(E{})) {
+    if (!first) add(", ");
+    first = false;
+    add_number(static_cast<int>(entry.value));
+    add(" ");
+    add(entry.name);
+  }
+  add(".");
+  return made;
+}
+inline constexpr Legend state_legend = legend<SiteState>("");
+inline constexpr Legend cause_legend = legend<SiteCause>("Why the site does not follow: ");
+inline constexpr Legend limit_legend = legend<ActiveLimit>("What changes the force right now: ");
+inline constexpr Legend fault_legend = legend<GateFault>("What the gate latched: ");
 
 /// What supervision shows of a tick. State, cause, limit and fault are four different things: what the site does, why
 /// it does not follow, what changes the force right now, and what made the gate let go.
@@ -50,29 +103,27 @@ struct SiteRecord {
   std::int64_t applied_session = 0;
   std::int64_t applied_sequence = 0;
   std::int64_t refused = 0;
+  bool enabled = false;
   bool fresh = false;
   double silence_s = 0.0;
   double share = 0.0;
   double offset_m = 0.0;
   double gap_m = 0.0;
   double given_J = 0.0;
+  std::int64_t differs = 0;
   static constexpr auto signals() {
     return std::tuple{
-        observed("state", &SiteRecord::state, units::none, "", "", "",
-                 "0 configure, 1 align, 2 armed, 3 active, 4 hold, 5 fault."),
-        observed("cause", &SiteRecord::cause, units::none, "", "", "",
-                 "Why the site does not follow: 0 none, 1 started, 2 dead-man, 3 silent, 4 stalled, 5 other-session, "
-                 "6 peer, 7 force-sensor, 8 energy, 9 gate, 10 unanswered."),
-        observed("limit", &SiteRecord::limit, units::none, "", "", "",
-                 "What changes the force right now: 0 none, 1 energy, 2 workspace, 3 velocity, 4 force, 5 rate."),
-        observed("fault", &SiteRecord::fault, units::none, "", "", "",
-                 "What the gate latched: 0 none, 1 not-finite, 2 encoder-jump, 3 encoder-frozen, 4 workspace, "
-                 "5 velocity, 6 energy."),
+        observed("state", &SiteRecord::state, units::none, "", "", "", state_legend.text),
+        observed("cause", &SiteRecord::cause, units::none, "", "", "", cause_legend.text),
+        observed("limit", &SiteRecord::limit, units::none, "", "", "", limit_legend.text),
+        observed("fault", &SiteRecord::fault, units::none, "", "", "", fault_legend.text),
         observed("armings", &SiteRecord::armings, units::none, "", "", "", "The arming that is followed."),
         observed("applied_session", &SiteRecord::applied_session, units::none, "", "", "",
                  "Session of the packet that was applied last."),
         observed("applied_sequence", &SiteRecord::applied_sequence, units::none, "", "", "", "Its sequence."),
         observed("refused", &SiteRecord::refused, units::none, "", "", "", "Packets so far that were not applied."),
+        observed("enabled", &SiteRecord::enabled, units::none, "", "", "",
+                 "The drive may have power: not in configure, and in fault only until the force is zero."),
         observed("fresh", &SiteRecord::fresh, units::none, "", "", "", "A packet was applied at this tick."),
         observed("silence_s", &SiteRecord::silence_s, units::second, "", "", "", "Since a packet was applied."),
         observed("share", &SiteRecord::share, units::none, "", "", "", "Of the controller's force that is let in."),
@@ -81,14 +132,18 @@ struct SiteRecord {
         observed("gap_m", &SiteRecord::gap_m, units::metre, "", "", "toward the environment",
                  "What is still to be caught up of the other's position."),
         observed("given_J", &SiteRecord::given_J, units::joule, "", "", "the motor gave it",
-                 "Account of the passivity monitor.")};
+                 "Account of the passivity monitor."),
+        observed("differs", &SiteRecord::differs, units::none, "", "", "",
+                 "Cell of the agreement in which the other site is known to differ, from 1; 0 for none.")};
   }
 };
 
 /// One site's half of the link, its watchdog and its state: what both sites have in common.
 class Supervision {
  public:
-  static Result<Supervision> make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt);
+  /// A site whose other half does not have `agreement` in common with it is never armed.
+  static Result<Supervision> make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt,
+                                  const Agreement& agreement = {});
 
   /// What the site itself saw, for `decide`.
   struct Sight {
@@ -104,7 +159,13 @@ class Supervision {
   SiteState decide(const Sight& sight) noexcept;
   /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
   Arrival arrival(double offset_m) noexcept;
-  /// The share of the controller's force, on its way to 1 or 0. Once, after `decide`.
+  /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone and none
+  /// passes to the motor any more, `position_m` being measured. Once, after `decide` and before `blend`.
+  double probe(double position_m, bool force_passes) noexcept;
+  /// Whether the site is armed and its motor not yet tried: the controller's force must go.
+  [[nodiscard]] bool probes() const noexcept { return state() == SiteState::armed && !proved_; }
+  /// The share of the controller's force, on its way to 1 or 0; in `fault` 0 at once, for the gate to ramp. Once, after
+  /// `decide`.
   double blend(bool in) noexcept;
   /// The packet that says `message`. Once a tick.
   Packet packet(const Message& message) noexcept;
@@ -113,6 +174,8 @@ class Supervision {
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
   [[nodiscard]] SiteState before() const noexcept { return before_; }
+  /// What the other site has in common with this one.
+  [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }
   /// Whether the site leaves what its gate or its controller latched, at this tick.
   [[nodiscard]] bool rearms() const noexcept;
   /// Everything that supervision itself knows; the rest is the site's to fill in.
@@ -120,37 +183,53 @@ class Supervision {
 
  private:
   [[nodiscard]] bool unanswered() noexcept;
+  [[nodiscard]] bool arms_from_rest() const noexcept;
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
-              const Watchdog& answer, const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params,
-              std::int64_t session, Seconds dt)
+              const Watchdog& answer, const OverloadCheck& overload, const SignProbe& probe,
+              const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params, std::int64_t session,
+              Seconds dt, const Agreement& agreement)
       : judge_(judge),
         follower_(follower),
         watchdog_(watchdog),
         answer_(answer),
+        overload_(overload),
+        probe_(probe),
         supervisor_(supervisor),
         role_(role),
         dt_s_(dt.value),
         longest_stall_s_(params.longest_stall_s),
         blend_step_(dt.value / params.blend_s),
-        session_(session) {}
+        hold_step_(dt.value /
+                   (role == SiteRole::slave ? params.hold.release_s : std::min(params.hold.release_s, params.blend_s))),
+        must_be_proved_(params.probe.force_N > 0.0),
+        session_(session),
+        agreement_(agreement) {}
 
   PacketJudge judge_;
   MessageFollower follower_;
   Watchdog watchdog_;
   Watchdog answer_;  ///< of the slave to an arming
+  OverloadCheck overload_;
+  SignProbe probe_;
   SiteSupervisor supervisor_;
   SiteRole role_;
   double dt_s_;
   double longest_stall_s_;
   double blend_step_;
+  double hold_step_;  ///< of the share, in a tick of `hold`
+  bool must_be_proved_;
   std::int64_t session_;
   std::int64_t sequence_ = 0;
+  AgreementCheck agreement_;
   Packet newest_;
   bool arrived_ = false;
   bool fresh_ = false;
   std::int64_t elapsed_ticks_ = 1;
   std::int64_t refused_ = 0;
   std::int64_t awaited_arming_ = 0;
+  std::int64_t answered_arming_ = 0;  ///< that packets tell: a slave's only once its motor was tried
+  bool proved_ = false;               ///< the motor was tried since the site was armed, or need not be
+  bool probing_ = false;              ///< the trial is under way
   double share_ = 0.0;
   SiteState before_ = SiteState::configure;
 };

@@ -28,8 +28,7 @@ Result<Endpoint> Endpoint::make(const Settings& settings) {
   }
   Endpoint endpoint(settings, std::make_unique<Socket>(*std::move(socket)), session);
   if (settings.key) {
-    const auto role = settings.site == SiteRole::master ? HandshakeRole::client : HandshakeRole::server;
-    auto secure = SecureChannel::make(role, *settings.key, *endpoint.socket_, datagram_bytes);
+    auto secure = SecureChannel::make(settings.site, *settings.key, *endpoint.socket_, datagram_bytes);
     if (!secure) return secure.error();
     endpoint.secure_ = *std::move(secure);
   }
@@ -43,9 +42,11 @@ std::span<const control::Packet> Endpoint::receive(std::int64_t now_ns) noexcept
     const auto packets = socket_->receive();
     for (const Packet& packet : packets) {
       if (secure_ && !secure_->open(packet, opened)) continue;
+      const auto bytes = secure_ ? std::span<const std::byte>(opened) : packet.bytes();
       Datagram datagram;
-      if (decode(secure_ ? std::span<const std::byte>(opened) : packet.bytes(), datagram) != Refusal::none) {
+      if (const Refusal refusal = decode(bytes, datagram); refusal != Refusal::none) {
         ++malformed_;
+        if (refusal == Refusal::version) other_version_ = version_of(bytes);
       } else if (inbound_.take(datagram, now_ns) == Inbound::Verdict::counted) {
         packets_[count++] = datagram.packet;
       }
@@ -77,11 +78,13 @@ Endpoint::Condition Endpoint::condition(std::int64_t now_ns) const noexcept {
 }
 
 Endpoint::Counters Endpoint::counters() const noexcept {
+  const auto secure = secure_ ? secure_->counters() : SecureChannel::Counters{};
   return {.inbound = inbound_.counters(),
-          .secure = secure_ ? secure_->counters() : SecureChannel::Counters{},
+          .secure = secure,
           .sent = sent_,
           .unsent = unsent_,
           .malformed = malformed_,
+          .other_version = other_version_ != 0 ? other_version_ : secure.other_version,
           .expected = inbound_.expected(),
           .arrived = inbound_.arrived()};
 }

@@ -1,7 +1,11 @@
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
+#include <tactus/control/overload_check.hpp>
+#include <tactus/control/reversal_check.hpp>
 #include <tactus/control/safety_gate.hpp>
+#include <tactus/control/sign_probe.hpp>
 #include <tactus/control/site_supervisor.hpp>
+#include <tactus/control/thermal_limit.hpp>
 #include <tactus/control/watchdog.hpp>
 
 #include "tests/laws.hpp"
@@ -28,6 +32,53 @@ struct Doubles<control::Watchdog::Input> {
   using Row = std::array<double, 2>;
   static control::Watchdog::Input from(const Row& row) {
     return {.heard = row[0] > 0.9, .elapsed_ticks = row[1] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::OverloadCheck::Input> {
+  using Row = std::array<double, 1>;
+  static control::OverloadCheck::Input from(const Row& row) { return {.elapsed_ticks = row[0] > 0.5 ? 40 : 1}; }
+};
+template <>
+struct Doubles<control::EncoderCheck::Input> {
+  using Row = std::array<double, 4>;
+  static control::EncoderCheck::Input from(const Row& row) {
+    return {.position_m = row[0], .acted_N = row[1], .unbalanced_N = row[2], .elapsed_ticks = row[3] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::ForceSensorCheck::Input> {
+  using Row = std::array<double, 3>;
+  static control::ForceSensorCheck::Input from(const Row& row) {
+    return {.acted_N = row[0], .tip_force_N = row[1], .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::PassivityMonitor::Input> {
+  using Row = std::array<double, 3>;
+  static control::PassivityMonitor::Input from(const Row& row) {
+    return {.acted_N = row[0], .position_m = row[1], .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::ReversalCheck::Input> {
+  using Row = std::array<double, 3>;
+  static control::ReversalCheck::Input from(const Row& row) {
+    return {.net_N = row[0], .velocity_m_per_s = row[1], .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::ThermalLimit::Input> {
+  using Row = std::array<double, 3>;
+  static control::ThermalLimit::Input from(const Row& row) {
+    return {.acted_N = row[0], .peak_N = std::fabs(row[1]), .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::SignProbe::Input> {
+  using Row = std::array<double, 3>;
+  static control::SignProbe::Input from(const Row& row) {
+    return {.probing = row[0] > -0.99, .position_m = 1e-3 * row[1], .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
   }
 };
 template <>
@@ -79,9 +130,11 @@ struct Subject<control::SiteSupervisor> {
   static void admit(control::SiteSupervisor::Input&) {}
 };
 
-using SafetyElements = ::testing::Types<control::ForceGate, control::EncoderCheck, control::ForceSensorCheck,
-                                        control::PassivityMonitor, control::Watchdog, control::SafetyGate,
-                                        control::PacketJudge, control::MessageFollower, control::SiteSupervisor>;
+using SafetyElements =
+    ::testing::Types<control::ForceGate, control::EncoderCheck, control::ForceSensorCheck, control::PassivityMonitor,
+                     control::Watchdog, control::OverloadCheck, control::ReversalCheck, control::ThermalLimit,
+                     control::SignProbe, control::SafetyGate, control::PacketJudge, control::MessageFollower,
+                     control::SiteSupervisor>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Safety, ElementLaws, SafetyElements);
 
 }  // namespace tactus::laws

@@ -145,10 +145,11 @@ TEST(RealTimeTap, OnAServoThreadItRunsToItsEndAndIsLoggedToTheLastTick) {
   }
 }
 
-/// A device that says what it is told to say.
+/// A simulation that says what it is told to say.
 class ScriptedDevice final : public Device {
  public:
   [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] bool simulated() const noexcept override { return true; }
   DeviceReading read(const Tick&) noexcept override { return reading; }
   void write(const DeviceCommand& given) noexcept override { command = given; }
   [[nodiscard]] DeviceHealth health() const noexcept override { return state; }
