@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <limits>
+#include <new>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -32,6 +33,12 @@ std::string reason_of(int error_number) { return std::generic_category().message
 struct ContextDeleter {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
 };
+using Compressor = std::unique_ptr<ZSTD_CCtx, ContextDeleter>;
+Compressor new_compressor() {
+  Compressor made(ZSTD_createCCtx());
+  if (!made) throw std::bad_alloc();
+  return made;
+}
 
 /// The first and the last time of what was added.
 struct Span {
@@ -76,7 +83,7 @@ struct LogWriter::State {
   std::uint32_t chunks = 0;
   std::uint32_t metadata_records = 0;
   std::optional<Error> first_error;
-  std::unique_ptr<ZSTD_CCtx, ContextDeleter> compressor{ZSTD_createCCtx()};
+  Compressor compressor = new_compressor();
   std::string compressed;
 
   State() = default;
