@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cerrno>
+#include <exception>
 #include <string_view>
 #include <utility>
 
@@ -65,8 +66,15 @@ void Person::listen() {
   const sigset_t set = arming_signal();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
   while (!stopping_.load(std::memory_order_relaxed)) {
-    pass_on();
-    read_what_waits();
+    try {
+      pass_on();
+      read_what_waits();
+    } catch (const std::exception&) {
+      // Without memory for a word nobody is heard.
+      open_ = false;
+      typed_.clear();
+      exchange_->person_lost.store(true, std::memory_order_relaxed);
+    }
   }
   stopped_.store(true, std::memory_order_release);
 }

@@ -15,15 +15,14 @@ Result<SiteWord> parse_site_word(std::string_view line, control::SiteRole role) 
   if (master && word.empty()) return SiteWord::arm;
   std::string known;
   for (const auto& [value, name] : enumerators(SiteWord{})) {
-    if (!master && value != SiteWord::clear) continue;
+    if (!master && value != SiteWord::stop && value != SiteWord::clear) continue;
     if (word == name) return value;
     known += (known.empty() ? "" : ", ") + std::string(name);
   }
   return Error{.code = ErrorCode::syntax,
                .parameter = {},
                .message = "'" + report::printable(word.substr(0, 40)) + "' is no word for the " + name_of(role) +
-                          ": type " + (master ? "one of " : "") + known +
-                          (master ? "" : "; the rest is typed at the master"),
+                          ": type one of " + known + (master ? "" : "; the rest is typed at the master"),
                .place = "standard input"};
 }
 
@@ -44,7 +43,11 @@ void SiteButtons::take(SiteWord word) noexcept {
     case SiteWord::unclutch:
       next_.clutch = false;
       break;
+    case SiteWord::stop:
+      next_.emergency_stop = true;
+      break;
     case SiteWord::clear:
+      next_.emergency_stop = false;
       next_.clear = true;
       break;
   }

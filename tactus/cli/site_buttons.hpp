@@ -15,16 +15,18 @@ enum class SiteWord {
   release,   ///< lets go of it
   clutch,    ///< from now on the hand moves and the slave does not
   unclutch,  ///< from now on the slave follows again
+  stop,      ///< emergency stop of this site: no force, until `clear`
   clear,     ///< leaves a fault
 };
 constexpr auto enumerators(SiteWord) {
   return std::array{Enumerator{SiteWord::arm, "arm"},           Enumerator{SiteWord::press, "press"},
                     Enumerator{SiteWord::release, "release"},   Enumerator{SiteWord::clutch, "clutch"},
-                    Enumerator{SiteWord::unclutch, "unclutch"}, Enumerator{SiteWord::clear, "clear"}};
+                    Enumerator{SiteWord::unclutch, "unclutch"}, Enumerator{SiteWord::stop, "stop"},
+                    Enumerator{SiteWord::clear, "clear"}};
 }
 
-/// A line that was typed, spaces around it left out. At the slave only `clear` has a meaning: all else is asked at the
-/// master. Errors: `syntax`, naming the words that there are.
+/// A line that was typed, spaces around it left out. At the slave only `stop` and `clear` have a meaning: all else is
+/// asked at the master. Errors: `syntax`, naming the words that there are.
 Result<SiteWord> parse_site_word(std::string_view line, control::SiteRole role);
 
 /// The hands of a simulated person on the buttons of a site: turns words into what is pressed, tick by tick. A site

@@ -31,8 +31,8 @@ nlohmann::ordered_json json_of_each(const CountOfEach<Word>& counts) {
 
 std::string second_head(control::SiteRole role) {
   const std::string words = role == control::SiteRole::master
-                                ? "Type arm (or Enter), press, release, clutch, unclutch or clear; "
-                                : "It is armed from the master; type clear to leave a fault; ";
+                                ? "Type arm (or Enter), press, release, clutch, unclutch, stop or clear; "
+                                : "It is armed from the master; type stop, or clear to leave a fault; ";
   return "The " + std::string(name_of(role)) + " runs. " + words +
          "Ctrl-C ends.\n  time  state      cause          limit      fault           round trip      age    loss   "
          "force"

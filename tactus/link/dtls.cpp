@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <new>
 #include <string>
 
 #include <openssl/err.h>
@@ -90,7 +91,8 @@ Check Dtls::start() {
 
 std::unique_ptr<Connection> Dtls::connect(const Socket& socket, FrameSender& frames, std::uint64_t own,
                                           std::uint64_t other) {
-  auto connection = std::make_unique<Connection>();
+  std::unique_ptr<Connection> connection(new (std::nothrow) Connection());
+  if (!connection) return nullptr;  // tried again later, as after any hand-shake that failed
   connection->wire_.socket = &socket;
   connection->wire_.frames = &frames;
   connection->wire_.own = own;

@@ -1,6 +1,7 @@
 #include <tactus/live/internal/server_state.hpp>
 
 #include <array>
+#include <exception>
 #include <utility>
 
 #include <netinet/in.h>
@@ -91,11 +92,15 @@ void Server::State::Client::write() {
   stream_.binary(frame.binary);
   const std::array<asio::const_buffer, 2> bytes{asio::buffer(frame.head),
                                                 frame.payload ? asio::buffer(*frame.payload) : asio::const_buffer{}};
-  stream_.async_write(bytes, [self = shared_from_this()](beast::error_code error, std::size_t) {
-    if (error) return self->close();
-    self->conversation_.outbox().sent();
-    self->write();
-  });
+  try {
+    stream_.async_write(bytes, [self = shared_from_this()](beast::error_code error, std::size_t) {
+      if (error) return self->close();
+      self->conversation_.outbox().sent();
+      self->write();
+    });
+  } catch (const std::exception&) {
+    close();  // for lack of memory
+  }
 }
 
 void Server::State::Client::cork(bool corked) {

@@ -1,6 +1,9 @@
 #include <tactus/live/internal/server_state.hpp>
 
 #include <algorithm>
+#include <chrono>
+#include <exception>
+#include <thread>
 #include <utility>
 
 namespace tactus::live {
@@ -61,15 +64,31 @@ std::vector<std::shared_ptr<Server::State::Client>> Server::State::connected() c
   return all;
 }
 
+/// Who cannot be served for lack of memory goes without; the others are.
+void Server::State::run() noexcept {
+  while (!io.stopped()) {
+    try {
+      if (!accepting) accept();
+      if (!collecting) collect_later();
+      io.run();
+    } catch (const std::exception&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+}
+
 void Server::State::accept() {
   acceptor.async_accept([this](beast::error_code error, Tcp::socket socket) {
+    accepting = false;
     if (error == asio::error::operation_aborted) return;
     if (error) {
       // Out of descriptors, most likely: trying at once again would only burn time.
       timer_for_accept.expires_after(std::chrono::milliseconds(100));
       timer_for_accept.async_wait([this](beast::error_code stopped) {
+        accepting = false;
         if (!stopped) accept();
       });
+      accepting = true;
       return;
     }
     ++accepted;
@@ -83,6 +102,7 @@ void Server::State::accept() {
     }
     accept();
   });
+  accepting = true;
 }
 
 void Server::State::tell_parameters() {
@@ -111,10 +131,17 @@ void Server::State::collect() {
     if (count) client->count_losses();
     client->write();
   }
+}
+
+void Server::State::collect_later() {
   timer.expires_after(duration(options.collect_every_s));
   timer.async_wait([this](beast::error_code stopped) {
-    if (!stopped) collect();
+    collecting = false;
+    if (stopped) return;
+    collect();
+    collect_later();
   });
+  collecting = true;
 }
 
 Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -123,11 +150,7 @@ Server::Server(Server&&) noexcept = default;
 Result<Server> Server::start(const ServerOptions& options, StaticFiles page, Application& application) {
   auto state = std::make_unique<State>(options, std::move(page), application);
   if (auto error = state->listen()) return *std::move(error);
-  state->thread = std::thread([&server = *state] {
-    server.accept();
-    server.collect();
-    server.io.run();
-  });
+  state->thread = std::thread([&server = *state] { server.run(); });
   return Server(std::move(state));
 }
 

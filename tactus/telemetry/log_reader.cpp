@@ -5,10 +5,12 @@
 #include <cerrno>
 #include <cstdio>
 #include <memory>
+#include <new>
 #include <string_view>
 #include <system_error>
 
 #include <zstd.h>
+#include <zstd_errors.h>
 
 namespace tactus::telemetry {
 
@@ -204,7 +206,9 @@ class Scan {
       sound = ZSTD_getFrameContentSize(records.data(), records.size()) == size;
       if (sound) {
         chunk_.resize(static_cast<std::size_t>(size));
-        sound = ZSTD_decompress(chunk_.data(), chunk_.size(), records.data(), records.size()) == size;
+        const std::size_t got = ZSTD_decompress(chunk_.data(), chunk_.size(), records.data(), records.size());
+        if (ZSTD_getErrorCode(got) == ZSTD_error_memory_allocation) throw std::bad_alloc();
+        sound = got == size;
         records = chunk_;
       }
     } else {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <exception>
 #include <limits>
+#include <new>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -32,6 +34,12 @@ std::string reason_of(int error_number) { return std::generic_category().message
 struct ContextDeleter {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
 };
+using Compressor = std::unique_ptr<ZSTD_CCtx, ContextDeleter>;
+Compressor new_compressor() {
+  Compressor made(ZSTD_createCCtx());
+  if (!made) throw std::bad_alloc();
+  return made;
+}
 
 /// The first and the last time of what was added.
 struct Span {
@@ -76,7 +84,7 @@ struct LogWriter::State {
   std::uint32_t chunks = 0;
   std::uint32_t metadata_records = 0;
   std::optional<Error> first_error;
-  std::unique_ptr<ZSTD_CCtx, ContextDeleter> compressor{ZSTD_createCCtx()};
+  Compressor compressor = new_compressor();
   std::string compressed;
 
   State() = default;
@@ -263,7 +271,12 @@ LogWriter::LogWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
 LogWriter::LogWriter(LogWriter&&) noexcept = default;
 LogWriter& LogWriter::operator=(LogWriter&&) noexcept = default;
 LogWriter::~LogWriter() {
-  if (state_) (void)state_->close();
+  if (!state_) return;
+  try {
+    (void)state_->close();
+  } catch (const std::exception&) {
+    // Without memory for its end it is a log that was cut off.
+  }
 }
 
 Result<LogWriter> LogWriter::create(const std::filesystem::path& file) {
@@ -324,6 +337,10 @@ void LogWriter::add_metadata(const std::string& name, const std::map<std::string
 void LogWriter::write(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns,
                       std::span<const unsigned char> cdr) {
   Chunk& chunk = state_->chunk;
+  // All memory first: a message that is half there would spoil the chunk.
+  constexpr std::size_t head_bytes = 1 + 8 + 2 + 4 + 8 + 8;
+  const std::size_t needed = chunk.records.size() + head_bytes + cdr.size();
+  if (needed > chunk.records.capacity()) chunk.records.reserve(std::max(needed, 2 * chunk.records.capacity()));
   chunk.index[channel].push_back({time_ns, chunk.records.size()});
   chunk.span.add(time_ns);
   state_->newest_ns = std::max(state_->newest_ns, time_ns);

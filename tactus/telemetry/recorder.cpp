@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 
 namespace tactus::telemetry {
 
@@ -25,6 +26,7 @@ struct Recorder::State {
   std::uint16_t gaps = 0;
   std::uint32_t gap_sequence = 0;
   std::atomic<bool> stop{false};
+  bool out_of_memory = false;  ///< the thread has ended early
   std::thread thread;
 
   explicit State(LogWriter writer) : log(std::move(writer)) {}
@@ -42,7 +44,15 @@ struct Recorder::State {
     }
   }
 
-  void run(std::chrono::duration<double> flush_every) {
+  void run(std::chrono::duration<double> flush_every) noexcept {
+    try {
+      write_until_stopped(flush_every);
+    } catch (const std::exception&) {
+      out_of_memory = true;
+    }
+  }
+
+  void write_until_stopped(std::chrono::duration<double> flush_every) {
     auto flushed = std::chrono::steady_clock::now();
     while (!stop.load(std::memory_order_acquire)) {
       std::this_thread::sleep_for(look_every);
@@ -58,7 +68,12 @@ struct Recorder::State {
 Recorder::Recorder(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Recorder::Recorder(Recorder&&) noexcept = default;
 Recorder::~Recorder() {
-  if (state_) (void)stop();
+  if (!state_) return;
+  try {
+    (void)stop();
+  } catch (const std::exception&) {
+    // The log is closed without what was waiting.
+  }
 }
 
 Result<Recorder> Recorder::create(const std::filesystem::path& file) {
@@ -89,6 +104,13 @@ Check Recorder::stop() {
   if (!state_->thread.joinable()) return state_->log.close();
   state_->stop.store(true, std::memory_order_release);
   state_->thread.join();
+  if (state_->out_of_memory) {
+    (void)state_->log.close();
+    return Error{.code = ErrorCode::failed,
+                 .parameter = {},
+                 .message = "memory ran out while the log was written: it ends there, and all that came later is lost",
+                 .place = {}};
+  }
   state_->drain();
   (void)state_->log.flush();  // what it loses is told in the gaps below
   state_->drain();

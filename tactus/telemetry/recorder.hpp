@@ -109,7 +109,7 @@ class Recorder {
   /// A chunk is written at least every `flush_every_s`, so a killed process loses no more than that.
   void start(Seconds flush_every = Seconds{0.1});
   /// Ends the thread, writes what is waiting, closes the file. Errors: `unwritable` where anything was lost on the
-  /// disk.
+  /// disk, `failed` where memory ran out on the way.
   Check stop();
 
   /// For each channel in the order of adding, what found its ring full. Any thread.

@@ -114,7 +114,9 @@ class Running {
     return status_.has_value();
   }
   /// Its exit status, patiently; 1000 and more where a signal ended it, -1 where nothing did.
-  int wait() { return eventually([this] { return ended(); }) ? *status_ : -1; }
+  int wait() {
+    return eventually([this] { return ended(); }) ? *status_ : -1;
+  }
 
  private:
   pid_t child_ = -1;
@@ -135,7 +137,7 @@ class ConsoleLost : public Command {
   }
 };
 
-constexpr double rate_Hz = 500.0;
+constexpr double rate_Hz = 1000.0;
 
 /// A slave, and a master whose terminal has stalled, armed.
 struct Pair {
@@ -143,11 +145,21 @@ struct Pair {
       : slave(folder, words("slave", name, slave_port, master_port), name + ".slave.log", Running::Terminal::file),
         master(folder, words("master", name, master_port, slave_port), "", Running::Terminal::stalled) {}
   static Words words(const std::string& site, const std::string& name, int own, int peer) {
-    Words all{"run", TACTUS_EXPERIMENT_FOLDER "/tapping.toml", "--site", site, "--unencrypted", "--out",
-              name + "." + site, "--listen", std::to_string(own), "--peer", "127.0.0.1:" + std::to_string(peer),
-              "--priority", "10"};
+    Words all{"run",
+              TACTUS_EXPERIMENT_FOLDER "/tapping.toml",
+              "--site",
+              site,
+              "--unencrypted",
+              "--out",
+              name + "." + site,
+              "--listen",
+              std::to_string(own),
+              "--peer",
+              "127.0.0.1:" + std::to_string(peer),
+              "--priority",
+              "10"};
     for (const std::string set :
-         {"servo.rate_Hz=500", "plant.longest_step_s=5e-5", "control.supervision.watchdog.timeout_s=0.5",
+         {"servo.rate_Hz=1000", "plant.longest_step_s=5e-5", "control.supervision.watchdog.timeout_s=0.5",
           "control.supervision.longest_stall_s=0.5"}) {
       all.insert(all.end(), {"--set", set});
     }
@@ -203,7 +215,7 @@ struct LongRun : Running {
   LongRun(const fs::path& folder, const std::string& experiment, Terminal terminal)
       : Running(folder,
                 {"run", experiment, "--realtime", "--json", "--out", "results", "--set", "servo.rate_Hz=1000", "--set",
-                 "plant.longest_step_s=5e-5", "--set", "task.observation_s=20", "--priority", "10"},
+                 "plant.longest_step_s=5e-5", "--set", "task.observation_s=10", "--priority", "10"},
                 "out", terminal) {
     EXPECT_TRUE(eventually([&] {
       std::error_code none;

@@ -293,6 +293,22 @@ TEST_P(EndOfASite, IsALossOfForceAtTheRateLimitAndTheOtherHolds) {
 INSTANTIATE_TEST_SUITE_P(, EndOfASite, ::testing::Values(SiteRole::master, SiteRole::slave),
                          [](const auto& role) { return std::string(name_of(role.param)); });
 
+TEST_F(Sites, AnEmergencyStopAtEitherIsLeftByClearingThere) {
+  open(true);
+  run(5005);
+  expect(SiteState::active, SiteState::active);
+  ask(slave, SiteWord::stop);
+  expect(SiteState::hold, SiteState::fault);
+  EXPECT_EQ(slave.second.cause, SiteCause::emergency_stop);
+  ask(slave, SiteWord::clear);
+  expect(SiteState::hold, SiteState::align);
+  ask(master, SiteWord::stop);
+  expect(SiteState::fault, SiteState::align);
+  ask(master, SiteWord::clear);
+  ask(master, SiteWord::arm);
+  expect(SiteState::active, SiteState::active);
+}
+
 TEST_F(Sites, AnEndThatIsInsistedOnIsNoTickMore) {
   open(true);
   run(5005);
@@ -317,7 +333,7 @@ TEST(SiteWords, AreReadFromALineAndAWrongOneNamesThoseThatThereAre) {
   EXPECT_EQ(parse_site_word("clear", SiteRole::slave).value(), SiteWord::clear);
   const auto wrong = parse_site_word("amr", SiteRole::master);
   ASSERT_FALSE(wrong);
-  EXPECT_NE(describe(wrong.error()).find("arm, press, release, clutch, unclutch, clear"), std::string::npos)
+  EXPECT_NE(describe(wrong.error()).find("arm, press, release, clutch, unclutch, stop, clear"), std::string::npos)
       << describe(wrong.error());
   const auto elsewhere = parse_site_word("arm", SiteRole::slave);
   ASSERT_FALSE(elsewhere);

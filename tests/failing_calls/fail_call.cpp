@@ -2,7 +2,8 @@
 //
 //   TACTUS_FAIL_SITES=FILE          appends a line "function site" to FILE when a function is first called from a site
 //   TACTUS_FAIL="function site N"   lets the Nth call of that function from that site fail, and all after it when a `+`
-//                                   stands behind N; a line "failed function site" is appended to FILE
+//                                   stands behind N; a line "failed function site" is appended to FILE, and
+//                                   one "through library(function)" for each that stands between the two
 //
 // A site is the place in the program itself that leads to the call, also through libraries of others: the offsets of
 // the two innermost return addresses in the program. Where there is none, as in a thread of a library, it is the
@@ -91,6 +92,8 @@ struct Walk {
   Site site;
   int depth = 0;
   std::uintptr_t caller = 0;
+  std::array<std::uintptr_t, 16> libraries{};  ///< on the way
+  std::size_t passed = 0;
 };
 
 _Unwind_Reason_Code look(_Unwind_Context* context, void* data) {
@@ -110,6 +113,8 @@ _Unwind_Reason_Code look(_Unwind_Context* context, void* data) {
     (walk.site.in_program ? walk.site.outer : walk.site.inner) = address - program_base;
     if (walk.site.in_program) return _URC_END_OF_STACK;
     walk.site.in_program = true;
+  } else if (walk.passed < walk.libraries.size()) {
+    walk.libraries[walk.passed++] = address;
   }
   return ++walk.depth > 60 ? _URC_END_OF_STACK : _URC_NO_REASON;
 }
@@ -158,7 +163,14 @@ bool fails(const char* function) noexcept {
         std::strcmp(wanted.data() + length + 1, site.data()) == 0) {
       const std::uint64_t call = ++calls_of_wanted;
       failing = call == wanted_call || (and_after && call > wanted_call);
-      if (failing && call == wanted_call) tell("failed ", function, site.data());
+      if (failing && call == wanted_call) {
+        tell("failed ", function, site.data());
+        for (const std::uintptr_t address : walk.libraries) {
+          Dl_info where{};
+          if (address == 0 || dladdr(reinterpret_cast<void*>(address), &where) == 0) continue;
+          tell("through ", where.dli_fname, where.dli_sname == nullptr ? "" : where.dli_sname);
+        }
+      }
     }
   }
   errno = kept;

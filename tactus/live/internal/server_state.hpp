@@ -46,8 +46,10 @@ struct Server::State {
   class Client;
 
   Check listen();
+  void run() noexcept;
   void accept();
   void collect();
+  void collect_later();
   void tell_parameters();
   [[nodiscard]] std::vector<std::shared_ptr<Client>> connected() const;
   [[nodiscard]] bool is_host(std::string_view host) const;
@@ -58,6 +60,7 @@ struct Server::State {
   std::vector<std::string> hosts;  ///< with port
   std::uint16_t port = 0;
   std::size_t connections = 0;
+  bool accepting = false, collecting = false;  ///< something waits that will call it
   std::uint64_t collections = 0;
   ClientId next_client = 1;
   std::map<ClientId, std::weak_ptr<Client>> clients;
