@@ -92,7 +92,7 @@ Result<FrameTags> FrameTags::make(const Key& key, SiteRole own_site) {
 std::span<const std::byte> FrameTags::write(const HandshakeFrame& frame, FrameBytes& bytes) noexcept {
   Writer head(bytes.data());
   head.put(frame_magic);
-  head.put(datagram_version);
+  head.put(frame.version);
   head.put(site_byte(own_site_));
   head.put(std::uint8_t{0});
   head.put(frame.session);

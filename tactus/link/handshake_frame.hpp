@@ -16,10 +16,10 @@ namespace tactus::link {
 /// the other site it answers, a number, and a tag that only who knows the key can make. A frame without records is a
 /// greeting. docs/reference/wire-format.md shows the bytes.
 struct HandshakeFrame {
-  std::uint64_t session = 0;           ///< drawn by the sender for this hand-shake, never 0
-  std::uint64_t peer = 0;              ///< the session of the other site that it answers, 0 for none
-  std::uint64_t number = 0;            ///< from 1, one more for each frame of the sender
-  std::span<const std::byte> records;  ///< of DTLS
+  std::uint64_t session = 0;             ///< drawn by the sender for this hand-shake, never 0
+  std::uint64_t peer = 0;                ///< the session of the other site that it answers, 0 for none
+  std::uint64_t number = 0;              ///< from 1, one more for each frame of the sender
+  std::span<const std::byte> records{};  ///< of DTLS
   std::uint16_t version = datagram_version;
 };
 

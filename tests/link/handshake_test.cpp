@@ -1,4 +1,5 @@
 #include <tactus/link/handshake_frame.hpp>
+#include <tactus/link/internal/handshake_inbox.hpp>
 
 #include <array>
 #include <cstdint>
@@ -84,6 +85,51 @@ TEST(HandshakeFrame, IsJudgedWithoutAllocating) {
   bytes[60] ^= std::byte{1};
   EXPECT_EQ(slave.read(written, read), Verdict::forged);
   EXPECT_EQ(laws::own_allocation_count(), before);
+}
+
+TEST(HandshakeFrame, OfAnotherVersionIsKnownByItsVersionAlone) {
+  FrameTags master = tags_of(SiteRole::master), slave = tags_of(SiteRole::slave);
+  FrameBytes bytes;
+  const auto written = master.write({.session = 5, .peer = 6, .number = 7, .version = datagram_version + 1}, bytes);
+  HandshakeFrame read;
+  EXPECT_EQ(slave.read(written, read), Verdict::version);
+  EXPECT_EQ(read.version, datagram_version + 1);
+  EXPECT_EQ(read.session, 0U);
+}
+
+TEST(HandshakeInbox, RecordedBeginningsTakeNoRoomFromTheHandshakeUnderWay) {
+  HandshakeInbox inbox(SiteRole::slave);
+  inbox.expect(8, 9);
+  for (std::uint64_t i = 0; i < 10'000; ++i) inbox.take({.session = 5, .peer = i % 2 == 0 ? 0U : 8U, .number = i});
+  EXPECT_EQ(inbox.take({.session = 9, .peer = 8, .number = 20, .records = records}),
+            HandshakeInbox::Verdict::passed_on);
+  HandshakeLetter letter;
+  ASSERT_TRUE(inbox.next_under_way(letter));
+  EXPECT_EQ(letter.session, 9U);
+  EXPECT_EQ(letter.number, 20U);
+  EXPECT_EQ(letter.records().size(), records.size());
+}
+
+TEST(HandshakeInbox, OfTheHandshakeUnderWayEachFrameComesInOnce) {
+  HandshakeInbox inbox(SiteRole::slave);
+  inbox.expect(8, 9);
+  const auto take = [&inbox](std::uint64_t number) { return inbox.take({.session = 9, .peer = 8, .number = number}); };
+  EXPECT_EQ(take(20), HandshakeInbox::Verdict::passed_on);
+  for (int i = 0; i < 1000; ++i) EXPECT_EQ(take(20), HandshakeInbox::Verdict::refused);
+  EXPECT_EQ(take(22), HandshakeInbox::Verdict::passed_on);
+  EXPECT_EQ(take(21), HandshakeInbox::Verdict::passed_on) << "late";
+  EXPECT_EQ(take(21), HandshakeInbox::Verdict::refused);
+  HandshakeLetter letter;
+  EXPECT_FALSE(inbox.next_beginning(letter));
+}
+
+TEST(HandshakeInbox, AClientTakesOnlyWhatAnswersIt) {
+  HandshakeInbox inbox(SiteRole::master);
+  EXPECT_EQ(inbox.take({.session = 9, .peer = 0, .number = 1}), HandshakeInbox::Verdict::refused)
+      << "it shakes no hands";
+  inbox.expect(8, 0);
+  EXPECT_EQ(inbox.take({.session = 9, .peer = 7, .number = 1}), HandshakeInbox::Verdict::refused);
+  EXPECT_EQ(inbox.take({.session = 9, .peer = 8, .number = 2}), HandshakeInbox::Verdict::passed_on);
 }
 
 }  // namespace handshake_test
