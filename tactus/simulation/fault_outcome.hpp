@@ -44,7 +44,7 @@ struct FaultOutcome {
   bool left_workspace = false;             ///< a device was beyond where its gate latches a fault, whatever it read
   bool active_at_end = false;              ///< both, after clearing and arming where that was needed
   double resume_step_N = 0.0;  ///< largest change of a force in a tick, from arming to 20 ms after following began
-  SiteHarm master, slave;
+  SiteHarm master{}, slave{};
 };
 
 }  // namespace tactus::simulation

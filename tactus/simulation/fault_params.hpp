@@ -19,8 +19,8 @@ struct HarmBounds {
   double speed_m_per_s = 2.5;
   double strayed_m = 0.05;
   double hand_force_N = 20.0;
-  double tool_force_N = 20.0;
-  double release_s = 0.5;
+  double tool_force_N = 90.0;
+  double release_s = 5.0;
   static constexpr auto fields() {
     return std::tuple{
         field("given_J", &HarmBounds::given_J, units::joule, positive, "Energy that a motor may give."),

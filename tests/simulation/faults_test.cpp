@@ -119,6 +119,25 @@ TEST(Faults, BadNumbersGoThroughEveryInputValueStateAndSiteOnce) {
   EXPECT_LE(BadNumber::choices, 1000) << "a thousand seeds try all of them";
 }
 
+/// A choice that changes nothing would be a fault survived for free.
+TEST(Faults, EveryBadNumberReachesAnInputOfTheSiteThatItIsMeantFor) {
+  for (std::int64_t choice = 0; choice < BadNumber::choices; ++choice) {
+    const BadNumber bad = BadNumber::of(choice);
+    control::MasterInput at_master;
+    control::SlaveInput at_slave;
+    control::Packet packet;
+    bad.spoil(packet);
+    bad.at_master ? bad.spoil(at_master) : bad.spoil(at_slave);
+    const bool sensors =
+        bad.at_master ? at_master.motor_position_m != 0.0 || at_master.hand_force_N != 0.0 || at_master.grip != 1.0
+                      : at_slave.motor_position_m != 0.0 || at_slave.tip_force_N != 0.0;
+    const bool told = packet.age_s != 0.0 || packet.message.position_m != 0.0 ||
+                      packet.message.velocity_m_per_s != 0.0 || packet.message.force_N != 0.0 ||
+                      packet.message.wave != 0.0 || packet.message.energy_J != 0.0;
+    EXPECT_TRUE(sensors || told) << "choice " << choice;
+  }
+}
+
 /// The share of lost packets of a chain of two states is known in closed form: begins / (begins + ends) · loss.
 TEST(ImpairedLink, LosesTheShareOfGilbertAndElliottAndInBurstsOfTheirMeanLength) {
   const Impairment impairment{.burst_begins_fraction = 0.01, .burst_ends_fraction = 0.1, .burst_loss_fraction = 1.0};
