@@ -49,13 +49,13 @@ Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& r
   ServoThreadParams clock = servo;
   clock.rate_Hz = params->servo.rate_Hz;
   if (auto error = check_servo_thread(clock)) return *std::move(error);
-  const auto tallies = simulation::run_faults(*params, [&progress](double done) { progress(0.5 * done); });
-  if (!tallies) return request.document.locate(tallies.error());
+  const auto table = simulation::run_faults(*params, [&progress](double done) { progress(0.5 * done); });
+  if (!table) return request.document.locate(table.error());
 
   simulation::FaultsInRealTime real{.params = *params, .tallies = {}, .timing = {}, .timing_json = {}};
   real.params.task.seeds = params->task.real_time_seeds;
   real.params.task.longest_cut_s = std::min(longest_cut_s, params->task.longest_cut_s);
-  const auto rows = simulation::fault_rows();
+  const auto rows = simulation::fault_rows(params->task.only);
   std::vector<FaultRun> runs;
   for (const auto& row : rows) {
     const auto of = simulation::params_of(row, real.params);
@@ -77,7 +77,7 @@ Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& r
   }
   real.timing = {timing_table(kept), late_ticks_table(kept)};
   real.timing_json = servo_json(kept);
-  return simulation::present_faults(request, *params, *tallies, real);
+  return simulation::present_faults(request, *params, *table, real);
 }
 
 }  // namespace tactus::runtime

@@ -1,14 +1,11 @@
 #include <tactus/simulation/fault_plan.hpp>
-
-#include <cmath>
+#include <tactus/simulation/internal/fault_families.hpp>
 
 namespace tactus::simulation {
 
-namespace {
+using namespace fault_families;
 
-double between_logarithms(signal::Random& random, double lower, double upper) {
-  return lower * std::pow(upper / lower, random.uniform());
-}
+namespace {
 
 Impairment draw_impairment(FaultKind kind, signal::Random& random) {
   Impairment impairment;
@@ -76,6 +73,9 @@ FaultPlan draw_plan(FaultKind kind, std::int64_t index, std::int64_t seed, doubl
     case FaultKind::delayed_wall:
       plan.length_s = 3.0;
       break;
+    default:
+      draw_device(plan, random, sign);
+      draw_course(plan, random, sign);
   }
   plan.impairment = draw_impairment(kind, random);
   return plan;

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <tactus/control/site_supervisor.hpp>
+#include <tactus/simulation/fault_moment.hpp>
+#include <tactus/simulation/internal/fault_schedule.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace tactus::simulation {
+
+/// The person of a run: where the hand means to be and which buttons are pressed when. Drawn by the plan's seed.
+class FaultPerson {
+ public:
+  /// `wall_m` is where the slave meets the wall, on the master's side.
+  FaultPerson(const FaultPlan& plan, double wall_m) : wall_m_(wall_m), leans_(plan.kind == FaultKind::delayed_wall) {
+    signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(3);
+    phase_cycles_ = random.uniform();
+    tap_Hz_ = random.uniform(0.6, 1.2);
+    depth_m_ = random.uniform(0.004, 0.012);
+  }
+
+  /// Taps as a raised cosine, the wall in the middle of the way; or presses on it and stays.
+  [[nodiscard]] double path_m(double time_s) const noexcept {
+    using std::numbers::pi;
+    const double lean_s = time_s - fault_schedule::press_s;
+    if (leans_) return wall_m_ - depth_m_ * std::cos(pi * std::clamp(2.0 * lean_s, 0.0, 1.0));
+    return wall_m_ - depth_m_ * std::cos(2.0 * pi * (tap_Hz_ * time_s + 0.1 * phase_cycles_));
+  }
+  /// How far to either side of the wall the path goes.
+  [[nodiscard]] double depth_m() const noexcept { return depth_m_; }
+  [[nodiscard]] double wall_m() const noexcept { return wall_m_; }
+
+  /// What is pressed: what starts a session, and after the fault's end at `end_s`, where that is needed, what starts it
+  /// again.
+  [[nodiscard]] static control::SiteRequests presses(double now_s, double end_s, bool rearms) noexcept {
+    using namespace fault_schedule;
+    const auto within = [now_s](double begin_s) { return now_s >= begin_s && now_s < begin_s + button_s; };
+    control::SiteRequests pressed{.align = within(align_s), .arm = within(arm_s), .dead_man = now_s >= press_s};
+    if (now_s > end_s + look_after_s && rearms) {
+      pressed.clear = within(end_s + clear_after_s);
+      pressed.align = within(end_s + realign_after_s);
+      pressed.arm = within(end_s + rearm_after_s);
+      pressed.dead_man = now_s >= end_s + repress_after_s;
+    }
+    return pressed;
+  }
+
+ private:
+  double wall_m_;
+  bool leans_;
+  double phase_cycles_ = 0.0, tap_Hz_ = 1.0, depth_m_ = 0.01;
+};
+
+}  // namespace tactus::simulation
