@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/agreement.hpp>
 #include <tactus/control/site.hpp>
 #include <tactus/core/parameters.hpp>
 
@@ -26,6 +27,7 @@ struct Packet {
   SiteState state = SiteState::configure;
   std::int64_t armings = 0;  ///< how often the master was armed; a slave repeats the one that it follows
   Message message{};
+  AgreementExcerpt agreement{};
 };
 
 /// Which session of the other site counts: the one that was taken up last. One that was left is never taken up again;
@@ -66,7 +68,8 @@ constexpr auto enumerators(PacketVerdict) {
 
 /// Decides which packets count: of a session the newest wins, a late or repeated one changes nothing, one that is too
 /// old is not applied at all, and a session that was left is never taken up again. A message with a number that is
-/// none, or one that no site could mean, is refused.
+/// none, or one that no site could mean, is refused. Of the energy what was added since the packet before is
+/// judged: a running total has no bound.
 class PacketJudge {
  public:
   struct Params {
@@ -85,14 +88,16 @@ class PacketJudge {
   using Input = Packet;
   using Output = PacketVerdict;
 
-  /// Velocities, waves and energies beyond this are refused, in their units.
+  /// Velocities and waves beyond this are refused, in their units.
   static constexpr double largest_other = 1e6;
+  /// No gate lets a device move faster, so no more energy is sent in a tick than the force limit does at this speed.
+  static constexpr double fastest_m_per_s = 100.0;
   /// No person arms a master more often.
   static constexpr std::int64_t most_armings = 1'000'000'000;
 
   static Result<PacketJudge> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);
-    return PacketJudge(params);
+    return PacketJudge(params, dt);
   }
 
   /// Judges one packet; what it says counts only where this is `applied`. Real-time safe.
@@ -104,13 +109,14 @@ class PacketJudge {
     if (!is_plausible(packet)) return PacketVerdict::implausible;
     if (packet.session != sessions_.current()) sessions_.take_up(packet.session);
     sequence_ = packet.sequence;
+    energy_J_ = packet.message.energy_J;
     return PacketVerdict::applied;
   }
   /// As made: no session.
-  void reset() noexcept { *this = PacketJudge(params_); }
+  void reset() noexcept { *this = PacketJudge(params_, Seconds{dt_s_}); }
 
  private:
-  explicit PacketJudge(const Params& params) : params_(params) {}
+  PacketJudge(const Params& params, Seconds dt) : params_(params), dt_s_(dt.value) {}
 
   [[nodiscard]] bool is_plausible(const Packet& packet) const noexcept {
     const Message& message = packet.message;
@@ -118,12 +124,22 @@ class PacketJudge {
            std::fabs(message.position_m) <= params_.position_limit_m &&
            std::fabs(message.force_N) <= params_.force_limit_N &&
            std::fabs(message.velocity_m_per_s) <= largest_other && std::fabs(message.wave) <= largest_other &&
-           std::fabs(message.energy_J) <= largest_other;
+           could_have_sent(packet);
+  }
+  /// Whether the sender can have added so much energy since the packet that was applied before, or since its session
+  /// began.
+  [[nodiscard]] bool could_have_sent(const Packet& packet) const noexcept {
+    const bool same = packet.session == sessions_.current();
+    const double elapsed_s = static_cast<double>(packet.sequence - (same ? sequence_ : 0)) * dt_s_;
+    const double added_J = packet.message.energy_J - (same ? energy_J_ : 0.0);
+    return std::fabs(added_J) <= params_.force_limit_N * fastest_m_per_s * elapsed_s;
   }
 
   Params params_;
+  double dt_s_;
   Sessions sessions_;
   std::int64_t sequence_ = 0;
+  double energy_J_ = 0.0;
 };
 
 }  // namespace tactus::control

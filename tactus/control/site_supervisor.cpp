@@ -5,6 +5,7 @@
 namespace tactus::control {
 
 SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
+  if (input.disagrees) return SiteCause::disagreement;
   if (input.energy) return SiteCause::energy;
   if (input.force_sensor) return SiteCause::force_sensor;
   if (input.stalled) return SiteCause::stalled;
@@ -26,7 +27,7 @@ void SiteSupervisor::go(SiteState state, SiteCause cause, const Input& input) no
 void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
   const bool master = role_ == SiteRole::master;
   // An energy latch is no obstacle: arming empties the account.
-  const bool may = input.heard && !input.silent && !input.stalled;
+  const bool may = input.heard && !input.disagrees && !input.silent && !input.stalled;
   if (!may || !(master ? asked : input.peer_armings != over_ && input.peer == SiteState::armed)) return;
   armings_ = master ? std::max(armings_, input.peer_armings) + 1 : input.peer_armings;
   state_ = SiteState::armed;
@@ -63,6 +64,11 @@ SiteState SiteSupervisor::step(const Input& input) noexcept {
     if (align) state_ = SiteState::align;
   } else if (state_ == SiteState::align || state_ == SiteState::hold) {
     arm_where_asked(input, arm);
+    if (input.disagrees) {
+      cause_ = SiteCause::disagreement;
+    } else if (cause_ == SiteCause::disagreement) {
+      cause_ = SiteCause::other_session;
+    }
   } else if (state_ == SiteState::fault) {
     // The gate is re-armed on the way out; a cause that is still there closes it again.
     if (clear) go(SiteState::align, cause_, input);

@@ -21,7 +21,8 @@ enum class SiteCause {
   force_sensor,
   energy,
   gate,
-  unanswered
+  unanswered,
+  disagreement
 };
 constexpr auto enumerators(SiteCause) {
   return std::array{Enumerator{SiteCause::none, "none"},
@@ -34,7 +35,8 @@ constexpr auto enumerators(SiteCause) {
                     Enumerator{SiteCause::force_sensor, "force-sensor"},
                     Enumerator{SiteCause::energy, "energy"},
                     Enumerator{SiteCause::gate, "gate"},
-                    Enumerator{SiteCause::unanswered, "unanswered"}};
+                    Enumerator{SiteCause::unanswered, "unanswered"},
+                    Enumerator{SiteCause::disagreement, "disagreement"}};
 }
 
 enum class SiteRole { master, slave };
@@ -64,6 +66,7 @@ struct SiteRequests {
 /// becomes active only once the slave does. Either site falls into hold when the other holds under the same number, or
 /// under any while this one is active, or was restarted; so one that was cut off alone does not come back with an
 /// arming that is over, and nothing but a new one leads out. An arming that the slave does not answer is given up.
+/// While the other site works by other parameters, nothing is armed; it must be started anew.
 class SiteSupervisor {
  public:
   struct Params {
@@ -78,6 +81,7 @@ class SiteSupervisor {
     std::int64_t session = 0;  ///< of the other site
     SiteState peer = SiteState::configure;
     std::int64_t peer_armings = 0;
+    bool disagrees = false;     ///< the other site works by other parameters
     bool silent = false;        ///< the watchdog barks
     bool unanswered = false;    ///< the slave has not followed the arming for too long
     bool stalled = false;       ///< this site was not stepped for too long

@@ -1,3 +1,4 @@
+#include <tactus/control/agreed_parameters.hpp>
 #include <tactus/control/supervised_site.hpp>
 
 #include <cmath>
@@ -65,7 +66,8 @@ SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
 Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt) {
   auto sites = make_sites(params, dt);
   if (!sites) return sites.error();
-  const auto supervision = Supervision::make(params.supervision, SiteRole::master, session, dt);
+  const auto supervision =
+      Supervision::make(params.supervision, SiteRole::master, session, dt, agreement_of(params, dt));
   if (!supervision) return under("supervision", supervision.error());
   return SupervisedMaster(std::move(sites->master), *supervision);
 }
@@ -73,7 +75,8 @@ Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt) {
   auto sites = make_sites(params, dt);
   if (!sites) return sites.error();
-  const auto supervision = Supervision::make(params.supervision, SiteRole::slave, session, dt);
+  const auto supervision =
+      Supervision::make(params.supervision, SiteRole::slave, session, dt, agreement_of(params, dt));
   if (!supervision) return under("supervision", supervision.error());
   const auto force_sensor = ForceSensorCheck::make(params.supervision.force_sensor, dt);
   if (!force_sensor) return under("supervision.force_sensor", force_sensor.error());

@@ -34,6 +34,7 @@ class SupervisedMaster {
   Output step(const Input& input) noexcept;
 
   [[nodiscard]] SiteState state() const noexcept { return supervision_.state(); }
+  [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
   [[nodiscard]] const MasterSite& site() const noexcept { return site_; }
 
  private:
@@ -67,6 +68,7 @@ class SupervisedSlave {
   Output step(const Input& input) noexcept;
 
   [[nodiscard]] SiteState state() const noexcept { return supervision_.state(); }
+  [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
   [[nodiscard]] const SlaveSite& site() const noexcept { return site_; }
 
  private:

@@ -4,8 +4,8 @@
 
 namespace tactus::control {
 
-Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole role, std::int64_t session,
-                                      Seconds dt) {
+Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt,
+                                      const Agreement& agreement) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
   if (session == 0) {
     return Error{.code = ErrorCode::out_of_bounds,
@@ -23,13 +23,14 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   if (!answer) return answer.error();
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return Supervision(*judge, *follower, *watchdog, *answer, *supervisor, role, params, session, dt);
+  return Supervision(*judge, *follower, *watchdog, *answer, *supervisor, role, params, session, dt, agreement);
 }
 
 PacketVerdict Supervision::take(const Packet& packet) noexcept {
   const PacketVerdict verdict = judge_.step(packet);
   if (verdict == PacketVerdict::applied) {
     newest_ = packet;
+    agreement_.take(packet.session, packet.agreement);
     arrived_ = true;
   } else {
     ++refused_;
@@ -60,6 +61,7 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
                            .session = newest_.session,
                            .peer = newest_.state,
                            .peer_armings = newest_.armings,
+                           .disagrees = agreement_.disagrees(),
                            .silent = silent,
                            .unanswered = unanswered(),
                            .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
@@ -91,7 +93,8 @@ Packet Supervision::packet(const Message& message) noexcept {
           .age_s = 0.0,
           .state = state(),
           .armings = supervisor_.armings(),
-          .message = message};
+          .message = message,
+          .agreement = agreement_.own().excerpt(sequence_)};
 }
 
 SiteRecord Supervision::record() const noexcept {
@@ -104,7 +107,8 @@ SiteRecord Supervision::record() const noexcept {
           .fresh = fresh_,
           .silence_s = watchdog_.silence_s(),
           .share = share_,
-          .gap_m = follower_.gap_m()};
+          .gap_m = follower_.gap_m(),
+          .differs = static_cast<std::int64_t>(agreement_.first_difference())};
 }
 
 }  // namespace tactus::control

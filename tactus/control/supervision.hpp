@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/agreement.hpp>
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
 #include <tactus/control/packet.hpp>
@@ -56,13 +57,14 @@ struct SiteRecord {
   double offset_m = 0.0;
   double gap_m = 0.0;
   double given_J = 0.0;
+  std::int64_t differs = 0;
   static constexpr auto signals() {
     return std::tuple{
         observed("state", &SiteRecord::state, units::none, "", "", "",
                  "0 configure, 1 align, 2 armed, 3 active, 4 hold, 5 fault."),
         observed("cause", &SiteRecord::cause, units::none, "", "", "",
                  "Why the site does not follow: 0 none, 1 started, 2 dead-man, 3 silent, 4 stalled, 5 other-session, "
-                 "6 peer, 7 force-sensor, 8 energy, 9 gate, 10 unanswered."),
+                 "6 peer, 7 force-sensor, 8 energy, 9 gate, 10 unanswered, 11 disagreement."),
         observed("limit", &SiteRecord::limit, units::none, "", "", "",
                  "What changes the force right now: 0 none, 1 energy, 2 workspace, 3 velocity, 4 force, 5 rate."),
         observed("fault", &SiteRecord::fault, units::none, "", "", "",
@@ -81,14 +83,18 @@ struct SiteRecord {
         observed("gap_m", &SiteRecord::gap_m, units::metre, "", "", "toward the environment",
                  "What is still to be caught up of the other's position."),
         observed("given_J", &SiteRecord::given_J, units::joule, "", "", "the motor gave it",
-                 "Account of the passivity monitor.")};
+                 "Account of the passivity monitor."),
+        observed("differs", &SiteRecord::differs, units::none, "", "", "",
+                 "Cell of the agreement in which the other site is known to differ, from 1; 0 for none.")};
   }
 };
 
 /// One site's half of the link, its watchdog and its state: what both sites have in common.
 class Supervision {
  public:
-  static Result<Supervision> make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt);
+  /// A site whose other half does not have `agreement` in common with it is never armed.
+  static Result<Supervision> make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt,
+                                  const Agreement& agreement = {});
 
   /// What the site itself saw, for `decide`.
   struct Sight {
@@ -113,6 +119,8 @@ class Supervision {
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
   [[nodiscard]] SiteState before() const noexcept { return before_; }
+  /// What the other site has in common with this one.
+  [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }
   /// Whether the site leaves what its gate or its controller latched, at this tick.
   [[nodiscard]] bool rearms() const noexcept;
   /// Everything that supervision itself knows; the rest is the site's to fill in.
@@ -122,7 +130,7 @@ class Supervision {
   [[nodiscard]] bool unanswered() noexcept;
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
               const Watchdog& answer, const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params,
-              std::int64_t session, Seconds dt)
+              std::int64_t session, Seconds dt, const Agreement& agreement)
       : judge_(judge),
         follower_(follower),
         watchdog_(watchdog),
@@ -132,7 +140,8 @@ class Supervision {
         dt_s_(dt.value),
         longest_stall_s_(params.longest_stall_s),
         blend_step_(dt.value / params.blend_s),
-        session_(session) {}
+        session_(session),
+        agreement_(agreement) {}
 
   PacketJudge judge_;
   MessageFollower follower_;
@@ -145,6 +154,7 @@ class Supervision {
   double blend_step_;
   std::int64_t session_;
   std::int64_t sequence_ = 0;
+  AgreementCheck agreement_;
   Packet newest_;
   bool arrived_ = false;
   bool fresh_ = false;

@@ -7,6 +7,8 @@ namespace tactus::link {
 namespace {
 
 constexpr std::uint32_t magic = 0x31544354;  // "TCT1" in the order of the bytes
+/// Of magic and version, which stand at the same place in every version.
+constexpr std::size_t head_bytes = 6;
 constexpr std::uint8_t master_byte = 1, slave_byte = 2;
 
 /// Writes numbers one after the other, lowest byte first.
@@ -24,7 +26,7 @@ class Writer {
   std::byte* at_;
 };
 
-/// Reads them back. The size was checked before.
+/// Reads them back. Where there are so many bytes was checked before.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : at_(bytes.data()) {}
@@ -65,14 +67,18 @@ DatagramBytes encode(const Datagram& datagram) noexcept {
   out.put_double(packet.message.force_N);
   out.put_double(packet.message.wave);
   out.put_double(packet.message.energy_J);
+  out.put(packet.agreement.digest);
+  out.put(packet.agreement.cell);
+  out.put(packet.agreement.value);
   return bytes;
 }
 
 Refusal decode(std::span<const std::byte> bytes, Datagram& datagram) noexcept {
-  if (bytes.size() != datagram_bytes) return Refusal::size;
+  if (bytes.size() < head_bytes) return Refusal::size;
   Reader in(bytes);
   if (in.get<std::uint32_t>() != magic) return Refusal::magic;
   if (in.get<std::uint16_t>() != datagram_version) return Refusal::version;
+  if (bytes.size() != datagram_bytes) return Refusal::size;
   const auto site = in.get<std::uint8_t>();
   if (site != master_byte && site != slave_byte) return Refusal::site;
   const auto state = in.get<std::uint8_t>();
@@ -95,8 +101,15 @@ Refusal decode(std::span<const std::byte> bytes, Datagram& datagram) noexcept {
   packet.message.force_N = in.get_double();
   packet.message.wave = in.get_double();
   packet.message.energy_J = in.get_double();
+  packet.agreement.digest = in.get<std::uint64_t>();
+  packet.agreement.cell = in.get<std::uint64_t>();
+  packet.agreement.value = in.get<std::uint64_t>();
   datagram = read;
   return Refusal::none;
+}
+
+std::uint16_t version_of(std::span<const std::byte> bytes) noexcept {
+  return Reader(bytes.subspan(sizeof(magic))).get<std::uint16_t>();
 }
 
 }  // namespace tactus::link

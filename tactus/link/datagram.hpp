@@ -27,9 +27,9 @@ struct Datagram {
 /// Why bytes are not a datagram.
 enum class Refusal : std::uint8_t {
   none,
-  size,     ///< other than `datagram_bytes`
   magic,    ///< does not begin as a datagram of tactus
-  version,  ///< of another version of the format
+  version,  ///< of another version of the format, whatever its size
+  size,     ///< other than `datagram_bytes`
   site,     ///< neither master nor slave
   state,    ///< a state that there is not
   session,  ///< session 0, or a sequence that is not positive
@@ -37,9 +37,9 @@ enum class Refusal : std::uint8_t {
 };
 
 /// Bytes of every datagram: all have the same size.
-inline constexpr std::size_t datagram_bytes = 104;
+inline constexpr std::size_t datagram_bytes = 128;
 /// The version of the format that this library speaks.
-inline constexpr std::uint16_t datagram_version = 2;
+inline constexpr std::uint16_t datagram_version = 3;
 using DatagramBytes = std::array<std::byte, datagram_bytes>;
 
 /// The bytes of a datagram, little endian on every host: docs/reference/wire-format.md. Real-time safe.
@@ -48,5 +48,8 @@ DatagramBytes encode(const Datagram& datagram) noexcept;
 /// What bytes from anywhere say. `datagram` is filled where the result is `none` and untouched otherwise. Every input
 /// is answered: nothing else can happen. Whether the message makes sense is for `control::PacketJudge`. Real-time safe.
 Refusal decode(std::span<const std::byte> bytes, Datagram& datagram) noexcept;
+
+/// The version of the format that bytes are of which `decode` refused for it. Real-time safe.
+std::uint16_t version_of(std::span<const std::byte> bytes) noexcept;
 
 }  // namespace tactus::link

@@ -43,9 +43,11 @@ std::span<const control::Packet> Endpoint::receive(std::int64_t now_ns) noexcept
     const auto packets = socket_->receive();
     for (const Packet& packet : packets) {
       if (secure_ && !secure_->open(packet, opened)) continue;
+      const auto bytes = secure_ ? std::span<const std::byte>(opened) : packet.bytes();
       Datagram datagram;
-      if (decode(secure_ ? std::span<const std::byte>(opened) : packet.bytes(), datagram) != Refusal::none) {
+      if (const Refusal refusal = decode(bytes, datagram); refusal != Refusal::none) {
         ++malformed_;
+        if (refusal == Refusal::version) other_version_ = version_of(bytes);
       } else if (inbound_.take(datagram, now_ns) == Inbound::Verdict::counted) {
         packets_[count++] = datagram.packet;
       }
@@ -82,6 +84,7 @@ Endpoint::Counters Endpoint::counters() const noexcept {
           .sent = sent_,
           .unsent = unsent_,
           .malformed = malformed_,
+          .other_version = other_version_,
           .expected = inbound_.expected(),
           .arrived = inbound_.arrived()};
 }

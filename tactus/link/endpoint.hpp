@@ -41,10 +41,11 @@ class Endpoint {
     Inbound::Counters inbound;
     SecureChannel::Counters secure;  ///< zeros in plain text
     std::uint64_t sent = 0;
-    std::uint64_t unsent = 0;     ///< not taken by the kernel, or no keys yet
-    std::uint64_t malformed = 0;  ///< plain text or authentic, but no datagram
-    std::uint64_t expected = 0;   ///< of the other's session so far
-    std::uint64_t arrived = 0;    ///< of those
+    std::uint64_t unsent = 0;         ///< not taken by the kernel, or no keys yet
+    std::uint64_t malformed = 0;      ///< plain text or authentic, but no datagram
+    std::uint16_t other_version = 0;  ///< of the format that the other site speaks, where that is another one
+    std::uint64_t expected = 0;       ///< of the other's session so far
+    std::uint64_t arrived = 0;        ///< of those
   };
 
   /// Opens the socket and starts to shake hands. Errors: an address that cannot be used; `inconsistent` for plain text
@@ -83,6 +84,7 @@ class Endpoint {
   std::uint64_t sent_ = 0;
   std::uint64_t unsent_ = 0;
   std::uint64_t malformed_ = 0;
+  std::uint16_t other_version_ = 0;
 };
 
 }  // namespace tactus::link

@@ -170,5 +170,28 @@ TEST(PacketJudge, ANumberThatIsNoneOrThatNoSiteCouldMeanIsRefusedWhereverItStand
   }
 }
 
+TEST(PacketJudge, ARunningTotalOfEnergyMayGrowForDaysButNotJump) {
+  PacketJudge judge = PacketJudge::make({}, tick).value();
+  const auto told = [&judge](std::int64_t session, std::int64_t sequence, double energy_J) {
+    return judge.step({.session = session, .sequence = sequence, .message = {.energy_J = energy_J}});
+  };
+  // 10 W for 100 hours at the tick of 0.2 ms, looked at once a minute.
+  constexpr double power_W = 10.0;
+  std::int64_t sequence = 0;
+  for (int minute = 0; minute < 6000; ++minute) {
+    sequence += 300'000;
+    ASSERT_EQ(told(5, sequence, power_W * tick.value * static_cast<double>(sequence)), PacketVerdict::applied)
+        << minute;
+  }
+  const double total_J = power_W * tick.value * static_cast<double>(sequence);
+  ASSERT_GT(total_J, 2e6);
+  EXPECT_EQ(told(5, sequence + 1, total_J + 1e3), PacketVerdict::implausible);
+  EXPECT_EQ(told(5, sequence + 1, 0.0), PacketVerdict::implausible);
+  EXPECT_EQ(told(5, sequence + 1, total_J), PacketVerdict::applied);
+  EXPECT_EQ(told(6, 1, 0.0), PacketVerdict::applied) << "a site that was started anew counts anew";
+  EXPECT_EQ(told(7, 1, 1e3), PacketVerdict::implausible) << "nor does a session begin with a jump";
+  EXPECT_EQ(told(7, sequence, total_J), PacketVerdict::applied) << "it is taken up at any time";
+}
+
 }  // namespace safety_checks_test
 }  // namespace tactus::control

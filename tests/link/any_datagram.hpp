@@ -33,6 +33,7 @@ inline rc::Gen<Datagram> any_datagram() {
     datagram.packet.state = static_cast<control::SiteState>(bits() % 6);
     datagram.packet.armings = whole();
     datagram.packet.message = {number(), number(), number(), number(), number()};
+    datagram.packet.agreement = {.digest = bits(), .cell = bits(), .value = bits()};
     datagram.peer_session = whole();
     datagram.sent_ns = time();
     datagram.echo_sent_ns = time();
@@ -52,7 +53,9 @@ inline bool alike(const Datagram& a, const Datagram& b) {
          a.echo_sent_ns == b.echo_sent_ns && a.echo_hold_ns == b.echo_hold_ns &&
          same(p.message.position_m, q.message.position_m) &&
          same(p.message.velocity_m_per_s, q.message.velocity_m_per_s) && same(p.message.force_N, q.message.force_N) &&
-         same(p.message.wave, q.message.wave) && same(p.message.energy_J, q.message.energy_J);
+         same(p.message.wave, q.message.wave) && same(p.message.energy_J, q.message.energy_J) &&
+         p.agreement.digest == q.agreement.digest && p.agreement.cell == q.agreement.cell &&
+         p.agreement.value == q.agreement.value;
 }
 
 }  // namespace tactus::link::testing

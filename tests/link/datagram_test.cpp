@@ -23,17 +23,19 @@ TEST(Datagram, EveryDatagramIsReadAsItWasWritten) {
 }
 
 TEST(Datagram, TheBytesAreThoseOfTheReferencePage) {
-  const DatagramBytes bytes = encode({.site = SiteRole::slave,
-                                      .packet = {.session = 0x1817161514131211,
-                                                 .sequence = 0x3837363534333231,
-                                                 .state = control::SiteState::hold,
-                                                 .armings = 0x0807060504030201,
-                                                 .message = {.position_m = 1.0, .force_N = -2.0}},
-                                      .peer_session = 0x2827262524232221,
-                                      .sent_ns = 0x4847464544434241,
-                                      .echo_sent_ns = 0x5857565554535251,
-                                      .echo_hold_ns = 0x6867666564636261});
-  std::vector<unsigned> expected{'T', 'C', 'T', '1', 2, 0, 2, 4, 1, 2, 3, 4, 5, 6, 7, 8};
+  const DatagramBytes bytes = encode(
+      {.site = SiteRole::slave,
+       .packet = {.session = 0x1817161514131211,
+                  .sequence = 0x3837363534333231,
+                  .state = control::SiteState::hold,
+                  .armings = 0x0807060504030201,
+                  .message = {.position_m = 1.0, .force_N = -2.0},
+                  .agreement = {.digest = 0x7877767574737271, .cell = 0x8887868584838281, .value = 0x9897969594939291}},
+       .peer_session = 0x2827262524232221,
+       .sent_ns = 0x4847464544434241,
+       .echo_sent_ns = 0x5857565554535251,
+       .echo_hold_ns = 0x6867666564636261});
+  std::vector<unsigned> expected{'T', 'C', 'T', '1', 3, 0, 2, 4, 1, 2, 3, 4, 5, 6, 7, 8};
   for (unsigned high = 0x10; high <= 0x60; high += 0x10) {
     for (unsigned low = 1; low <= 8; ++low) expected.push_back(high + low);
   }
@@ -41,6 +43,9 @@ TEST(Datagram, TheBytesAreThoseOfTheReferencePage) {
   expected[64 + 6] = 0xf0;  // 1.0 is 0x3ff0000000000000
   expected[64 + 7] = 0x3f;
   expected[80 + 7] = 0xc0;  // -2.0 is 0xc000000000000000
+  for (unsigned high = 0x70; high <= 0x90; high += 0x10) {
+    for (unsigned low = 1; low <= 8; ++low) expected.push_back(high + low);
+  }
   ASSERT_EQ(bytes.size(), expected.size());
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     EXPECT_EQ(std::to_integer<unsigned>(bytes[i]), expected[i]) << "at byte " << i;
@@ -53,7 +58,19 @@ TEST(Datagram, EveryOtherSizeIsRefused) {
   longer.resize(2000);
   for (std::size_t size = 0; size < longer.size(); ++size) {
     Datagram read;
-    EXPECT_EQ(decode({longer.data(), size}, read) == Refusal::none, size == datagram_bytes) << size;
+    EXPECT_EQ(decode({longer.data(), size}, read), size == datagram_bytes ? Refusal::none : Refusal::size) << size;
+  }
+}
+
+TEST(Datagram, OneOfAnotherVersionIsKnownByItWhateverItsSize) {
+  const DatagramBytes bytes = encode(testing::ordinary());
+  std::vector<std::byte> other(bytes.begin(), bytes.end());
+  other[4] = std::byte{2};
+  for (const std::size_t size : {std::size_t{6}, std::size_t{104}, datagram_bytes, std::size_t{1500}}) {
+    other.resize(size);
+    Datagram read;
+    EXPECT_EQ(decode(other, read), Refusal::version) << size;
+    EXPECT_EQ(version_of(other), 2) << size;
   }
 }
 
