@@ -6,6 +6,7 @@
 #include <tactus/simulation/faulty_clock.hpp>
 #include <tactus/simulation/faulty_encoder.hpp>
 #include <tactus/simulation/faulty_force_sensor.hpp>
+#include <tactus/simulation/faulty_peer.hpp>
 #include <tactus/simulation/faulty_person.hpp>
 #include <tactus/simulation/internal/fault_schedule.hpp>
 
@@ -20,7 +21,9 @@ class FaultInjection {
     FaultyClock clock;
     FaultyEncoder encoder;
     FaultyActuator actuator;
-    Site(const FaultPlan& plan, FaultSite site) : clock(plan, site), encoder(plan, site), actuator(plan, site) {}
+    FaultyPeer peer;
+    Site(const FaultPlan& plan, FaultSite site)
+        : clock(plan, site), encoder(plan, site), actuator(plan, site), peer(plan, site) {}
   };
 
   FaultInjection(const FaultPlan& plan, double tick_s)
@@ -46,6 +49,22 @@ class FaultInjection {
   [[nodiscard]] bool cuts() const noexcept {
     return (plan_.kind == FaultKind::cut && moment_.during) || is_prelude(control::SiteState::hold);
   }
+  /// What share of the network's impairment there is now on the way to `site`.
+  [[nodiscard]] double impaired_share(FaultSite site) const noexcept {
+    if (!moment_.during) return 0.0;
+    if (plan_.kind == FaultKind::delay_asymmetric) return plan_.site == site ? 1.0 : 0.0;
+    return plan_.kind == FaultKind::delay_creeping ? moment_.since_s / plan_.length_s : 1.0;
+  }
+  /// How wrong `site` is about the age of what comes. Clocks cannot tell a way that takes longer than the other from an
+  /// offset between them; once the offset from before is forgotten, half of the difference is taken for one.
+  [[nodiscard]] double age_error_s(FaultSite site) const noexcept {
+    const bool errs = plan_.kind == FaultKind::delay_asymmetric && moment_.during && moment_.since_s > clock_memory_s;
+    return errs ? (plan_.site == site ? -0.5 : 0.5) * plan_.impairment.delay_s : 0.0;
+  }
+  /// Whether a site takes the other's agreement for its own: for a control, what compares them is gone.
+  [[nodiscard]] bool hides_disagreement() const noexcept {
+    return plan_.kind == FaultKind::configurations_differ && plan_.size != 0.0;
+  }
   /// Puts a bad number into what a site reads, where this is its tick; `input` is a packet or a site's sensors.
   template <class Input>
   void spoil(FaultSite site, Input& input) const noexcept {
@@ -58,6 +77,8 @@ class FaultInjection {
   }
 
  private:
+  static constexpr double clock_memory_s = 2.0;
+
   static double start_s(const FaultPlan& plan, const BadNumber& bad) {
     return plan.kind == FaultKind::bad_number ? fault_schedule::bad_number_at_s(bad.state) : plan.start_s;
   }

@@ -38,6 +38,7 @@ void FaultJudge::see(const SiteView& master, const SiteView& slave, const FaultM
     outcome.became_active = both;
     return;
   }
+  outcome.active_in_fault = outcome.active_in_fault || (both && moment.during);
   const double now_s = moment.now_s;
   const bool before_rearming = now_s <= end_s + look_after_s;
   see_states(master, slave, moment, before_rearming, outcome);

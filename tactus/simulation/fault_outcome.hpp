@@ -37,6 +37,7 @@ struct FaultOutcome {
   double peak_force_N = 0.0;               ///< at either motor
   double given_J = 0.0;                    ///< largest rise of the energy that the master's motor gave in the whole run
   bool became_active = false;              ///< before the fault
+  bool active_in_fault = false;            ///< both sites, while it lasted
   bool stopped = false;                    ///< a site left `active` after the fault began
   double time_to_stop_s = 0.0;             ///< from the begin of the fault until no site was active
   double release_s = 0.0;                  ///< from then until both motors gave less than a small force for good

@@ -15,7 +15,7 @@ namespace tactus::simulation {
 class FaultPerson {
  public:
   /// `wall_m` is where the slave meets the wall, on the master's side.
-  FaultPerson(const FaultPlan& plan, double wall_m) : wall_m_(wall_m), leans_(plan.kind == FaultKind::delayed_wall) {
+  FaultPerson(const FaultPlan& plan, double wall_m) : wall_m_(wall_m), leans_(leans(plan.kind)) {
     signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(3);
     phase_cycles_ = random.uniform();
     tap_Hz_ = random.uniform(0.6, 1.2);
@@ -49,6 +49,11 @@ class FaultPerson {
   }
 
  private:
+  static bool leans(FaultKind kind) noexcept {
+    return kind == FaultKind::delayed_wall || kind == FaultKind::delay_asymmetric ||
+           kind == FaultKind::delay_creeping || kind == FaultKind::stale_commands;
+  }
+
   double wall_m_;
   bool leans_;
   double phase_cycles_ = 0.0, tap_Hz_ = 1.0, depth_m_ = 0.01;

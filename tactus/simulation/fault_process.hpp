@@ -4,6 +4,7 @@
 #include <tactus/simulation/fault_injection.hpp>
 #include <tactus/simulation/packet_relay.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -18,11 +19,12 @@ class FaultProcess {
   /// started anew, under the next session.
   bool fare(std::vector<FaultInjection>& injections, bool missed) noexcept {
     using Beat = FaultyClock::Beat;
-    bool dead = false, stands = missed;
+    bool dead = false, stands = missed, sleeps = false;
     for (FaultInjection& injection : injections) {
       const Beat beat = injection.at(site_).clock.step(injection.moment());
       dead = dead || beat == Beat::dead;
       stands = stands || beat == Beat::stands;
+      sleeps = sleeps || beat == Beat::sleeps;
     }
     born_ = false;
     if (dead) {
@@ -36,9 +38,10 @@ class FaultProcess {
       elapsed_ticks_ = 1;
       ++session_;
     } else {
-      // The first step after a stall counts the ticks before it.
-      elapsed_ticks_ = stalled_ ? elapsed_ticks_ + 1 : 1;
-      stalled_ = stands;
+      // The first step after a stall counts the ticks before it, but for those in which the clock slept too.
+      if (!sleeps_) elapsed_ticks_ = stalled_ ? elapsed_ticks_ + 1 : 1;
+      stalled_ = stands || sleeps;
+      sleeps_ = sleeps;
     }
     return born_;
   }
@@ -49,7 +52,10 @@ class FaultProcess {
                Take&& take) noexcept {
     relay.deliver(tick, [&](control::Packet packet) {
       if (killed_) return;
-      for (const FaultInjection& injection : injections) injection.spoil(site_, packet);
+      for (const FaultInjection& injection : injections) {
+        packet.age_s = std::max(packet.age_s + injection.age_error_s(site_), 0.0);
+        injection.spoil(site_, packet);
+      }
       if (waiting_.size() < waiting_.capacity()) waiting_.push_back(packet);
     });
     if (stands_still()) return;
@@ -76,6 +82,7 @@ class FaultProcess {
   bool killed_ = false;
   bool born_ = false;     ///< at this tick
   bool stalled_ = false;  ///< by a fault or, in real time, by the machine
+  bool sleeps_ = false;   ///< and its clock with it
   std::vector<control::Packet> waiting_;
 };
 

@@ -10,14 +10,14 @@ using namespace fault_families;
 
 namespace {
 
-std::string_view broken_rule_of_all(const FaultOutcome& outcome) {
+std::string_view broken_rule_of_all(const FaultRow& row, const FaultOutcome& outcome) {
   if (outcome.not_finite > 0) return "an output was not finite";
   if (outcome.stale_applied > 0) return "a stale packet was applied";
   if (outcome.steps_above_rate > 0) return "a force step above the rate limit";
   if (outcome.forces_above_limit > 0) return "a force above the limit";
   if (outcome.active_without_arming > 0) return "a site followed again without arming";
   if (outcome.left_workspace) return "a device left its workspace";
-  if (!outcome.active_at_end) return "not active again after clearing and arming";
+  if (row.ends_active && !outcome.active_at_end) return "not active again after clearing and arming";
   return {};
 }
 
@@ -106,26 +106,20 @@ std::vector<FaultRow> fault_rows(std::string_view only) {
 Teleoperator::Params params_of(const FaultRow& row, const FaultsParams& params) {
   Teleoperator::Params of = params;
   // The wall with delay is for the monitor, and needs a controller that lets the hand be pushed about.
-  if (row.kind == FaultKind::delayed_wall) {
+  if (row.kind == FaultKind::delayed_wall || row.kind == FaultKind::delay_asymmetric ||
+      row.kind == FaultKind::delay_creeping) {
     of.control.cancellation = control::CancellationMode::off;
     of.person.grip.damping_N_s_per_m *= params.task.light_grip_fraction;
     // Else its check could end what the monitor is to end.
     of.control.supervision.force_sensor.residual_limit_N = 100.0;
   }
-  if (!row.monitored) {
-    for (control::SafetyGate::Params* gate : {&of.control.gate, &of.control.slave_gate}) {
-      gate->energy.damp_above_J = 100.0;
-      gate->energy.hold_above_J = 200.0;
-      gate->energy.credit_J = 100.0;
-      gate->energy.drain_W = 50.0;
-    }
-  }
+  if (!row.monitored) loosen_monitor(of);
   return of;
 }
 
 std::string_view broken_rule(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome,
                              const FaultsParams& params) {
-  if (const auto rule = broken_rule_of_all(outcome); !rule.empty()) return rule;
+  if (const auto rule = broken_rule_of_all(row, outcome); !rule.empty()) return rule;
   if (outcome.given_J > params.task.diverged_above_J) return "diverged";
   if (const auto bound = broken_bound(outcome, params.task.bounds); !bound.empty()) return bound;
   return row.rule ? row.rule(plan, outcome, params) : std::string_view{};

@@ -27,6 +27,7 @@ struct FaultRow {
   std::string_view expected;
   FaultRule rule = nullptr;  ///< besides those that hold for every run
   FaultControl control{};
+  bool ends_active = true;  ///< clearing and arming brings both sites back
   bool monitored = true;  ///< false: the passivity monitor as loose as its bounds allow
 };
 

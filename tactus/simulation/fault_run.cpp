@@ -1,10 +1,12 @@
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/simulation/fault_injection.hpp>
 #include <tactus/simulation/fault_judge.hpp>
+#include <tactus/simulation/fault_pairs.hpp>
 #include <tactus/simulation/fault_person.hpp>
 #include <tactus/simulation/fault_process.hpp>
 #include <tactus/simulation/fault_run.hpp>
 #include <tactus/simulation/fault_witness.hpp>
+#include <tactus/simulation/faulty_configuration.hpp>
 #include <tactus/simulation/packet_relay.hpp>
 #include <tactus/simulation/site_plants.hpp>
 
@@ -47,17 +49,18 @@ class FaultRun::Run {
 
   Run(const Teleoperator::Params& params, const FaultPlan& plan, const FaultPerson& person, Parts parts)
       : params_(params),
+        plan_(plan),
         parts_(std::move(parts)),
         tick_s_(parts_.clock.tick_s),
-        injections_{FaultInjection(plan, tick_s_)},
+        injections_(injections_of(plan, tick_s_)),
         person_(person),
-        to_slave_(plan.impairment, signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(1), tick_s_),
-        to_master_(plan.impairment, signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(2), tick_s_),
+        to_slave_(impairment_to(FaultSite::slave, plans_of(plan)), signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(1), tick_s_),
+        to_master_(impairment_to(FaultSite::master, plans_of(plan)), signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(2), tick_s_),
         at_master_(params.control.gate.force_limit_N, params.control.gate.rate_limit_N_per_s, tick_s_),
         at_handle_(params.control.handle_gate.force_limit_N, params.control.handle_gate.rate_limit_N_per_s, tick_s_),
         at_slave_(params.control.slave_gate.force_limit_N, params.control.slave_gate.rate_limit_N_per_s, tick_s_),
-        of_master_(params.control.supervision.packets.longest_age_s, tick_s_),
-        of_slave_(params.control.supervision.packets.longest_age_s, tick_s_),
+        of_master_(oldest_s(params, plan), tick_s_),
+        of_slave_(oldest_s(params, plan), tick_s_),
         judge_({person.wall_m(), person.depth_m(), released_share * params.control.gate.force_limit_N},
                {params.environment.position_m, params.control.position_scale * person.depth_m(),
                 released_share * params.control.slave_gate.force_limit_N},
@@ -67,6 +70,26 @@ class FaultRun::Run {
     of_slave_.expect(ticks_);
   }
 
+  static std::vector<FaultInjection> injections_of(const FaultPlan& plan, double tick_s) {
+    std::vector<FaultInjection> injections;
+    for (const FaultPlan& part : plans_of(plan)) injections.emplace_back(part, tick_s);
+    return injections;
+  }
+  /// The oldest that may be applied. Of a way that takes longer than the other half passes for an offset of clocks.
+  static double oldest_s(const Teleoperator::Params& params, const FaultPlan& plan) {
+    return (plan.kind == FaultKind::delay_asymmetric ? 2.0 : 1.0) * params.control.supervision.packets.longest_age_s;
+  }
+  [[nodiscard]] double impaired_share(FaultSite to) const {
+    double share = 0.0;
+    for (const FaultInjection& injection : injections_) share = std::max(share, injection.impaired_share(to));
+    return share;
+  }
+  /// A packet on its way to a site, which a control may blind to what differs.
+  template <class Site>
+  void give(control::Packet packet, Site& site) {
+    if (injections_.front().hides_disagreement()) packet.agreement = site.agreement().own().excerpt(packet.sequence);
+    site.take(packet);
+  }
   [[nodiscard]] const FaultMoment& moment() const { return injections_.front().moment(); }
   [[nodiscard]] double end_s() const {
     double latest_s = 0.0;
@@ -80,6 +103,7 @@ class FaultRun::Run {
   control::SiteRequests requests() const;
   double read_encoder(double position_m, FaultSite site);
   double read_force_sensor(double force_N);
+  void say(control::Packet& packet, FaultSite site);
   double drive(double commanded_N, FaultSite site);
   void hold_handle();
   void step_master();
@@ -89,6 +113,7 @@ class FaultRun::Run {
   bool tick(bool missed);
 
   Teleoperator::Params params_;
+  FaultPlan plan_;
   Parts parts_;
   double tick_s_;
   std::vector<FaultInjection> injections_;  ///< all that goes wrong; the first counts for the judge
@@ -117,9 +142,11 @@ Result<FaultRun::Run> FaultRun::Run::make(const Teleoperator::Params& params, co
   if (!master) return master.error();
   auto slave = SlavePlant::make(params.slave, params.environment, *clock, params.control.position_scale * start_m);
   if (!slave) return slave.error();
-  auto master_site = control::make_supervised_master(params.control, 1, tick);
+  const FaultyConfiguration of_master(params.control, tick, plan, FaultSite::master);
+  auto master_site = control::make_supervised_master(of_master.control, 1, of_master.tick);
   if (!master_site) return under("control", master_site.error());
-  auto slave_site = control::make_supervised_slave(params.control, 1, tick);
+  const FaultyConfiguration of_slave(params.control, tick, plan, FaultSite::slave);
+  auto slave_site = control::make_supervised_slave(of_slave.control, 1, of_slave.tick);
   if (!slave_site) return under("control", slave_site.error());
   return Run(params, plan, person, Parts{*clock, *master, *slave, *std::move(master_site), *std::move(slave_site)});
 }
@@ -144,6 +171,10 @@ double FaultRun::Run::read_force_sensor(double force_N) {
   return force_N;
 }
 
+void FaultRun::Run::say(control::Packet& packet, FaultSite site) {
+  for (FaultInjection& injection : injections_) injection.at(site).peer.step(packet, injection.moment());
+}
+
 double FaultRun::Run::drive(double commanded_N, FaultSite site) {
   if (!std::isfinite(commanded_N)) return 0.0;
   for (FaultInjection& injection : injections_) {
@@ -156,12 +187,13 @@ void FaultRun::Run::step_master() {
   const auto reading = parts_.master.measure();
   if (master_.fare(injections_, missed_)) {
     // What made the first one makes the second.
-    parts_.master_site = *control::make_supervised_master(params_.control, master_.session(), Seconds{tick_s_});
+    const FaultyConfiguration with(params_.control, Seconds{tick_s_}, plan_, FaultSite::master);
+    parts_.master_site = *control::make_supervised_master(with.control, master_.session(), with.tick);
     of_slave_.restart();
   }
   if (master_.killed()) of_master_site_ = {};
   master_.receive(to_master_, tick_, injections_, tick_s_,
-                  [&](const control::Packet& packet) { parts_.master_site.take(packet); });
+                  [&](const control::Packet& packet) { give(packet, parts_.master_site); });
   control::SupervisedMaster::Input input{
       .sensors = {.motor_position_m = read_encoder(reading.motor_position_m, FaultSite::master),
                   .hand_force_N = reading.hand_force_N,
@@ -171,12 +203,13 @@ void FaultRun::Run::step_master() {
       .elapsed_ticks = master_.elapsed_ticks()};
   for (const FaultInjection& injection : injections_) injection.spoil(FaultSite::master, input.sensors);
   if (!master_.stands_still()) {
-    const auto output = parts_.master_site.step(input);
+    auto output = parts_.master_site.step(input);
     of_master_site_.motor_N = output.site.motor_force_N;
     of_master_site_.handle_N = output.site.handle_force_N;
     of_slave_.applied(output.record, tick_, outcome_);
+    say(output.packet, FaultSite::master);
     of_master_.sent(output.packet, tick_);
-    if (!cut()) to_slave_.send(output.packet, tick_, moment().during);
+    if (!cut()) to_slave_.send(output.packet, tick_, impaired_share(FaultSite::slave));
   }
   of_master_site_.drive_N = drive(of_master_site_.motor_N, FaultSite::master);
   at_master_.see(of_master_site_.motor_N, master_.excused(), outcome_);
@@ -186,12 +219,13 @@ void FaultRun::Run::step_master() {
 void FaultRun::Run::step_slave() {
   const auto reading = parts_.slave.measure();
   if (slave_.fare(injections_, missed_)) {
-    parts_.slave_site = *control::make_supervised_slave(params_.control, slave_.session(), Seconds{tick_s_});
+    const FaultyConfiguration with(params_.control, Seconds{tick_s_}, plan_, FaultSite::slave);
+    parts_.slave_site = *control::make_supervised_slave(with.control, slave_.session(), with.tick);
     of_master_.restart();
   }
   if (slave_.killed()) of_slave_site_ = {};
   slave_.receive(to_slave_, tick_, injections_, tick_s_,
-                 [&](const control::Packet& packet) { parts_.slave_site.take(packet); });
+                 [&](const control::Packet& packet) { give(packet, parts_.slave_site); });
   control::SupervisedSlave::Input input{
       .sensors = {.motor_position_m = read_encoder(reading.motor_position_m, FaultSite::slave),
                   .tip_force_N = read_force_sensor(reading.tip_force_N),
@@ -200,12 +234,13 @@ void FaultRun::Run::step_slave() {
       .elapsed_ticks = slave_.elapsed_ticks()};
   for (const FaultInjection& injection : injections_) injection.spoil(FaultSite::slave, input.sensors);
   if (!slave_.stands_still()) {
-    const auto output = parts_.slave_site.step(input);
+    auto output = parts_.slave_site.step(input);
     of_slave_site_.motor_N = output.site.motor_force_N;
     of_master_.applied(output.record, tick_, outcome_);
+    say(output.packet, FaultSite::slave);
     of_slave_.sent(output.packet, tick_);
     // It arrives at the next tick at the earliest.
-    if (!cut()) to_master_.send(output.packet, tick_ + 1, moment().during);
+    if (!cut()) to_master_.send(output.packet, tick_ + 1, impaired_share(FaultSite::master));
   }
   of_slave_site_.drive_N = drive(of_slave_site_.motor_N, FaultSite::slave);
   at_slave_.see(of_slave_site_.motor_N, slave_.excused(), outcome_);

@@ -14,6 +14,7 @@ class FaultyActuator {
 
   /// The force in N that the drive is made to give, from the one that it is told. Once a tick. Real-time safe.
   double step(double commanded_N, const FaultMoment& moment) noexcept {
+    if (!moment.during) last_N_ = commanded_N;
     if (!here_ || !moment.during) return commanded_N;
     switch (plan_.kind) {
       case FaultKind::motor_reversed:
@@ -27,14 +28,23 @@ class FaultyActuator {
         return plan_.size;
       case FaultKind::actuator_saturated:
         return std::clamp(commanded_N, -plan_.size, plan_.size);
+      case FaultKind::stale_commands:
+        return obey_old(commanded_N, moment);
       default:
         return commanded_N;
     }
   }
 
  private:
+  /// A drive whose commands stay the same. It lets go of them once they are `size` s old.
+  double obey_old(double commanded_N, const FaultMoment& moment) noexcept {
+    if (moment.begins) last_N_ = commanded_N;
+    return moment.since_s < plan_.size ? last_N_ : 0.0;
+  }
+
   FaultPlan plan_;
   bool here_;
+  double last_N_ = 0.0;  ///< told before the fault
 };
 
 }  // namespace tactus::simulation

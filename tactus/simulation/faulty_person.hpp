@@ -2,6 +2,7 @@
 
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/simulation/fault_moment.hpp>
+#include <tactus/simulation/internal/fault_schedule.hpp>
 
 namespace tactus::simulation {
 
@@ -15,15 +16,46 @@ class FaultyPerson {
   /// What holds the handle. Once a tick. Real-time safe.
   [[nodiscard]] Hand hand(const FaultMoment& moment) const noexcept {
     if (!moment.during) return Hand::holds;
-    if (plan_.kind == FaultKind::hand_lets_go) return Hand::lets_go;
+    if (plan_.kind == FaultKind::hand_lets_go || stuck_in_use()) return Hand::lets_go;
     return plan_.kind == FaultKind::handle_clamped ? Hand::is_clamped : Hand::holds;
   }
   /// What reaches the sites of what is `pressed`. Once a tick. Real-time safe.
-  [[nodiscard]] control::SiteRequests presses(control::SiteRequests pressed, const FaultMoment&) const noexcept {
+  [[nodiscard]] control::SiteRequests presses(control::SiteRequests pressed, const FaultMoment& moment) const noexcept {
+    switch (plan_.kind) {
+      case FaultKind::dead_man_stuck:
+        if (moment.during && plan_.size == 0.0) pressed.dead_man = true;
+        break;
+      case FaultKind::console_lost:  // its end is a release of all that was pressed
+        if (moment.during && plan_.size == 0.0) pressed = {};
+        break;
+      case FaultKind::both_restarted:
+        return presses_while_restarted(pressed, moment);
+      case FaultKind::stale_commands:  // the person notices
+        if (moment.during && moment.since_s > notices_s) pressed.dead_man = false;
+        break;
+      default:
+        break;
+    }
     return pressed;
   }
 
  private:
+  static constexpr double notices_s = 0.3;
+
+  /// The dead-man switch sticks while the sites follow, and the person goes away; else from the start of the session.
+  [[nodiscard]] bool stuck_in_use() const noexcept {
+    return plan_.kind == FaultKind::dead_man_stuck && plan_.choice % 2 == 1;
+  }
+  /// Everything is pressed when the sites come back, and stays so. Where `size` is not 0 it is pressed in its turn, after
+  /// they are back.
+  [[nodiscard]] control::SiteRequests presses_while_restarted(control::SiteRequests pressed,
+                                                              const FaultMoment& moment) const noexcept {
+    const double back_s = moment.since_s - plan_.length_s;
+    if (moment.before || back_s > fault_schedule::look_after_s) return pressed;
+    if (plan_.size == 0.0) return {.align = true, .arm = true, .clear = true, .dead_man = true};
+    return {.align = back_s > 0.02, .arm = back_s > 0.06, .dead_man = back_s > 0.1};
+  }
+
   FaultPlan plan_;
 };
 

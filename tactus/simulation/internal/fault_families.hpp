@@ -19,6 +19,16 @@ inline double between_logarithms(signal::Random& random, double lower, double up
   return lower * std::pow(upper / lower, random.uniform());
 }
 
+/// The passivity monitors as loose as their bounds allow.
+inline void loosen_monitor(Teleoperator::Params& params) {
+  for (control::SafetyGate::Params* gate : {&params.control.gate, &params.control.slave_gate}) {
+    gate->energy.damp_above_J = 100.0;
+    gate->energy.hold_above_J = 200.0;
+    gate->energy.credit_J = 100.0;
+    gate->energy.drain_W = 50.0;
+  }
+}
+
 /// Motors, encoders, force sensors, wiring, supply, and the hand on the handle.
 std::vector<FaultRow> device_rows();
 void draw_device(FaultPlan& plan, signal::Random& random, double sign);
