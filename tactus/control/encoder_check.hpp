@@ -4,6 +4,7 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/checks.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -19,9 +20,10 @@ constexpr auto enumerators(EncoderFault) {
 
 /// Whether a measured position can be true.
 ///
-/// A jump: |x(k) − x(k−1)| > v_max · T. A spike is one, a counter that wraps is one, and so is the way back.
-/// A freeze: for `frozen_after_s` without a break there was a force that must move the device, and not one count came.
-/// Such a force is
+/// A jump: |x(k) − x(k−1)| > v_max · t, t being the time between the two readings. A spike is one, a counter that wraps
+/// is one, and so is the way back. A freeze: for `frozen_after_s` without a break there was a force that must move the
+/// device, and not one count came. A device may go and come back between two readings, so a long gap between them
+/// counts for at most half of that time. Such a force is
 ///
 /// - a motor's force that is `frozen_force_N` or more away from what it was at the last count. A device that rests, or
 ///   presses with a steady force, is not frozen, so this shows only once the force works. It must stay away: a hand
@@ -52,8 +54,9 @@ class EncoderCheck {
   };
   struct Input {
     double position_m = 0.0;
-    double acted_N = 0.0;       ///< on the motor since the reading before
-    double unbalanced_N = 0.0;  ///< what of it nothing known resists; 0 where nobody measures that
+    double acted_N = 0.0;            ///< on the motor since the reading before
+    double unbalanced_N = 0.0;       ///< what of it nothing known resists; 0 where nobody measures that
+    std::int64_t elapsed_ticks = 1;  ///< since the reading before
   };
   using Output = EncoderFault;
 
@@ -65,8 +68,8 @@ class EncoderCheck {
   /// One reading, which must be finite. After a jump the reading before stays the measure. Real-time safe.
   EncoderFault step(const Input& input) noexcept {
     if (!started_ || input.position_m != position_m_) {
-      const bool jump = started_ && std::fabs(input.position_m - position_m_) > farthest_m_;
-      if (jump) return EncoderFault::jump;
+      const double farthest_m = farthest_m_ * static_cast<double>(input.elapsed_ticks);
+      if (started_ && std::fabs(input.position_m - position_m_) > farthest_m) return EncoderFault::jump;
       started_ = true;
       position_m_ = input.position_m;
       counted_N_ = input.acted_N;
@@ -75,7 +78,8 @@ class EncoderCheck {
     }
     const bool must_move = std::fabs(input.acted_N - counted_N_) >= frozen_force_N_ ||
                            std::fabs(input.unbalanced_N) >= unbalanced_force_N_;
-    still_s_ = must_move ? still_s_ + dt_s_ : 0.0;
+    const double gap_s = std::min(dt_s_ * static_cast<double>(input.elapsed_ticks), longest_gap_s_);
+    still_s_ = must_move ? still_s_ + gap_s : 0.0;
     return still_s_ >= frozen_after_s_ ? EncoderFault::frozen : EncoderFault::none;
   }
 
@@ -92,12 +96,14 @@ class EncoderCheck {
         frozen_force_N_(params.frozen_force_N),
         unbalanced_force_N_(params.unbalanced_force_N),
         frozen_after_s_(params.frozen_after_s),
+        longest_gap_s_(std::max(dt.value, 0.5 * params.frozen_after_s)),
         dt_s_(dt.value) {}
 
-  double farthest_m_;
+  double farthest_m_;  ///< in a tick
   double frozen_force_N_;
   double unbalanced_force_N_;
   double frozen_after_s_;
+  double longest_gap_s_;
   double dt_s_;
   bool started_ = false;
   double position_m_ = 0.0;

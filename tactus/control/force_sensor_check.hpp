@@ -4,7 +4,10 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/low_pass.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
 
 namespace tactus::control {
 
@@ -15,8 +18,10 @@ namespace tactus::control {
 ///
 /// The residual of a sensor that dropped out is the force of contact, that of a bias the bias. Inertia adds m·Δv/τ for
 /// a change of velocity Δv within the time constant τ of the low-pass, and friction adds itself, so the limit must be
-/// above both. What is smaller passes unseen. Like a momentum observer with its mass set to zero (A. De Luca and
-/// R. Mattone, Sensorless robot collision detection, ICRA 2005).
+/// above both. What is smaller passes unseen. After a gap the low-pass goes on as if the difference had been there all
+/// along, but no longer than a tenth of its time constant, about as long as an impact: one reading alone proves
+/// nothing. Like a momentum observer with its mass set to zero (A. De Luca and R. Mattone, Sensorless robot collision
+/// detection, ICRA 2005).
 class ForceSensorCheck {
  public:
   struct Params {
@@ -30,8 +35,9 @@ class ForceSensorCheck {
     }
   };
   struct Input {
-    double acted_N = 0.0;      ///< of the motor, positive toward the environment
-    double tip_force_N = 0.0;  ///< of the sensor, positive when the environment pushes back
+    double acted_N = 0.0;            ///< of the motor, positive toward the environment
+    double tip_force_N = 0.0;        ///< of the sensor, positive when the environment pushes back
+    std::int64_t elapsed_ticks = 1;  ///< since the step before
   };
   using Output = bool;
 
@@ -39,21 +45,24 @@ class ForceSensorCheck {
     if (auto error = signal::check(params, dt)) return *std::move(error);
     const auto low_pass = signal::LowPass::make({.cutoff_Hz = params.cutoff_Hz}, dt);
     if (!low_pass) return low_pass.error();
-    return ForceSensorCheck(params.residual_limit_N, *low_pass);
+    const double time_constant_s = 1.0 / (2.0 * std::numbers::pi * params.cutoff_Hz);
+    return ForceSensorCheck(params.residual_limit_N, *low_pass, std::lround(0.1 * time_constant_s / dt.value));
   }
 
   /// True where the sensor cannot be right. Both forces must be finite. Real-time safe.
   bool step(const Input& input) noexcept {
-    return std::fabs(low_pass_.step(input.acted_N - input.tip_force_N)) > residual_limit_N_;
+    const std::int64_t samples = std::min(input.elapsed_ticks, most_ticks_);
+    return std::fabs(low_pass_.step(input.acted_N - input.tip_force_N, samples)) > residual_limit_N_;
   }
   /// No difference so far.
   void reset() noexcept { low_pass_.reset(); }
 
  private:
-  ForceSensorCheck(double residual_limit_N, const signal::LowPass& low_pass)
-      : residual_limit_N_(residual_limit_N), low_pass_(low_pass) {}
+  ForceSensorCheck(double residual_limit_N, const signal::LowPass& low_pass, std::int64_t most_ticks)
+      : residual_limit_N_(residual_limit_N), most_ticks_(most_ticks), low_pass_(low_pass) {}
 
   double residual_limit_N_;
+  std::int64_t most_ticks_;  ///< that one reading counts for
   signal::LowPass low_pass_;
 };
 

@@ -46,9 +46,10 @@ void MessageFollower::resume() noexcept {
 Arrival MessageFollower::step(const Input& input) noexcept {
   const double most_m = params_.catch_up_m_per_s * dt_s_, most = params_.catch_up_N_per_s * dt_s_;
   if (!input.following) {
-    out_.velocity_m_per_s = toward_zero(out_.velocity_m_per_s, most);
-    out_.force_N = toward_zero(out_.force_N, most);
-    out_.wave = toward_zero(out_.wave, most);
+    const double fade = most * static_cast<double>(input.elapsed_ticks);
+    out_.velocity_m_per_s = toward_zero(out_.velocity_m_per_s, fade);
+    out_.force_N = toward_zero(out_.force_N, fade);
+    out_.wave = toward_zero(out_.wave, fade);
     follows_ = learnt_ = false;
     velocity_m_per_s_ = share_ = ahead_m_ = silence_s_ = 0.0;
     gap_ = {};
@@ -57,7 +58,7 @@ Arrival MessageFollower::step(const Input& input) noexcept {
   const bool begins = !follows_;
   follows_ = true;
   if (input.arrival.fresh || begins) {
-    const bool interrupted = begins || silence_s_ > 0.0;
+    const bool interrupted = begins || silence_s_ > 0.0 || input.elapsed_ticks > 1;
     if (!begins && interrupted) {
       // What would be given now if the silence went on, so that only the surprise makes a gap.
       lapse(input.elapsed_ticks);

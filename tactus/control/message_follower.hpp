@@ -18,8 +18,7 @@ namespace tactus::control {
 ///   with the time constant `decay_s`, so a position goes no farther than v·(extrapolation + decay).
 /// - Where the site does not follow, the position stays where it was and all else fades to zero at the rate below.
 /// - What then comes again differs from what stands. The difference is kept and closed at a bounded rate, so neither
-/// the
-///   end of a silence nor the start of following makes a step.
+///   the end of a silence or of a stall nor the start of following makes a step.
 ///
 /// The running total of energy counts only what was sent while following, so a restarted site, which counts from zero,
 /// takes none away.

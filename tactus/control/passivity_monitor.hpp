@@ -5,6 +5,7 @@
 #include <tactus/signal/checks.hpp>
 
 #include <algorithm>
+#include <cstdint>
 
 namespace tactus::control {
 
@@ -13,7 +14,8 @@ namespace tactus::control {
 ///
 ///     E(k) = max(E(k−1) + F(k−1)·(x(k) − x(k−1)), −credit) − drain·T while positive
 ///
-/// The force is held over a tick, so F·Δx is the work that was done, exactly up to the encoder's step. What the device
+/// The force is held until the next one, so F·Δx is the work that was done, exactly up to the encoder's step, however
+/// many ticks have passed. What the device
 /// gave to the motor counts as credit, up to a bound: a wall gives back what it took, but a long press must not pay for
 /// a long instability. A machine may keep giving a small power, for friction that it overcomes or for an environment
 /// that moves by itself: that is the drain.
@@ -43,8 +45,9 @@ class PassivityMonitor {
     }
   };
   struct Input {
-    double acted_N = 0.0;     ///< force since the reading before
-    double position_m = 0.0;  ///< measured, in the direction of the force
+    double acted_N = 0.0;            ///< force since the reading before
+    double position_m = 0.0;         ///< measured, in the direction of the force
+    std::int64_t elapsed_ticks = 1;  ///< since the reading before
   };
   /// The damping in N s/m to add.
   using Output = double;
@@ -62,10 +65,10 @@ class PassivityMonitor {
     return PassivityMonitor(params, dt);
   }
 
-  /// Enters the work of one tick. Real-time safe.
+  /// Enters the work since the reading before. Real-time safe.
   double step(const Input& input) noexcept {
     if (started_) given_J_ = std::max(given_J_ + input.acted_N * (input.position_m - position_m_), -params_.credit_J);
-    if (given_J_ > 0.0) given_J_ = std::max(given_J_ - drain_J_, 0.0);
+    if (given_J_ > 0.0) given_J_ = std::max(given_J_ - drain_J_ * static_cast<double>(input.elapsed_ticks), 0.0);
     started_ = true;
     position_m_ = input.position_m;
     held_ = held_ || given_J_ > params_.hold_above_J;
@@ -80,8 +83,6 @@ class PassivityMonitor {
     position_m_ = 0.0;
     started_ = held_ = false;
   }
-  /// The work until the next reading is not entered: nobody saw the motion.
-  void skip() noexcept { started_ = false; }
 
   [[nodiscard]] bool held() const noexcept { return held_; }
   [[nodiscard]] double given_J() const noexcept { return given_J_; }
@@ -90,7 +91,7 @@ class PassivityMonitor {
   PassivityMonitor(const Params& params, Seconds dt) : params_(params), drain_J_(params.drain_W * dt.value) {}
 
   Params params_;
-  double drain_J_;
+  double drain_J_;  ///< in a tick
   double given_J_ = 0.0;
   double position_m_ = 0.0;
   bool started_ = false;

@@ -14,19 +14,17 @@ double share_beyond(double value, double limit) {
 }  // namespace
 
 double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::optional<double> resisting_N) noexcept {
+  elapsed_ticks = std::max<std::int64_t>(elapsed_ticks, 1);
   if (!std::isfinite(position_m)) {
     latch(GateFault::not_finite);
     velocity_m_per_s_ = 0.0;
     return believed_m_;
   }
-  if (elapsed_ticks != 1) {
-    encoder_.reset();
-    derivative_.reset();
-    energy_.skip();
-  }
   const double acted_N = force_.passed_N();
-  const EncoderFault wrong = encoder_.step(
-      {.position_m = position_m, .acted_N = acted_N, .unbalanced_N = resisting_N ? acted_N - *resisting_N : 0.0});
+  const EncoderFault wrong = encoder_.step({.position_m = position_m,
+                                            .acted_N = acted_N,
+                                            .unbalanced_N = resisting_N ? acted_N - *resisting_N : 0.0,
+                                            .elapsed_ticks = elapsed_ticks});
   if (wrong == EncoderFault::frozen) latch(GateFault::encoder_frozen);
   if (wrong == EncoderFault::jump) {
     latch(GateFault::encoder_jump);
@@ -34,8 +32,8 @@ double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::o
     return believed_m_;
   }
   believed_m_ = position_m;
-  velocity_m_per_s_ = derivative_.step(position_m);
-  damping_N_s_per_m_ = energy_.step({.acted_N = acted_N, .position_m = position_m});
+  velocity_m_per_s_ = derivative_.step(position_m, elapsed_ticks);
+  damping_N_s_per_m_ = energy_.step({.acted_N = acted_N, .position_m = position_m, .elapsed_ticks = elapsed_ticks});
   if (std::fabs(position_m) >= fault_factor * position_limit_m_) latch(GateFault::workspace);
   if (std::fabs(velocity_m_per_s_) >= fault_factor * velocity_limit_m_per_s_) latch(GateFault::velocity);
   if (energy_.held()) latch(GateFault::energy);

@@ -76,7 +76,7 @@ class SafetyGate {
   }
 
   /// Looks at a reading, before the controller does: the position in m to believe, which is the last good one where
-  /// this is none. `elapsed_ticks` is more than 1 after a stall; then nothing is said about the way in between.
+  /// this is none. `elapsed_ticks` is more than 1 after a stall: all checks count the time that really passed.
   /// `resisting_N` is what a sensor says that pushes back against the motor.
   /// Real-time safe.
   double believe(double position_m, std::int64_t elapsed_ticks = 1,

@@ -9,6 +9,7 @@ SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
   if (input.energy) return SiteCause::energy;
   if (input.force_sensor) return SiteCause::force_sensor;
   if (input.stalled) return SiteCause::stalled;
+  if (input.overloaded) return SiteCause::overloaded;
   if (input.silent) return SiteCause::silent;
   if (input.unanswered) return SiteCause::unanswered;
   const bool stands = input.peer != SiteState::armed && input.peer != SiteState::active;
@@ -27,7 +28,7 @@ void SiteSupervisor::go(SiteState state, SiteCause cause, const Input& input) no
 void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
   const bool master = role_ == SiteRole::master;
   // An energy latch is no obstacle: arming empties the account.
-  const bool may = input.heard && !input.disagrees && !input.silent && !input.stalled;
+  const bool may = input.heard && !input.disagrees && !input.silent && !input.stalled && !input.overloaded;
   if (!may || !(master ? asked : input.peer_armings != over_ && input.peer == SiteState::armed)) return;
   armings_ = master ? std::max(armings_, input.peer_armings) + 1 : input.peer_armings;
   state_ = SiteState::armed;

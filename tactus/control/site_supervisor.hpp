@@ -22,7 +22,8 @@ enum class SiteCause {
   energy,
   gate,
   unanswered,
-  disagreement
+  disagreement,
+  overloaded
 };
 constexpr auto enumerators(SiteCause) {
   return std::array{Enumerator{SiteCause::none, "none"},
@@ -36,7 +37,8 @@ constexpr auto enumerators(SiteCause) {
                     Enumerator{SiteCause::energy, "energy"},
                     Enumerator{SiteCause::gate, "gate"},
                     Enumerator{SiteCause::unanswered, "unanswered"},
-                    Enumerator{SiteCause::disagreement, "disagreement"}};
+                    Enumerator{SiteCause::disagreement, "disagreement"},
+                    Enumerator{SiteCause::overloaded, "overloaded"}};
 }
 
 enum class SiteRole { master, slave };
@@ -57,7 +59,8 @@ struct SiteRequests {
 /// The state of one site, and why.
 ///
 ///     configure –align→ align –arm→ armed –dead-man, and the other site armed→ active
-///     active –dead-man let go→ armed      armed, active –silence, stall, other site, sensor, energy→ hold –arm→ armed
+///     active –dead-man let go→ armed
+///     armed, active –silence, stall, overload, other site, sensor, energy→ hold –arm→ armed
 ///     armed –no answer→ hold
 ///     any –safety gate→ fault –clear→ align
 ///
@@ -85,6 +88,7 @@ class SiteSupervisor {
     bool silent = false;        ///< the watchdog barks
     bool unanswered = false;    ///< the slave has not followed the arming for too long
     bool stalled = false;       ///< this site was not stepped for too long
+    bool overloaded = false;    ///< this site was not stepped too often
     bool force_sensor = false;  ///< the force sensor cannot be right
     bool energy = false;        ///< the passivity monitor has latched
     bool fault = false;         ///< the safety gate has, for any other reason

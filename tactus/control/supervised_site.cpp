@@ -43,8 +43,9 @@ SupervisedMaster::Output SupervisedMaster::step(const Input& input) noexcept {
 
 SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
   const bool finite = std::isfinite(input.sensors.tip_force_N);
-  const bool implausible =
-      finite && force_sensor_.step({.acted_N = site_.gate().passed_N(), .tip_force_N = input.sensors.tip_force_N});
+  const bool implausible = finite && force_sensor_.step({.acted_N = site_.gate().passed_N(),
+                                                         .tip_force_N = input.sensors.tip_force_N,
+                                                         .elapsed_ticks = input.elapsed_ticks});
   const SiteState state = supervision_.decide({.requests = input.requests,
                                                .elapsed_ticks = input.elapsed_ticks,
                                                .fault = site_.fault(),

@@ -21,9 +21,12 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   if (!watchdog) return under("watchdog", watchdog.error());
   const auto answer = Watchdog::make({.timeout_s = params.answer_within_s}, dt);
   if (!answer) return answer.error();
+  const auto overload = OverloadCheck::make(params.overload, dt);
+  if (!overload) return under("overload", overload.error());
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return Supervision(*judge, *follower, *watchdog, *answer, *supervisor, role, params, session, dt, agreement);
+  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *supervisor, role, params, session, dt,
+                     agreement);
 }
 
 PacketVerdict Supervision::take(const Packet& packet) noexcept {
@@ -65,6 +68,7 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
                            .silent = silent,
                            .unanswered = unanswered(),
                            .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
+                           .overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_}),
                            .force_sensor = sight.force_sensor,
                            .energy = sight.fault == GateFault::energy,
                            .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
@@ -83,8 +87,9 @@ Arrival Supervision::arrival(double offset_m) noexcept {
 }
 
 double Supervision::blend(bool in) noexcept {
-  const double target = in ? 1.0 : 0.0;
-  return share_ = std::clamp(target, share_ - blend_step_, share_ + blend_step_);
+  // After a stall a force goes as far as it should have gone by now, but comes no farther than in one tick.
+  const double out_step = blend_step_ * static_cast<double>(elapsed_ticks_);
+  return share_ = in ? std::min(share_ + blend_step_, 1.0) : std::max(share_ - out_step, 0.0);
 }
 
 Packet Supervision::packet(const Message& message) noexcept {

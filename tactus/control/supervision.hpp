@@ -3,6 +3,7 @@
 #include <tactus/control/agreement.hpp>
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
+#include <tactus/control/overload_check.hpp>
 #include <tactus/control/packet.hpp>
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/control/watchdog.hpp>
@@ -11,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace tactus::control {
 
@@ -20,6 +22,7 @@ struct SupervisionParams {
   MessageFollower::Params silence;
   Watchdog::Params watchdog;
   ForceSensorCheck::Params force_sensor;
+  OverloadCheck::Params overload;
   double longest_stall_s = 0.02;
   double answer_within_s = 1.0;
   double blend_s = 0.1;
@@ -29,6 +32,7 @@ struct SupervisionParams {
         field("silence", &SupervisionParams::silence, "What stands in their place when none come."),
         field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
         field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
+        field("overload", &SupervisionParams::overload, "How many ticks a site may miss before it holds."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
         field(
@@ -39,6 +43,38 @@ struct SupervisionParams {
               "How long a force takes to come in when a site becomes active, and to go.")};
   }
 };
+
+/// The words of an enum and the numbers that stand for them in a log, behind `prefix`: "Why: 0 none, 1 started."
+struct Legend {
+  char text[512]{};
+};
+template <NamedEnum E>
+constexpr Legend legend(std::string_view prefix) {
+  Legend made;
+  std::size_t size = 0;
+  const auto add = [&](std::string_view text) {
+    for (const char character : text) made.text[size++] = character;
+  };
+  const auto add_number = [&](int number) {
+    if (number >= 10) made.text[size++] = static_cast<char>('0' + number / 10);
+    made.text[size++] = static_cast<char>('0' + number % 10);
+  };
+  add(prefix);
+  bool first = true;
+  for (const auto& entry : enumerators(E{})) {
+    if (!first) add(", ");
+    first = false;
+    add_number(static_cast<int>(entry.value));
+    add(" ");
+    add(entry.name);
+  }
+  add(".");
+  return made;
+}
+inline constexpr Legend state_legend = legend<SiteState>("");
+inline constexpr Legend cause_legend = legend<SiteCause>("Why the site does not follow: ");
+inline constexpr Legend limit_legend = legend<ActiveLimit>("What changes the force right now: ");
+inline constexpr Legend fault_legend = legend<GateFault>("What the gate latched: ");
 
 /// What supervision shows of a tick. State, cause, limit and fault are four different things: what the site does, why
 /// it does not follow, what changes the force right now, and what made the gate let go.
@@ -60,16 +96,10 @@ struct SiteRecord {
   std::int64_t differs = 0;
   static constexpr auto signals() {
     return std::tuple{
-        observed("state", &SiteRecord::state, units::none, "", "", "",
-                 "0 configure, 1 align, 2 armed, 3 active, 4 hold, 5 fault."),
-        observed("cause", &SiteRecord::cause, units::none, "", "", "",
-                 "Why the site does not follow: 0 none, 1 started, 2 dead-man, 3 silent, 4 stalled, 5 other-session, "
-                 "6 peer, 7 force-sensor, 8 energy, 9 gate, 10 unanswered, 11 disagreement."),
-        observed("limit", &SiteRecord::limit, units::none, "", "", "",
-                 "What changes the force right now: 0 none, 1 energy, 2 workspace, 3 velocity, 4 force, 5 rate."),
-        observed("fault", &SiteRecord::fault, units::none, "", "", "",
-                 "What the gate latched: 0 none, 1 not-finite, 2 encoder-jump, 3 encoder-frozen, 4 workspace, "
-                 "5 velocity, 6 energy."),
+        observed("state", &SiteRecord::state, units::none, "", "", "", state_legend.text),
+        observed("cause", &SiteRecord::cause, units::none, "", "", "", cause_legend.text),
+        observed("limit", &SiteRecord::limit, units::none, "", "", "", limit_legend.text),
+        observed("fault", &SiteRecord::fault, units::none, "", "", "", fault_legend.text),
         observed("armings", &SiteRecord::armings, units::none, "", "", "", "The arming that is followed."),
         observed("applied_session", &SiteRecord::applied_session, units::none, "", "", "",
                  "Session of the packet that was applied last."),
@@ -129,12 +159,13 @@ class Supervision {
  private:
   [[nodiscard]] bool unanswered() noexcept;
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
-              const Watchdog& answer, const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params,
-              std::int64_t session, Seconds dt, const Agreement& agreement)
+              const Watchdog& answer, const OverloadCheck& overload, const SiteSupervisor& supervisor, SiteRole role,
+              const SupervisionParams& params, std::int64_t session, Seconds dt, const Agreement& agreement)
       : judge_(judge),
         follower_(follower),
         watchdog_(watchdog),
         answer_(answer),
+        overload_(overload),
         supervisor_(supervisor),
         role_(role),
         dt_s_(dt.value),
@@ -147,6 +178,7 @@ class Supervision {
   MessageFollower follower_;
   Watchdog watchdog_;
   Watchdog answer_;  ///< of the slave to an arming
+  OverloadCheck overload_;
   SiteSupervisor supervisor_;
   SiteRole role_;
   double dt_s_;

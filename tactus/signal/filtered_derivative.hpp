@@ -6,6 +6,7 @@
 #include <tactus/signal/checks.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace tactus::signal {
@@ -74,6 +75,16 @@ class FilteredDerivative {
 
   /// The velocity at this sample. Real-time safe.
   double step(double position) noexcept { return motion_.step(position); }
+  /// The same where `elapsed_samples` sample times have passed since the sample before: what as many samples on the
+  /// straight line between the two would have given. Real-time safe.
+  double step(double position, std::int64_t elapsed_samples) noexcept {
+    if (elapsed_samples <= 1 || motion_.samples == 0.0) return motion_.step(position);
+    const auto samples = static_cast<double>(elapsed_samples);
+    const double slope = (position - motion_.previous) / samples * motion_.rate_per_s;
+    motion_.velocity = slope + std::pow(1.0 - motion_.smoothing, samples) * (motion_.velocity - slope);
+    motion_.previous = position;
+    return motion_.velocity;
+  }
 
   /// At rest; the next sample only initialises.
   void reset() noexcept {

@@ -6,6 +6,7 @@
 #include <tactus/signal/sections.hpp>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace tactus::signal {
@@ -42,6 +43,14 @@ class LowPass {
 
   /// The filtered sample. Real-time safe.
   double step(double input) noexcept { return section_.step(input); }
+  /// The last of `samples` filtered samples of one input. Real-time safe.
+  double step(double input, std::int64_t samples) noexcept {
+    if (samples > 1) {
+      const double settled = (1.0 - section_.b0) * input;
+      section_.state = settled + std::pow(-section_.a1, static_cast<double>(samples - 1)) * (section_.state - settled);
+    }
+    return section_.step(input);
+  }
 
   /// Back to rest at zero.
   void reset() noexcept { settle(0.0); }

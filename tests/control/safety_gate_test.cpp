@@ -150,13 +150,13 @@ TEST(SafetyGate, AWallThatGivesBackWhatItTookTripsNothing) {
   EXPECT_EQ(element.fault(), GateFault::none);
 }
 
-TEST(SafetyGate, AfterAStallTheWayInBetweenIsNeitherAJumpNorWork) {
-  SafetyGate element = gate({});
+TEST(SafetyGate, AfterAStallTheWayInBetweenIsWorkAndSpeedAndNoJumpWhereTheTimeWasEnough) {
+  SafetyGate element = gate({.energy = {.drain_W = 0.0}});
   for (int tick = 0; tick < 100; ++tick) element.step({.command_N = 1.0});
   EXPECT_EQ(element.believe(0.05, 500), 0.05);
   EXPECT_EQ(element.fault(), GateFault::none);
-  EXPECT_EQ(element.given_J(), 0.0);
-  EXPECT_EQ(element.velocity_m_per_s(), 0.0);
+  EXPECT_NEAR(element.given_J(), 1.0 * 0.05, 1e-15);
+  EXPECT_NEAR(element.velocity_m_per_s(), 0.05 / 0.1, 1e-9);
 }
 
 TEST(SafetyGate, AMotorThatNothingResistsAndThatStandsStillHasAFrozenEncoder) {

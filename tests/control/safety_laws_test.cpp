@@ -1,5 +1,6 @@
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
+#include <tactus/control/overload_check.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/control/watchdog.hpp>
@@ -28,6 +29,32 @@ struct Doubles<control::Watchdog::Input> {
   using Row = std::array<double, 2>;
   static control::Watchdog::Input from(const Row& row) {
     return {.heard = row[0] > 0.9, .elapsed_ticks = row[1] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::OverloadCheck::Input> {
+  using Row = std::array<double, 1>;
+  static control::OverloadCheck::Input from(const Row& row) { return {.elapsed_ticks = row[0] > 0.5 ? 40 : 1}; }
+};
+template <>
+struct Doubles<control::EncoderCheck::Input> {
+  using Row = std::array<double, 4>;
+  static control::EncoderCheck::Input from(const Row& row) {
+    return {.position_m = row[0], .acted_N = row[1], .unbalanced_N = row[2], .elapsed_ticks = row[3] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::ForceSensorCheck::Input> {
+  using Row = std::array<double, 3>;
+  static control::ForceSensorCheck::Input from(const Row& row) {
+    return {.acted_N = row[0], .tip_force_N = row[1], .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::PassivityMonitor::Input> {
+  using Row = std::array<double, 3>;
+  static control::PassivityMonitor::Input from(const Row& row) {
+    return {.acted_N = row[0], .position_m = row[1], .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
   }
 };
 template <>
@@ -79,9 +106,10 @@ struct Subject<control::SiteSupervisor> {
   static void admit(control::SiteSupervisor::Input&) {}
 };
 
-using SafetyElements = ::testing::Types<control::ForceGate, control::EncoderCheck, control::ForceSensorCheck,
-                                        control::PassivityMonitor, control::Watchdog, control::SafetyGate,
-                                        control::PacketJudge, control::MessageFollower, control::SiteSupervisor>;
+using SafetyElements =
+    ::testing::Types<control::ForceGate, control::EncoderCheck, control::ForceSensorCheck, control::PassivityMonitor,
+                     control::Watchdog, control::OverloadCheck, control::SafetyGate, control::PacketJudge,
+                     control::MessageFollower, control::SiteSupervisor>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Safety, ElementLaws, SafetyElements);
 
 }  // namespace tactus::laws

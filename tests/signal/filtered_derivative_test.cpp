@@ -50,6 +50,19 @@ TEST(FilteredDerivative, GivesTheExactSlopeOfARamp) {
   EXPECT_NEAR(velocity, 0.15, 1e-10);
 }
 
+TEST(FilteredDerivative, AGapGivesWhatAsManySamplesOnAStraightLineWouldHaveGiven) {
+  auto gapped = derivative(300.0), sampled = gapped, each = gapped;
+  for (double position : {0.0, 0.01, 0.03, 0.02}) {
+    gapped.step(position);
+    sampled.step(position);
+  }
+  double velocity = 0.0;
+  for (int n = 1; n <= 7; ++n) velocity = sampled.step(0.02 + 0.005 * n);
+  EXPECT_NEAR(gapped.step(0.055, 7), velocity, 1e-9 * velocity);
+  EXPECT_NEAR(gapped.step(0.056), sampled.step(0.056), 1e-9 * velocity);
+  EXPECT_EQ(each.step(12.5, 7), 0.0) << "the first sample only initialises";
+}
+
 TEST(FilteredDerivative, StartsWithoutAKickFarFromZeroAndAgainAfterAReset) {
   auto element = derivative(300.0);
   EXPECT_EQ(element.step(12.5), 0.0);
