@@ -23,7 +23,8 @@ enum class SiteCause {
   gate,
   unanswered,
   disagreement,
-  overloaded
+  overloaded,
+  pace
 };
 constexpr auto enumerators(SiteCause) {
   return std::array{Enumerator{SiteCause::none, "none"},
@@ -38,7 +39,8 @@ constexpr auto enumerators(SiteCause) {
                     Enumerator{SiteCause::gate, "gate"},
                     Enumerator{SiteCause::unanswered, "unanswered"},
                     Enumerator{SiteCause::disagreement, "disagreement"},
-                    Enumerator{SiteCause::overloaded, "overloaded"}};
+                    Enumerator{SiteCause::overloaded, "overloaded"},
+                    Enumerator{SiteCause::pace, "pace"}};
 }
 
 enum class SiteRole { master, slave };
@@ -89,6 +91,7 @@ class SiteSupervisor {
     bool unanswered = false;    ///< the slave has not followed the arming for too long
     bool stalled = false;       ///< this site was not stepped for too long
     bool overloaded = false;    ///< this site was not stepped too often
+    bool out_of_pace = false;   ///< the other site's clock is not this one's
     bool force_sensor = false;  ///< the force sensor cannot be right
     bool energy = false;        ///< the passivity monitor has latched
     bool fault = false;         ///< the safety gate has, for any other reason

@@ -23,9 +23,12 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   if (!answer) return answer.error();
   const auto overload = OverloadCheck::make(params.overload, dt);
   if (!overload) return under("overload", overload.error());
+  const auto pace = PaceCheck::make(
+      {.slack_s = params.packets.longest_age_s + params.watchdog.timeout_s, .tolerance_share = params.pace_share}, dt);
+  if (!pace) return pace.error();
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *supervisor, role, params, session, dt,
+  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *pace, *supervisor, role, params, session, dt,
                      agreement);
 }
 
@@ -59,19 +62,22 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
   // Where a site does not follow, its state is the latch.
   if (!guards && fresh_) watchdog_.reset();
   const bool silent = watchdog_.step({.heard = fresh_, .elapsed_ticks = elapsed_ticks_});
-  return supervisor_.step({.requests = sight.requests,
-                           .heard = newest_.session != 0,
-                           .session = newest_.session,
-                           .peer = newest_.state,
-                           .peer_armings = newest_.armings,
-                           .disagrees = agreement_.disagrees(),
-                           .silent = silent,
-                           .unanswered = unanswered(),
-                           .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
-                           .overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_}),
-                           .force_sensor = sight.force_sensor,
-                           .energy = sight.fault == GateFault::energy,
-                           .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
+  return supervisor_.step(
+      {.requests = sight.requests,
+       .heard = newest_.session != 0,
+       .session = newest_.session,
+       .peer = newest_.state,
+       .peer_armings = newest_.armings,
+       .disagrees = agreement_.disagrees(),
+       .silent = silent,
+       .unanswered = unanswered(),
+       .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
+       .overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_}),
+       .out_of_pace = pace_.step(
+           {.following = before_ == SiteState::active, .sequence = newest_.sequence, .elapsed_ticks = elapsed_ticks_}),
+       .force_sensor = sight.force_sensor,
+       .energy = sight.fault == GateFault::energy,
+       .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
 }
 
 bool Supervision::rearms() const noexcept {

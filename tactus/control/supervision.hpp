@@ -4,6 +4,7 @@
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
 #include <tactus/control/overload_check.hpp>
+#include <tactus/control/pace_check.hpp>
 #include <tactus/control/packet.hpp>
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/control/watchdog.hpp>
@@ -23,6 +24,7 @@ struct SupervisionParams {
   Watchdog::Params watchdog;
   ForceSensorCheck::Params force_sensor;
   OverloadCheck::Params overload;
+  double pace_share = 0.25;
   double longest_stall_s = 0.02;
   double answer_within_s = 1.0;
   double blend_s = 0.1;
@@ -33,6 +35,9 @@ struct SupervisionParams {
         field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
         field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
         field("overload", &SupervisionParams::overload, "How many ticks a site may miss before it holds."),
+        field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),
+              "Share by which the other site's clock may run slower or faster before the site holds; above what it may "
+              "miss of its ticks."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
         field(
@@ -159,13 +164,15 @@ class Supervision {
  private:
   [[nodiscard]] bool unanswered() noexcept;
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
-              const Watchdog& answer, const OverloadCheck& overload, const SiteSupervisor& supervisor, SiteRole role,
-              const SupervisionParams& params, std::int64_t session, Seconds dt, const Agreement& agreement)
+              const Watchdog& answer, const OverloadCheck& overload, const PaceCheck& pace,
+              const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params, std::int64_t session,
+              Seconds dt, const Agreement& agreement)
       : judge_(judge),
         follower_(follower),
         watchdog_(watchdog),
         answer_(answer),
         overload_(overload),
+        pace_(pace),
         supervisor_(supervisor),
         role_(role),
         dt_s_(dt.value),
@@ -179,6 +186,7 @@ class Supervision {
   Watchdog watchdog_;
   Watchdog answer_;  ///< of the slave to an arming
   OverloadCheck overload_;
+  PaceCheck pace_;
   SiteSupervisor supervisor_;
   SiteRole role_;
   double dt_s_;
