@@ -4,21 +4,22 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/checks.hpp>
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 
 namespace tactus::control {
 
 /// Whether both sites live in the same time. Each sends a packet a tick, so while they follow one another the other's
-/// numbers go by as fast as the own ticks:
+/// numbers go by as fast as the own ticks. What is beyond a tolerated share adds up, each way apart (a CUSUM: E. S.
+/// Page, Biometrika 41, 1954), and more than the slack means that the sites are out of pace:
 ///
-///     lag = own ticks − the other's numbers gone by, since following began
-///     out of pace where |lag| > slack + tolerance·own ticks
+///     behind ← max(0, behind + (ticks − numbers) − tolerance·ticks)
+///     ahead  ← max(0, ahead  + (numbers − ticks) − tolerance·ticks)
 ///
 /// The slack is for what may be on its way or lost at the end, the tolerance for ticks that the other may miss and for
-/// crystals, which differ by 1e-4 at most. A clock that runs at the share 1 − m shows after slack/(m − tolerance). Both
-/// sites were told the same rate, so one of them filters, derives and counts in a wrong time. Lost packets do not
-/// matter.
+/// crystals, which differ by 1e-4 at most. A clock that runs at the share 1 − m shows after slack/(m − tolerance),
+/// however long it was right before. Both sites were told the same rate, so one of them filters, derives and counts in
+/// a wrong time. Lost packets do not matter.
 class PaceCheck {
  public:
   struct Params {
@@ -48,20 +49,23 @@ class PaceCheck {
   /// Real-time safe.
   bool step(const Input& input) noexcept {
     if (!input.following || !followed_) {
+      reset();
       followed_ = input.following;
-      first_ = input.sequence;
-      ticks_ = 0.0;
+      sequence_ = input.sequence;
       return false;
     }
-    ticks_ += static_cast<double>(input.elapsed_ticks);
-    const double lag = ticks_ - (static_cast<double>(input.sequence) - static_cast<double>(first_));
-    return std::fabs(lag) > slack_ticks_ + tolerance_share_ * ticks_;
+    const double ticks = static_cast<double>(input.elapsed_ticks);
+    const double late = ticks - (static_cast<double>(input.sequence) - static_cast<double>(sequence_));
+    sequence_ = input.sequence;
+    behind_ticks_ = std::max(0.0, behind_ticks_ + late - tolerance_share_ * ticks);
+    ahead_ticks_ = std::max(0.0, ahead_ticks_ - late - tolerance_share_ * ticks);
+    return std::max(behind_ticks_, ahead_ticks_) > slack_ticks_;
   }
   /// As if following began with the next step.
   void reset() noexcept {
     followed_ = false;
-    first_ = 0;
-    ticks_ = 0.0;
+    sequence_ = 0;
+    behind_ticks_ = ahead_ticks_ = 0.0;
   }
 
  private:
@@ -71,8 +75,9 @@ class PaceCheck {
   double slack_ticks_;
   double tolerance_share_;
   bool followed_ = false;
-  std::int64_t first_ = 0;  ///< number when following began
-  double ticks_ = 0.0;      ///< own ones since
+  std::int64_t sequence_ = 0;  ///< of the step before
+  double behind_ticks_ = 0.0;
+  double ahead_ticks_ = 0.0;
 };
 
 }  // namespace tactus::control

@@ -33,7 +33,11 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
 }
 
 PacketVerdict Supervision::take(const Packet& packet) noexcept {
-  const PacketVerdict verdict = judge_.step(packet);
+  // A packet tells the cell that its number names: one that does not is an old one under a new number.
+  const AgreementExcerpt& said = packet.agreement;
+  const bool renumbered =
+      said.digest == agreement_.own().digest() && said.cell != agreement_.own().excerpt(packet.sequence).cell;
+  const PacketVerdict verdict = renumbered ? PacketVerdict::stale : judge_.step(packet);
   if (verdict == PacketVerdict::applied) {
     newest_ = packet;
     agreement_.take(packet.session, packet.agreement);

@@ -45,9 +45,13 @@ class FaultInjection {
   [[nodiscard]] const FaultMoment& moment() const noexcept { return moment_; }
   void enter(std::int64_t tick) noexcept { moment_ = span_.at(tick); }
 
+  /// A machine sleeps, and its network with it: what was on its way is lost.
+  [[nodiscard]] bool sleeps() const noexcept {
+    return plan_.kind == FaultKind::suspend && plan_.choice % 2 == 1 && misses_ticks(plan_, moment_);
+  }
   /// No packet passes either way.
   [[nodiscard]] bool cuts() const noexcept {
-    return (plan_.kind == FaultKind::cut && moment_.during) || is_prelude(control::SiteState::hold);
+    return sleeps() || (plan_.kind == FaultKind::cut && moment_.during) || is_prelude(control::SiteState::hold);
   }
   /// What share of the network's impairment there is now on the way to `site`.
   [[nodiscard]] double impaired_share(FaultSite site) const noexcept {
@@ -61,9 +65,11 @@ class FaultInjection {
     const bool errs = plan_.kind == FaultKind::delay_asymmetric && moment_.during && moment_.since_s > clock_memory_s;
     return errs ? (plan_.site == site ? -0.5 : 0.5) * plan_.impairment.delay_s : 0.0;
   }
-  /// Whether a site takes the other's agreement for its own: for a control, what compares them is gone.
+  /// Whether a site takes what the other tells of its agreement as its own would be: for a control, what compares them
+  /// is gone.
   [[nodiscard]] bool hides_disagreement() const noexcept {
-    return plan_.kind == FaultKind::configurations_differ && plan_.size != 0.0;
+    const bool told = plan_.kind == FaultKind::configurations_differ || plan_.kind == FaultKind::peer_repeats;
+    return told && plan_.size != 0.0;
   }
   /// Puts a bad number into what a site reads, where this is its tick; `input` is a packet or a site's sensors.
   template <class Input>

@@ -45,8 +45,11 @@ void FaultJudge::see(const SiteView& master, const SiteView& slave, const FaultM
   if (before_rearming) {
     at_master_.see(master.truth, now_s, outcome.master);
     at_slave_.see(slave.truth, now_s, outcome.slave);
-    const double forced_s = std::max(at_master_.forced_s(), at_slave_.forced_s());
-    if (outcome.stopped) outcome.release_s = std::max(forced_s - stopped_at_s_, 0.0);
+    if (outcome.stopped) {
+      outcome.master.release_s = std::max(at_master_.forced_s() - stopped_at_s_, 0.0);
+      outcome.slave.release_s = std::max(at_slave_.forced_s() - stopped_at_s_, 0.0);
+      outcome.release_s = std::max(outcome.master.release_s, outcome.slave.release_s);
+    }
     rearms_ = !both;
   }
   if (rearms_ && now_s > end_s + rearm_after_s && now_s < end_s + repress_after_s + resume_watch_s) {

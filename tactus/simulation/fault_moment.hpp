@@ -17,6 +17,12 @@ struct FaultMoment {
   bool during = false;   ///< from the first tick to the end
 };
 
+/// A site that missed too many ticks is not armed until that is forgotten: the end of such a fault is left to it.
+inline constexpr double forgotten_s = 1.0;
+inline bool misses_ticks(const FaultPlan& plan, const FaultMoment& moment) noexcept {
+  return moment.during && moment.since_s < plan.length_s - forgotten_s;
+}
+
 /// When a fault is there, on a clock of ticks.
 class FaultSpan {
  public:

@@ -14,6 +14,7 @@ struct SiteHarm {
   double speed_m_per_s = 0.0;
   double strayed_m = 0.0;
   double peak_force_N = 0.0;
+  double release_s = 0.0;
   static constexpr auto signals() {
     return std::tuple{observed("given_J", &SiteHarm::given_J, units::joule, "", "", "the motor gave it",
                                "Largest rise of the energy that the motor gave."),
@@ -22,7 +23,9 @@ struct SiteHarm {
                       observed("strayed_m", &SiteHarm::strayed_m, units::metre, "", "", "",
                                "Farthest of it beyond the ends of the way on which the person leads it."),
                       observed("peak_force_N", &SiteHarm::peak_force_N, units::newton, "", "", "",
-                               "Largest between the hand and the handle, or the tool and the wall.")};
+                               "Largest between the hand and the handle, or the tool and the wall."),
+                      observed("release_s", &SiteHarm::release_s, units::second, "", "", "",
+                               "From the moment when no site was active until the motor gave no force for good.")};
   }
 };
 

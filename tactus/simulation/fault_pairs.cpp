@@ -47,13 +47,12 @@ constexpr std::array striking{FaultKind::loss_bursts,
                               FaultKind::handle_clamped,
                               FaultKind::power_lost};
 
-constexpr double longest_s = 1.0;
+constexpr double longest_cut_s = 1.0;
 
-FaultPlan strike(std::int64_t number, const FaultPlan& plan, double start_s) {
-  const FaultKind kind = striking[static_cast<std::size_t>(number) % striking.size()];
-  FaultPlan part = draw_plan(kind, number, plan.seed, longest_s);
+FaultPlan strike(std::size_t which, const FaultPlan& plan, double start_s) {
+  const FaultKind kind = striking[which % striking.size()];
+  FaultPlan part = draw_plan(kind, plan.choice, plan.seed, longest_cut_s);
   part.start_s = start_s;
-  part.length_s = std::min(part.length_s, longest_s);
   return part;
 }
 
@@ -62,13 +61,16 @@ FaultPlan strike(std::int64_t number, const FaultPlan& plan, double start_s) {
 std::vector<FaultPlan> plans_of(const FaultPlan& plan) {
   signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(13);
   if (plan.kind == FaultKind::two_faults) {
-    const auto kinds = static_cast<std::int64_t>(striking.size());
+    constexpr std::size_t pairs = striking.size() * (striking.size() + 1) / 2;
+    std::size_t second = static_cast<std::size_t>(plan.choice) % pairs, first = 0;
+    // Row by row of the half of a square.
+    while (second > first) second -= ++first;
     const double second_s = plan.start_s + random.uniform(0.0, 0.3);
-    return {strike(plan.choice, plan, plan.start_s), strike(plan.choice / kinds, plan, second_s)};
+    return {strike(first, plan, plan.start_s), strike(second, plan, second_s)};
   }
   if (plan.kind == FaultKind::fault_while_arming) {
     using namespace fault_schedule;
-    return {strike(plan.choice, plan, random.uniform(arm_s, press_s + button_s))};
+    return {strike(static_cast<std::size_t>(plan.choice), plan, random.uniform(arm_s, press_s + button_s))};
   }
   return {plan};
 }

@@ -29,6 +29,11 @@ class FaultPerson {
     if (leans_) return wall_m_ - depth_m_ * std::cos(pi * std::clamp(2.0 * lean_s, 0.0, 1.0));
     return wall_m_ - depth_m_ * std::cos(2.0 * pi * (tap_Hz_ * time_s + 0.1 * phase_cycles_));
   }
+  /// When the hand, where it taps, is deepest in the wall, at `time_s` or after.
+  [[nodiscard]] double deepest_after_s(double time_s) const noexcept {
+    const double cycles = tap_Hz_ * time_s + 0.1 * phase_cycles_ - 0.5;
+    return time_s + (std::ceil(cycles) - cycles) / tap_Hz_;
+  }
   /// How far to either side of the wall the path goes.
   [[nodiscard]] double depth_m() const noexcept { return depth_m_; }
   [[nodiscard]] double wall_m() const noexcept { return wall_m_; }
@@ -50,8 +55,7 @@ class FaultPerson {
 
  private:
   static bool leans(FaultKind kind) noexcept {
-    return kind == FaultKind::delayed_wall || kind == FaultKind::delay_asymmetric ||
-           kind == FaultKind::delay_creeping || kind == FaultKind::stale_commands;
+    return kind == FaultKind::delayed_wall || kind == FaultKind::delay_asymmetric || kind == FaultKind::delay_creeping;
   }
 
   double wall_m_;

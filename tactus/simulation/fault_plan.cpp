@@ -1,6 +1,8 @@
 #include <tactus/simulation/fault_plan.hpp>
 #include <tactus/simulation/internal/fault_families.hpp>
 
+#include <algorithm>
+
 namespace tactus::simulation {
 
 using namespace fault_families;
@@ -19,6 +21,10 @@ Impairment draw_impairment(FaultKind kind, signal::Random& random) {
     impairment.duplicate_fraction = random.uniform(0.0, 0.3);
   } else if (kind == FaultKind::delayed_wall) {
     impairment.delay_s = random.uniform(0.015, 0.03);
+  } else if (kind == FaultKind::delay_asymmetric) {
+    impairment.delay_s = between_logarithms(random, 0.03, 0.38);
+  } else if (kind == FaultKind::delay_creeping) {
+    impairment.delay_s = random.uniform(0.05, 0.5);
   }
   return impairment;
 }
@@ -45,6 +51,10 @@ FaultPlan draw_plan(FaultKind kind, std::int64_t index, std::int64_t seed, doubl
       break;
     case FaultKind::cut:
       plan.length_s = between_logarithms(random, 0.01, longest_cut_s);
+      break;
+    case FaultKind::suspend:
+      plan.length_s = between_logarithms(random, std::min(1.0, longest_cut_s), longest_cut_s) + forgotten_s;
+      plan.size = drive_timeout_s;
       break;
     case FaultKind::restart:
       plan.length_s = between_logarithms(random, 0.02, 1.0);

@@ -53,6 +53,7 @@ class FaultProcess {
     relay.deliver(tick, [&](control::Packet packet) {
       if (killed_) return;
       for (const FaultInjection& injection : injections) {
+        if (injection.sleeps()) return;
         packet.age_s = std::max(packet.age_s + injection.age_error_s(site_), 0.0);
         injection.spoil(site_, packet);
       }

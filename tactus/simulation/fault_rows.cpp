@@ -32,6 +32,9 @@ std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bou
   return {};
 }
 
+/// Stiffness of a firm grip over the operator's.
+constexpr double firm_grip = 5.0;
+
 bool detected(const FaultOutcome& outcome) { return outcome.detection_ticks >= 0; }
 
 bool stopped_in_time(const FaultOutcome& outcome, const FaultsParams& params) {
@@ -113,6 +116,8 @@ Teleoperator::Params params_of(const FaultRow& row, const FaultsParams& params) 
     // Else its check could end what the monitor is to end.
     of.control.supervision.force_sensor.residual_limit_N = 100.0;
   }
+  // So that there is a force to keep.
+  if (row.kind == FaultKind::stale_commands) of.person.grip.stiffness_N_per_m *= firm_grip;
   if (!row.monitored) loosen_monitor(of);
   return of;
 }

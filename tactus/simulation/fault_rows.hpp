@@ -28,7 +28,7 @@ struct FaultRow {
   FaultRule rule = nullptr;  ///< besides those that hold for every run
   FaultControl control{};
   bool ends_active = true;  ///< clearing and arming brings both sites back
-  bool monitored = true;  ///< false: the passivity monitor as loose as its bounds allow
+  bool monitored = true;    ///< false: the passivity monitor as loose as its bounds allow
 };
 
 /// Every row, or the one with the id `only`.

@@ -14,6 +14,7 @@ void add(SiteHarm& worst, const SiteHarm& one) {
   worst.speed_m_per_s = std::max(worst.speed_m_per_s, one.speed_m_per_s);
   worst.strayed_m = std::max(worst.strayed_m, one.strayed_m);
   worst.peak_force_N = std::max(worst.peak_force_N, one.peak_force_N);
+  worst.release_s = std::max(worst.release_s, one.release_s);
 }
 
 void add(FaultOutcome& worst, const FaultOutcome& one) {

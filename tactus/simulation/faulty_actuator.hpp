@@ -28,6 +28,8 @@ class FaultyActuator {
         return plan_.size;
       case FaultKind::actuator_saturated:
         return std::clamp(commanded_N, -plan_.size, plan_.size);
+      case FaultKind::suspend:
+        return misses_ticks(plan_, moment) ? obey_old(commanded_N, moment) : commanded_N;
       case FaultKind::stale_commands:
         return obey_old(commanded_N, moment);
       default:

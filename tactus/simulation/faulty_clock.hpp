@@ -32,10 +32,12 @@ class FaultyClock {
       case FaultKind::stall:
         return Beat::stands;
       case FaultKind::overload:  // `size` is the share of ticks that are missed
-        return random_.uniform() < plan_.size ? Beat::stands : Beat::steps;
+        return misses_ticks(plan_, moment) && random_.uniform() < plan_.size ? Beat::stands : Beat::steps;
       case FaultKind::stop_and_go:  // `size` is how long each stall lasts, in s
-        return std::fmod(moment.since_s, plan_.size + go_s_) < plan_.size ? Beat::stands : Beat::steps;
+        return misses_ticks(plan_, moment) && std::fmod(moment.since_s, plan_.size + go_s_) < plan_.size ? Beat::stands
+                                                                                                         : Beat::steps;
       case FaultKind::suspend:  // one half of the plans stops the process, the other the machine
+        if (!misses_ticks(plan_, moment)) return Beat::steps;
         return plan_.choice % 2 == 0 ? Beat::stands : Beat::sleeps;
       case FaultKind::rate_drift:  // `size` is by what share the clock is slow
         behind_ticks_ += plan_.size;

@@ -14,9 +14,9 @@ struct FaultyConfiguration {
   Seconds tick;
 
   /// The keys in which sites can differ, one for each choice.
-  static constexpr std::array keys{"control.architecture",        "servo.rate_Hz",
-                                   "control.position_scale",      "control.force_limit_N",
-                                   "control.gate.force_limit_N",  "control.supervision.watchdog.timeout_s"};
+  static constexpr std::array keys{"control.architecture",       "servo.rate_Hz",
+                                   "control.position_scale",     "control.force_limit_N",
+                                   "control.gate.force_limit_N", "control.supervision.watchdog.timeout_s"};
 
   FaultyConfiguration(const control::ControlParams& params, Seconds dt, const FaultPlan& plan, FaultSite site)
       : control(params), tick(dt) {

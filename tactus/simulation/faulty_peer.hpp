@@ -40,7 +40,7 @@ class FaultyPeer {
         scale(message, -1.0);
         break;
       case Wrong::scale:
-        scale(message, plan_.size);
+        scale(message, -plan_.size);
         break;
       case Wrong::frozen:
         message = last_.message;
@@ -57,7 +57,7 @@ class FaultyPeer {
     }
   }
 
-  static constexpr double noise_m = 0.001, noise_N = 0.2;
+  static constexpr double noise_m = 0.005, noise_N = 2.0;
 
   FaultPlan plan_;
   bool here_;

@@ -26,12 +26,12 @@ class FaultyPerson {
         if (moment.during && plan_.size == 0.0) pressed.dead_man = true;
         break;
       case FaultKind::console_lost:  // its end is a release of all that was pressed
-        if (moment.during && plan_.size == 0.0) pressed = {};
+        if (plan_.size == 0.0 && is_noticed(moment, 0.0)) pressed = {};
         break;
       case FaultKind::both_restarted:
         return presses_while_restarted(pressed, moment);
       case FaultKind::stale_commands:  // the person notices
-        if (moment.during && moment.since_s > notices_s) pressed.dead_man = false;
+        if (is_noticed(moment, notices_s)) pressed.dead_man = false;
         break;
       default:
         break;
@@ -44,10 +44,15 @@ class FaultyPerson {
 
   /// The dead-man switch sticks while the sites follow, and the person goes away; else from the start of the session.
   [[nodiscard]] bool stuck_in_use() const noexcept {
-    return plan_.kind == FaultKind::dead_man_stuck && plan_.choice % 2 == 1;
+    return plan_.kind == FaultKind::dead_man_stuck && plan_.start_s > 0.0;
   }
-  /// Everything is pressed when the sites come back, and stays so. Where `size` is not 0 it is pressed in its turn, after
-  /// they are back.
+  /// From so long after the fault began until the person sets out to arm again.
+  [[nodiscard]] bool is_noticed(const FaultMoment& moment, double after_s) const noexcept {
+    return !moment.before && moment.since_s >= after_s &&
+           moment.since_s <= plan_.length_s + fault_schedule::look_after_s + fault_schedule::button_s;
+  }
+  /// Everything is pressed when the sites come back, and stays so. Where `size` is not 0 it is pressed in its turn,
+  /// after they are back.
   [[nodiscard]] control::SiteRequests presses_while_restarted(control::SiteRequests pressed,
                                                               const FaultMoment& moment) const noexcept {
     const double back_s = moment.since_s - plan_.length_s;

@@ -33,6 +33,16 @@ TEST(PaceCheck, AClockThatIsGrosslyWrongShowsAfterTheSlackOverWhatIsNotTolerated
   EXPECT_NEAR(static_cast<double>(ticks_until(2.0, 0, 100'000)) * tick.value, 0.3 / (1.0 - 0.25), 0.01);
 }
 
+TEST(PaceCheck, AClockThatWasRightForAnHourShowsNoLater) {
+  PaceCheck check = PaceCheck::make({}, tick).value();
+  std::int64_t sequence = 1, wrong_ticks = 0;
+  for (int i = 0; i < 18'000'000; ++i) check.step({.following = true, .sequence = sequence++});
+  while (!check.step({.following = true, .sequence = sequence}) && wrong_ticks < 100'000) {
+    if (++wrong_ticks % 2 == 0) ++sequence;
+  }
+  EXPECT_NEAR(static_cast<double>(wrong_ticks) * tick.value, 0.3 / (0.5 - 0.25), 0.01);
+}
+
 TEST(PaceCheck, OwnTicksThatWereMissedCount) {
   PaceCheck check = PaceCheck::make({}, tick).value();
   std::int64_t sequence = 1;

@@ -66,8 +66,10 @@ class End {
     if (inbound_.take(datagram, now_ns) != link::Inbound::Verdict::counted) return std::nullopt;
     return datagram.packet;
   }
-  link::DatagramBytes send(control::Packet packet, std::int64_t now_ns) {
+  /// `agreement` is the sender's.
+  link::DatagramBytes send(control::Packet packet, const control::Agreement& agreement, std::int64_t now_ns) {
     packet.sequence += origin_.sequence;
+    packet.agreement = agreement.excerpt(packet.sequence);
     packet.message.energy_J += origin_.energy_J;
     const bool echoes = inbound_.echo_heard_ns() != 0;
     return link::encode({.site = role_,
@@ -142,7 +144,7 @@ class TwoSites {
                                              .grip = seen_.at_master.grip},
                                  .requests = requests,
                                  .elapsed_ticks = elapsed_ticks});
-    const link::DatagramBytes to_slave = master_end_.send(seen_.master.packet, master_ns);
+    const link::DatagramBytes to_slave = master_end_.send(seen_.master.packet, master_.agreement().own(), master_ns);
 
     const std::int64_t slave_ns = origin_.slave_clock_ns + since_ns + tick_ns() / 2;
     seen_.slave_heard_age_s = 0.0;
@@ -155,7 +157,7 @@ class TwoSites {
                                            .arrival = {}},
                                .requests = requests,
                                .elapsed_ticks = elapsed_ticks});
-    to_master_ = slave_end_.send(seen_.slave.packet, slave_ns);
+    to_master_ = slave_end_.send(seen_.slave.packet, slave_.agreement().own(), slave_ns);
 
     master_plant_.begin_tick(
         {.motor_force_N = seen_.master.site.motor_force_N, .handle_force_N = seen_.master.site.handle_force_N},

@@ -12,6 +12,11 @@ namespace tactus::simulation::fault_families {
 /// Ticks that a message may wait at a tick boundary on its way, and a state for its packet.
 inline constexpr double grace_ticks = 6.0;
 
+/// The drive of a device that is in use lets go of a command that is as old.
+inline constexpr double drive_timeout_s = 0.02;
+/// Clocks of two machines may differ by so much; crystals by a tenth of it.
+inline constexpr double tolerable_drift = 1e-3;
+
 inline constexpr std::string_view late = "not stopped within the time-out", unseen = "not detected";
 
 /// Drawn evenly in its logarithm.
