@@ -185,16 +185,6 @@ constexpr std::size_t member_count() {
   }
 }
 
-inline bool ends_with_a_unit(std::string_view name) {
-  for (const Unit& unit :
-       {units::second, units::hertz, units::metre, units::metre_per_second, units::newton, units::newton_per_second,
-        units::newton_per_metre, units::newton_per_metre5, units::newton_second_per_metre, units::second_per_metre,
-        units::kilogram, units::per_second}) {
-    if (name.ends_with(unit.suffix)) return true;
-  }
-  return false;
-}
-
 /// Every member is a field, its name is unique, ends as its unit does and in no unit that it does not have, its doc is
 /// not empty, and the defaults are valid.
 template <Described Params>
@@ -209,7 +199,9 @@ Violation the_parameters_are_described() {
     const std::string_view name = f.name;
     if (!names.insert(f.name).second) blame(f.name, "the name stands twice");
     if (!name.ends_with(f.unit.suffix)) blame(f.name, "the name does not end with the suffix of its unit");
-    if (f.unit.suffix[0] == '\0' && ends_with_a_unit(name)) blame(f.name, "the name ends with a unit it does not have");
+    // The longest unit that fits: a torque in N m is not said to be in m.
+    const bool ends_so = unit_at_end_of(name).suffix == std::string_view(f.unit.suffix);
+    if (!ends_so) blame(f.name, "the name ends with a unit it does not have");
     if (std::string_view(f.doc).empty()) blame(f.name, "the doc is empty");
     if constexpr (Described<Value>) {
       if (const Violation inner = the_parameters_are_described<Value>()) blame(f.name, inner->c_str());

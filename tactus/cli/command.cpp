@@ -4,12 +4,17 @@
 #include <tactus/core/version.hpp>
 
 #include <csignal>
+#include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <string>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace tactus::cli {
 
@@ -36,13 +41,16 @@ int refuse(const std::string& name, std::string_view why) {
   return 2;
 }
 
-}  // namespace
-
-int run_command(int argc, char** argv) {
+int run(int argc, char** argv) {
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "tactus";
   std::string command = shell_word(name);
   for (int i = 1; i < argc; ++i) command += " " + shell_word(argv[i]);
 
+  // Else the number of one that was closed would be given to a log or a socket, which would be read or printed to. This
+  // way round, so that reading from it and printing to it fail as before.
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(standard, F_GETFD) < 0) (void)open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
   // A reader of the results that went away is an error like a full disk and not the end.
   std::signal(SIGPIPE, SIG_IGN);
   int status = 0;
@@ -77,6 +85,20 @@ int run_command(int argc, char** argv) {
     return exit_status(*error);
   }
   return 0;
+}
+
+}  // namespace
+
+int run_command(int argc, char** argv) {
+  // What is thrown is what nobody can do without: memory, or a thread. Told without any of either.
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fputs("tactus: out of memory: free some, raise the limit (ulimit -v), or ask for less at once\n", stderr);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tactus: the system refused what the command needs: %s\n", error.what());
+  }
+  return 1;
 }
 
 }  // namespace tactus::cli

@@ -1,4 +1,5 @@
 #include <tactus/cli/experiment_options.hpp>
+#include <tactus/cli/interruption.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/servo_options.hpp>
@@ -32,7 +33,8 @@ struct FaultsOptions {
   runtime::ServoThreadParams servo;
 };
 
-Check run(const FaultsOptions& options, const std::string& command) {
+/// `status` is what an interruption makes the exit status.
+Check run(const FaultsOptions& options, const std::string& command, int& status) {
   auto document = with_set(options.file ? configuration::Document::load(*options.file)
                                         : configuration::Document::parse("[task]\nkind = \"faults\"\n", "built in"),
                            options.set);
@@ -51,13 +53,22 @@ Check run(const FaultsOptions& options, const std::string& command) {
       .variations = {},
       .name = options.file ? std::filesystem::path(*options.file).stem().string() : std::string("faults"),
       .command = command};
+  runtime::EndRequest end;
+  std::unique_ptr<Interruption> interruption;
+  const auto listen = [&]() -> Result<const runtime::EndRequest*> {
+    auto started = Interruption::start(end);
+    if (!started) return started.error();
+    interruption = *std::move(started);
+    return &end;
+  };
   const auto outcome = [&] {
     ProgressLine line(request.name);
     const auto progress = [&line](double done) { line.update(done); };
-    return options.real_time ? runtime::run_faults_in_real_time(request, options.servo, progress)
+    return options.real_time ? runtime::run_faults_in_real_time(request, options.servo, progress, listen)
                              : simulation::FaultExperiment().run(request, progress);
   }();
   if (!outcome) return outcome.error();
+  if (interruption) status = interruption->exit_status();
   return write_outcome(options.out, *outcome, options.json);
 }
 
@@ -77,7 +88,7 @@ void add_faults(CLI::App& app, const std::string& command, int& status) {
   add_servo_options(*faults, options->servo);
   for (const char* name : {"--priority", "--core", "--spin-s"}) faults->get_option(name)->needs(real_time);
   faults->callback([options, name = app.get_name(), &command, &status] {
-    if (const auto error = run(*options, command)) {
+    if (const auto error = run(*options, command, status)) {
       std::cerr << name << ": " << describe(*error) << "\n";
       status = exit_status(*error);
     }

@@ -22,8 +22,6 @@ Check check_writable(const std::string& folder) {
   return report::prepare_directory(there.empty() ? "." : there);
 }
 
-namespace {
-
 Check write_results(const std::filesystem::path& folder, const simulation::Outcome& outcome) {
   if (auto error = report::prepare_directory(folder)) return error;
   for (std::size_t i = 0; i < outcome.figures.size(); ++i) {
@@ -34,13 +32,13 @@ Check write_results(const std::filesystem::path& folder, const simulation::Outco
   return report::write_file(folder / "report.html", outcome.html);
 }
 
-}  // namespace
-
 Check write_outcome(const std::optional<std::string>& out, const simulation::Outcome& outcome, bool json) {
+  if (out) {
+    if (auto error = write_results(*out, outcome)) return error;
+  }
   std::cout << (json ? outcome.json : outcome.text);
   if (auto error = flush_standard_output()) return error;
   if (!out) return std::nullopt;
-  if (auto error = write_results(*out, outcome)) return error;
   (json ? std::cerr : std::cout) << "Report: " << (std::filesystem::path(*out) / "report.html").string() << "\n";
   return std::nullopt;
 }

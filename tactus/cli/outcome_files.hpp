@@ -3,6 +3,7 @@
 #include <tactus/core/result.hpp>
 #include <tactus/simulation/experiment.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -12,8 +13,12 @@ namespace tactus::cli {
 /// be wrong leaves nothing behind.
 Check check_writable(const std::string& folder);
 
-/// Prints the outcome, as a table or as JSON, and writes report.html, results.json and the figures to the folder `out`
-/// if there is one, which it says after a table on standard output and else on standard error.
+/// Writes report.html, results.json and the figures; the folder is made.
+Check write_results(const std::filesystem::path& folder, const simulation::Outcome& outcome);
+
+/// Writes the results to the folder `out` if there is one, and prints the outcome, as a table or as JSON. In this order,
+/// so that the report is there whoever reads what is printed. Where the report is it says after a table on standard
+/// output and else on standard error.
 Check write_outcome(const std::optional<std::string>& out, const simulation::Outcome& outcome, bool json);
 
 }  // namespace tactus::cli

@@ -1,9 +1,10 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/servo_options.hpp>
-#include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/report/table.hpp>
+#include <tactus/report/text.hpp>
 #include <tactus/runtime/plant_server.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 
@@ -15,6 +16,7 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace tactus::cli {
 
@@ -36,13 +38,17 @@ std::string line_of(const PlantStatus& now, const PlantStatus& before, std::int6
          std::to_string(now.commands - before.commands) + " commands, " +
          (now.controller ? "driven by process " + std::to_string(*now.controller) : "nobody drives") + ", " +
          std::to_string(now.missed - before.missed) + " ticks missed" +
-         (now.let_go > before.let_go ? ", let go: commands stopped coming" : "") + "\n";
+         (now.held_back > before.held_back
+              ? ", " + std::to_string(now.held_back - before.held_back) + " commands held back to the limits"
+              : "") +
+         (now.let_go > before.let_go ? std::string(", let go: ") + runtime::in_words(now.cause) : "") + "\n";
 }
 
 std::string text_of(const std::string& name, const PlantStatus& status, const runtime::ServoReport& servo) {
-  report::Table table({{"readings"}, {"commands"}, {"taps"}, {"let go"}, {"ticks missed"}}, "Plant '" + name + "'");
+  report::Table table({{"readings"}, {"commands"}, {"taps"}, {"held back"}, {"let go"}, {"ticks missed"}},
+                      "Plant '" + name + "'");
   table.add_row({std::to_string(status.readings), std::to_string(status.commands), std::to_string(status.taps),
-                 std::to_string(status.let_go), std::to_string(status.missed)});
+                 std::to_string(status.held_back), std::to_string(status.let_go), std::to_string(status.missed)});
   return table.to_text() + "\n" + runtime::timing_text(servo);
 }
 
@@ -51,7 +57,9 @@ std::string json_of(const std::string& name, const PlantStatus& status, const ru
                                         {"readings", status.readings},
                                         {"commands", status.commands},
                                         {"taps", status.taps},
+                                        {"held_back", status.held_back},
                                         {"let_go", status.let_go},
+                                        {"cause", name_of(status.cause)},
                                         {"missed", status.missed},
                                         {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}};
   return document.dump(2) + "\n";
@@ -86,38 +94,48 @@ Check own_plant(const PlantOptions& options) {
   runtime::ServoThreadParams keep = options.servo;
   keep.rate_Hz = params->servo.rate_Hz;
 
-  const Interruption interruption;
+  runtime::EndRequest end;
+  const auto interruption = Interruption::start(end);
+  if (!interruption) return interruption.error();
+  LineWriter output(STDOUT_FILENO), errors(STDERR_FILENO);
   const auto step = [&server](const runtime::Tick& tick) noexcept {
     server.step(tick);
     return true;
   };
   const auto servo = runtime::ServoThread<decltype(step)>::start(keep, step);
   if (!servo) return servo.error();
-  std::ostream& lines = options.json ? std::cerr : std::cout;
-  lines << "Plant '" << options.name << "': tactus run " << options.experiment.file << " --realtime --plant "
-        << options.name << std::endl;
+  LineWriter& lines = options.json ? errors : output;
+  lines.say("Plant '" + options.name + "': tactus run " + report::printable(options.experiment.file) +
+            " --realtime --plant " + options.name + "\n");
 
   using std::chrono::steady_clock;
   const auto start = steady_clock::now();
   PlantStatus before;
   std::int64_t second = 1;
-  while (!interruption.asked()) {
+  while (!end.asked()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     server.serve();
     const std::chrono::duration<double> elapsed = steady_clock::now() - start;
     if (elapsed.count() >= static_cast<double>(second)) {
       const PlantStatus now = server.status();
-      lines << line_of(now, before, second) << std::flush;
+      lines.say(line_of(now, before, second));
       before = now;
       second = static_cast<std::int64_t>(elapsed.count()) + 1;
     }
     if (options.duration_s > 0.0 && elapsed.count() >= options.duration_s) break;
+    if (server.status().cut) break;
   }
   (*servo)->stop();
   const runtime::ServoReport& report = (*servo)->finish();
-  std::cout << (options.json ? json_of(options.name, server.status(), report)
-                             : "\n" + text_of(options.name, server.status(), report));
-  return flush_standard_output();
+  Check told = output.finish(options.json ? json_of(options.name, server.status(), report)
+                                          : "\n" + text_of(options.name, server.status(), report));
+  if (told || !server.status().cut) return told;
+  return Error{.code = ErrorCode::failed,
+               .parameter = {},
+               .message = "plant '" + options.name +
+                          "': another process has shortened its shared memory; the plant let go: start it again, and "
+                          "find out what writes to /dev/shm",
+               .place = "--name"};
 }
 
 }  // namespace

@@ -159,10 +159,12 @@ Check run(const RelayOptions& options) {
 
   Way to_slave(params->channel.to_slave, options.mean_burst, options.duplicate_fraction);
   Way to_master(params->channel.to_master, options.mean_burst, options.duplicate_fraction);
-  const Interruption interruption;
+  runtime::EndRequest end;
+  const auto interruption = Interruption::start(end);
+  if (!interruption) return interruption.error();
   constexpr std::int64_t look_up_ns = 50'000'000;
   const std::int64_t start_ns = link::monotonic_ns();
-  while (!interruption.asked()) {
+  while (!end.asked()) {
     std::int64_t now_ns = link::monotonic_ns();
     if (options.duration_s > 0.0 && static_cast<double>(now_ns - start_ns) > options.duration_s * 1e9) break;
     for (const link::Packet& packet : master->receive()) to_slave.take(packet, now_ns);

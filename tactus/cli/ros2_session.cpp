@@ -1,4 +1,3 @@
-#include <tactus/cli/interruption.hpp>
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
@@ -55,35 +54,42 @@ struct Session {
   ros2::Bridge* bridge;
   RecordStream* log;        ///< or null
   std::int64_t to_wall_ns;  ///< from CLOCK_MONOTONIC to the time of day
+  const runtime::EndRequest* end;
   std::int64_t first_tick = -1;
   std::int64_t done = 0;  ///< ticks
   double path_m = 0.0;
   int contacts = 0;
   double peak_force_N = 0.0;
   bool diverged = false;
+  double letting_go_s = 0.0;
 
   [[nodiscard]] double time_s() const noexcept { return static_cast<double>(done) * parts->teleoperator.tick_s(); }
 
   bool operator()(const runtime::Tick& tick) noexcept {
+    if (end->insisted()) return false;
     if (first_tick < 0) {
       first_tick = tick.number;
       path_m = parts->script.position_m(0.0);
     }
     while (done <= tick.number - first_tick) {
-      if (time_s() >= parts->script.duration_s() || !advance(tick.deadline_ns + to_wall_ns)) return false;
+      const bool over = time_s() >= parts->script.duration_s() || end->asked() || diverged;
+      advance(tick.deadline_ns + to_wall_ns, over ? 0.0 : 1.0);
+      if (!over) continue;
+      letting_go_s += parts->teleoperator.tick_s();
+      if (parts->teleoperator.at_rest() || letting_go_s >= runtime::longest_ramp_s) return false;
     }
     return true;
   }
 
  private:
-  /// One tick. False once the teleoperator is not what it should be.
-  bool advance(std::int64_t stamp_ns) noexcept {
+  /// One tick; `share` as in `Teleoperator::step`.
+  void advance(std::int64_t stamp_ns, double share) noexcept {
     Teleoperator& teleoperator = parts->teleoperator;
     const auto since_start_ns = static_cast<std::uint64_t>(std::llround(1e9 * time_s()));
     ++done;
     const double next_m =
         parts->path.step({.scripted_m = parts->script.position_m(time_s()), .wished_m = bridge->take_wish()});
-    const Record record = teleoperator.step(path_m, next_m);
+    const Record record = teleoperator.step(path_m, next_m, share);
     path_m = next_m;
     bridge->publish(snapshot_of(record, stamp_ns, teleoperator.healthy()));
     if (log != nullptr) log->push(since_start_ns, record);
@@ -92,8 +98,7 @@ struct Session {
     // Written so that a NaN counts as outside.
     const bool inside = std::fabs(record.master_position_m) < workspace_m &&
                         std::fabs(record.tip_position_m) < parts->slave_workspace_m;
-    diverged = !inside || !teleoperator.healthy();
-    return !diverged;
+    diverged = diverged || !inside || !teleoperator.healthy();
   }
 };
 
@@ -214,12 +219,13 @@ Result<simulation::Outcome> run_ros2_session(const simulation::Request& request,
   if (recorder) recorder->start();
   const std::int64_t wall_ns =
       std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
-  Session session{.parts = &*parts, .bridge = &*bridge, .log = stream, .to_wall_ns = wall_ns - runtime::monotonic_ns()};
-  const auto report = [&] {
-    const Interruption interruption;
-    return runtime::run_servo(
-        servo, [&](const runtime::Tick& tick) noexcept { return session(tick) && !interruption.asked(); });
-  }();
+  Session session{.parts = &*parts,
+                  .bridge = &*bridge,
+                  .log = stream,
+                  .to_wall_ns = wall_ns - runtime::monotonic_ns(),
+                  .end = &options.end};
+  const auto report =
+      runtime::run_servo(servo, [&](const runtime::Tick& tick) noexcept { return session(tick); });
   bridge->close();
   if (recorder) {
     if (auto error = recorder->stop()) return *std::move(error);

@@ -3,6 +3,7 @@
 #include <tactus/core/result.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/ros2/bridge.hpp>
+#include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/experiment.hpp>
 #include <tactus/simulation/tapping.hpp>
@@ -41,11 +42,12 @@ ros2::Snapshot snapshot_of(const simulation::Teleoperator::Record& record, std::
 struct Ros2Options {
   std::string name_space = "tactus";
   runtime::ServoThreadParams servo = {};  ///< the rate is that of the experiment
+  const runtime::EndRequest& end;  ///< that somebody may make while it runs
   std::optional<std::filesystem::path> log_folder = {};
 };
 
 /// Runs the teleoperator of a `tapping` experiment among ROS 2 nodes, on a servo thread, for as long as the taps of
-/// `TapScript` take or until it is interrupted. Deadlines that are missed are made up for, so that its time keeps to
+/// `TapScript` take or until its end is asked for; then its forces fall at the rate limits of the gates. Deadlines that are missed are made up for, so that its time keeps to
 /// the real one. Errors: those of the experiment's file, of the network and of the log; `failed`
 /// once a safety gate has closed or the devices have left their workspace.
 Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options);

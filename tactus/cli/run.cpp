@@ -1,4 +1,5 @@
 #include <tactus/cli/experiment_options.hpp>
+#include <tactus/cli/interruption.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/ros2_session.hpp>
@@ -58,8 +59,12 @@ void say_log(const RunOptions& options, const std::filesystem::path& folder) {
   (options.json ? std::cerr : std::cout) << "Log: " << folder.string() << "\n";
 }
 
-Check run_in_real_time(const RunOptions& options, const simulation::Request& request) {
-  runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin()};
+/// `status` is what an interruption makes the exit status.
+Check run_in_real_time(const RunOptions& options, const simulation::Request& request, int& status) {
+  runtime::EndRequest end;
+  const auto interruption = Interruption::start(end);
+  if (!interruption) return interruption.error();
+  runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin(), .end = &end};
   if (options.plant) {
     real_time.plant = runtime::PlantChoice{.name = *options.plant, .silence = Seconds{options.plant_silence_s}};
   }
@@ -70,6 +75,7 @@ Check run_in_real_time(const RunOptions& options, const simulation::Request& req
     return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
   }();
   if (!done) return done.error();
+  if (done->interrupted) status = (*interruption)->exit_status();
   if (auto error = write_outcome(options.out, done->outcome, options.json)) return error;
   if (options.out && !done->log) say_log(options, folder);
   return done->log;
@@ -87,7 +93,10 @@ Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request&
   if (!request.variations.empty()) {
     return refuse_ros2("there is one teleoperator at a time: write --set in place of --vary");
   }
-  Ros2Options session{.name_space = options.name_space, .servo = options.servo};
+  runtime::EndRequest end;
+  const auto interruption = Interruption::start(end);
+  if (!interruption) return interruption.error();
+  Ros2Options session{.name_space = options.name_space, .servo = options.servo, .end = end};
   if (options.out) session.log_folder = std::filesystem::path(*options.out) / "log";
   const auto outcome = run_ros2_session(request, session);
   if (!outcome) return outcome.error();
@@ -108,7 +117,7 @@ Check refuse_servo_options_without_a_servo_thread(const CLI::App& verb, const Ru
   return std::nullopt;
 }
 
-Check run(const RunOptions& options, const std::string& command) {
+Check run(const RunOptions& options, const std::string& command, int& status) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
   if (options.out) {
@@ -127,7 +136,7 @@ Check run(const RunOptions& options, const std::string& command) {
   if (!experiment) return experiment.error();
 
   if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind());
-  if (options.real_time) return run_in_real_time(options, *request);
+  if (options.real_time) return run_in_real_time(options, *request, status);
 
   Result<simulation::Outcome> outcome = [&] {
     ProgressLine line(request->name);
@@ -179,7 +188,7 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
       ->needs(ros2);
   verb->callback([options, verb, &app, &command, &status] {
     Check error = refuse_servo_options_without_a_servo_thread(*verb, *options);
-    if (!error) error = run(*options, command);
+    if (!error) error = run(*options, command, status);
     if (error) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";
       status = exit_status(*error);

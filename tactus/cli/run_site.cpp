@@ -1,30 +1,24 @@
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/person.hpp>
 #include <tactus/cli/run_site.hpp>
 #include <tactus/cli/site_loop.hpp>
 #include <tactus/cli/site_report.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/report/text.hpp>
 #include <tactus/simulation/experiment.hpp>
 
-#include <array>
-#include <atomic>
-#include <csignal>
-#include <cstddef>
 #include <filesystem>
-#include <iostream>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include <CLI/CLI.hpp>
-#include <poll.h>
 #include <unistd.h>
 
 namespace tactus::cli {
 
 namespace {
-
-std::atomic<bool> asked_to_arm{false};
 
 Error refused(ErrorCode code, const char* option, std::string message) {
   return Error{.code = code, .parameter = {}, .message = std::move(message), .place = option};
@@ -65,54 +59,23 @@ Result<link::Endpoint::Settings> link_settings(const SiteOptions& options) {
   return link::Endpoint::Settings{.site = role_of(options), .peer = *peer, .listen = *listen, .key = key};
 }
 
-/// What a person asks a site for while it runs: words on standard input, and SIGUSR1.
-class Person {
- public:
-  explicit Person(control::SiteRole role) : role_(role) {
-    std::signal(SIGUSR1, [](int) { asked_to_arm.store(true, std::memory_order_relaxed); });
-  }
-
-  /// Passes on what came since the last call; a wrong word is told on standard error.
-  void ask(SiteExchange& exchange) {
-    const bool master = role_ == control::SiteRole::master;
-    if (asked_to_arm.exchange(false, std::memory_order_relaxed) && master) exchange.words.try_push(SiteWord::arm);
-    read_what_waits();
-    for (auto end = typed_.find('\n'); end != std::string::npos; end = typed_.find('\n')) {
-      const auto word = parse_site_word(std::string_view(typed_).substr(0, end), role_);
-      if (word) {
-        if (!exchange.words.try_push(*word)) return;  // asked again at the next call
-      } else {
-        std::cerr << "tactus: " << describe(word.error()) << "\n";
-      }
-      typed_.erase(0, end + 1);
-    }
-  }
-
- private:
-  /// No more than a line ahead of what was passed on. A standard input that has ended is left alone, after its last
-  /// line.
-  void read_what_waits() {
-    pollfd input{.fd = STDIN_FILENO, .events = POLLIN, .revents = 0};
-    if (!open_ || typed_.find('\n') != std::string::npos || poll(&input, 1, 0) <= 0) return;
-    std::array<char, 256> text{};
-    const ssize_t size = read(STDIN_FILENO, text.data(), text.size());
-    open_ = size > 0;
-    if (open_) {
-      typed_.append(text.data(), static_cast<std::size_t>(size));
-      // No word is that long: what is piped in without an end of line shall not fill the memory.
-      if (typed_.size() > longest_line && typed_.find('\n') == std::string::npos) typed_ += '\n';
-    } else if (!typed_.empty()) {
-      typed_ += '\n';
-    }
-  }
-
-  static constexpr std::size_t longest_line = 1000;
-  control::SiteRole role_;
-  std::string typed_;
-  bool open_ = true;
-};
-
 std::filesystem::path log_folder(const std::string& out) { return std::filesystem::path(out) / "log"; }
+
+/// Files first: a terminal that nobody reads keeps nothing from them, and with them what it misses is no loss.
+Check leave_outcome(const simulation::Outcome& outcome, const std::optional<std::string>& out, Check log_error,
+                    bool json, LineWriter& output, LineWriter& errors) {
+  std::string where;
+  if (out) {
+    if (auto error = write_results(*out, outcome)) return error;
+    where = "Report: " + report::printable((std::filesystem::path(*out) / "report.html").string()) + "\n";
+    if (!log_error) where += "Log: " + report::printable(log_folder(*out).string()) + "\n";
+  }
+  const Check unread = output.finish(json ? outcome.json : outcome.text + where);
+  if (json) errors.say(where);
+  if (!out) return unread;
+  if (unread) errors.say("tactus: " + describe(*unread) + "; the report has all of it\n");
+  return log_error;
+}
 
 }  // namespace
 
@@ -147,6 +110,13 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   SiteRun run;
   run.role = role_of(options);
   SiteExchange exchange;
+  // Before all other threads: what they hold back, only these two hear.
+  const auto interruption = Interruption::start(exchange.end);
+  if (!interruption) return interruption.error();
+  LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
+  LineWriter& lines = json ? errors : output;
+  const auto person = Person::listen_to(STDIN_FILENO, run.role, exchange, errors);
+  if (!person) return person.error();
   auto loop =
       SiteLoop::make(*params, {.link = *link, .duration_s = options.duration_s, .arm_at_once = options.arm}, exchange);
   if (!loop) return document.locate(loop.error());
@@ -159,23 +129,18 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
     loop->log_to(log->streams());
   }
 
-  const Interruption interruption;
-  Person person(run.role);
   servo_params.rate_Hz = params->servo.rate_Hz;
   auto servo = runtime::ServoThread<SiteLoop>::start(servo_params, *std::move(loop));
   if (!servo) return servo.error();
-  std::ostream& lines = json ? std::cerr : std::cout;
-  lines << second_head(run.role) << std::flush;
+  lines.say(second_head(run.role));
   const auto take_seconds = [&] {
     SiteSecond second;
     while (exchange.seconds.try_pop(second)) {
-      lines << second_line(second) << std::flush;
+      lines.say(second_line(second));
       run.seconds.push_back(second);
     }
   };
   while (!(*servo)->ended()) {
-    if (interruption.asked()) (*servo)->stop();
-    person.ask(exchange);
     take_seconds();
     usleep(20'000);
   }
@@ -183,14 +148,14 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   (*servo)->step().finish();
   take_seconds();
   run.totals = (*servo)->step().totals();
+  run.ended_by = (*interruption)->signal() != 0 ? (*interruption)->name() : "its duration";
+  run.lines_dropped = lines.dropped();
   Check log_error;
   if (log) {
     log_error = log->close();
     run.log_dropped = log->dropped();
   }
-  if (auto error = write_outcome(out, site_outcome(run, request, configuration), json)) return error;
-  if (log && !log_error) (json ? std::cerr : std::cout) << "Log: " << log_folder(*out).string() << "\n";
-  return log_error;
+  return leave_outcome(site_outcome(run, request, configuration), out, std::move(log_error), json, output, errors);
 }
 
 }  // namespace tactus::cli

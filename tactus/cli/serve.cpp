@@ -71,6 +71,11 @@ Check serve(const ServeOptions& options, const std::string& command) {
   if (!view) return document->locate(view.error());
   const std::string configuration = configuration::to_toml(*document->read<simulation::TappingParams>());
 
+  // Before all other threads.
+  runtime::EndRequest end;
+  const auto interruption = Interruption::start(end);
+  if (!interruption) return interruption.error();
+
   live::StaticFiles page;
   const std::filesystem::path folder = options.page.empty() ? usual_page() : std::filesystem::path(options.page);
   if (!folder.empty()) {
@@ -106,11 +111,10 @@ Check serve(const ServeOptions& options, const std::string& command) {
     if (!options.allow_tuning) std::cout << "Parameters are read-only; --allow-tuning lets clients change them.\n";
     std::cout << std::flush;
 
-    const Interruption interruption;
     const auto start = std::chrono::steady_clock::now();
     (*view)->engine().run([&] {
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-      return !interruption.asked() && (options.duration_s == 0.0 || elapsed.count() < options.duration_s);
+      return !end.asked() && (options.duration_s == 0.0 || elapsed.count() < options.duration_s);
     });
     session.server = server->counts();
   }

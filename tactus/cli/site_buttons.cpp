@@ -59,7 +59,7 @@ control::SiteRequests SiteButtons::step(control::SiteState state) noexcept {
   begun_ = true;
   // Let go where the site is armed anew, so that it is pressed after arming.
   const bool follows = state == SiteState::active || (state == SiteState::armed && !pressed.arm);
-  pressed.dead_man = next_.dead_man && follows;
+  pressed.dead_man = next_.dead_man && follows && !lost_;
   pushed_ = pressed.arm || pressed.clear;
   next_.arm = next_.clear = false;
   return pressed;

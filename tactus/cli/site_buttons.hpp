@@ -36,6 +36,8 @@ class SiteButtons {
   [[nodiscard]] bool ready() const noexcept { return !pushed_; }
   /// For the next `step`.
   void take(SiteWord word) noexcept;
+  /// Nobody is there any more: the dead-man switch stays let go, whatever is taken.
+  void lose_person() noexcept { lost_ = true; }
   /// What is pressed at this tick; `state` is that after the tick before.
   control::SiteRequests step(control::SiteState state) noexcept;
 
@@ -44,6 +46,7 @@ class SiteButtons {
   bool begun_ = false;
   bool aligned_ = false;
   bool pushed_ = false;
+  bool lost_ = false;
 };
 
 }  // namespace tactus::cli

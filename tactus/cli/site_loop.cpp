@@ -119,6 +119,8 @@ SiteLoop::Stepped SiteLoop::Slave::step(const control::SiteRequests& requests, s
 }
 
 bool SiteLoop::operator()(const runtime::Tick& tick) noexcept {
+  // The motor is simulated and ends with the program.
+  if (exchange_->end.insisted()) return false;
   const std::int64_t now_ns = tick.began_ns;
   if (totals_.ticks == 0) {
     start_ns_ = now_ns;
@@ -149,7 +151,16 @@ bool SiteLoop::operator()(const runtime::Tick& tick) noexcept {
     end_second();
     second_ends_ns_ += 1'000'000'000;
   }
-  return settings_.duration_s <= 0.0 || totals_.duration_s < settings_.duration_s;
+  if (settings_.duration_s > 0.0 && totals_.duration_s >= settings_.duration_s) leaving_ = true;
+  return !ended(stepped.record, tick.missed + 1);
+}
+
+bool SiteLoop::ended(const SiteLogRecord& record, std::int64_t elapsed_ticks) noexcept {
+  const bool works = state() != control::SiteState::configure && state() != control::SiteState::fault;
+  // What was asked for after this tick's step is heard at the next.
+  if (!leaving_ || works) return false;
+  leaving_s_ += static_cast<double>(elapsed_ticks) * tick_s_;
+  return (record.motor_force_N == 0.0 && record.handle_force_N == 0.0) || leaving_s_ >= runtime::longest_ramp_s;
 }
 
 void SiteLoop::receive(std::int64_t now_ns) noexcept {
@@ -173,6 +184,8 @@ void SiteLoop::receive(std::int64_t now_ns) noexcept {
 }
 
 control::SiteRequests SiteLoop::requests() noexcept {
+  if (exchange_->end.asked()) leaving_ = true;
+  if (exchange_->person_lost.load(std::memory_order_relaxed)) buttons_.lose_person();
   if (newest_.session != 0) heard_s_ += tick_s_;
   if (buttons_.ready()) {
     SiteWord word{};
@@ -184,7 +197,9 @@ control::SiteRequests SiteLoop::requests() noexcept {
       buttons_.take(word);
     }
   }
-  return buttons_.step(state());
+  control::SiteRequests pressed = buttons_.step(state());
+  pressed.leave = leaving_;
+  return pressed;
 }
 
 void SiteLoop::judge(control::SiteState before, const SiteLogRecord& record) noexcept {

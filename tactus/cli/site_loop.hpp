@@ -1,13 +1,13 @@
 #pragma once
 
 #include <tactus/cli/site_buttons.hpp>
+#include <tactus/cli/site_exchange.hpp>
 #include <tactus/cli/site_log.hpp>
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/link/endpoint.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/site_plants.hpp>
 #include <tactus/simulation/tapping.hpp>
-#include <tactus/telemetry/ring.hpp>
 
 #include <array>
 #include <cstdint>
@@ -15,19 +15,6 @@
 #include <variant>
 
 namespace tactus::cli {
-
-/// One second of a site, for the display. State, cause, limit and fault are those of its end.
-struct SiteSecond {
-  double time_s = 0.0;  ///< of its end, since the start
-  control::SiteState state = control::SiteState::configure;
-  control::SiteCause cause = control::SiteCause::started;
-  control::ActiveLimit limit = control::ActiveLimit::none;
-  control::GateFault fault = control::GateFault::none;
-  double round_trip_s = 0.0;  ///< mean over the packets that were applied in the second, as age
-  double age_s = 0.0;
-  double loss_fraction = 0.0;
-  double peak_force_N = 0.0;  ///< of the motor, either way
-};
 
 /// How many there are of each value of an enum that begins at 0 and leaves none out.
 template <class Word>
@@ -76,12 +63,6 @@ class RepeatedTaps {
   double period_s_;
 };
 
-/// What a running site and the rest of its program tell one another. No locks.
-struct SiteExchange {
-  telemetry::Ring<SiteWord, 16> words;  ///< of the person
-  telemetry::Ring<SiteSecond, 64> seconds;
-};
-
 /// One site of two: the link, a supervised site and its simulated plant. The step of a servo thread; does not allocate,
 /// lock or block.
 class SiteLoop {
@@ -99,7 +80,8 @@ class SiteLoop {
   /// Every tick from now on goes there too. Before the first tick; what `streams` points to must outlive the last.
   void log_to(const SiteStreams& streams) noexcept { streams_ = streams; }
 
-  /// One tick. False after `duration_s`.
+  /// One tick. After `duration_s`, or once the end is asked for, the site leaves what it does and its forces go; false
+  /// when they are gone. False at once where the end is insisted on.
   bool operator()(const runtime::Tick& tick) noexcept;
 
   /// Hands on the second that has begun. After the last tick, once.
@@ -142,6 +124,8 @@ class SiteLoop {
            const control::SupervisionParams& supervision, double force_step_limit_N);
   void receive(std::int64_t now_ns) noexcept;
   control::SiteRequests requests() noexcept;
+  /// Whether the site is about to end and has no force any more, or took too long to lose it.
+  [[nodiscard]] bool ended(const SiteLogRecord& record, std::int64_t elapsed_ticks) noexcept;
   void judge(control::SiteState before, const SiteLogRecord& record) noexcept;
   void measure(const Stepped& stepped) noexcept;
   void log(const runtime::Tick& tick, const SiteLogRecord& record) noexcept;
@@ -161,6 +145,8 @@ class SiteLoop {
   double listen_before_arming_s_;
   bool may_arm_at_once_;
   double heard_s_ = 0.0;  ///< since the other site was heard first
+  bool leaving_ = false;
+  double leaving_s_ = 0.0;
   link::Endpoint::Condition condition_;
   control::Packet newest_;  ///< that was applied
   SiteLogRecord last_;      ///< of the tick before

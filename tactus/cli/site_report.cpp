@@ -63,6 +63,7 @@ report::Table site_table(const SiteRun& run) {
     }
   };
   table.add_row({"ran", report::number(totals.duration_s, 4), "s"});
+  table.add_row({"ended by", run.ended_by, ""});
   for (const auto& [state, name] : enumerators(control::SiteState{})) {
     const double time_s = static_cast<double>(totals.ticks_in[state]) * tick_s;
     table.add_row({std::string("in ") + name, report::number(time_s, 4), "s"});
@@ -93,6 +94,7 @@ report::Table site_table(const SiteRun& run) {
       {"the same, in the first second of being active", report::number(totals.largest_resuming_force_step_N, 3), "N"});
   table.add_row({"force steps above the gate's limit", count(totals.steps_above_limit), ""});
   if (run.log_dropped) table.add_row({"records missing in the log", count(*run.log_dropped), ""});
+  table.add_row({"lines that nobody read", count(run.lines_dropped), ""});
   return table;
 }
 
@@ -173,6 +175,7 @@ std::string json_of(const SiteRun& run) {
   const auto& link = totals.link;
   nlohmann::ordered_json document{{"site", name_of(run.role)},
                                   {"duration_s", totals.duration_s},
+                                  {"ended_by", run.ended_by},
                                   {"ticks", totals.ticks},
                                   {"ticks_in", json_of_each(totals.ticks_in)},
                                   {"ticks_limited", json_of_each(totals.ticks_limited)},
@@ -209,6 +212,7 @@ std::string json_of(const SiteRun& run) {
                                     {"handshake_packets", link.secure.handshake_packets},
                                     {"handshakes", link.secure.handshakes},
                                     {"overflowed", link.secure.overflowed}}},
+                                  {"lines_dropped", run.lines_dropped},
                                   {"seconds", seconds},
                                   {"servo", nlohmann::ordered_json::parse(runtime::servo_json(run.servo))}};
   if (run.log_dropped) document["log_dropped"] = *run.log_dropped;

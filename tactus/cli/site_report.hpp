@@ -24,6 +24,8 @@ struct SiteRun {
   std::vector<SiteSecond> seconds;
   runtime::ServoReport servo;
   std::optional<std::uint64_t> log_dropped;  ///< records that the log had no room for; nothing where there is no log
+  std::string ended_by;                      ///< the signal, or what else ended it
+  std::uint64_t lines_dropped = 0;           ///< that found nobody reading
 };
 
 /// All of a run for every reader: tables, one JSON document, a report with states, link and force second by second.

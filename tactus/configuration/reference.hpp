@@ -8,14 +8,29 @@
 
 namespace tactus::configuration {
 
+/// Another page, whose keys a page need not say again.
+struct OtherPage {
+  std::string_view kind;  ///< it stands beside the page, as `kind`.md
+  std::span<const Binding> bindings;
+};
+
 /// A page of Markdown: per section one table of its keys with unit, bounds, default and meaning. The values that the
-/// bindings point to are the defaults.
-std::string reference_markdown(std::span<const Binding> bindings, std::string_view title);
+/// bindings point to are the defaults. Keys that `other` shows with equal words, bounds and default are left to it.
+std::string reference_markdown(std::span<const Binding> bindings, std::string_view title, const OtherPage& other = {});
 
 template <Described T>
 std::string reference_markdown(std::string_view title) {
   T defaults{};
   return reference_markdown(bind(defaults), title);
+}
+
+/// The page of `T`, where it differs from that of `Other`, which is `kind`.md.
+template <Described T, Described Other>
+std::string reference_beside(std::string_view title, std::string_view kind) {
+  T defaults{};
+  Other others{};
+  const auto bindings = bind(others);
+  return reference_markdown(bind(defaults), title, {.kind = kind, .bindings = bindings});
 }
 
 }  // namespace tactus::configuration

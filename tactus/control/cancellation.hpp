@@ -11,9 +11,9 @@ namespace tactus::control {
 /// (paper A, eq. 7 and 8): x̂_intended = x_m − x̂_induced.
 ///
 /// The model's position at a tick comes from the forces displayed up to that tick, so it is subtracted from the sample
-/// of the same instant, before the new force acts: one tick of misalignment costs as much as 10 % error in stiffness.
-/// It needs neither the network nor the slave, so it stands delay untouched. After the sample arrives there is one
-/// subtraction to do; the model's own step comes after it.
+/// of the same instant, before the new force acts: one tick of misalignment costs about half of what 10 % error in
+/// stiffness does. It needs neither the network nor the slave, so it stands delay untouched. After the sample arrives
+/// there is one subtraction to do; the model's own step comes after it.
 class Cancellation {
  public:
   struct Params {

@@ -6,16 +6,28 @@
 #include <tactus/control/overload_check.hpp>
 #include <tactus/control/pace_check.hpp>
 #include <tactus/control/packet.hpp>
+#include <tactus/control/sign_probe.hpp>
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/control/watchdog.hpp>
 #include <tactus/core/signals.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 namespace tactus::control {
+
+/// What becomes of a force in `hold`.
+struct HoldParams {
+  double release_s = 1.0;
+  static constexpr auto fields() {
+    return std::tuple{field("release_s", &HoldParams::release_s, units::second, positive_up_to(60.0),
+                            "Time in which the site's force fades to zero once it holds; a slave that must not sink "
+                            "or swing away needs a brake.")};
+  }
+};
 
 /// The group `[control.supervision]`: what a site makes of the other one and of its own state.
 struct SupervisionParams {
@@ -24,6 +36,8 @@ struct SupervisionParams {
   Watchdog::Params watchdog;
   ForceSensorCheck::Params force_sensor;
   OverloadCheck::Params overload;
+  SignProbe::Params probe;
+  HoldParams hold;
   double pace_share = 0.25;
   double longest_stall_s = 0.02;
   double answer_within_s = 1.0;
@@ -35,6 +49,8 @@ struct SupervisionParams {
         field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
         field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
         field("overload", &SupervisionParams::overload, "How many ticks a site may miss before it holds."),
+        field("probe", &SupervisionParams::probe, "The force with which a site tries its motor when it is armed."),
+        field("hold", &SupervisionParams::hold, "What becomes of a force when the site holds."),
         field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),
               "Share by which the other site's clock may run slower or faster before the site holds; above what it may "
               "miss of its ticks."),
@@ -43,7 +59,7 @@ struct SupervisionParams {
         field(
             "answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
             "How long the master waits for the slave to follow an arming before it gives it up and holds; longer than "
-            "the round trip."),
+            "the round trip, and with a sign probe than that, blend_s and probe.duration_s together."),
         field("blend_s", &SupervisionParams::blend_s, units::second, positive_up_to(10.0),
               "How long a force takes to come in when a site becomes active, and to go.")};
   }
@@ -92,6 +108,7 @@ struct SiteRecord {
   std::int64_t applied_session = 0;
   std::int64_t applied_sequence = 0;
   std::int64_t refused = 0;
+  bool enabled = false;
   bool fresh = false;
   double silence_s = 0.0;
   double share = 0.0;
@@ -110,6 +127,8 @@ struct SiteRecord {
                  "Session of the packet that was applied last."),
         observed("applied_sequence", &SiteRecord::applied_sequence, units::none, "", "", "", "Its sequence."),
         observed("refused", &SiteRecord::refused, units::none, "", "", "", "Packets so far that were not applied."),
+        observed("enabled", &SiteRecord::enabled, units::none, "", "", "",
+                 "The drive may have power: not in configure, and in fault only until the force is zero."),
         observed("fresh", &SiteRecord::fresh, units::none, "", "", "", "A packet was applied at this tick."),
         observed("silence_s", &SiteRecord::silence_s, units::second, "", "", "", "Since a packet was applied."),
         observed("share", &SiteRecord::share, units::none, "", "", "", "Of the controller's force that is let in."),
@@ -145,7 +164,13 @@ class Supervision {
   SiteState decide(const Sight& sight) noexcept;
   /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
   Arrival arrival(double offset_m) noexcept;
-  /// The share of the controller's force, on its way to 1 or 0. Once, after `decide`.
+  /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone and none
+  /// passes to the motor any more, `position_m` being measured. Once, after `decide` and before `blend`.
+  double probe(double position_m, bool force_passes) noexcept;
+  /// Whether the site is armed and its motor not yet tried: the controller's force must go.
+  [[nodiscard]] bool probes() const noexcept { return state() == SiteState::armed && !proved_; }
+  /// The share of the controller's force, on its way to 1 or 0; in `fault` 0 at once, for the gate to ramp. Once, after
+  /// `decide`.
   double blend(bool in) noexcept;
   /// The packet that says `message`. Once a tick.
   Packet packet(const Message& message) noexcept;
@@ -163,8 +188,9 @@ class Supervision {
 
  private:
   [[nodiscard]] bool unanswered() noexcept;
+  [[nodiscard]] bool arms_from_rest() const noexcept;
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
-              const Watchdog& answer, const OverloadCheck& overload, const PaceCheck& pace,
+              const Watchdog& answer, const OverloadCheck& overload, const PaceCheck& pace, const SignProbe& probe,
               const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params, std::int64_t session,
               Seconds dt, const Agreement& agreement)
       : judge_(judge),
@@ -173,11 +199,15 @@ class Supervision {
         answer_(answer),
         overload_(overload),
         pace_(pace),
+        probe_(probe),
         supervisor_(supervisor),
         role_(role),
         dt_s_(dt.value),
         longest_stall_s_(params.longest_stall_s),
         blend_step_(dt.value / params.blend_s),
+        hold_step_(dt.value /
+                   (role == SiteRole::slave ? params.hold.release_s : std::min(params.hold.release_s, params.blend_s))),
+        must_be_proved_(params.probe.force_N > 0.0),
         session_(session),
         agreement_(agreement) {}
 
@@ -187,11 +217,14 @@ class Supervision {
   Watchdog answer_;  ///< of the slave to an arming
   OverloadCheck overload_;
   PaceCheck pace_;
+  SignProbe probe_;
   SiteSupervisor supervisor_;
   SiteRole role_;
   double dt_s_;
   double longest_stall_s_;
   double blend_step_;
+  double hold_step_;  ///< of the share, in a tick of `hold`
+  bool must_be_proved_;
   std::int64_t session_;
   std::int64_t sequence_ = 0;
   AgreementCheck agreement_;
@@ -201,6 +234,9 @@ class Supervision {
   std::int64_t elapsed_ticks_ = 1;
   std::int64_t refused_ = 0;
   std::int64_t awaited_arming_ = 0;
+  std::int64_t answered_arming_ = 0;  ///< that packets tell: a slave's only once its motor was tried
+  bool proved_ = false;               ///< the motor was tried since the site was armed, or need not be
+  bool probing_ = false;              ///< the trial is under way
   double share_ = 0.0;
   SiteState before_ = SiteState::configure;
 };

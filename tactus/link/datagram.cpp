@@ -1,6 +1,5 @@
 #include <tactus/link/datagram.hpp>
-
-#include <bit>
+#include <tactus/link/internal/bytes.hpp>
 
 namespace tactus::link {
 
@@ -9,51 +8,16 @@ namespace {
 constexpr std::uint32_t magic = 0x31544354;  // "TCT1" in the order of the bytes
 /// Of magic and version, which stand at the same place in every version.
 constexpr std::size_t head_bytes = 6;
-constexpr std::uint8_t master_byte = 1, slave_byte = 2;
-
-/// Writes numbers one after the other, lowest byte first.
-class Writer {
- public:
-  explicit Writer(DatagramBytes& bytes) : at_(bytes.data()) {}
-  template <class Unsigned>
-  void put(Unsigned value) noexcept {
-    for (std::size_t i = 0; i < sizeof(value); ++i) *at_++ = static_cast<std::byte>(value >> (8 * i));
-  }
-  void put_signed(std::int64_t value) noexcept { put(static_cast<std::uint64_t>(value)); }
-  void put_double(double value) noexcept { put(std::bit_cast<std::uint64_t>(value)); }
-
- private:
-  std::byte* at_;
-};
-
-/// Reads them back. Where there are so many bytes was checked before.
-class Reader {
- public:
-  explicit Reader(std::span<const std::byte> bytes) : at_(bytes.data()) {}
-  template <class Unsigned>
-  Unsigned get() noexcept {
-    Unsigned value = 0;
-    for (std::size_t i = 0; i < sizeof(value); ++i) {
-      value = static_cast<Unsigned>(value | static_cast<Unsigned>(std::to_integer<Unsigned>(*at_++) << (8 * i)));
-    }
-    return value;
-  }
-  std::int64_t get_signed() noexcept { return static_cast<std::int64_t>(get<std::uint64_t>()); }
-  double get_double() noexcept { return std::bit_cast<double>(get<std::uint64_t>()); }
-
- private:
-  const std::byte* at_;
-};
 
 }  // namespace
 
 DatagramBytes encode(const Datagram& datagram) noexcept {
   const control::Packet& packet = datagram.packet;
   DatagramBytes bytes;
-  Writer out(bytes);
+  Writer out(bytes.data());
   out.put(magic);
   out.put(datagram_version);
-  out.put(datagram.site == SiteRole::master ? master_byte : slave_byte);
+  out.put(site_byte(datagram.site));
   out.put(static_cast<std::uint8_t>(packet.state));
   out.put_signed(packet.armings);
   out.put_signed(packet.session);
@@ -75,17 +39,17 @@ DatagramBytes encode(const Datagram& datagram) noexcept {
 
 Refusal decode(std::span<const std::byte> bytes, Datagram& datagram) noexcept {
   if (bytes.size() < head_bytes) return Refusal::size;
-  Reader in(bytes);
+  Reader in(bytes.data());
   if (in.get<std::uint32_t>() != magic) return Refusal::magic;
   if (in.get<std::uint16_t>() != datagram_version) return Refusal::version;
   if (bytes.size() != datagram_bytes) return Refusal::size;
   const auto site = in.get<std::uint8_t>();
-  if (site != master_byte && site != slave_byte) return Refusal::site;
+  if (site != site_byte(SiteRole::master) && site != site_byte(SiteRole::slave)) return Refusal::site;
   const auto state = in.get<std::uint8_t>();
   if (state > static_cast<std::uint8_t>(control::SiteState::fault)) return Refusal::state;
   Datagram read;
   control::Packet& packet = read.packet;
-  read.site = site == master_byte ? SiteRole::master : SiteRole::slave;
+  read.site = site == site_byte(SiteRole::master) ? SiteRole::master : SiteRole::slave;
   packet.state = static_cast<control::SiteState>(state);
   packet.armings = in.get_signed();
   packet.session = in.get_signed();
@@ -109,7 +73,7 @@ Refusal decode(std::span<const std::byte> bytes, Datagram& datagram) noexcept {
 }
 
 std::uint16_t version_of(std::span<const std::byte> bytes) noexcept {
-  return Reader(bytes.subspan(sizeof(magic))).get<std::uint16_t>();
+  return Reader(bytes.data() + sizeof(magic)).get<std::uint16_t>();
 }
 
 }  // namespace tactus::link

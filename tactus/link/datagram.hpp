@@ -40,6 +40,8 @@ enum class Refusal : std::uint8_t {
 inline constexpr std::size_t datagram_bytes = 128;
 /// The version of the format that this library speaks.
 inline constexpr std::uint16_t datagram_version = 3;
+/// What stands for a site on the wire.
+constexpr std::uint8_t site_byte(SiteRole site) noexcept { return site == SiteRole::master ? 1 : 2; }
 using DatagramBytes = std::array<std::byte, datagram_bytes>;
 
 /// The bytes of a datagram, little endian on every host: docs/reference/wire-format.md. Real-time safe.

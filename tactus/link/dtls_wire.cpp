@@ -13,7 +13,12 @@ int wire_write(BIO* bio, const char* data, int size) {
   BIO_clear_retry_flags(bio);
   const auto* wire = static_cast<const DtlsWire*>(BIO_get_data(bio));
   // What the kernel does not take is lost, as it could be further on; DTLS sends again what matters.
-  wire->socket->send(std::as_bytes(std::span(data, static_cast<std::size_t>(size))));
+  const auto bytes = std::as_bytes(std::span(data, static_cast<std::size_t>(size)));
+  if (!bytes.empty() && bytes[0] == message_record) {
+    wire->socket->send(bytes);
+  } else if (wire->frames != nullptr) {
+    wire->frames->send(wire->own, wire->other, bytes);
+  }
   return size;
 }
 

@@ -28,8 +28,7 @@ Result<Endpoint> Endpoint::make(const Settings& settings) {
   }
   Endpoint endpoint(settings, std::make_unique<Socket>(*std::move(socket)), session);
   if (settings.key) {
-    const auto role = settings.site == SiteRole::master ? HandshakeRole::client : HandshakeRole::server;
-    auto secure = SecureChannel::make(role, *settings.key, *endpoint.socket_, datagram_bytes);
+    auto secure = SecureChannel::make(settings.site, *settings.key, *endpoint.socket_, datagram_bytes);
     if (!secure) return secure.error();
     endpoint.secure_ = *std::move(secure);
   }
@@ -79,12 +78,13 @@ Endpoint::Condition Endpoint::condition(std::int64_t now_ns) const noexcept {
 }
 
 Endpoint::Counters Endpoint::counters() const noexcept {
+  const auto secure = secure_ ? secure_->counters() : SecureChannel::Counters{};
   return {.inbound = inbound_.counters(),
-          .secure = secure_ ? secure_->counters() : SecureChannel::Counters{},
+          .secure = secure,
           .sent = sent_,
           .unsent = unsent_,
           .malformed = malformed_,
-          .other_version = other_version_,
+          .other_version = other_version_ != 0 ? other_version_ : secure.other_version,
           .expected = inbound_.expected(),
           .arrived = inbound_.arrived()};
 }

@@ -1,3 +1,4 @@
+#include <tactus/link/handshake_frame.hpp>
 #include <tactus/link/packet_filter.hpp>
 #include <tactus/link/secure_channel.hpp>
 
@@ -40,26 +41,34 @@ bool attach(int descriptor, std::array<sock_filter, Count> instructions) noexcep
 
 }  // namespace
 
-bool admit_records(int descriptor, std::size_t message_bytes, std::uint64_t least) noexcept {
-  constexpr std::uint32_t content_type = 23, first_handshake_type = 20, other_types = 24;
+bool admit_records(int descriptor, SiteRole own_site, std::size_t message_bytes, std::uint64_t least) noexcept {
+  constexpr std::uint32_t dtls_1_2 = 0xfefd, message_type = 23;
+  // The kernel reads numbers highest byte first, as DTLS writes them; a frame has its lowest byte first.
+  constexpr std::uint32_t magic =
+      (frame_magic & 0xff) << 24 | (frame_magic & 0xff00) << 8 | (frame_magic >> 8 & 0xff00) | frame_magic >> 24;
+  constexpr auto shortest = static_cast<std::uint32_t>(udp_head + shortest_frame_bytes);
+  constexpr auto longest = static_cast<std::uint32_t>(udp_head + longest_frame_bytes);
+  const std::uint32_t other = site_byte(own_site == SiteRole::master ? SiteRole::slave : SiteRole::master);
   const auto record = static_cast<std::uint32_t>(udp_head + message_bytes + SecureChannel::overhead_bytes);
   const auto upper = static_cast<std::uint32_t>(least >> 32), lower = static_cast<std::uint32_t>(least);
-  return attach(descriptor, std::array{load(BPF_B, 1),
-                                       equal(0xfe, 0, 17),  // version 1.0 or 1.2
-                                       load(BPF_B, 2),
-                                       equal(0xfd, 1, 0),
-                                       equal(0xff, 0, 14),  //
-                                       load(BPF_B, 0),
-                                       equal(content_type, 2, 0),  //
-                                       at_least(first_handshake_type, 0, 11),
-                                       at_least(other_types, 10, 9),
+  return attach(descriptor, std::array{load(BPF_W, 0),
+                                       equal(magic, 0, 5),  // a frame
+                                       load(BPF_B, frame_site_at),
+                                       equal(other, 0, 17),
+                                       load_size(),
+                                       at_least(shortest, 0, 15),
+                                       more_than(longest, 14, 13),
+                                       load(BPF_B, 0),  // a record
+                                       equal(message_type, 0, 12),
+                                       load(BPF_H, 1),
+                                       equal(dtls_1_2, 0, 10),
                                        load(BPF_H, 3),
                                        equal(1, 0, 8),  // epoch
                                        load(BPF_H, 5),
                                        more_than(upper, 3, 0),
                                        equal(upper, 0, 5),  // number
                                        load(BPF_W, 7),
-                                       at_least(lower, 0, 3),  //
+                                       at_least(lower, 0, 3),
                                        load_size(),
                                        equal(record, 0, 1),
                                        admit(),

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tactus/link/datagram.hpp>
+
 #include <cstddef>
 #include <cstdint>
 
@@ -9,9 +11,9 @@ namespace tactus::link {
 /// be one of the link by its size and first bytes is dropped where it arrives, and counted by `Socket::dropped`. What
 /// passes is judged as if there were no filter.
 
-/// Lets in records of DTLS 1.2 (RFC 6347, Sec. 4.1): those of a hand-shake, and those with `message_bytes` of content
-/// in epoch 1, the only one that has content where nobody renegotiates, with `least` or a higher number. In place of
-/// what the socket let in before. False where the kernel has no such filter.
-bool admit_records(int descriptor, std::size_t message_bytes, std::uint64_t least) noexcept;
+/// Lets in frames of the other site's hand-shakes, and records of DTLS 1.2 (RFC 6347, Sec. 4.1) with `message_bytes` of
+/// content in epoch 1, the only one that has content where nobody renegotiates, with `least` or a higher number. In
+/// place of what the socket let in before. False where the kernel has no such filter.
+bool admit_records(int descriptor, SiteRole own_site, std::size_t message_bytes, std::uint64_t least) noexcept;
 
 }  // namespace tactus::link

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/link/datagram.hpp>
 #include <tactus/link/key.hpp>
 #include <tactus/link/socket.hpp>
 
@@ -11,20 +12,18 @@
 
 namespace tactus::link {
 
-/// Who begins a hand-shake. The master does, the slave answers.
-enum class HandshakeRole { client, server };
-
 /// Encryption and mutual authentication over a socket: DTLS 1.2 (RFC 6347) with a pre-shared key, cipher suite
 /// TLS_ECDHE_PSK_WITH_CHACHA20_POLY1305_SHA256 (RFC 7905) over X25519, so that a key that leaks later does not open
 /// what was recorded before. By OpenSSL; nothing of it shows here.
 ///
-/// Hand-shakes run in a thread of their own, which starts with the channel. `open` and `seal` belong to one thread, the
-/// servo's, and never wait for that: they pass hand-shake packets on through a queue of fixed size and pick finished
-/// keys up. The client begins a hand-shake whenever nothing authentic has come for `silence_before_handshake_s`; the
-/// server answers one at any time, but goes on with the old keys until the new ones have proved themselves. So either
+/// Hand-shakes run in a thread of their own, which starts with the channel. `open` and `send` belong to one thread, the
+/// servo's, and never wait for that: they pass hand-shake packets on through queues of fixed size and pick finished
+/// keys up. The master begins a hand-shake whenever nothing authentic has come for `silence_before_handshake_s`; the
+/// slave answers one at any time, but goes on with the old keys until the new ones have proved themselves. So either
 /// side may be killed and started again, and a forged packet ends nothing.
 ///
-/// A packet that is not authentic costs no allocation and no line of a log; it is counted.
+/// Every packet of a hand-shake bears a tag (`FrameTags`), which is checked before anything else is done for it. So a
+/// packet that is not authentic costs one tag or one try to open it, no allocation and no line of a log; it is counted.
 class SecureChannel {
  public:
   static constexpr double silence_before_handshake_s = 0.25;
@@ -34,14 +33,14 @@ class SecureChannel {
   struct Counters {
     std::uint64_t opened = 0;             ///< authentic messages
     std::uint64_t refused = 0;            ///< not authentic, replayed, truncated or of another kind
-    std::uint64_t handshake_packets = 0;  ///< passed on to the thread
+    std::uint64_t handshake_packets = 0;  ///< genuine, and passed on to the thread
     std::uint64_t handshakes = 0;         ///< finished, and in use since
     std::uint64_t overflowed = 0;         ///< hand-shake packets for which the queue had no room
+    std::uint16_t other_version = 0;      ///< of the format that the other site shakes hands in, where it is another
   };
 
   /// `socket` must outlive the channel. Errors: `failed` where OpenSSL lacks something.
-  static Result<SecureChannel> make(HandshakeRole role, const Key& key, const Socket& socket,
-                                    std::size_t message_bytes);
+  static Result<SecureChannel> make(SiteRole own_site, const Key& key, const Socket& socket, std::size_t message_bytes);
   SecureChannel(SecureChannel&&) noexcept;
   SecureChannel& operator=(SecureChannel&&) noexcept;
   ~SecureChannel();

@@ -172,10 +172,15 @@ void Conversation::take_binary(std::string_view bytes) {
 void Conversation::show(std::size_t topic, std::uint64_t time_ns, const Payload& payload) {
   const auto found = subscriptions_.find(topic);
   if (found == subscriptions_.end()) return;
-  for (const std::uint32_t subscription : found->second) {
+  const std::vector<std::uint32_t>& all = found->second;
+  const std::size_t cost = frame_cost + payload->size();
+  const std::size_t fit = std::min(all.size(), room_ / cost);
+  room_ -= fit * cost;
+  outbox_.lose(all.size() - fit);
+  for (std::size_t i = 0; i < fit; ++i) {
     send({.binary = true,
           .may_be_dropped = true,
-          .head = little_endian(server_message_opcode, 1) + little_endian(subscription, 4) + little_endian(time_ns, 8),
+          .head = little_endian(server_message_opcode, 1) + little_endian(all[i], 4) + little_endian(time_ns, 8),
           .payload = payload});
   }
 }
@@ -209,7 +214,10 @@ void Conversation::subscribe(const Request& request) {
       return;
     }
     if (topic_of_.size() == limits_.subscriptions) {
-      say({StatusLevel::error, "no more than " + std::to_string(limits_.subscriptions) + " subscriptions a client"});
+      say({StatusLevel::error, "subscription " + std::to_string(*id) +
+                                   " and those after it are refused: a client has " + "no more than " +
+                                   std::to_string(limits_.subscriptions) +
+                                   " subscriptions; end one first, or show a topic more often from one"});
       return;
     }
     topic_of_[*id] = *channel - 1;

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -20,9 +21,9 @@ inline constexpr std::string_view subprotocols[] = {"foxglove.sdk.v1", "foxglove
 
 /// How much one client may ask for.
 struct ConversationLimits {
-  std::size_t subscriptions = 256;
+  std::size_t subscriptions = 32;  ///< four times as many as there are topics
   std::size_t advertisements = 16;
-  std::size_t names = 256;  ///< parameters named in one request
+  std::size_t names = 64;  ///< parameters named in one request
   Outbox::Limits outbox;
 };
 
@@ -32,6 +33,9 @@ struct ConversationLimits {
 /// Every input is survived: what makes no sense is answered with a status, and nothing grows beyond the limits.
 class Conversation {
  public:
+  /// What a frame costs beside its bytes: about the time in which as many are copied.
+  static constexpr std::size_t frame_cost = 64;
+
   /// Greets the client: server information and topics.
   Conversation(ClientId client, Application& application, const ConversationLimits& limits);
 
@@ -39,9 +43,13 @@ class Conversation {
   [[nodiscard]] bool take_text(std::string_view text);
   void take_binary(std::string_view bytes);
 
-  /// Sends a message to each subscription of its topic.
+  /// What all messages shown until the next turn may cost together, in bytes, `frame_cost` for each on top of its own.
+  /// What is beyond is lost and counted, at no cost. As much as there is until it is called first.
+  void begin_turn(std::size_t bytes) { room_ = bytes; }
+  /// Sends a message to each subscription of its topic, while there is room in the turn.
   void show(std::size_t topic, std::uint64_t time_ns, const Payload& payload);
   [[nodiscard]] bool wants(std::size_t topic) const { return subscriptions_.contains(topic); }
+  [[nodiscard]] bool wants_anything() const { return !subscriptions_.empty(); }
   /// Sends the parameters whose changes the client asked for.
   void tell_parameters(const std::vector<Parameter>& all);
   /// Where frames were lost since it was last called: says so, once for all of them.
@@ -78,6 +86,7 @@ class Conversation {
   std::set<std::string> watched_;
   bool watches_all_ = false;
   std::uint64_t told_losses_ = 0;
+  std::size_t room_ = std::numeric_limits<std::size_t>::max();  ///< in this turn
   bool hopeless_ = false;
 };
 

@@ -125,7 +125,7 @@ void Engine::step() noexcept {
     LoopTick& tick = tick_.loop[i];
     Record& record = tick.record;
     if (!tick.stopped) {
-      record = setup_.teleoperators[i].step(path_m, path_at_next_tick_m);
+      record = setup_.teleoperators[i].step(path_m, path_at_next_tick_m, share_);
       // Written so that a NaN counts as outside.
       const bool inside = std::fabs(record.master_position_m) < setup_.reach_m[i] &&
                           std::fabs(record.tip_position_m) < setup_.reach_m[i];
@@ -143,11 +143,20 @@ void Engine::step() noexcept {
   if (watched_.load(std::memory_order_relaxed)) ticks_->push(tick_);
 }
 
+bool Engine::at_rest() const noexcept {
+  bool rest = true;
+  for (std::size_t i = 0; i < loops; ++i) {
+    rest = rest && (!setup_.runs[i] || tick_.loop[i].stopped || setup_.teleoperators[i].at_rest());
+  }
+  return rest;
+}
+
 void Engine::run(const std::function<bool()>& keep_going) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds pause{1};
   constexpr double most_behind_s = 0.1;
   constexpr double window_s = 1.0;
+  constexpr double longest_ramp_s = 0.5;
   const auto seconds_since = [](Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
   };
@@ -170,6 +179,9 @@ void Engine::run(const std::function<bool()>& keep_going) {
     }
     std::this_thread::sleep_for(pause);
   }
+  share_ = 0.0;
+  for (double ramp_s = 0.0; ramp_s < longest_ramp_s && !at_rest(); ramp_s += tick_s_) step();
+  share_ = 1.0;
 }
 
 }  // namespace tactus::live

@@ -67,8 +67,9 @@ class Engine {
   /// Logs every tick of both loops too, on the topics `/left/teleoperator` and `/right/teleoperator`. Before `run`.
   void log_to(telemetry::Recorder& recorder);
 
-  /// The loop's thread: steps until `keep_going` returns false, which is asked every millisecond. Where the machine
-  /// does not keep up by a tenth of a second, that time is left out: no burst follows.
+  /// The loop's thread: steps until `keep_going` returns false, which is asked every millisecond, and then until the
+  /// forces have fallen to zero at the rate limits of their gates. Where the machine does not keep up by a tenth of a
+  /// second, that time is left out: no burst follows.
   void run(const std::function<bool()>& keep_going);
   /// One tick of both loops, for who paces it otherwise. The loop's thread.
   void step() noexcept;
@@ -93,6 +94,8 @@ class Engine {
 
   Engine(Setup setup, const Hand& hand);
   void take_orders() noexcept;
+  /// No loop that runs commands a force.
+  [[nodiscard]] bool at_rest() const noexcept;
   void apply(Change& change) noexcept;
   void destroy_returned();
 
@@ -103,6 +106,7 @@ class Engine {
   std::array<std::uint32_t, loops> ticks_of_{};
   std::uint64_t ticks_done_ = 0;
   double real_time_ratio_ = 1.0;
+  double share_ = 1.0;  ///< of the controllers' forces; 0 at the end
   std::shared_ptr<Ticks> ticks_ = std::make_shared<Ticks>();
   std::atomic<bool> watched_{false};
   telemetry::Ring<Order, 256> orders_;

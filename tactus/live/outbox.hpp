@@ -19,20 +19,26 @@ struct Frame {
   [[nodiscard]] std::size_t size() const { return head.size() + (payload ? payload->size() : 0); }
 };
 
-/// What waits to be sent to one client: never more than so many frames and bytes. A client that does not keep up loses
-/// the oldest of what may be dropped (samples, never answers), and the loss is counted.
+/// What waits to be sent to one client: never more than so many frames, bytes and answers. A client that does not keep
+/// up loses the oldest of what may be dropped (samples, never answers), and the loss is counted. A push looks past no
+/// more frames than there may be answers, whatever waits.
 class Outbox {
  public:
   struct Limits {
     std::size_t frames = 8192;
     std::size_t bytes = std::size_t{8} * 1024 * 1024;
+    std::size_t answers = 256;  ///< frames that may not be dropped
   };
 
   explicit Outbox(const Limits& limits) : limits_(limits) {}
 
-  /// False where the frame may not be dropped and there is no room even without all that may be: a client that asks and
-  /// never reads the answers. The frame in front stays where it is while it is being sent.
+  /// False where the frame may not be dropped and there are too many such, or no room even without all that may be: a
+  /// client that asks and never reads the answers. The frame in front stays where it is while it is being sent.
   [[nodiscard]] bool push(Frame frame) {
+    if (!frame.may_be_dropped) {
+      if (answers_ == limits_.answers) return false;
+      ++answers_;
+    }
     bytes_ += frame.size();
     frames_.push_back(std::move(frame));
     std::size_t next = sending_ ? 1 : 0;
@@ -52,6 +58,8 @@ class Outbox {
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
   /// Frames lost so far.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
+  /// So many frames are lost before they were made.
+  void lose(std::size_t frames) { dropped_ += frames; }
 
   /// The oldest frame, which stays in place until `sent`. There must be one.
   const Frame& begin_sending() {
@@ -60,6 +68,7 @@ class Outbox {
   }
   void sent() {
     bytes_ -= frames_.front().size();
+    if (!frames_.front().may_be_dropped) --answers_;
     frames_.pop_front();
     sending_ = false;
   }
@@ -68,6 +77,7 @@ class Outbox {
   Limits limits_;
   std::deque<Frame> frames_;
   std::size_t bytes_ = 0;
+  std::size_t answers_ = 0;
   std::uint64_t dropped_ = 0;
   bool sending_ = false;
 };

@@ -95,6 +95,10 @@ void Server::State::tell_parameters() {
 
 void Server::State::collect() {
   const std::vector<std::shared_ptr<Client>> all = connected();
+  const auto listening =
+      std::count_if(all.begin(), all.end(), [](const auto& client) { return client->wants_anything(); });
+  const std::size_t share = options.bytes_a_turn / static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, listening));
+  for (const auto& client : all) client->begin_turn(share);
   application.collect(
       [&all](std::size_t topic) {
         return std::any_of(all.begin(), all.end(), [topic](const auto& client) { return client->wants(topic); });

@@ -21,7 +21,8 @@ struct ServerOptions {
   std::size_t header_bytes = 8192;    ///< longest head of an HTTP request
   double request_within_s = 5.0;      ///< time for a request to arrive and its answer to be taken
   double silence_s = 20.0;            ///< a client that answers no ping for so long is closed
-  double collect_every_s = 0.01;      ///< how often the application is asked for what is new
+  double collect_every_s = 0.01;      ///< how often the application is asked for what is new: a turn
+  std::size_t bytes_a_turn = std::size_t{4} * 1024 * 1024;  ///< for samples to all clients; each has an equal share
   ConversationLimits conversation;
 };
 
@@ -36,10 +37,13 @@ struct ServerCounts {
 
 /// An application on a port: the Foxglove WebSocket protocol, and the files of a page over HTTP.
 ///
-/// One thread does all. It shares nothing with a loop but what the application shares. A request is answered only where
-/// its `Host` is the address that the server was asked to listen on, or a name of the loopback, with the port; and
-/// where it has an `Origin`, that is the server's own: a page of another site, or a name that was bound to this address
-/// later, reaches nothing.
+/// One thread does all. It shares nothing with a loop but what the application shares. No client can take more of the
+/// thread than its share: subscriptions a client are limited, and a turn has room for so many bytes of samples, shared
+/// out equally among those who want any; who wants more loses its own, which is counted and told. Between two turns
+/// each client reads or writes one message before any does the next. A request is answered only where its `Host` is the
+/// address that the server was asked to listen on, or a name of the loopback, with the port; and where it has an
+/// `Origin`, that is the server's own: a page of another site, or a name that was bound to this address later, reaches
+/// nothing.
 class Server {
  public:
   /// Begins to listen and starts the thread. `application` must outlive the server. Errors: `unwritable` for an address

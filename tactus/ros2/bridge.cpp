@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <thread>
 #include <utility>
@@ -158,14 +159,27 @@ struct Bridge::State {
     }
   }
 
-  void run() {
+  void run() noexcept {
     while (!stop.load(std::memory_order_acquire)) {
       dds.servo_jp.wait(look_every);
-      listen();
-      drain();
+      without_memory_lost([this] {
+        listen();
+        drain();
+      });
     }
-    drain();
-    send(dds.state, {"DISABLED"});
+    without_memory_lost([this] {
+      drain();
+      send(dds.state, {"DISABLED"});
+    });
+  }
+
+  /// What cannot be made for lack of memory is lost, and the thread goes on.
+  void without_memory_lost(const auto& body) noexcept {
+    try {
+      body();
+    } catch (const std::exception&) {
+      lost.fetch_add(1, std::memory_order_relaxed);
+    }
   }
 };
 

@@ -7,11 +7,15 @@
 
 namespace tactus::runtime {
 
-/// What a device can do. Positions and forces as in `tactus/control/site.hpp`: positive toward the environment,
-/// translated to the point where the person, or the environment, touches it.
+/// What a device can do, and what is never asked of it: `DeviceGuard` keeps it to that, whoever commands. 0: not
+/// stated. Positions and forces as in `tactus/control/site.hpp`: positive toward the environment, translated to the
+/// point where the person, or the environment, touches it.
 struct DeviceLimits {
-  double force_N = 0.0;         ///< largest force of the motor, either way
-  double handle_force_N = 0.0;  ///< of a second actuator on the handle; 0 where there is none
+  double force_N = 0.0;           ///< largest force of the motor, either way
+  double handle_force_N = 0.0;    ///< of a second actuator on the handle; 0 where there is none
+  double rate_N_per_s = 0.0;      ///< fastest change of either force
+  double velocity_m_per_s = 0.0;  ///< fastest that the device may be
+  double position_m = 0.0;        ///< farthest that it may be from zero
 };
 
 /// Whether a device can be trusted with the next tick.
@@ -35,6 +39,7 @@ struct DeviceReading {
 struct DeviceCommand {
   double force_N = 0.0;         ///< of the motor, positive toward the environment
   double handle_force_N = 0.0;  ///< of the second actuator, same sign
+  bool enabled = true;          ///< false: the forces end at the rate limit, then the drive has no power
 };
 
 /// One axis of hardware, or what stands for it: where a user plugs in. Once a tick `read` and then `write` are called,
@@ -45,6 +50,8 @@ class Device {
   virtual ~Device() = default;
   /// Not real-time safe.
   [[nodiscard]] virtual DeviceLimits limits() const = 0;
+  /// Whether nobody can be hurt by it. Anything else needs limits of its own and gates that somebody has set.
+  [[nodiscard]] virtual bool simulated() const noexcept { return false; }
   /// What the sensors read at this tick. A device that has nothing new gives its last reading and is `degraded`.
   virtual DeviceReading read(const Tick& tick) noexcept = 0;
   /// To the actuators.

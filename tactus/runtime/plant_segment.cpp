@@ -14,7 +14,7 @@ namespace tactus::runtime {
 namespace {
 
 /// `tactus` and the version of the layout, which its size belongs to.
-constexpr std::uint64_t magic_word = 0x746163747573'0001;
+constexpr std::uint64_t magic_word = 0x746163747573'0002;
 /// The bytes of the file that stand for its two places.
 constexpr off_t owner_place = 0, controller_place = 1;
 constexpr std::uint64_t tap_bits = 16;
@@ -82,13 +82,39 @@ bool is_named(int file, const std::string& name) {
          own.st_ino == there.st_ino;
 }
 
-/// Null where the file is no segment of this version.
-PlantLayout* map(int file) {
+/// That nobody but this user can have made the file, or can change it: before anything of it is believed.
+Check check_private(int file, const std::string& name, const char* option) {
   struct stat status {};
-  if (fstat(file, &status) != 0 || status.st_size != static_cast<off_t>(sizeof(PlantLayout))) return nullptr;
-  void* memory = mmap(nullptr, sizeof(PlantLayout), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, file, 0);
-  return memory == MAP_FAILED ? nullptr : static_cast<PlantLayout*>(memory);
+  if (fstat(file, &status) != 0) return system_error(option, name, "fstat");
+  if (status.st_uid != geteuid()) {
+    return segment_error(ErrorCode::inconsistent, option,
+                         "the plant '" + name + "' belongs to user " + std::to_string(status.st_uid) +
+                             ", and this process runs as user " + std::to_string(geteuid()) +
+                             ": run both as the same user, or give it another name");
+  }
+  if (!S_ISREG(status.st_mode) || (status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+    return segment_error(ErrorCode::inconsistent, option,
+                         "the plant '" + name + "' is open to other users, as no plant of tactus is: remove /dev/shm" +
+                             file_name(name) + " and start it again");
+  }
+  return std::nullopt;
 }
+
+Error open_error(const char* option, const std::string& name) {
+  if (errno != EACCES) return system_error(option, name, "shm_open");
+  return segment_error(ErrorCode::inconsistent, option,
+                       "the plant '" + name + "' belongs to another user, and this process runs as user " +
+                           std::to_string(geteuid()) + ": run both as the same user, or give it another name");
+}
+
+/// None where the file is no segment of this version.
+std::optional<SharedMapping> map(int file) {
+  struct stat status {};
+  if (fstat(file, &status) != 0 || status.st_size != static_cast<off_t>(sizeof(PlantLayout))) return std::nullopt;
+  return SharedMapping::map(file, sizeof(PlantLayout));
+}
+
+PlantLayout& layout_in(const SharedMapping& memory) { return *static_cast<PlantLayout*>(memory.data()); }
 
 std::string process_of(const std::atomic<std::uint64_t>& word) {
   return "process " + std::to_string(word.load(std::memory_order_acquire));
@@ -96,17 +122,15 @@ std::string process_of(const std::atomic<std::uint64_t>& word) {
 
 /// What a segment says of its owner, whatever it may be.
 std::string owner_of(int file) {
-  PlantLayout* layout = map(file);
-  if (layout == nullptr) return "another version";
-  std::string owner = process_of(layout->owner);
-  munmap(layout, sizeof(PlantLayout));
-  return owner;
+  const auto memory = map(file);
+  return memory ? process_of(layout_in(*memory).owner) : "another version";
 }
 
 void tell(PlantLayout& layout, const PlantFacts& facts) {
   layout.owner.store(static_cast<std::uint64_t>(getpid()));
   layout.master_limits = facts.master;
   layout.slave_limits = facts.slave;
+  layout.simulated = facts.simulated ? 1 : 0;
   layout.taps = facts.taps;
   layout.configuration_length = facts.configuration.size();
   std::copy(facts.configuration.begin(), facts.configuration.end(), layout.configuration.begin());
@@ -132,7 +156,8 @@ Result<PlantSegment> PlantSegment::create(const std::string& name, const PlantFa
       if (errno != EEXIST) return system_error(option, name, "shm_open");
       const File old(shm_open(file_name(name).c_str(), O_RDWR | O_CLOEXEC, 0));
       if (old.descriptor < 0 && errno == ENOENT) continue;
-      if (old.descriptor < 0) return system_error(option, name, "shm_open");
+      if (old.descriptor < 0) return open_error(option, name);
+      if (auto error = check_private(old.descriptor, name, option)) return *std::move(error);
       if (!take(old.descriptor, owner_place)) {
         return segment_error(ErrorCode::inconsistent, option,
                              "a plant '" + name + "' runs already (" + owner_of(old.descriptor) +
@@ -149,14 +174,14 @@ Result<PlantSegment> PlantSegment::create(const std::string& name, const PlantFa
       shm_unlink(file_name(name).c_str());
       return refused;
     }
-    PlantLayout* layout = map(file.descriptor);
-    if (layout == nullptr) {
+    auto memory = map(file.descriptor);
+    if (!memory) {
       const Error refused = system_error(option, name, "mmap");
       shm_unlink(file_name(name).c_str());
       return refused;
     }
-    tell(*layout, facts);
-    return PlantSegment(name, file.release(), layout, true);
+    tell(layout_in(*memory), facts);
+    return PlantSegment(name, file.release(), *std::move(memory), true);
   }
   return segment_error(ErrorCode::failed, option,
                        "plant '" + name +
@@ -173,47 +198,45 @@ Result<PlantSegment> PlantSegment::attach(const std::string& name) {
         ErrorCode::missing, option,
         "no plant '" + name + "' runs here: start it with `tactus plant EXPERIMENT --name " + name + "`");
   }
-  if (file.descriptor < 0) return system_error(option, name, "shm_open");
+  if (file.descriptor < 0) return open_error(option, name);
+  if (auto error = check_private(file.descriptor, name, option)) return *std::move(error);
   if (!is_taken(file.descriptor, owner_place)) {
     return segment_error(ErrorCode::missing, option,
                          "the plant '" + name + "' is dead (" + owner_of(file.descriptor) +
                              "): start it again with `tactus plant EXPERIMENT --name " + name + "`");
   }
-  PlantLayout* layout = map(file.descriptor);
-  const bool fits = layout != nullptr && layout->magic.load(std::memory_order_acquire) == magic_word &&
-                    layout->configuration_length <= PlantLayout::configuration_bytes;
+  auto memory = map(file.descriptor);
+  const bool fits = memory && layout_in(*memory).magic.load(std::memory_order_acquire) == magic_word &&
+                    layout_in(*memory).configuration_length <= PlantLayout::configuration_bytes;
   if (!fits) {
-    if (layout != nullptr) munmap(layout, sizeof(PlantLayout));
     return segment_error(ErrorCode::inconsistent, option,
                          "the plant '" + name +
                              "' is none of this version of tactus, or has not come up yet: run both with the same "
                              "version");
   }
   if (!take(file.descriptor, controller_place)) {
-    Error error = segment_error(ErrorCode::inconsistent, option,
-                                "the plant '" + name + "' is driven already (" + process_of(layout->controller) +
-                                    "): wait for its end, or stop it");
-    munmap(layout, sizeof(PlantLayout));
-    return error;
+    return segment_error(ErrorCode::inconsistent, option,
+                         "the plant '" + name + "' is driven already (" + process_of(layout_in(*memory).controller) +
+                             "): wait for its end, or stop it");
   }
-  layout->controller.store(static_cast<std::uint64_t>(getpid()));
-  return PlantSegment(name, file.release(), layout, false);
+  layout_in(*memory).controller.store(static_cast<std::uint64_t>(getpid()));
+  return PlantSegment(name, file.release(), *std::move(memory), false);
 }
 
 PlantSegment::~PlantSegment() {
-  if (layout_ == nullptr) return;
+  if (file_ < 0) return;
   if (owner_) {
     shm_unlink(file_name(name_).c_str());
   } else {
     layout_->controller.store(0);
   }
-  munmap(layout_, sizeof(PlantLayout));
   close(file_);
 }
 
 PlantFacts PlantSegment::facts() const {
   return {.master = layout_->master_limits,
           .slave = layout_->slave_limits,
+          .simulated = layout_->simulated != 0,
           .taps = layout_->taps,
           .configuration = {layout_->configuration.data(),
                             std::min<std::size_t>(layout_->configuration_length, PlantLayout::configuration_bytes)}};

@@ -3,6 +3,7 @@
 #include <tactus/core/result.hpp>
 #include <tactus/runtime/device.hpp>
 #include <tactus/runtime/shared_device.hpp>
+#include <tactus/runtime/shared_mapping.hpp>
 #include <tactus/runtime/shared_slots.hpp>
 
 #include <array>
@@ -33,6 +34,7 @@ struct SimulatedTruth {
 struct PlantFacts {
   DeviceLimits master;
   DeviceLimits slave;
+  bool simulated = false;     ///< false: hardware
   std::int64_t taps = 0;      ///< that it can be asked for; 0 for hardware, which cannot be put back to a start
   std::string configuration;  ///< TOML of all that makes the plant what it is
 };
@@ -53,6 +55,7 @@ struct PlantLayout {
   std::atomic<std::uint64_t> controller;  ///< process; 0 once it has left in good order
   DeviceLimits master_limits;
   DeviceLimits slave_limits;
+  std::int64_t simulated;
   std::int64_t taps;
   std::uint64_t configuration_length;
   std::array<char, configuration_bytes> configuration;
@@ -69,31 +72,37 @@ static_assert(std::is_standard_layout_v<PlantLayout> && std::is_trivially_destru
 ///
 /// Who is in it is told by locks on its file (open file description locks), which the kernel takes back from a process
 /// however it ends: a segment whose owner is dead is known as such, and a process number that was given away again
-/// deceives nobody. Of the same user only (mode 0600). Nothing here is real-time safe but `operator->` and
-/// `request`.
+/// deceives nobody. Of the same user only, and of mode 0600: what another user made, or others can write, is refused
+/// before it is mapped. A process of the same user can still cut the file short; both sides survive that and are told
+/// (`SharedMapping`). Nothing here is real-time safe but `operator->`, `is_cut` and `request`.
 class PlantSegment {
  public:
   /// As the owner. A segment of that name whose owner is dead is replaced; who has that mapped finds it silent.
   ///
   /// Errors: `syntax` for a name that is not 1 to 64 letters, digits, `-` or `_`; `inconsistent` where a living process
-  /// owns it, or a configuration is too long; `failed` where the system gives no shared memory.
+  /// owns it, another user has a file of that name, or a configuration is too long; `failed` where the system gives no
+  /// shared memory.
   static Result<PlantSegment> create(const std::string& name, const PlantFacts& facts);
 
   /// As the controller.
   ///
   /// Errors: `syntax` as above; `missing` where there is none of that name, or its owner is dead; `inconsistent` where
-  /// it is none of this version, or has a controller; `failed` where the system does not let it be mapped.
+  /// it is of another user or open to others, of another version, or has a controller; `failed` where the system does
+  /// not let it be mapped.
   static Result<PlantSegment> attach(const std::string& name);
 
   PlantSegment(PlantSegment&& other) noexcept
       : name_(std::move(other.name_)),
         file_(std::exchange(other.file_, -1)),
-        layout_(std::exchange(other.layout_, nullptr)),
+        memory_(std::move(other.memory_)),
+        layout_(other.layout_),
         owner_(other.owner_) {}
   PlantSegment& operator=(PlantSegment&&) = delete;
   ~PlantSegment();
 
   PlantLayout* operator->() const noexcept { return layout_; }
+  /// Another process has cut the file: nobody is reached any more, and all of it reads as zeros. Real-time safe.
+  [[nodiscard]] bool is_cut() const noexcept { return memory_.is_cut(); }
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] PlantFacts facts() const;
   /// The process that owns it, where that lives.
@@ -107,11 +116,16 @@ class PlantSegment {
   std::uint64_t ask(std::optional<std::size_t> tap) noexcept;
 
  private:
-  PlantSegment(std::string name, int file, PlantLayout* layout, bool owner)
-      : name_(std::move(name)), file_(file), layout_(layout), owner_(owner) {}
+  PlantSegment(std::string name, int file, SharedMapping memory, bool owner)
+      : name_(std::move(name)),
+        file_(file),
+        memory_(std::move(memory)),
+        layout_(static_cast<PlantLayout*>(memory_.data())),
+        owner_(owner) {}
 
   std::string name_;
   int file_;
+  SharedMapping memory_;
   PlantLayout* layout_;
   bool owner_;
 };

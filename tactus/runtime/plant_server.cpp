@@ -15,6 +15,7 @@ Result<std::unique_ptr<PlantServer>> PlantServer::make(const std::string& name, 
   if (!first) return first.error();
   auto segment = PlantSegment::create(name, {.master = first->master().limits(),
                                              .slave = first->slave().limits(),
+                                             .simulated = true,
                                              .taps = params.task.taps,
                                              .configuration = plant_configuration(params)});
   if (!segment) return segment.error();
@@ -26,8 +27,9 @@ PlantServer::PlantServer(simulation::TappingEnsemble ensemble, const SimulatedPl
     : ensemble_(std::move(ensemble)),
       plants_{first, first},
       segment_(std::move(segment)),
-      master_(segment_->master, silence),
-      slave_(segment_->slave, silence) {
+      silence_(silence),
+      master_(segment_->master, silence, plants_[0].master().limits()),
+      slave_(segment_->slave, silence, plants_[0].slave().limits()) {
   read();
 }
 
@@ -45,6 +47,11 @@ void PlantServer::serve() {
 void PlantServer::begin(const PlantRequest& request) noexcept {
   session_ = request.session;
   running_ = false;
+  if (request.tap) {
+    // Devices at rest, under which no force is left.
+    master_ = DeviceServer(segment_->master, silence_, plants_[current_].master().limits());
+    slave_ = DeviceServer(segment_->slave, silence_, plants_[current_].slave().limits());
+  }
   master_.begin(session_);
   slave_.begin(session_);
   if (!request.tap) return;
@@ -72,10 +79,12 @@ void PlantServer::step(const Tick& tick) noexcept {
   }
 
   const bool gave_up = master_.gave_up() || slave_.gave_up();
+  const auto held_back = [this] { return master_.guard().held_back() + slave_.guard().held_back(); };
+  const std::int64_t held_back_before = held_back();
   SimulatedPlant& plant = plants_[current_];
   plant.master().write(master_.command(tick));
   plant.slave().write(slave_.command(tick));
-  if (!gave_up && (master_.gave_up() || slave_.gave_up())) let_go_.fetch_add(1, std::memory_order_relaxed);
+  held_back_.fetch_add(held_back() - held_back_before, std::memory_order_relaxed);
 
   if (!running_ && master_.obeyed() && slave_.obeyed()) {
     running_ = true;
@@ -89,6 +98,10 @@ void PlantServer::step(const Tick& tick) noexcept {
   if (plant.ticks() > before) read();
   master_.publish(tick, plant.ticks(), master_reading_);
   slave_.publish(tick, plant.ticks(), slave_reading_);
+  if (!gave_up && (master_.gave_up() || slave_.gave_up())) {
+    let_go_.fetch_add(1, std::memory_order_relaxed);
+    cause_.store(master_.gave_up() ? master_.guard().cause() : slave_.guard().cause(), std::memory_order_relaxed);
+  }
   missed_.fetch_add(tick.missed, std::memory_order_relaxed);
   segment_->answer.store(session_, std::memory_order_release);
 }
@@ -99,6 +112,9 @@ PlantStatus PlantServer::status() const {
           .missed = missed_.load(std::memory_order_relaxed),
           .taps = taps_.load(std::memory_order_relaxed),
           .let_go = let_go_.load(std::memory_order_relaxed),
+          .cause = cause_.load(std::memory_order_relaxed),
+          .held_back = held_back_.load(std::memory_order_relaxed),
+          .cut = segment_.is_cut(),
           .controller = segment_.living_controller()};
 }
 

@@ -22,7 +22,10 @@ struct PlantStatus {
   std::uint64_t commands = 0;  ///< that controllers told
   std::int64_t missed = 0;     ///< ticks
   std::int64_t taps = 0;       ///< begun
-  std::int64_t let_go = 0;     ///< taps in which commands stopped coming, or were not finite
+  std::int64_t let_go = 0;     ///< taps in which a device let go of its controller
+  LetGo cause = LetGo::none;   ///< of the last of them
+  std::int64_t held_back = 0;  ///< commands that were beyond what a device may
+  bool cut = false;            ///< another process has cut the shared memory: nobody can drive any more
   std::optional<std::int64_t> controller;
 };
 
@@ -30,7 +33,7 @@ struct PlantStatus {
 ///
 /// A tap begins with the first command after the controller has asked for it; until then the plant stands at the start.
 /// While ticks are missed, it goes on under the command that holds, as hardware does. Without a controller it stands
-/// still; with one that has fallen silent it goes on without a force.
+/// still; with one that has fallen silent, or asked for what the devices do not give, it goes on without a force.
 class PlantServer {
  public:
   /// `silence` is how long commands may stay away. Errors: those of the experiment and of `PlantSegment::create`;
@@ -55,6 +58,7 @@ class PlantServer {
   simulation::TappingEnsemble ensemble_;
   std::array<SimulatedPlant, 2> plants_;  ///< one runs, the other is made
   PlantSegment segment_;
+  Seconds silence_;
   DeviceServer master_;
   DeviceServer slave_;
   DeviceReading master_reading_;
@@ -65,7 +69,8 @@ class PlantServer {
   std::uint64_t session_ = 0;
   bool running_ = false;
   std::int64_t start_tick_ = 0;
-  std::atomic<std::int64_t> missed_{0}, taps_{0}, let_go_{0};
+  std::atomic<std::int64_t> missed_{0}, taps_{0}, let_go_{0}, held_back_{0};
+  std::atomic<LetGo> cause_{LetGo::none};
 };
 
 }  // namespace tactus::runtime

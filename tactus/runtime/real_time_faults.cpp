@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
+
+#include <nlohmann/json.hpp>
 
 namespace tactus::runtime {
 
@@ -20,29 +23,34 @@ using simulation::FaultsParams;
 constexpr std::size_t side_by_side = 6;
 constexpr double longest_cut_s = 1.0;
 
-/// Runs in batches, each from the first to the last tick of the longest of its runs. The outcomes keep their order.
-Result<std::vector<FaultOutcome>> play(std::vector<FaultRun>& runs, const ServoThreadParams& servo, ServoReport& all,
-                                       const simulation::Progress& progress) {
+/// Runs in batches, each from the first to the last tick of the longest of its runs. The outcomes keep their order; the
+/// last are missing where the end was asked for.
+Result<std::vector<FaultOutcome>> play(std::vector<FaultRun>& runs, const ServoThreadParams& servo,
+                                       const EndRequest& end, ServoReport& all, const simulation::Progress& progress) {
+  std::size_t over = 0;
   for (std::size_t first = 0; first < runs.size(); first += side_by_side) {
     const std::span<FaultRun> batch(runs.data() + first, std::min(side_by_side, runs.size() - first));
-    const auto report = run_servo(servo, [batch](const Tick& tick) noexcept {
+    const auto report = run_servo(servo, [batch, &end](const Tick& tick) noexcept {
       bool more = false;
       for (FaultRun& run : batch) more = run.step(tick.missed) || more;
-      return more;
+      return more && !end.asked();
     });
     if (!report) return report.error();
     all.add(*report);
-    progress(static_cast<double>(first + batch.size()) / static_cast<double>(runs.size()));
+    if (end.asked()) break;
+    over = first + batch.size();
+    progress(static_cast<double>(over) / static_cast<double>(runs.size()));
   }
   std::vector<FaultOutcome> outcomes;
-  for (const FaultRun& run : runs) outcomes.push_back(run.outcome());
+  for (std::size_t i = 0; i < over; ++i) outcomes.push_back(runs[i].outcome());
   return outcomes;
 }
 
 }  // namespace
 
 Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& request, const ServoThreadParams& servo,
-                                                    const simulation::Progress& progress) {
+                                                    const simulation::Progress& progress,
+                                                    const std::function<Result<const EndRequest*>()>& listen) {
   if (auto error = simulation::refuse_variations(request)) return *std::move(error);
   const auto params = request.document.read<FaultsParams>();
   if (!params) return params.error();
@@ -65,19 +73,34 @@ Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& r
       runs.push_back(*std::move(run));
     }
   }
+  const auto end = listen();
+  if (!end) return end.error();
   const ProcessRights process;  // once for all runs
   ServoReport kept;
-  const auto outcomes = play(runs, clock, kept, [&progress](double done) { progress(0.5 + 0.5 * done); });
+  const auto outcomes = play(runs, clock, **end, kept, [&progress](double done) { progress(0.5 + 0.5 * done); });
   if (!outcomes) return outcomes.error();
   const auto seeds = static_cast<std::size_t>(real.params.task.seeds);
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    const auto first = outcomes->begin() + static_cast<std::ptrdiff_t>(row * seeds);
-    real.tallies.push_back(simulation::tally(rows[row], real.params, simulation::draw_plans(rows[row], real.params),
-                                             {first, first + static_cast<std::ptrdiff_t>(seeds)}));
+    const auto first = outcomes->begin() + static_cast<std::ptrdiff_t>(std::min(row * seeds, outcomes->size()));
+    const auto last = outcomes->begin() + static_cast<std::ptrdiff_t>(std::min((row + 1) * seeds, outcomes->size()));
+    real.tallies.push_back(
+        simulation::tally(rows[row], real.params, simulation::draw_plans(rows[row], real.params), {first, last}));
   }
   real.timing = {timing_table(kept), late_ticks_table(kept)};
   real.timing_json = servo_json(kept);
-  return simulation::present_faults(request, *params, *table, real);
+  const bool interrupted = outcomes->size() < runs.size();
+  if (interrupted) {
+    report::Table table({{"runs at the real clock"}, {"of"}}, "Interrupted");
+    table.add_row({std::to_string(outcomes->size()), std::to_string(runs.size())});
+    real.timing.insert(real.timing.begin(), table);
+  }
+  auto outcome = simulation::present_faults(request, *params, *table, real);
+  if (interrupted) {
+    auto document = nlohmann::ordered_json::parse(outcome.json);
+    document["real_time"]["interrupted"] = {{"runs", outcomes->size()}, {"of", runs.size()}};
+    outcome.json = document.dump(2) + "\n";
+  }
+  return outcome;
 }
 
 }  // namespace tactus::runtime

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/experiment.hpp>
+
+#include <functional>
 
 namespace tactus::runtime {
 
@@ -11,8 +14,12 @@ namespace tactus::runtime {
 /// Ticks that the machine misses are a stall of both sites in each of these runs, and are judged as such. No cut lasts
 /// longer than a second.
 ///
-/// Errors: those of the experiment `faults` and of the servo thread.
+/// `listen` is called between the two: it says where the end may be asked for from then on. Where it is, the runs that
+/// were over by then are told, and that there should be more.
+///
+/// Errors: those of the experiment `faults`, of the servo thread and of `listen`.
 Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& request, const ServoThreadParams& servo,
-                                                    const simulation::Progress& progress);
+                                                    const simulation::Progress& progress,
+                                                    const std::function<Result<const EndRequest*>()>& listen);
 
 }  // namespace tactus::runtime

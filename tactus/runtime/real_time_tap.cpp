@@ -7,16 +7,6 @@ namespace tactus::runtime {
 
 using simulation::Teleoperator;
 
-namespace {
-
-/// No site commands a force any more.
-bool is_at_rest(const LocalTeleoperator::Output& output) noexcept {
-  return output.sites.master.motor_force_N == 0.0 && output.sites.master.handle_force_N == 0.0 &&
-         output.sites.slave.motor_force_N == 0.0;
-}
-
-}  // namespace
-
 Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const simulation::Tap& tap, double observation_s,
                                                        const RealTimeStreams& streams) {
   auto plant = SimulatedPlant::make(tap);
@@ -71,14 +61,14 @@ bool RealTimeTap::step(const Tick& tick) noexcept {
   // Time counts from the first step, as the devices' does.
   Tick own = tick;
   own.number -= first_tick_;
-  while (const auto truth = plant_->next(own)) {
-    if (!complete(*truth)) {
-      loop_.release();
-      return false;
-    }
+  while (!over_) {
+    const auto truth = plant_->next(own);
+    if (!truth) break;
+    over_ = !complete(*truth);
     record_.time_s = static_cast<double>(plant_ticks_) * clock_.tick_s;
     record_.tip_position_m = truth->tip_position_m;
   }
+  if (over_) return let_go(own);
   const LocalTeleoperator::Output output = loop_.step(own);
   record_ = Teleoperator::recorded(
       static_cast<double>(plant_ticks_) * clock_.tick_s,
@@ -88,7 +78,15 @@ bool RealTimeTap::step(const Tick& tick) noexcept {
   const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - streams_.origin_ns);
   if (streams_.sites != nullptr) streams_.sites->push(due_ns, recorded(streams_.tap, own, output));
   if (streams_.servo != nullptr) streams_.servo->push(due_ns, recorded(own));
-  return !(plant_->lost() && is_at_rest(output));
+  return !(plant_->lost() && loop_.at_rest());
+}
+
+bool RealTimeTap::let_go(const Tick& own) noexcept {
+  loop_.let_go(own);
+  letting_go_s_ += static_cast<double>(own.missed + 1) * clock_.tick_s;
+  if (!loop_.at_rest() && letting_go_s_ < longest_ramp_s) return true;
+  loop_.release();
+  return false;
 }
 
 }  // namespace tactus::runtime

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/local_teleoperator.hpp>
 #include <tactus/runtime/servo_record.hpp>
 #include <tactus/runtime/simulated_plant.hpp>
@@ -25,7 +26,8 @@ struct RealTimeStreams {
   std::int64_t origin_ns = 0;  ///< of the times in the log, on CLOCK_MONOTONIC
 };
 
-/// One tap through simulated devices in real time: the step of a servo thread.
+/// One tap through simulated devices in real time: the step of a servo thread. Where the tap is over, or was ended from
+/// outside, the sites let go at the rate limits of their gates; these ticks are no part of the tap and have no record.
 ///
 /// The record of a tick is complete when the plant has gone on to the next. Ticks that were missed have a record too,
 /// with the readings and commands that held. With devices of its own and none missed, the records are bit for bit those
@@ -42,8 +44,12 @@ class RealTimeTap {
   RealTimeTap(const RealTimeTap&) = delete;
   RealTimeTap& operator=(const RealTimeTap&) = delete;
 
-  /// One tick; false once the tap is over. Real-time safe.
+  /// One tick; false once the tap is over and no site commands a force. Real-time safe.
   bool step(const Tick& tick) noexcept;
+  /// From the next tick on the sites let go. Of the thread that steps. Real-time safe.
+  void end() noexcept { over_ = true; }
+  /// No force at once, as the last thing. Of the thread that steps. Real-time safe.
+  void release() noexcept { loop_.release(); }
 
   [[nodiscard]] simulation::TapResult result() const { return observer_.result(); }
   /// Every tick.
@@ -54,6 +60,8 @@ class RealTimeTap {
               const simulation::Clock& clock, TapPlant& plant, LocalTeleoperator loop);
   /// Ends the open record with what the plant did, and hands it on; false once the tap is over.
   bool complete(const SimulatedTruth& truth) noexcept;
+  /// One tick on the way to no force; false at its end.
+  bool let_go(const Tick& own) noexcept;
 
   simulation::Clock clock_;
   std::unique_ptr<SimulatedPlant> own_;
@@ -65,6 +73,8 @@ class RealTimeTap {
   std::vector<simulation::Teleoperator::Record> trace_;
   std::int64_t first_tick_ = -1;
   std::int64_t plant_ticks_ = 0;
+  bool over_ = false;
+  double letting_go_s_ = 0.0;
   std::int64_t start_ns_ = 0;  ///< of the first tick, after the origin
 };
 

@@ -114,18 +114,30 @@ constexpr std::size_t most_traces = 64;
 
 /// One run as it went, and how time was kept in it.
 struct RealTimeRun {
-  TappingRun run;
+  std::optional<TappingRun> run;  ///< none where not even its first tap came to its end
   ServoReport servo;
 };
 
+/// Steps the tap to its end, or to the one that was asked for.
+Result<ServoReport> run_tap(RealTimeTap& tap, const ServoThreadParams& servo, const EndRequest& end) {
+  return run_servo(servo, [&tap, &end](const Tick& tick) noexcept {
+    if (end.insisted()) {
+      tap.release();
+      return false;
+    }
+    if (end.asked()) tap.end();
+    return tap.step(tick);
+  });
+}
+
 /// With `plant` null, through devices of its own.
 Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, SharedPlant* plant, RealTimeStreams streams,
-                             const std::function<void()>& tap_done) {
+                             const EndRequest& end, const std::function<void()>& tap_done) {
   const auto& [settings, prepared] = one;
   RealTimeRun done;
   std::vector<TapResult> results;
   std::vector<std::vector<simulation::Teleoperator::Record>> traces;
-  for (std::size_t tap = 0; tap < prepared.ensemble.size(); ++tap) {
+  for (std::size_t tap = 0; tap < prepared.ensemble.size() && !end.asked(); ++tap) {
     streams.tap = static_cast<std::int64_t>(tap);
     const simulation::Tap& drawn = prepared.ensemble.tap(tap);
     if (plant != nullptr) {
@@ -135,33 +147,47 @@ Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, SharedPlant*
                                  : RealTimeTap::make(drawn, prepared.observation_s, streams);
     if (!made) return made.error();
     RealTimeTap& running = **made;
-    const auto report = run_servo(prepared.servo, [&running](const Tick& tick) noexcept { return running.step(tick); });
+    const auto report = run_tap(running, prepared.servo, end);
     if (!report) return report.error();
     if (plant != nullptr) {
       if (plant->lost()) return plant->why_lost();
       plant->end();
     }
     done.servo.add(*report);
+    if (end.asked()) break;  // this one may have been cut short
     results.push_back(running.result());
     if (traces.size() < most_traces) traces.push_back(running.trace());
     tap_done();
   }
+  if (results.empty()) return done;
   const std::vector<TapResult> kept(results.begin(), results.begin() + static_cast<std::ptrdiff_t>(traces.size()));
   const std::size_t shown = simulation::median_tap(kept);
-  done.run = {.settings = settings,
-              .metrics = simulation::summarise(results),
-              .observation_s = prepared.observation_s,
-              .first_touch_s = results[shown].first_touch_s,
-              .trace = std::move(traces[shown])};
+  done.run = TappingRun{.settings = settings,
+                        .metrics = simulation::summarise(results),
+                        .observation_s = prepared.observation_s,
+                        .first_touch_s = results[shown].first_touch_s,
+                        .trace = std::move(traces[shown])};
   return done;
 }
 
+/// How far a run came whose end was asked for.
+struct Interrupted {
+  std::size_t taps = 0;  ///< that came to their end
+  std::size_t of = 0;
+  [[nodiscard]] std::string text() const {
+    return "Interrupted: " + std::to_string(taps) + " of " + std::to_string(of) +
+           " taps had come to their end, and the table has no other.";
+  }
+};
+
 std::string json_of(const simulation::Request& request, const std::optional<PlantChoice>& plant,
-                    const std::vector<TappingRun>& runs, const std::vector<ServoReport>& servos) {
+                    const std::vector<TappingRun>& runs, const std::vector<ServoReport>& servos,
+                    const std::optional<Interrupted>& interrupted) {
   auto document = nlohmann::ordered_json::parse(simulation::tapping_json(request, runs));
   document["clock"] = "real";
   if (plant) document["plant"] = plant->name;
-  for (std::size_t i = 0; i < servos.size(); ++i) {
+  if (interrupted) document["interrupted"] = {{"taps", interrupted->taps}, {"of", interrupted->of}};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
     document["runs"][i]["servo"] = nlohmann::ordered_json::parse(servo_json(servos[i]));
   }
   return document.dump(2) + "\n";
@@ -214,28 +240,35 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
   std::size_t taps_done = 0;
   const auto tap_done = [&] { progress(static_cast<double>(++taps_done) / static_cast<double>(taps)); };
   const ProcessRights process;  // once for all taps
+  const EndRequest never;
+  const EndRequest& end = options.end != nullptr ? *options.end : never;
   std::vector<TappingRun> runs;
   std::vector<ServoReport> servos;
   ServoReport all;
-  for (std::size_t i = 0; i < cases->all.size(); ++i) {
-    auto done = run_taps(cases->all[i], plant.get(), log ? log->streams[i] : RealTimeStreams{}, tap_done);
+  for (std::size_t i = 0; i < cases->all.size() && !end.asked(); ++i) {
+    auto done = run_taps(cases->all[i], plant.get(), log ? log->streams[i] : RealTimeStreams{}, end, tap_done);
     if (!done) {
       if (log) (void)close_log(*log, *options.log);  // it shows how it came to that
       return done.error();
     }
     all.add(done->servo);
-    runs.push_back(std::move(done->run));
+    if (!done->run) break;
+    runs.push_back(*std::move(done->run));
     servos.push_back(std::move(done->servo));
   }
   Check log_error;
   if (log) log_error = close_log(*log, *options.log);
+  std::optional<Interrupted> interrupted;
+  if (taps_done < taps) interrupted = Interrupted{.taps = taps_done, .of = taps};
 
   const report::Table table = simulation::tapping_table(runs);
   const report::Table timing = timing_table(all);
   const report::Table late = late_ticks_table(all);
-  std::vector<report::Figure> figures = simulation::tapping_figures(runs);
+  std::vector<report::Figure> figures;
+  if (!runs.empty()) figures = simulation::tapping_figures(runs);
   figures.push_back(timing_figure(all));
   report::Page page = simulation::tapping_page(request, table, figures);
+  if (interrupted) page.paragraph(interrupted->text());
   page.heading("How time was kept");
   page.paragraph(
       std::string("The sites ran on a servo thread at deadlines of the real clock, the devices were simulated ") +
@@ -244,14 +277,16 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
   page.table(late);
   page.table(rights_table(all));
   simulation::add_provenance(page, request, cases->first_configuration);
-  std::string text = table.to_text() + "\n" + timing.to_text() + "\n" + late.to_text() + losses_of(all);
+  std::string text = table.to_text() + "\n" + (interrupted ? interrupted->text() + "\n\n" : "") + timing.to_text() +
+                     "\n" + late.to_text() + losses_of(all);
   return RealTimeOutcome{.outcome = {.text = std::move(text),
-                                     .json = json_of(request, options.plant, runs, servos),
+                                     .json = json_of(request, options.plant, runs, servos, interrupted),
                                      .html = page.to_html(),
                                      .figures = std::move(figures),
                                      .traces = {},
                                      .configuration = cases->first_configuration},
-                         .log = std::move(log_error)};
+                         .log = std::move(log_error),
+                         .interrupted = interrupted.has_value()};
 }
 
 }  // namespace tactus::runtime

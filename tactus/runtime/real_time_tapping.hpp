@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/runtime/shared_device.hpp>
 #include <tactus/simulation/experiment.hpp>
@@ -24,12 +25,14 @@ struct RealTimeOptions {
   std::optional<std::filesystem::path> log;  ///< file that takes every tick while it runs; its folder is made
   std::map<std::string, std::string> about;  ///< for the log, beside the configuration
   std::optional<PlantChoice> plant{};        ///< else devices are simulated on the servo thread
+  const EndRequest* end = nullptr;           ///< that somebody may make while it runs; outlives the run
 };
 
 /// What came out, and what became of the log.
 struct RealTimeOutcome {
   simulation::Outcome outcome;
-  Check log;  ///< why it is not whole, where it is not
+  Check log;                 ///< why it is not whole, where it is not
+  bool interrupted = false;  ///< its end was asked for before all taps had run
 };
 
 /// Most taps of one run, and most runs, in real time: each tap takes the better part of a second.
@@ -39,7 +42,8 @@ inline constexpr std::size_t most_real_time_runs = 64;
 /// The experiment `tapping` in real time, through a servo thread and simulated devices: the table and report that
 /// virtual time makes, and how time was kept. The outcome has no traces: the log has every tick of every tap, on the
 /// topics
-/// `/teleoperator`, `/sites` and `/servo`, with several runs `/run_1/teleoperator` and so on.
+/// `/teleoperator`, `/sites` and `/servo`, with several runs `/run_1/teleoperator` and so on. Where its end was asked
+/// for, the outcome is that of the taps that had run by then, and says so.
 ///
 /// Errors: another kind of experiment, more taps or runs than the limits, those of the experiment, of the log and of
 /// the plant. A log that fails on the way stops nothing; a plant that is lost ends the run, and the log has all of it.

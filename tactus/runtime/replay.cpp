@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -32,6 +31,7 @@ class RecordedDevice final : public Device {
  public:
   explicit RecordedDevice(const DeviceLimits& limits) : limits_(limits) {}
   [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] bool simulated() const noexcept override { return true; }
   DeviceReading read(const Tick&) noexcept override { return reading; }
   void write(const DeviceCommand&) noexcept override {}
   [[nodiscard]] DeviceHealth health() const noexcept override { return DeviceHealth::good; }
@@ -182,13 +182,8 @@ Result<Replay> replay(const std::filesystem::path& log) {
   const auto content = telemetry::read_log(log);
   if (!content) return content.error();
   Replay replayed;
-  Check error;
-  // The sites ran on a thread that flushed denormals, and this one may not.
-  std::thread([&] {
-    flush_denormals();
-    error = replay_all(*content, replayed);
-  }).join();
-  if (error) return *std::move(error);
+  const FlushedDenormals as_the_sites_ran;
+  if (auto error = replay_all(*content, replayed)) return *std::move(error);
   return replayed;
 }
 

@@ -129,26 +129,40 @@ Right hold_idle_states_off(int& descriptor) {
                  "sudo chmod a+w /dev/cpu_dma_latency, or boot with processor.max_cstate=1");
 }
 
-}  // namespace
+/// The word of the processor that says how floating-point numbers are treated, and the bits in it that take denormal
+/// ones for zero: none where they are not known.
+#if defined(__SSE2__)
+constexpr std::uint64_t denormals_to_zero = 0x8000 | 0x0040;
+std::uint64_t floating_point_control() noexcept { return _mm_getcsr(); }
+void set_floating_point_control(std::uint64_t word) noexcept { _mm_setcsr(static_cast<unsigned int>(word)); }
+#elif defined(__aarch64__)
+constexpr std::uint64_t denormals_to_zero = std::uint64_t{1} << 24;
+std::uint64_t floating_point_control() noexcept {
+  std::uint64_t word = 0;
+  asm volatile("mrs %0, fpcr" : "=r"(word));
+  return word;
+}
+void set_floating_point_control(std::uint64_t word) noexcept { asm volatile("msr fpcr, %0" : : "r"(word)); }
+#else
+constexpr std::uint64_t denormals_to_zero = 0;
+std::uint64_t floating_point_control() noexcept { return 0; }
+void set_floating_point_control(std::uint64_t) noexcept {}
+#endif
 
 Right flush_denormals() {
   const std::string what = "denormals flushed to zero";
-#if defined(__SSE2__)
-  constexpr unsigned int flush_to_zero = 0x8000;
-  constexpr unsigned int denormals_are_zero = 0x0040;
-  _mm_setcsr(_mm_getcsr() | flush_to_zero | denormals_are_zero);
-  return granted(what);
-#elif defined(__aarch64__)
-  constexpr std::uint64_t flush_to_zero = std::uint64_t{1} << 24;
-  std::uint64_t control = 0;
-  asm volatile("mrs %0, fpcr" : "=r"(control));
-  asm volatile("msr fpcr, %0" : : "r"(control | flush_to_zero));
-  return granted(what);
-#else
+  set_floating_point_control(floating_point_control() | denormals_to_zero);
+  if (denormals_to_zero != 0) return granted(what);
   return refused(what, ENOTSUP, "a filter that decays into denormals can become a hundred times slower",
                  "run on x86-64 or ARM64");
-#endif
 }
+
+}  // namespace
+
+FlushedDenormals::FlushedDenormals() noexcept : before_(floating_point_control()) {
+  set_floating_point_control(before_ | denormals_to_zero);
+}
+FlushedDenormals::~FlushedDenormals() { set_floating_point_control(before_); }
 
 ProcessRights::ProcessRights() {
   Taken& all = taken();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,17 @@ struct Right {
   std::string remedy;  ///< where it is not: the command that mends it
 };
 
-/// The calling thread takes denormal numbers for zero, as a servo thread does.
-Right flush_denormals();
+/// While it lives, the calling thread takes denormal numbers for zero, as a servo thread does.
+class FlushedDenormals {
+ public:
+  FlushedDenormals() noexcept;
+  ~FlushedDenormals();
+  FlushedDenormals(const FlushedDenormals&) = delete;
+  FlushedDenormals& operator=(const FlushedDenormals&) = delete;
+
+ private:
+  std::uint64_t before_;
+};
 
 /// What the whole process asks for while any servo thread runs: its memory locked into RAM, present and, where the
 /// limit on locked memory allows, future; and the processor kept out of idle states that it is slow to leave. Counted:

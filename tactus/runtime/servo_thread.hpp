@@ -8,6 +8,7 @@
 #include <atomic>
 #include <concepts>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <type_traits>
 #include <utility>
@@ -185,9 +186,11 @@ class ServoThread {
   void stop() noexcept { stopped_.store(true, std::memory_order_relaxed); }
   /// Whether the last step has run. Any thread.
   [[nodiscard]] bool ended() const noexcept { return ended_.load(std::memory_order_acquire); }
-  /// Waits for the end of the thread. The report is complete after it, and the step may be looked at.
+  /// Waits for the end of the thread. The report is complete after it, and the step may be looked at. Where memory ran
+  /// out before the first tick, there was none, and this throws what the thread did.
   const ServoReport& finish() {
     thread_.join();
+    if (failure_) std::rethrow_exception(failure_);
     return report_;
   }
   [[nodiscard]] Step& step() { return step_; }
@@ -197,10 +200,15 @@ class ServoThread {
 
   static void run(void* self) {
     auto& servo = *static_cast<ServoThread*>(self);
-    servo.report_.rights =
-        take_thread_rights(static_cast<int>(servo.params_.priority), static_cast<int>(servo.params_.core));
-    const auto& process = servo.process_.rights();
-    servo.report_.rights.insert(servo.report_.rights.end(), process.begin(), process.end());
+    try {
+      servo.report_.rights =
+          take_thread_rights(static_cast<int>(servo.params_.priority), static_cast<int>(servo.params_.core));
+      const auto& process = servo.process_.rights();
+      servo.report_.rights.insert(servo.report_.rights.end(), process.begin(), process.end());
+    } catch (...) {
+      servo.failure_ = std::current_exception();
+      servo.stop();
+    }
     TickKeeper keeper(servo.params_, servo.report_);
     for (bool more = true; more && !servo.stopped_.load(std::memory_order_relaxed);) {
       const Tick tick = keeper.wait();
@@ -214,6 +222,7 @@ class ServoThread {
   ProcessRights process_;  ///< before the thread, so that its stack is locked too
   Step step_;
   ServoReport report_;
+  std::exception_ptr failure_;
   std::atomic<bool> stopped_{false};
   std::atomic<bool> ended_{false};
   NativeThread thread_;

@@ -17,14 +17,10 @@ bool is_finite(const DeviceReading& reading) noexcept {
   return std::isfinite(reading.position_m) && std::isfinite(reading.force_N) && std::isfinite(reading.grip);
 }
 
-bool is_finite(const DeviceCommand& command) noexcept {
-  return std::isfinite(command.force_N) && std::isfinite(command.handle_force_N);
-}
-
 }  // namespace
 
-SharedDevice::SharedDevice(DeviceSlots& slots, const DeviceLimits& limits, Seconds silence) noexcept
-    : slots_(&slots), limits_(limits), silence_ns_(in_ns(silence)) {}
+SharedDevice::SharedDevice(DeviceSlots& slots, const DeviceLimits& limits, Seconds silence, bool simulated) noexcept
+    : slots_(&slots), limits_(limits), silence_ns_(in_ns(silence)), simulated_(simulated) {}
 
 void SharedDevice::begin(std::uint64_t session) noexcept {
   session_ = session;
@@ -35,7 +31,7 @@ void SharedDevice::begin(std::uint64_t session) noexcept {
 bool SharedDevice::given_up_by_owner() const noexcept { return session_ != 0 && last_.gave_up_on == session_; }
 
 DeviceReading SharedDevice::read(const Tick& tick) noexcept {
-  now_ns_ = tick.began_ns;
+  now_ = tick;
   const auto newest = slots_->readings.newest();
   if (health_ == DeviceHealth::lost) return last_.reading;
   health_ = DeviceHealth::degraded;
@@ -47,35 +43,48 @@ DeviceReading SharedDevice::read(const Tick& tick) noexcept {
       health_ = DeviceHealth::lost;
     }
   }
-  if (too_old(last_.time_ns, now_ns_, silence_ns_) || given_up_by_owner()) health_ = DeviceHealth::lost;
+  if (too_old(last_.time_ns, now_.began_ns, silence_ns_) || given_up_by_owner()) health_ = DeviceHealth::lost;
   return last_.reading;
 }
 
 void SharedDevice::write(const DeviceCommand& command) noexcept {
-  slots_->commands.publish({.command = command, .time_ns = now_ns_, .session = session_});
+  slots_->commands.publish({.force_N = command.force_N,
+                            .handle_force_N = command.handle_force_N,
+                            .enabled = command.enabled ? 1U : 0U,
+                            .tick = now_.number,
+                            .time_ns = now_.began_ns,
+                            .session = session_});
 }
 
-DeviceServer::DeviceServer(DeviceSlots& slots, Seconds silence) noexcept
-    : slots_(&slots), silence_ns_(in_ns(silence)) {}
+DeviceServer::DeviceServer(DeviceSlots& slots, Seconds silence, const DeviceLimits& limits) noexcept
+    : slots_(&slots), silence_ns_(in_ns(silence)), guard_(limits, silence) {}
 
 void DeviceServer::begin(std::uint64_t session) noexcept {
   session_ = session;
   command_ = {};
-  gave_up_ = false;
+  guard_.rearm();
 }
 
 DeviceCommand DeviceServer::command(const Tick& tick) noexcept {
   const auto newest = slots_->commands.newest();
-  // The last one of a loop, which lets go, has the time of the one before.
-  if (newest && newest->session == session_ && newest->time_ns >= command_.time_ns) command_ = *newest;
-  if (!obeyed()) return {};
-  gave_up_ = gave_up_ || !is_finite(command_.command) || too_old(command_.time_ns, tick.began_ns, silence_ns_);
-  return gave_up_ ? DeviceCommand{} : command_.command;
+  // The last one of a loop, which lets go, has the tick of the one before.
+  if (newest && newest->session == session_ && newest->time_ns >= command_.time_ns) {
+    if (!obeyed() || newest->tick > command_.tick) alive_ns_ = newest->time_ns;
+    command_ = *newest;
+  }
+  if (!obeyed()) return guard_.pass({.enabled = false}, tick);
+  if (too_old(alive_ns_, tick.began_ns, silence_ns_)) guard_.let_go(LetGo::silent);
+  return guard_.pass(
+      {.force_N = command_.force_N, .handle_force_N = command_.handle_force_N, .enabled = command_.enabled != 0}, tick);
 }
 
 void DeviceServer::publish(const Tick& tick, std::int64_t device_tick, const DeviceReading& reading) noexcept {
-  slots_->readings.publish(
-      {.reading = reading, .tick = device_tick, .time_ns = tick.began_ns, .gave_up_on = gave_up_ ? session_ : 0});
+  guard_.observe(reading.position_m, tick);
+  slots_->readings.publish({.reading = reading,
+                            .tick = device_tick,
+                            .time_ns = tick.began_ns,
+                            .gave_up_on = gave_up() ? session_ : 0,
+                            .cause = guard_.cause()});
 }
 
 }  // namespace tactus::runtime

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tactus/core/units.hpp>
-#include <tactus/runtime/device.hpp>
+#include <tactus/runtime/device_guard.hpp>
 #include <tactus/runtime/shared_slots.hpp>
 
 #include <cstdint>
@@ -15,12 +15,16 @@ struct SharedReading {
   std::int64_t tick = 0;         ///< of the owner
   std::int64_t time_ns = 0;      ///< of CLOCK_MONOTONIC, when the owner's tick began
   std::uint64_t gave_up_on = 0;  ///< session whose commands the owner obeys no more; 0: none
+  LetGo cause = LetGo::none;     ///< why
 };
 
 /// Controller to owner.
 struct SharedCommand {
-  DeviceCommand command;
-  std::int64_t time_ns = 0;   ///< of CLOCK_MONOTONIC, when the controller's tick began
+  double force_N = 0.0;
+  double handle_force_N = 0.0;
+  std::uint64_t enabled = 0;
+  std::int64_t tick = 0;      ///< of the controller; one that does not grow is no sign of life
+  std::int64_t time_ns = 0;   ///< of CLOCK_MONOTONIC, when that tick began
   std::uint64_t session = 0;  ///< what it is a command of; see `DeviceServer::begin`
 };
 
@@ -30,11 +34,6 @@ struct DeviceSlots {
   SharedSlots<SharedCommand, 8> commands;
 };
 
-/// The longest silence of the other process that a side puts up with, unless told otherwise.
-inline constexpr Seconds usual_silence{0.02};
-/// What a silence may be set to.
-inline constexpr Bounds silence_bounds = between(0.001, 10.0);
-
 /// The controller's side: the device as a servo thread sees it.
 ///
 /// `good` with a reading that is newer than the last, `degraded` with none, and `lost` for the rest of the session once
@@ -43,44 +42,50 @@ inline constexpr Bounds silence_bounds = between(0.001, 10.0);
 class SharedDevice final : public Device {
  public:
   /// On slots that outlive it. `silence` is how old a reading may be, by its time against that of the tick.
-  SharedDevice(DeviceSlots& slots, const DeviceLimits& limits, Seconds silence) noexcept;
+  SharedDevice(DeviceSlots& slots, const DeviceLimits& limits, Seconds silence, bool simulated = false) noexcept;
 
   /// From now on commands are of this session. Not while a servo thread reads.
   void begin(std::uint64_t session) noexcept;
 
   [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] bool simulated() const noexcept override { return simulated_; }
   DeviceReading read(const Tick& tick) noexcept override;
   void write(const DeviceCommand& command) noexcept override;
   [[nodiscard]] DeviceHealth health() const noexcept override { return health_; }
   /// It is lost from now on: for what is found elsewhere.
   void lose() noexcept { health_ = DeviceHealth::lost; }
-  /// Whether the owner was the one that gave up: the commands had come too late, or were not finite.
+  /// Whether the owner was the one that gave up.
   [[nodiscard]] bool given_up_by_owner() const noexcept;
+  /// Why it did.
+  [[nodiscard]] LetGo owners_cause() const noexcept { return last_.cause; }
 
  private:
   DeviceSlots* slots_;
   DeviceLimits limits_;
   std::int64_t silence_ns_;
+  bool simulated_;
   std::uint64_t session_ = 0;
-  std::int64_t now_ns_ = 0;
+  Tick now_;
   SharedReading last_;
   DeviceHealth health_ = DeviceHealth::degraded;
 };
 
-/// The owner's side, a drive's watchdog included. Once a tick, in this order: `command` to the motor, `publish` what
-/// the sensors read. Both are wait-free and call no system.
+/// The owner's side, with a drive's watchdog and the device's own limits (`DeviceGuard`). Once a tick, in this order:
+/// `command` to the motor, `publish` what the sensors read. Both are wait-free and call no system.
 ///
-/// Commands are obeyed that belong to the session begun last. Once they have been silent for too long, or were not
-/// finite, the motor gets no force for the rest of the session, and the controller is told: a force that comes back by
-/// itself would surprise both the person and the controller.
+/// Commands are obeyed that belong to the session begun last, as far as the device's limits go. Once they have been
+/// silent for too long, or the guard has let go, the motor's force ends for the rest of the session, and the controller
+/// is told: a force that comes back by itself would surprise both the person and the controller. A command whose tick
+/// does not grow is silence, whatever its time: so is one that something repeats which does not control any more.
 class DeviceServer {
  public:
   /// On slots that outlive it. `silence` is how old a command may be, by its time against that of the tick.
-  DeviceServer(DeviceSlots& slots, Seconds silence) noexcept;
+  DeviceServer(DeviceSlots& slots, Seconds silence, const DeviceLimits& limits = {}) noexcept;
 
-  /// A session: the commands of one controller in one task. A number that was not used before in these slots.
+  /// A session: the commands of one controller in one task. A number that was not used before in these slots. A force
+  /// that is still there ends within its rate limit.
   void begin(std::uint64_t session) noexcept;
-  /// What the actuators may do from this tick on. Always finite; no force before the first command.
+  /// What the actuators may do from this tick on. Always finite, within the limits; no force before the first command.
   DeviceCommand command(const Tick& tick) noexcept;
   /// `device_tick` is the reading's number, for who looks at it.
   void publish(const Tick& tick, std::int64_t device_tick, const DeviceReading& reading) noexcept;
@@ -88,14 +93,16 @@ class DeviceServer {
   /// Commands of this session have come.
   [[nodiscard]] bool obeyed() const noexcept { return command_.session == session_ && session_ != 0; }
   /// The session lost its force.
-  [[nodiscard]] bool gave_up() const noexcept { return gave_up_; }
+  [[nodiscard]] bool gave_up() const noexcept { return guard_.cause() != LetGo::none; }
+  [[nodiscard]] const DeviceGuard& guard() const noexcept { return guard_; }
 
  private:
   DeviceSlots* slots_;
   std::int64_t silence_ns_;
+  DeviceGuard guard_;
   std::uint64_t session_ = 0;
   SharedCommand command_;
-  bool gave_up_ = false;
+  std::int64_t alive_ns_ = 0;  ///< time of the last command with a new tick
 };
 
 }  // namespace tactus::runtime

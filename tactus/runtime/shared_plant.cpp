@@ -48,8 +48,8 @@ Result<std::unique_ptr<SharedPlant>> SharedPlant::attach(const std::string& name
 SharedPlant::SharedPlant(PlantSegment segment, Seconds silence)
     : segment_(std::move(segment)),
       silence_(silence),
-      master_(segment_->master, segment_.facts().master, silence),
-      slave_(segment_->slave, segment_.facts().slave, silence) {}
+      master_(segment_->master, segment_.facts().master, silence, segment_.facts().simulated),
+      slave_(segment_->slave, segment_.facts().slave, silence, segment_.facts().simulated) {}
 
 SharedPlant::~SharedPlant() { end(); }
 
@@ -75,7 +75,7 @@ Check SharedPlant::begin(std::size_t tap) {
   // Devices are made for it on the other side, by a thread that may have to wait for the processor.
   const auto last = std::chrono::steady_clock::now() + 5s;
   while (segment_->answer.load(std::memory_order_acquire) != session) {
-    if (!segment_.living_owner()) return why_lost();
+    if (segment_.is_cut() || !segment_.living_owner()) return why_lost();
     if (std::chrono::steady_clock::now() > last) {
       return plant_error(ErrorCode::failed, "the plant '" + segment_.name() + "' did not begin tap " +
                                                 std::to_string(tap) + " within 5 s: stop it and start it again");
@@ -94,6 +94,11 @@ Check SharedPlant::begin(std::size_t tap) {
 void SharedPlant::end() noexcept { segment_.ask(std::nullopt); }
 
 std::optional<SimulatedTruth> SharedPlant::next(const Tick&) noexcept {
+  if (segment_.is_cut()) {
+    master_.lose();
+    slave_.lose();
+    return std::nullopt;
+  }
   if (next_truth_ == segment_->simulated_truth.published()) return std::nullopt;
   const auto truth = segment_->simulated_truth.at(next_truth_);
   if (!truth) {
@@ -114,13 +119,26 @@ bool SharedPlant::lost() const noexcept {
 Error SharedPlant::why_lost() const {
   const std::string plant = "the plant '" + segment_.name() + "' ";
   const std::string bound = format_number(silence_.value) + " s";
+  if (segment_.is_cut()) {
+    return plant_error(ErrorCode::failed,
+                       plant +
+                           "is cut off: another process has shortened its shared memory; both sides let go; start "
+                           "it again, and find out what writes to /dev/shm");
+  }
   if (!segment_.living_owner()) {
     return plant_error(ErrorCode::failed, plant + "died in the run: both sites let go; start it again");
   }
-  if (master_.given_up_by_owner() || slave_.given_up_by_owner()) {
-    return plant_error(ErrorCode::failed, plant +
-                                              "let go, for the commands of this run came too late for it: see "
-                                              "`tactus doctor`, or start it with a longer --silence-s");
+  for (const SharedDevice* device : {&master_, &slave_}) {
+    if (!device->given_up_by_owner()) continue;
+    const std::string whose = device == &master_ ? "let go at the master: " : "let go at the slave: ";
+    if (device->owners_cause() != LetGo::silent) {
+      return plant_error(ErrorCode::failed, plant + whose + in_words(device->owners_cause()) +
+                                                ": both sites let go; compare the gates of this run with the limits "
+                                                "of the device");
+    }
+    return plant_error(ErrorCode::failed, plant + whose +
+                                              "the commands of this run came too late for it: see `tactus doctor`, "
+                                              "or start it with a longer --silence-s");
   }
   if (fell_behind_) {
     return plant_error(ErrorCode::failed, plant + "went on for more than " + std::to_string(PlantLayout::truth_ticks) +

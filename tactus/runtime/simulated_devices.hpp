@@ -19,8 +19,9 @@ class SimulatedMaster final : public Device {
       : plant_(plant), clock_(clock), path_(path), limits_(limits) {}
 
   [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] bool simulated() const noexcept override { return true; }
   DeviceReading read(const Tick& tick) noexcept override;
-  void write(const DeviceCommand& command) noexcept override { command_ = command; }
+  void write(const DeviceCommand& command) noexcept override { command_ = command.enabled ? command : DeviceCommand{}; }
   [[nodiscard]] DeviceHealth health() const noexcept override { return DeviceHealth::good; }
 
   /// Advances by one tick under the command that holds. Real-time safe.
@@ -44,8 +45,9 @@ class SimulatedSlave final : public Device {
       : plant_(plant), clock_(clock), limits_(limits) {}
 
   [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] bool simulated() const noexcept override { return true; }
   DeviceReading read(const Tick& tick) noexcept override;
-  void write(const DeviceCommand& command) noexcept override { command_ = command; }
+  void write(const DeviceCommand& command) noexcept override { command_ = command.enabled ? command : DeviceCommand{}; }
   [[nodiscard]] DeviceHealth health() const noexcept override { return DeviceHealth::good; }
 
   /// Advances by one tick under the command that holds. Real-time safe.

@@ -1,7 +1,24 @@
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/runtime/simulated_plant.hpp>
 
+#include <algorithm>
+
 namespace tactus::runtime {
+
+namespace {
+
+/// What a simulated device keeps to whoever commands it: force as its gate, the rest wider than where the gate acts, so
+/// that of a sound controller nothing is held back. Two of its commands can fall into one tick of the device.
+DeviceLimits limits_of(double amplifier_N, const control::SafetyGate::Params& gate) {
+  constexpr double beyond = 1.5;
+  static_assert(beyond > control::SafetyGate::fault_factor);
+  return {.force_N = std::min(amplifier_N, gate.force_limit_N),
+          .rate_N_per_s = 2.0 * gate.rate_limit_N_per_s,
+          .velocity_m_per_s = beyond * gate.velocity_limit_m_per_s,
+          .position_m = beyond * gate.position_limit_m};
+}
+
+}  // namespace
 
 Result<SimulatedPlant> SimulatedPlant::make(const simulation::Tap& tap) {
   const simulation::Teleoperator::Params& params = tap.params;
@@ -12,10 +29,12 @@ Result<SimulatedPlant> SimulatedPlant::make(const simulation::Tap& tap) {
   const auto slave = simulation::SlavePlant::make(params.slave, params.environment, *clock,
                                                   params.control.position_scale * tap.path.start_m);
   if (!slave) return slave.error();
-  return SimulatedPlant(SimulatedMaster(*master, *clock, tap.path,
-                                        {.force_N = params.master.amplifier.limit_N,
-                                         .handle_force_N = params.master.handle_actuator.limit_N}),
-                        SimulatedSlave(*slave, *clock, {.force_N = params.slave.amplifier.limit_N}));
+  DeviceLimits of_master = limits_of(params.master.amplifier.limit_N, params.control.gate);
+  of_master.handle_force_N = std::min(params.master.handle_actuator.limit_N, params.control.handle_gate.force_limit_N);
+  of_master.rate_N_per_s = std::max(of_master.rate_N_per_s, 2.0 * params.control.handle_gate.rate_limit_N_per_s);
+  return SimulatedPlant(
+      SimulatedMaster(*master, *clock, tap.path, of_master),
+      SimulatedSlave(*slave, *clock, limits_of(params.slave.amplifier.limit_N, params.control.slave_gate)));
 }
 
 std::optional<SimulatedTruth> SimulatedPlant::next(const Tick& tick) noexcept {
@@ -40,6 +59,9 @@ std::string plant_configuration(const simulation::TappingParams& params) {
   simulation::TappingParams plant = params;
   plant.control = {};
   plant.control.position_scale = params.control.position_scale;
+  plant.control.gate = params.control.gate;
+  plant.control.handle_gate = params.control.handle_gate;
+  plant.control.slave_gate = params.control.slave_gate;
   plant.channel = {};
   const simulation::TapSeries usual;
   plant.task.taps = usual.taps;

@@ -52,7 +52,8 @@ class SimulatedPlant final : public TapPlant {
 };
 
 /// All of an experiment that makes its plants what they are, as TOML: two experiments with equal text have equal plants
-/// in every tap. Controllers, channel, number of taps and observation are no part of it.
+/// in every tap. The safety gates are part of it, for the devices keep to limits that follow from them. Controllers,
+/// channel, number of taps and observation are not.
 std::string plant_configuration(const simulation::TappingParams& params);
 
 }  // namespace tactus::runtime

@@ -5,6 +5,7 @@
 #include <tactus/simulation/contest_presentation.hpp>
 #include <tactus/simulation/parallel.hpp>
 #include <tactus/simulation/presentation.hpp>
+#include <tactus/simulation/tapping.hpp>
 
 #include <utility>
 
@@ -68,7 +69,7 @@ std::string ContestExperiment::schema() const {
 }
 
 std::string ContestExperiment::reference() const {
-  return configuration::reference_markdown<ContestParams>("Experiment `contest`");
+  return configuration::reference_beside<ContestParams, TappingParams>("Experiment `contest`", "tapping");
 }
 
 Result<Outcome> ContestExperiment::run(const Request& request, const Progress& progress) const {

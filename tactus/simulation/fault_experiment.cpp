@@ -4,6 +4,7 @@
 #include <tactus/simulation/fault_experiment.hpp>
 #include <tactus/simulation/fault_table.hpp>
 #include <tactus/simulation/presentation.hpp>
+#include <tactus/simulation/tapping.hpp>
 
 #include <algorithm>
 #include <map>
@@ -279,7 +280,7 @@ std::string FaultExperiment::schema() const {
 }
 
 std::string FaultExperiment::reference() const {
-  return configuration::reference_markdown<FaultsParams>("Experiment `faults`");
+  return configuration::reference_beside<FaultsParams, TappingParams>("Experiment `faults`", "tapping");
 }
 
 Check refuse_variations(const Request& request) {

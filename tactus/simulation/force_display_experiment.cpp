@@ -3,6 +3,7 @@
 #include <tactus/simulation/force_display.hpp>
 #include <tactus/simulation/force_display_experiment.hpp>
 #include <tactus/simulation/presentation.hpp>
+#include <tactus/simulation/tapping.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -141,7 +142,7 @@ std::string ForceDisplayExperiment::schema() const {
 }
 
 std::string ForceDisplayExperiment::reference() const {
-  return configuration::reference_markdown<ForceDisplayParams>("Experiment `force-display`");
+  return configuration::reference_beside<ForceDisplayParams, TappingParams>("Experiment `force-display`", "tapping");
 }
 
 Result<Outcome> ForceDisplayExperiment::run(const Request& request, const Progress& progress) const {

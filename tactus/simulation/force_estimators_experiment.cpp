@@ -3,6 +3,7 @@
 #include <tactus/simulation/force_estimators.hpp>
 #include <tactus/simulation/force_estimators_experiment.hpp>
 #include <tactus/simulation/presentation.hpp>
+#include <tactus/simulation/tapping.hpp>
 
 #include <utility>
 
@@ -149,7 +150,8 @@ std::string ForceEstimatorsExperiment::schema() const {
 }
 
 std::string ForceEstimatorsExperiment::reference() const {
-  return configuration::reference_markdown<ForceEstimatorsParams>("Experiment `force-estimators`");
+  return configuration::reference_beside<ForceEstimatorsParams, TappingParams>("Experiment `force-estimators`",
+                                                                               "tapping");
 }
 
 Result<Outcome> ForceEstimatorsExperiment::run(const Request& request, const Progress& progress) const {

@@ -4,6 +4,7 @@
 #include <tactus/simulation/presentation.hpp>
 #include <tactus/simulation/sensorless_experiment.hpp>
 #include <tactus/simulation/sensorless_presentation.hpp>
+#include <tactus/simulation/tapping.hpp>
 
 #include <utility>
 
@@ -47,7 +48,7 @@ std::string SensorlessExperiment::schema() const {
 }
 
 std::string SensorlessExperiment::reference() const {
-  return configuration::reference_markdown<SensorlessParams>("Experiment `sensorless`");
+  return configuration::reference_beside<SensorlessParams, TappingParams>("Experiment `sensorless`", "tapping");
 }
 
 Result<Outcome> SensorlessExperiment::run(const Request& request, const Progress& progress) const {

@@ -42,17 +42,18 @@ class SitePair {
   static Result<SitePair> make(const control::ControlParams& control, const LinkParams& channel, Seconds tick,
                                double slave_start_m);
 
-  /// One tick; `elapsed_ticks` since the last is more than 1 after a stall. Real-time safe.
-  Output step(const Input& input, std::int64_t elapsed_ticks = 1) noexcept {
+  /// One tick; `elapsed_ticks` since the last is more than 1 after a stall. What the controllers want is scaled by
+  /// `share` before their gates: 0 takes every force away at the gates' rate limits. Real-time safe.
+  Output step(const Input& input, std::int64_t elapsed_ticks = 1, double share = 1.0) noexcept {
     master_input_ = {.motor_position_m = input.master_position_m,
                      .hand_force_N = input.hand_force_N,
                      .arrival = arrived_,
                      .grip = input.grip};
-    output_.master = sites_.master.step(master_input_, 1.0, elapsed_ticks);
+    output_.master = sites_.master.step(master_input_, share, elapsed_ticks);
     slave_input_ = {.motor_position_m = input.slave_position_m,
                     .tip_force_N = input.tip_force_N,
                     .arrival = to_slave_.step(output_.master.message)};
-    output_.slave = sites_.slave.step(slave_input_, 1.0, elapsed_ticks);
+    output_.slave = sites_.slave.step(slave_input_, share, elapsed_ticks);
     arrived_ = to_master_.step(output_.slave.message);
     return output_;
   }
@@ -64,6 +65,11 @@ class SitePair {
   /// gates stay. Between ticks; does not allocate, but takes as long as a thousand ticks.
   void exchange_controllers(SitePair& made) noexcept;
 
+  /// Neither site commanded a force at the latest tick.
+  [[nodiscard]] bool at_rest() const noexcept {
+    return output_.master.motor_force_N == 0.0 && output_.master.handle_force_N == 0.0 &&
+           output_.slave.motor_force_N == 0.0;
+  }
   /// False once a safety gate has latched a fault.
   [[nodiscard]] bool healthy() const noexcept {
     return sites_.master.fault() == control::GateFault::none && sites_.slave.fault() == control::GateFault::none;

@@ -10,7 +10,7 @@ constexpr std::string_view tapping_title = "Tapping a wall through the teleopera
 }  // namespace
 
 report::Table tapping_table(const std::vector<TappingRun>& runs) {
-  std::vector<report::Column> columns = settings_columns(runs.front().settings);
+  std::vector<report::Column> columns = settings_columns(runs.empty() ? Settings{} : runs.front().settings);
   columns.insert(columns.end(), {{"taps"},
                                  {"settled", "%"},
                                  {"settling, median", "ms"},

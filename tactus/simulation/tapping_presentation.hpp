@@ -10,7 +10,7 @@
 /// Taps for every reader, whatever clock they ran on.
 namespace tactus::simulation {
 
-/// A row for each run.
+/// A row for each run; there may be none.
 report::Table tapping_table(const std::vector<TappingRun>& runs);
 
 /// `{"experiment": ..., "runs": [{"set": ..., "metrics": ...}]}`

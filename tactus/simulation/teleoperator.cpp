@@ -16,14 +16,15 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   return Teleoperator(*master, *slave, *std::move(sites), *clock);
 }
 
-Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m) noexcept {
+Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m, double share) noexcept {
   const MasterPlant::Reading master = master_.measure();
   const SlavePlant::Reading slave = slave_.measure();
   const SitePair::Output output = sites_.step({.master_position_m = master.motor_position_m,
                                                .hand_force_N = master.hand_force_N,
                                                .grip = master.grip,
                                                .slave_position_m = slave.motor_position_m,
-                                               .tip_force_N = slave.tip_force_N});
+                                               .tip_force_N = slave.tip_force_N},
+                                              1, share);
   Record record = recorded(static_cast<double>(ticks_) * clock_.tick_s, master, slave, output);
   record.tip_position_m = slave_.tip_position_m();
 

@@ -95,8 +95,9 @@ class Teleoperator {
   /// At rest with both devices at `start_m` of the master; the slave at `start_m` times the position scale.
   static Result<Teleoperator> make(const Params& params, double start_m);
 
-  /// Advances by one tick while the person intends to be at `path_m` now and at `path_at_next_tick_m` then.
-  Record step(double path_m, double path_at_next_tick_m) noexcept;
+  /// Advances by one tick while the person intends to be at `path_m` now and at `path_at_next_tick_m` then. `share` as
+  /// in `SitePair::step`: 0 lets go.
+  Record step(double path_m, double path_at_next_tick_m, double share = 1.0) noexcept;
 
   /// What `exchange` takes over.
   struct Parts {
@@ -119,6 +120,8 @@ class Teleoperator {
   static void add_contact(Record& record, const SlavePlant::Contact& contact, const Clock& clock) noexcept;
 
   [[nodiscard]] double tick_s() const noexcept { return clock_.tick_s; }
+  /// Neither site commanded a force at the latest tick.
+  [[nodiscard]] bool at_rest() const noexcept { return sites_.at_rest(); }
   /// False once a safety gate has latched a fault.
   [[nodiscard]] bool healthy() const noexcept { return sites_.healthy(); }
 

@@ -49,11 +49,20 @@ std::filesystem::path path_of(const std::filesystem::path& folder, std::size_t r
   return folder / ("blocks-" + std::to_string(rank) + ".partial");
 }
 
-std::string slurp(const std::filesystem::path& path) {
+/// What the file holds; nothing where there is none.
+Result<std::string> slurp(const std::filesystem::path& path) {
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
+  if (!file && errno == ENOENT) return std::string();
   std::ostringstream bytes;
-  bytes << file.rdbuf();
-  return std::move(bytes).str();
+  if (file) bytes << file.rdbuf();
+  if (file && !bytes.bad()) return std::move(bytes).str();
+  return Error{.code = ErrorCode::missing,
+               .parameter = {},
+               .message = std::string("the finished blocks could not be read (") +
+                          std::error_code(errno, std::generic_category()).message() +
+                          "): look at the permissions and the disk, or remove this file and lose them",
+               .place = path.string()};
 }
 
 Error unwritable(const std::filesystem::path& path) {
@@ -117,12 +126,13 @@ bool write_whole(int file, std::string_view bytes) {
 Result<MapStore> MapStore::open(const std::filesystem::path& folder, std::uint64_t identity, std::size_t rank) {
   const auto path = path_of(folder, rank);
   const std::string wanted = header(identity);
-  const std::string bytes = slurp(path);
+  const auto bytes = slurp(path);
+  if (!bytes) return bytes.error();
   std::size_t keep = 0;
-  if (bytes.size() >= wanted.size()) {
-    if (!bytes.starts_with(wanted)) return of_another_map(path);
+  if (bytes->size() >= wanted.size()) {
+    if (!bytes->starts_with(wanted)) return of_another_map(path);
     std::vector<Block> ignored;
-    keep = wanted.size() + read_blocks(std::string_view(bytes).substr(wanted.size()), ignored);
+    keep = wanted.size() + read_blocks(std::string_view(*bytes).substr(wanted.size()), ignored);
   }
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);  // NOLINT: variadic in C
   if (file < 0) return unwritable(path);
@@ -149,10 +159,11 @@ Result<std::vector<MapStore::Block>> MapStore::read_all() const {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder_, ignored)) {
     if (entry.path().extension() != ".partial") continue;
-    const std::string bytes = slurp(entry.path());
-    if (bytes.size() < wanted.size()) continue;  // another rank has just made it
-    if (!bytes.starts_with(wanted)) return of_another_map(entry.path());
-    read_blocks(std::string_view(bytes).substr(wanted.size()), blocks);
+    const auto bytes = slurp(entry.path());
+    if (!bytes) return bytes.error();
+    if (bytes->size() < wanted.size()) continue;  // another rank has just made it
+    if (!bytes->starts_with(wanted)) return of_another_map(entry.path());
+    read_blocks(std::string_view(*bytes).substr(wanted.size()), blocks);
   }
   return blocks;
 }

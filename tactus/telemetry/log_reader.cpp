@@ -2,6 +2,7 @@
 #include <tactus/telemetry/mcap_format.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <memory>
 #include <string_view>
@@ -32,9 +33,13 @@ class Scan {
   Scan(std::FILE* file, std::uint64_t size, const std::function<Check(const LogChannel&, const LogMessage&)>& visit)
       : file_(file), left_(size), visit_(visit) {}
 
-  bool begins_with_magic() {
+  Check begin() {
     crc_ = crc32_of(mcap::magic);
-    return read(mcap::magic.size(), buffer_) && buffer_ == mcap::magic;
+    if ((read(mcap::magic.size(), buffer_) && buffer_ == mcap::magic) || error_) return error_;
+    return Error{.code = ErrorCode::syntax,
+                 .parameter = {},
+                 .message = "this is no MCAP file: name a log that tactus or a ROS 2 tool has written",
+                 .place = {}};
   }
 
   Check run() {
@@ -73,7 +78,16 @@ class Scan {
     if (count > left_) return false;
     into.resize(static_cast<std::size_t>(count));
     left_ -= count;
-    return std::fread(into.data(), 1, into.size(), file_) == into.size();
+    if (std::fread(into.data(), 1, into.size(), file_) == into.size()) return true;
+    // What ends early is a cut off log; what cannot be read is none that could be told about.
+    if (std::ferror(file_) != 0) {
+      error_ = Error{.code = ErrorCode::failed,
+                     .parameter = {},
+                     .message = "the log could not be read to its end (" + std::generic_category().message(errno) +
+                                "): check the disk, or copy the file from it",
+                     .place = {}};
+    }
+    return false;
   }
 
   bool skip(std::uint64_t count) {
@@ -247,11 +261,9 @@ Result<LogSummary> scan_log(const std::filesystem::path& file,
     return unreadable(ErrorCode::missing, file, "the file cannot be read: look at its permissions");
   }
   Scan scan(stream.get(), size, visit);
-  if (!scan.begins_with_magic()) {
-    return unreadable(ErrorCode::syntax, file,
-                      "this is no MCAP file: name a log that tactus or a ROS 2 tool has written");
-  }
-  if (auto error = scan.run()) {
+  auto error = scan.begin();
+  if (!error) error = scan.run();
+  if (error) {
     if (error->place.empty()) error->place = file.string();
     return *std::move(error);
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -27,6 +28,8 @@ using control::SiteRole;
 using control::SiteState;
 
 constexpr std::int64_t tick_ns = 200'000;
+/// Armed at once, the slave stands pressed against the wall at this tick.
+constexpr int pressing_tick = 6500;
 
 /// Both sites in one program, over the loopback and in plain text, at a clock of the test's own: as fast as they can.
 class Sites : public ::testing::Test {
@@ -38,9 +41,10 @@ class Sites : public ::testing::Test {
     std::int64_t tick = 0;
     /// Where it stood at the end of the second that ended last.
     SiteSecond second;
+    bool more = true;  ///< what its step said last
 
     void step(std::int64_t now_ns) noexcept {
-      (*loop)({.number = tick++, .deadline_ns = now_ns, .began_ns = now_ns});
+      more = (*loop)({.number = tick++, .deadline_ns = now_ns, .began_ns = now_ns});
       while (exchange.seconds.try_pop(second)) {
       }
     }
@@ -223,6 +227,79 @@ TEST_F(Sites, TheLastSecondIsInTheLogAndInTheReport) {
   EXPECT_EQ(column(table, "applied_sequence").back(), 7'777.0) << "the master is stepped first";
   const auto forces = column(table, "motor_force_N");
   EXPECT_GT(*std::ranges::max_element(forces), 0.01);
+}
+
+/// First tick at which a logged state was left that had lasted.
+std::size_t end_of(const std::vector<double>& states, SiteState state) {
+  const auto value = static_cast<double>(state);
+  const auto begin = std::find(states.begin(), states.end(), value);
+  return static_cast<std::size_t>(std::find_if(begin, states.end(), [&](double one) { return one != value; }) -
+                                  states.begin());
+}
+
+TEST_F(Sites, WithoutThePersonBothStandAtTheNextTickAndNoWordMakesThemFollow) {
+  open(true);
+  run(5005);
+  expect(SiteState::active, SiteState::active);
+  master.exchange.person_lost = true;
+  run(5000);
+  expect(SiteState::armed, SiteState::armed);
+  EXPECT_EQ(master.second.cause, SiteCause::dead_man);
+  for (const SiteWord word : {SiteWord::press, SiteWord::arm}) {
+    ask(master, word);
+    expect(SiteState::armed, SiteState::armed);
+  }
+  const auto at_master = column(close(master, SiteRole::master), "state");
+  const auto at_slave = column(close(slave, SiteRole::slave), "state");
+  EXPECT_EQ(end_of(at_master, SiteState::active), 5005U);
+  EXPECT_EQ(end_of(at_slave, SiteState::active), 5005U) << "it is told in the same tick";
+  EXPECT_EQ(std::count(at_master.begin() + 5005, at_master.end(), static_cast<double>(SiteState::active)), 0);
+}
+
+/// The end of either site as it is seen at both.
+class EndOfASite : public Sites, public ::testing::WithParamInterface<SiteRole> {};
+
+TEST_P(EndOfASite, IsALossOfForceAtTheRateLimitAndTheOtherHolds) {
+  constexpr double rate_limit_N_per_s = 500.0;
+  constexpr double largest_step_N = rate_limit_N_per_s * 200e-6 * (1.0 + 1e-9);
+  params.control.gate.rate_limit_N_per_s = params.control.slave_gate.rate_limit_N_per_s = rate_limit_N_per_s;
+  open(true);
+  run(pressing_tick);
+  expect(SiteState::active, SiteState::active);
+  const bool at_master = GetParam() == SiteRole::master;
+  Site& ending = at_master ? master : slave;
+  Site& other = at_master ? slave : master;
+  ending.exchange.end.ask();
+  int ticks = 0;
+  for (; ending.more && ticks < 2500; ++ticks) run(1);
+  EXPECT_LT(ticks, 750) << "it took more than 0.15 s";
+  EXPECT_EQ(ending.loop->totals().steps_above_limit, 0);
+  run(2, !at_master, at_master);
+  const auto table = close(ending, GetParam());
+  EXPECT_EQ(ending.second.state, SiteState::configure);
+  EXPECT_EQ(ending.second.cause, SiteCause::dead_man);
+  const auto states = column(table, "state"), force_N = column(table, "motor_force_N");
+  EXPECT_EQ(end_of(states, SiteState::active), std::size_t{pressing_tick});
+  EXPECT_GT(std::fabs(force_N[pressing_tick - 1]), 0.1) << "there was nothing to lose";
+  for (std::size_t i = pressing_tick; i < force_N.size(); ++i) {
+    EXPECT_LE(std::fabs(force_N[i] - force_N[i - 1]), largest_step_N) << "tick " << i;
+  }
+  EXPECT_EQ(force_N.back(), 0.0);
+  const auto elsewhere = column(close(other, at_master ? SiteRole::slave : SiteRole::master), "state");
+  EXPECT_LE(end_of(elsewhere, SiteState::active), std::size_t{pressing_tick} + 1) << "it was told at once";
+  EXPECT_EQ(other.second.state, SiteState::hold);
+  EXPECT_EQ(other.second.cause, SiteCause::peer);
+}
+INSTANTIATE_TEST_SUITE_P(, EndOfASite, ::testing::Values(SiteRole::master, SiteRole::slave),
+                         [](const auto& role) { return std::string(name_of(role.param)); });
+
+TEST_F(Sites, AnEndThatIsInsistedOnIsNoTickMore) {
+  open(true);
+  run(5005);
+  slave.exchange.end.insist();
+  run(1);
+  EXPECT_FALSE(slave.more);
+  EXPECT_EQ(slave.loop->totals().ticks, 5005);
 }
 
 TEST_F(Sites, ATickWithItsLogDoesNotAllocate) {

@@ -32,13 +32,16 @@ class TwoSites : public ::testing::Test {
     const std::string text = R"(
       site() { name=$1; shift; exec $TACTUS run $EXPERIMENT --set servo.rate_Hz=1000 --set plant.longest_step_s=5e-5 \
                --set control.supervision.watchdog.timeout_s=0.3 --set control.supervision.longest_stall_s=0.3 \
-               --key key --json "$@" >$name.json 2>$name.log </dev/null; }
+               --key key --json "$@" >$name.json 2>$name.log <&9; }
       wait_for() { for i in $(seq 300); do grep -q "$2" $1.log 2>/dev/null && return; sleep 0.1; done; exit 3; }
       wait_for_next() { lines=$(wc -l <$1.log); for i in $(seq 300); do
                         tail -n +$((lines + 1)) $1.log | grep -q "$2" && return; sleep 0.1; done; exit 4; }
       cd ')" + folder.string() +
                              R"('
       [ -e key ] || $TACTUS key key >/dev/null || exit 2
+      # Somebody is there as long as this shell, who says nothing: an input that ends lets the dead-man switch go.
+      [ -e person ] || mkfifo person
+      exec 9<>person
     )" + script;
     std::ofstream(folder / "script") << text;
     ASSERT_EQ(std::system(("sh '" + (folder / "script").string() + "'").c_str()), 0) << log("master") << log("slave");

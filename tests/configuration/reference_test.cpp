@@ -1,5 +1,8 @@
 #include <tactus/configuration/reference.hpp>
 
+#include <string>
+#include <tuple>
+
 #include <gtest/gtest.h>
 #include <tests/configuration/experiment.hpp>
 
@@ -51,6 +54,40 @@ The task.
 |---|---|---|---|---|
 | `kind` |  | text | `"tapping"` | What is done. |
 | `recording` |  | text | `""` | File of a recording. |
+)");
+}
+
+struct StifferExperiment : testing::Experiment {
+  double stay_s = 1.0;
+  StifferExperiment() { slave.stiffness_N_per_m = 5000.0; }
+  static constexpr auto fields() {
+    return std::tuple_cat(
+        testing::Experiment::fields(),
+        std::tuple{field("stay_s", &StifferExperiment::stay_s, units::second, positive, "How long it stays.")});
+  }
+};
+
+TEST(Reference, WhatAnotherPageSaysIsLeftToIt) {
+  const std::string page = reference_beside<StifferExperiment, testing::Experiment>("Stiffer", "soft");
+  EXPECT_EQ(page, R"(# Stiffer
+
+As in [`soft`](soft.md), with the same defaults: `[slave.velocity_filter]`, `[control]`, `[task]`.
+
+| Key | Unit | Bounds | Default | Meaning |
+|---|---|---|---|---|
+| `stay_s` | s | > 0 | `1.0` | How long it stays. |
+
+As in [`soft`](soft.md): `duration_s`.
+
+## `[slave]`
+
+The slave.
+
+| Key | Unit | Bounds | Default | Meaning |
+|---|---|---|---|---|
+| `stiffness_N_per_m` | N/m | ≥ 0 | `5000.0` | Stiffness. |
+
+As in [`soft`](soft.md): `mass_kg`, `offset_m`.
 )");
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "raw_client.hpp"
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -186,6 +187,47 @@ TEST(Conversation, LimitsHoldForSubscriptionsAdvertisementsAndNames) {
   EXPECT_EQ(texts(conversation).size(), 4U) << "two of each are refused";
   conversation.show(0, 0, bytes("x"));
   EXPECT_EQ(frames(conversation).size(), 3U);
+}
+
+TEST(Conversation, ATurnHasRoomForItsShareAndWhatIsBeyondIsLostAndCounted) {
+  Example example;
+  Conversation conversation(1, example, {});
+  frames(conversation);
+  EXPECT_FALSE(conversation.take_text(
+      R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":1},{"id":3,"channelId":1}]})"));
+  conversation.begin_turn(4 * (Conversation::frame_cost + 6));
+  for (int i = 0; i < 10; ++i) conversation.show(0, 0, bytes("sample"));
+  EXPECT_EQ(frames(conversation).size(), 4U);
+  EXPECT_EQ(conversation.outbox().dropped(), 26U);
+  conversation.begin_turn(4 * (Conversation::frame_cost + 6));
+  conversation.show(0, 0, bytes("sample"));
+  EXPECT_EQ(frames(conversation).size(), 3U) << "the next turn has room again";
+}
+
+TEST(Conversation, ASubscriptionBeyondTheLimitIsRefusedWithItsNumberAndWhatToDo) {
+  Example example;
+  Conversation conversation(1, example, {});
+  frames(conversation);
+  EXPECT_FALSE(conversation.take_text(subscribe_often("1", 256)));
+  const auto said = texts(conversation);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0]["op"], "status");
+  EXPECT_EQ(said[0]["level"], 2);
+  const std::string message = said[0]["message"];
+  EXPECT_NE(message.find("subscription 33"), std::string::npos) << message;
+  EXPECT_NE(message.find("no more than 32"), std::string::npos) << message;
+  conversation.show(0, 0, bytes("x"));
+  EXPECT_EQ(frames(conversation).size(), 32U);
+}
+
+TEST(Conversation, AnswersThatNobodyReadsAreFewWhateverElseWaits) {
+  Outbox outbox({.frames = 1000, .bytes = 100000, .answers = 3});
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(outbox.push({.head = "answer"}));
+  for (int i = 0; i < 2000; ++i) ASSERT_TRUE(outbox.push({.may_be_dropped = true, .head = "sample"}));
+  EXPECT_FALSE(outbox.push({.head = "answer"}));
+  (void)outbox.begin_sending();
+  outbox.sent();
+  EXPECT_TRUE(outbox.push({.head = "answer"})) << "one was read";
 }
 
 /// Requests as a client would write them, cut, doubled, and with bytes changed: nothing but answers and statuses may

@@ -170,6 +170,18 @@ TEST(LiveView, WhatNobodyWantsIsNotSent) {
   EXPECT_EQ(collect(*view, 0.1, false).count("/left/teleoperator"), 0U);
 }
 
+TEST(LiveView, CollectingEndsThoughTheLoopsGoOnAsFastAsItShows) {
+  const auto view = sample_view();
+  const auto everybody = [](std::size_t) { return true; };
+  view->collect(everybody, [](std::size_t, std::uint64_t, const Payload&) {});
+  view->engine().step();
+  int steps = 0;
+  view->collect(everybody, [&](std::size_t, std::uint64_t, const Payload&) {
+    if (++steps < 5000) view->engine().step();
+  });
+  EXPECT_LT(steps, 5000);
+}
+
 TEST(LiveView, DescribesItsParametersForAPage) {
   const auto view = sample_view(false);
   const auto list = nlohmann::json::parse(view->metadata().at("tactus.parameters"));

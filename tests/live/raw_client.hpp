@@ -16,6 +16,16 @@
 /// A client that shares no line with the server: plain sockets, and WebSocket frames (RFC 6455) put together by hand.
 namespace tactus::live {
 
+/// A request that subscribes to a channel so many times, with numbers from 1.
+inline std::string subscribe_often(const std::string& channel, int times) {
+  std::string request = R"({"op":"subscribe","subscriptions":[)";
+  for (int id = 1; id <= times; ++id) {
+    if (id > 1) request += ',';
+    request += R"({"id":)" + std::to_string(id) + R"(,"channelId":)" + channel + "}";
+  }
+  return request + "]}";
+}
+
 class RawClient {
  public:
   explicit RawClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {

@@ -296,6 +296,39 @@ TEST(Server, AThousandClientsCostTheLoopNothingAndSixtyFourOfThemAreServed) {
   expect_the_log_of_a_loop_alone(file);
 }
 
+/// What someone who comes now has to wait for: the greeting, and the first state of a loop.
+void expect_served(std::uint16_t port, const char* when) {
+  constexpr int patient_ms = 20000;
+  const auto came = std::chrono::steady_clock::now();
+  RawClient fresh(port);
+  ASSERT_TRUE(fresh.open(port)) << when;
+  EXPECT_TRUE(fresh.text_with("serverInfo", patient_ms).has_value()) << when;
+  fresh.say(R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":3}]})");
+  while (const auto message = fresh.next(patient_ms)) {
+    if (!message->binary) continue;
+    EXPECT_LT(std::chrono::steady_clock::now() - came, std::chrono::milliseconds(patient_ms)) << when;
+    return;
+  }
+  ADD_FAILURE() << "no state " << when;
+}
+
+TEST(Server, AFloodOfSubscriptionsKeepsNobodyElseFromAnswersAndIsForgottenAfterIt) {
+  ServerOptions options;
+  options.conversation.subscriptions = 256;
+  Served served(options);
+  served.run();
+  {
+    std::vector<RawClient> flood;
+    for (int i = 0; i < 8; ++i) {
+      ASSERT_TRUE(flood.emplace_back(served.port()).open(served.port()));
+      flood.back().say(subscribe_often("4", 256));
+    }
+    while (served.server().counts().dropped == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    expect_served(served.port(), "in the flood");
+  }
+  expect_served(served.port(), "after the flood");
+}
+
 TEST(Server, LongHeadsLongFramesAndSilenceAreCutOff) {
   Served served({.frame_bytes = 1000, .header_bytes = 1000, .request_within_s = 0.3, .conversation = {}});
   EXPECT_TRUE(

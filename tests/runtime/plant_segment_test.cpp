@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -172,6 +173,69 @@ TEST(PlantSegment, MemoryOfAnotherKindIsRefused) {
     close(descriptor);
     EXPECT_TRUE(PlantSegment::create(name, some_facts())) << "nobody owns it any more";
   }
+}
+
+TEST(PlantSegment, AFileThatOthersCanChangeIsRefusedBeforeItIsBelieved) {
+  const std::string name = name_of("foreign");
+  const auto owner = PlantSegment::create(name, some_facts());
+  ASSERT_TRUE(owner);
+  const std::string path = "/dev/shm" + file_of(name);
+  for (const mode_t open : {0660U, 0606U, 0640U}) {
+    ASSERT_EQ(chmod(path.c_str(), open), 0);
+    expect_error(PlantSegment::attach(name), ErrorCode::inconsistent, "open to other users");
+    expect_error(PlantSegment::create(name, some_facts()), ErrorCode::inconsistent, path);
+  }
+  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
+  EXPECT_TRUE(PlantSegment::attach(name));
+
+  const std::string alias = name_of("alias");
+  ASSERT_EQ(symlink(path.c_str(), ("/dev/shm" + file_of(alias)).c_str()), 0);
+  EXPECT_FALSE(PlantSegment::attach(alias)) << "a link is not followed";
+  shm_unlink(file_of(alias).c_str());
+
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give a file to another user";
+  ASSERT_EQ(chown(path.c_str(), 65534, 65534), 0);
+  expect_error(PlantSegment::attach(name), ErrorCode::inconsistent, "belongs to user 65534");
+  expect_error(PlantSegment::create(name, some_facts()), ErrorCode::inconsistent, "as user 0");
+}
+
+TEST(PlantSegment, CutShortByAnotherProcessItReadsAsZerosOnBothSides) {
+  const std::string name = name_of("cut");
+  const auto owner = PlantSegment::create(name, some_facts());
+  ASSERT_TRUE(owner);
+  auto controller = PlantSegment::attach(name);
+  ASSERT_TRUE(controller);
+  EXPECT_EQ(controller->facts().taps, 4);
+  const pid_t child = fork();
+  if (child == 0) _exit(truncate(("/dev/shm" + file_of(name)).c_str(), 0) == 0 ? 0 : 1);
+  int status = -1;
+  waitpid(child, &status, 0);
+  ASSERT_EQ(status, 0);
+  for (const PlantSegment* side : {&*owner, static_cast<const PlantSegment*>(&*controller)}) {
+    EXPECT_FALSE(side->is_cut()) << "nobody has looked yet";
+    EXPECT_EQ(side->facts().taps, 0);
+    EXPECT_TRUE(side->is_cut());
+    EXPECT_FALSE(side->request().tap);
+  }
+  EXPECT_NE(controller->ask(3), 0U) << "writing is survived too";
+  EXPECT_FALSE(owner->request().tap) << "and reaches nobody";
+  expect_error(PlantSegment::attach(name), ErrorCode::inconsistent, "version");
+}
+
+TEST(PlantSegment, AFaultOfItsOwnStillEndsAProgram) {
+  const std::string name = name_of("faulty");
+  const auto owner = PlantSegment::create(name, some_facts());
+  ASSERT_TRUE(owner);
+  const pid_t child = fork();
+  if (child == 0) {
+    std::signal(SIGSEGV, SIG_DFL);
+    const int file = open("/dev/shm", O_RDWR | O_TMPFILE, 0600);
+    void* page = mmap(nullptr, 4096, PROT_READ, MAP_SHARED, file, 0);
+    _exit(*static_cast<volatile char*>(page) == 0 ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_FALSE(WIFEXITED(status) && WEXITSTATUS(status) <= 1) << "a page that no file has was read";
 }
 
 TEST(PlantSegment, ANameIsLettersDigitsAndDashes) {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "tests/scratch_path.hpp"
@@ -143,10 +145,11 @@ TEST(RealTimeTap, OnAServoThreadItRunsToItsEndAndIsLoggedToTheLastTick) {
   }
 }
 
-/// A device that says what it is told to say.
+/// A simulation that says what it is told to say.
 class ScriptedDevice final : public Device {
  public:
   [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] bool simulated() const noexcept override { return true; }
   DeviceReading read(const Tick&) noexcept override { return reading; }
   void write(const DeviceCommand& given) noexcept override { command = given; }
   [[nodiscard]] DeviceHealth health() const noexcept override { return state; }
@@ -159,6 +162,96 @@ class ScriptedDevice final : public Device {
  private:
   DeviceLimits limits_;
 };
+
+/// Passes everything on and remembers what was commanded.
+class WatchedDevice final : public Device {
+ public:
+  explicit WatchedDevice(Device& device) : device_(&device) {}
+  [[nodiscard]] DeviceLimits limits() const override { return device_->limits(); }
+  DeviceReading read(const Tick& now) noexcept override { return device_->read(now); }
+  void write(const DeviceCommand& given) noexcept override {
+    commands_N.push_back(given.force_N);
+    device_->write(given);
+  }
+  [[nodiscard]] DeviceHealth health() const noexcept override { return device_->health(); }
+
+  std::vector<double> commands_N;
+
+ private:
+  Device* device_;
+};
+
+class WatchedPlant final : public TapPlant {
+ public:
+  explicit WatchedPlant(const simulation::Tap& tap)
+      : plant_(SimulatedPlant::make(tap).value()), master_(plant_.master()), slave_(plant_.slave()) {}
+  WatchedDevice& master() noexcept override { return master_; }
+  WatchedDevice& slave() noexcept override { return slave_; }
+  std::optional<SimulatedTruth> next(const Tick& now) noexcept override { return plant_.next(now); }
+  [[nodiscard]] double tip_position_m() const noexcept override { return plant_.tip_position_m(); }
+  [[nodiscard]] bool lost() const noexcept override { return false; }
+
+ private:
+  SimulatedPlant plant_;
+  WatchedDevice master_;
+  WatchedDevice slave_;
+};
+
+/// From the tick `over` on the force falls by no more than `largest_step_N` a tick, to nothing.
+void expect_ramp(const std::vector<double>& commands_N, std::size_t over, double largest_step_N) {
+  ASSERT_GT(commands_N.size(), over + 2) << "it was let go at once";
+  EXPECT_GT(std::fabs(commands_N[over - 1]), 3.0 * largest_step_N) << "there was nothing to let go";
+  for (std::size_t i = over; i < commands_N.size(); ++i) {
+    EXPECT_LE(std::fabs(commands_N[i] - commands_N[i - 1]), largest_step_N * (1.0 + 1e-9)) << "tick " << i;
+    EXPECT_LE(std::fabs(commands_N[i]), std::fabs(commands_N[i - 1])) << "tick " << i;
+  }
+  EXPECT_EQ(commands_N.back(), 0.0);
+}
+
+TappingParams taps_with_tight_gates() {
+  TappingParams params = short_taps(1.0);
+  params.control.gate.rate_limit_N_per_s = params.control.slave_gate.rate_limit_N_per_s = 50.0;
+  return params;
+}
+constexpr double tight_step_N = 50.0 * 200e-6;
+
+TEST(RealTimeTap, AtItsEndTheForcesFallAtTheRateLimitAndTheTapHasNoTickMore) {
+  const auto ensemble = TappingEnsemble::make(taps_with_tight_gates());
+  ASSERT_TRUE(ensemble);
+  std::vector<Record> virtual_time;
+  (void)ensemble->run(0, &virtual_time);
+  WatchedPlant plant(ensemble->tap(0));
+  auto tap = RealTimeTap::make(ensemble->tap(0), 0.15, plant);
+  ASSERT_TRUE(tap);
+  for (std::int64_t number = 0; (*tap)->step(tick(number)); ++number) {
+  }
+  const auto& trace = (*tap)->trace();
+  ASSERT_EQ(trace.size(), virtual_time.size());
+  for (std::size_t i = 0; i < trace.size(); ++i) ASSERT_EQ(bits(trace[i]), bits(virtual_time[i])) << "tick " << i;
+  // The slave presses on the wall to the end.
+  expect_ramp(plant.slave().commands_N, trace.size(), tight_step_N);
+  expect_ramp(plant.master().commands_N, trace.size(), tight_step_N);
+}
+
+TEST(RealTimeTap, EndedFromOutsideItLetsGoTheSameWay) {
+  const auto ensemble = TappingEnsemble::make(taps_with_tight_gates());
+  ASSERT_TRUE(ensemble);
+  std::vector<Record> virtual_time;
+  const auto whole = ensemble->run(0, &virtual_time);
+  ASSERT_TRUE(whole.touched);
+  WatchedPlant plant(ensemble->tap(0));
+  auto tap = RealTimeTap::make(ensemble->tap(0), 0.15, plant);
+  ASSERT_TRUE(tap);
+  // Well into the contact.
+  const auto pressing = static_cast<std::size_t>((whole.first_touch_s + 0.1) / 200e-6);
+  bool more = true;
+  for (std::int64_t number = 0; more; ++number) {
+    if (number == static_cast<std::int64_t>(pressing)) (*tap)->end();
+    more = (*tap)->step(tick(number));
+  }
+  EXPECT_LT((*tap)->trace().size(), virtual_time.size());
+  expect_ramp(plant.slave().commands_N, pressing, tight_step_N);
+}
 
 TEST(LocalTeleoperator, TheGateIsTightenedToWhatTheDeviceCanDo) {
   ScriptedDevice master({.force_N = 0.25});

@@ -103,5 +103,33 @@ TEST_F(Replaying, AStepThatIsMissingIsSaid) {
   EXPECT_NE(replayed.error().message.find("is missing"), std::string::npos) << replayed.error().message;
 }
 
+/// Three taps in real time, of which the end is asked for after so many.
+RealTimeOutcome ran_until(std::int64_t after) {
+  const auto document = configuration::Document::parse(
+      "task = { kind = \"tapping\", taps = 3, observation_s = 0.15 }\nservo.rate_Hz = 1000.0\n", "test");
+  EndRequest end;
+  if (after == 0) end.ask();
+  auto ran = run_in_real_time({.document = document.value(), .variations = {}, .name = "taps", .command = {}},
+                              {.servo = {.priority = 10}, .log = {}, .about = {}, .end = &end}, [&](double done) {
+                                if (std::lround(3.0 * done) == after) end.ask();
+                              });
+  EXPECT_TRUE(ran) << describe(ran.error());
+  return *std::move(ran);
+}
+
+TEST(RunInRealTime, ThatIsAskedToEndTellsOfTheTapsThatRan) {
+  const RealTimeOutcome two = ran_until(2);
+  EXPECT_TRUE(two.interrupted);
+  EXPECT_NE(two.outcome.text.find("Interrupted: 2 of 3 taps"), std::string::npos) << two.outcome.text;
+  EXPECT_NE(two.outcome.html.find("Interrupted: 2 of 3 taps"), std::string::npos);
+  EXPECT_NE(two.outcome.json.find("\"interrupted\""), std::string::npos);
+  const RealTimeOutcome none = ran_until(0);
+  EXPECT_TRUE(none.interrupted);
+  EXPECT_NE(none.outcome.text.find("Interrupted: 0 of 3 taps"), std::string::npos) << none.outcome.text;
+  const RealTimeOutcome all = ran_until(3);
+  EXPECT_FALSE(all.interrupted) << "it was asked for too late";
+  EXPECT_EQ(all.outcome.json.find("\"interrupted\""), std::string::npos);
+}
+
 }  // namespace
 }  // namespace tactus::runtime

@@ -154,6 +154,61 @@ TEST(SharedPlant, WithoutItsControllerThePlantLetsGoAndStandsReadyForTheNext) {
   EXPECT_EQ(both.server->status().let_go, 1);
 }
 
+TEST(SharedPlant, MemoryThatIsCutShortInMidRunEndsItOnBothSidesInWords) {
+  const TappingParams params = short_taps();
+  const auto ensemble = TappingEnsemble::make(params);
+  const std::string name = name_of("cut");
+  LockStep both(name, params, patient);
+  ASSERT_FALSE(both.begin(0));
+  auto running = RealTimeTap::make(ensemble->tap(0), observation_s, *both.plant);
+  ASSERT_TRUE(running);
+  int steps = 0;
+  while ((*running)->step(tick(both.number)) && steps < 1000) {
+    if (steps == 500) {
+      const pid_t child = fork();
+      if (child == 0) _exit(truncate(("/dev/shm/tactus-plant-" + name).c_str(), 0) == 0 ? 0 : 1);
+      int status = -1;
+      waitpid(child, &status, 0);
+      ASSERT_EQ(status, 0);
+    }
+    both.server->step(tick(++both.number));
+    both.server->serve();
+    ++steps;
+  }
+  EXPECT_GT(steps, 500);
+  EXPECT_LT(steps, 600) << "the sites let go";
+  EXPECT_TRUE(both.plant->lost());
+  EXPECT_NE(both.plant->why_lost().message.find("shortened its shared memory"), std::string::npos)
+      << both.plant->why_lost().message;
+  EXPECT_TRUE(both.server->status().cut);
+  EXPECT_TRUE(both.plant->begin(1)) << "nobody can drive it any more";
+}
+
+TEST(SharedPlant, ACommandFarBeyondTheDeviceNeverReachesItAndTheControllerHearsWhy) {
+  TappingParams params = short_taps();
+  params.control.gate.force_limit_N = 1.5;
+  params.control.gate.rate_limit_N_per_s = 1000.0;
+  LockStep both(name_of("wrong"), params, Seconds{0.01});
+  EXPECT_EQ(both.plant->master().limits().force_N, 1.5);
+  ASSERT_FALSE(both.begin(0));
+  std::int64_t own = 0;
+  for (; own < 200 && !both.plant->lost(); ++own) {
+    Tick now = tick(both.number);
+    now.number = own;
+    (void)both.plant->master().read(now);
+    (void)both.plant->slave().read(now);
+    both.plant->master().write({.force_N = 1e6});
+    both.plant->slave().write({});
+    both.server->step(tick(++both.number));
+  }
+  EXPECT_LT(own, 60) << "10 ms of patience";
+  EXPECT_NE(both.plant->why_lost().message.find("at the master: commands insisted on more force"), std::string::npos)
+      << both.plant->why_lost().message;
+  EXPECT_EQ(both.server->status().let_go, 1);
+  EXPECT_EQ(both.server->status().cause, LetGo::force);
+  EXPECT_GT(both.server->status().held_back, 40);
+}
+
 TEST(SharedPlant, AnotherExperimentIsRefusedByTheKeyThatDiffers) {
   const TappingParams params = short_taps();
   LockStep both(name_of("differs"), params, patient);
@@ -171,6 +226,9 @@ TEST(SharedPlant, AnotherExperimentIsRefusedByTheKeyThatDiffers) {
   other = params;
   other.task.seed = 7;
   expect_refused(other, "task.seed is 7 in this run and 1 there");
+  other = params;
+  other.control.gate.force_limit_N = 20.0;
+  expect_refused(other, "control.gate.force_limit_N is 20.0 in this run and 10.0 there");
   other = params;
   other.task.taps = 3;
   expect_refused(other, "task.taps=3");

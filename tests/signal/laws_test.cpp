@@ -209,6 +209,18 @@ struct UnitInDisguise {
     return std::tuple{field("delay_s", &UnitInDisguise::delay_s, units::none, positive, "Delay.")};
   }
 };
+struct RareUnitInDisguise {
+  double pressure_Pa = 1.0;
+  static constexpr auto fields() {
+    return std::tuple{field("pressure_Pa", &RareUnitInDisguise::pressure_Pa, units::none, positive, "Pressure.")};
+  }
+};
+struct ShorterUnit {
+  double torque_N_m = 1.0;
+  static constexpr auto fields() {
+    return std::tuple{field("torque_N_m", &ShorterUnit::torque_N_m, units::metre, positive, "Torque.")};
+  }
+};
 struct Undocumented {
   double gain = 1.0;
   static constexpr auto fields() { return std::tuple{field("gain", &Undocumented::gain, units::none, positive, "")}; }
@@ -240,6 +252,10 @@ TEST(TheLaws, CatchAFaultyDescription) {
             "mass_kg: the name does not end with the suffix of its unit");
   EXPECT_EQ(the_parameters_are_described<UnitInDisguise>().value_or(""),
             "delay_s: the name ends with a unit it does not have");
+  EXPECT_EQ(the_parameters_are_described<RareUnitInDisguise>().value_or(""),
+            "pressure_Pa: the name ends with a unit it does not have");
+  EXPECT_EQ(the_parameters_are_described<ShorterUnit>().value_or(""),
+            "torque_N_m: the name ends with a unit it does not have");
   EXPECT_EQ(the_parameters_are_described<Undocumented>().value_or(""), "gain: the doc is empty");
   EXPECT_EQ(the_parameters_are_described<Incomplete>().value_or(""), "2 members, but 1 fields");
   EXPECT_NE(the_parameters_are_described<BadDefault>(), std::nullopt);

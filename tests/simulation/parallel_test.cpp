@@ -1,5 +1,7 @@
 #include <tactus/simulation/parallel.hpp>
 
+#include <atomic>
+#include <new>
 #include <thread>
 #include <vector>
 
@@ -28,6 +30,20 @@ TEST(ForEachInParallel, ReportsProgressOnTheCallingThreadAndNoMoreThanTheWhole) 
         EXPECT_LE(done, 1.0);
         last = done;
       });
+}
+
+TEST(ForEachInParallel, PassesOnWhatAnyThreadThrowsAndBeginsNothingMore) {
+  for (const std::size_t threads : {1U, 4U}) {
+    std::atomic<int> begun = 0;
+    const auto fail_at_ten = [&](std::size_t i) {
+      ++begun;
+      if (i == 10) throw std::bad_alloc();
+    };
+    EXPECT_THROW(for_each_in_parallel(
+                     1'000'000, fail_at_ten, [](double) {}, threads),
+                 std::bad_alloc);
+    EXPECT_LT(begun, 1'000'000);
+  }
 }
 
 }  // namespace parallel_test

@@ -83,7 +83,9 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
   void show(std::size_t topic, std::uint64_t time_ns, const Payload& payload) {
     conversation_.show(topic, time_ns, payload);
   }
+  void begin_turn(std::size_t bytes) { conversation_.begin_turn(bytes); }
   [[nodiscard]] bool wants(std::size_t topic) const { return conversation_.wants(topic); }
+  [[nodiscard]] bool wants_anything() const { return conversation_.wants_anything(); }
   void tell_parameters(const std::vector<Parameter>& all) { conversation_.tell_parameters(all); }
 
   /// Counts what was lost, and lets the client know.

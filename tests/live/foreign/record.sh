@@ -6,6 +6,7 @@ tactus=$1
 folder=$2
 if ! command -v node >/dev/null; then
   echo "SKIPPED: node is not installed"
+  echo "The Debian package npm brings it; scripts/install-deps --page installs that."
   exit 77
 fi
 if [ ! -d "$here/node_modules/@foxglove/ws-protocol-examples" ]; then

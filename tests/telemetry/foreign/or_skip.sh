@@ -1,8 +1,14 @@
 #!/bin/sh
-# or_skip.sh PROGRAM ARGUMENT...: runs it; where it is not installed, says so and exits with 77, which CTest shows as
-# skipped.
-if ! command -v "$1" >/dev/null; then
+# or_skip.sh PACKAGE PROGRAM ARGUMENT...: runs the program. Where it is not installed, or says with a status of 77 that it
+# lacks what the Debian package PACKAGE brings, this says what to install and exits with 77, which CTest shows as skipped.
+package=$1
+shift
+status=77
+if command -v "$1" >/dev/null; then
+  status=0
+  "$@" || status=$?
+else
   echo "SKIPPED: $1 is not installed"
-  exit 77
 fi
-exec "$@"
+[ "$status" != 77 ] || echo "The Debian package $package runs this test; scripts/install-deps --checks installs it."
+exit "$status"

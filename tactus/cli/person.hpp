@@ -1,0 +1,52 @@
+#pragma once
+
+#include <tactus/cli/line_writer.hpp>
+#include <tactus/cli/site_exchange.hpp>
+#include <tactus/control/site_supervisor.hpp>
+#include <tactus/core/result.hpp>
+
+#include <atomic>
+#include <csignal>
+#include <memory>
+#include <string>
+#include <thread>
+
+namespace tactus::cli {
+
+/// What a person asks of a running site: words that come on a descriptor, a line each, and SIGUSR1, which arms. A thread
+/// that does nothing else passes them on, in their order; it never writes, so no terminal keeps a word from being heard.
+///
+/// The dead-man switch is what that descriptor holds: where it ends, is closed or fails, nobody is there, and the switch
+/// stays let go. Its thread alone takes SIGUSR1, so make it before others. One at a time.
+class Person {
+ public:
+  /// All else must outlive it. A wrong word, and the end at the master, are told on `lines`. Errors: `failed` where the
+  /// system gives no thread.
+  static Result<std::unique_ptr<Person>> listen_to(int descriptor, control::SiteRole role, SiteExchange& exchange,
+                                                   LineWriter& lines);
+  Person(const Person&) = delete;
+  Person& operator=(const Person&) = delete;
+  ~Person();
+
+ private:
+  Person(int descriptor, control::SiteRole role, SiteExchange& exchange, LineWriter& lines);
+  void listen();
+  void pass_on();
+  void read_what_waits();
+  void lose();
+
+  int descriptor_;
+  control::SiteRole role_;
+  SiteExchange* exchange_;
+  LineWriter* lines_;
+  std::string typed_;
+  bool open_ = true;
+  bool arm_ = false;
+  sigset_t mask_before_{};
+  struct sigaction action_before_ {};
+  std::atomic<bool> stopping_{false};
+  std::atomic<bool> stopped_{false};
+  std::thread thread_;
+};
+
+}  // namespace tactus::cli

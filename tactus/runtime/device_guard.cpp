@@ -1,0 +1,148 @@
+#include <tactus/runtime/device_guard.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace tactus::runtime {
+
+namespace {
+
+constexpr double no_limit = std::numeric_limits<double>::infinity();
+/// For the last bit of a command that changes exactly as fast as it may.
+constexpr double rounding = 1.0 + 1e-9;
+
+double limit_or_none(double limit) noexcept { return limit > 0.0 ? limit : no_limit; }
+
+double held_to(double value, double largest) noexcept {
+  return std::fabs(value) <= largest ? value : std::copysign(largest, value);
+}
+
+}  // namespace
+
+const char* in_words(LetGo cause) {
+  switch (cause) {
+    case LetGo::none:
+      return "nothing was wrong";
+    case LetGo::silent:
+      return "commands stopped coming";
+    case LetGo::not_finite:
+      return "a command or a reading was no number";
+    case LetGo::force:
+      return "commands insisted on more force than the device may give";
+    case LetGo::rate:
+      return "commands insisted on changing the force faster than the device may";
+    case LetGo::velocity:
+      return "the device was faster than it may be";
+    case LetGo::position:
+      return "the device left its workspace";
+  }
+  return "of what this version does not know";
+}
+
+DeviceGuard::DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept
+    : limits_{.force_N = limit_or_none(limits.force_N),
+              .handle_force_N = limit_or_none(limits.handle_force_N),
+              .rate_N_per_s = limit_or_none(limits.rate_N_per_s),
+              .velocity_m_per_s = limit_or_none(limits.velocity_m_per_s),
+              .position_m = limit_or_none(limits.position_m)},
+      patience_ns_(std::llround(1e9 * patience.value)) {}
+
+void DeviceGuard::let_go(LetGo cause) noexcept {
+  if (cause_ == LetGo::none) cause_ = cause;
+}
+
+void DeviceGuard::rearm() noexcept {
+  cause_ = LetGo::none;
+  insisting_ns_ = 0;
+  marked_ = false;
+}
+
+void DeviceGuard::observe(double position_m, const Tick& tick) noexcept {
+  const std::int64_t now_ns = tick.deadline_ns;
+  if (!std::isfinite(position_m)) return let_go(LetGo::not_finite);
+  if (std::fabs(position_m) > limits_.position_m) let_go(LetGo::position);
+  if (marked_) {
+    const double window_s = 1e-9 * static_cast<double>(std::max(now_ns - mark_ns_, speed_window_ns));
+    if (std::fabs(position_m - mark_m_) > limits_.velocity_m_per_s * window_s) let_go(LetGo::velocity);
+    if (now_ns - mark_ns_ < speed_window_ns) return;
+  }
+  marked_ = true;
+  mark_m_ = position_m;
+  mark_ns_ = now_ns;
+}
+
+DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) noexcept {
+  if (!std::isfinite(wanted.force_N) || !std::isfinite(wanted.handle_force_N)) let_go(LetGo::not_finite);
+  const std::int64_t since_ns = passed_any_ ? std::max<std::int64_t>(0, tick.deadline_ns - passed_ns_) : 0;
+  const std::int64_t period_ns = since_ns / (1 + std::max<std::int64_t>(0, tick.missed));
+  passed_any_ = true;
+  passed_ns_ = tick.deadline_ns;
+  const double step_N =
+      limits_.rate_N_per_s == no_limit ? no_limit : limits_.rate_N_per_s * 1e-9 * static_cast<double>(period_ns);
+  const auto toward = [step_N](double from_N, double to_N) {
+    return std::fabs(to_N - from_N) <= rounding * step_N ? to_N : from_N + std::copysign(step_N, to_N - from_N);
+  };
+
+  if (cause_ == LetGo::none && wanted.enabled) {
+    const DeviceCommand strong{.force_N = held_to(wanted.force_N, limits_.force_N),
+                               .handle_force_N = held_to(wanted.handle_force_N, limits_.handle_force_N)};
+    const DeviceCommand now{.force_N = toward(passed_.force_N, strong.force_N),
+                            .handle_force_N = toward(passed_.handle_force_N, strong.handle_force_N)};
+    const bool too_strong = strong.force_N != wanted.force_N || strong.handle_force_N != wanted.handle_force_N;
+    const bool too_fast = now.force_N != strong.force_N || now.handle_force_N != strong.handle_force_N;
+    if (too_strong || too_fast) ++held_back_;
+    insisting_ns_ = too_strong || too_fast ? insisting_ns_ + period_ns : 0;
+    if (insisting_ns_ > patience_ns_) let_go(too_strong ? LetGo::force : LetGo::rate);
+    return passed_ = now;
+  }
+  passed_.force_N = toward(passed_.force_N, 0.0);
+  passed_.handle_force_N = toward(passed_.handle_force_N, 0.0);
+  passed_.enabled = passed_.force_N != 0.0 || passed_.handle_force_N != 0.0;
+  return passed_;
+}
+
+Check check_limits(const Device& device) {
+  const DeviceLimits limits = device.limits();
+  for (const auto& [name, value, unit, needed] :
+       {std::tuple{"force_N", limits.force_N, units::newton, true},
+        std::tuple{"handle_force_N", limits.handle_force_N, units::newton, false},
+        std::tuple{"rate_N_per_s", limits.rate_N_per_s, units::newton_per_second, true},
+        std::tuple{"velocity_m_per_s", limits.velocity_m_per_s, units::metre_per_second, true},
+        std::tuple{"position_m", limits.position_m, units::metre, true}}) {
+    if (!std::isfinite(value) || value < 0.0) return out_of_bounds(name, value, non_negative, unit);
+    if (value == 0.0 && needed && !device.simulated()) {
+      return Error{.code = ErrorCode::missing,
+                   .parameter = name,
+                   .message =
+                       "a device that is not simulated must state this limit of its own: without it nothing "
+                       "stands between a wrong controller and the motor",
+                   .place = {}};
+    }
+  }
+  return std::nullopt;
+}
+
+DeviceReading GuardedDevice::read(const Tick& tick) noexcept {
+  const DeviceReading reading = device_->read(tick);
+  const bool silent = written_ns_ != now_.deadline_ns;
+  now_ = tick;
+  if (device_->health() != DeviceHealth::lost) guard_.observe(reading.position_m, tick);
+  if (written_ && silent) {
+    if (tick.deadline_ns - written_ns_ > patience_ns_) guard_.let_go(LetGo::silent);
+    device_->write(guard_.pass(wanted_, tick));
+  }
+  return reading;
+}
+
+void GuardedDevice::write(const DeviceCommand& command) noexcept {
+  wanted_ = command;
+  device_->write(guard_.pass(wanted_, now_));
+  written_ = true;
+  written_ns_ = now_.deadline_ns;
+}
+
+}  // namespace tactus::runtime

@@ -1,0 +1,108 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/core/units.hpp>
+#include <tactus/runtime/device.hpp>
+
+#include <array>
+#include <cstdint>
+
+/// The second wall: what a device allows, whoever commands it.
+namespace tactus::runtime {
+
+/// Why a device was given no more force.
+enum class LetGo : std::int64_t { none, silent, not_finite, force, rate, velocity, position };
+constexpr auto enumerators(LetGo) {
+  return std::array{Enumerator{LetGo::none, "none"},
+                    Enumerator{LetGo::silent, "silent"},
+                    Enumerator{LetGo::not_finite, "not-finite"},
+                    Enumerator{LetGo::force, "force"},
+                    Enumerator{LetGo::rate, "rate"},
+                    Enumerator{LetGo::velocity, "velocity"},
+                    Enumerator{LetGo::position, "position"}};
+}
+/// In words, as the rest of a sentence: `commands stopped coming`. For any number that was read somewhere.
+const char* in_words(LetGo cause);
+
+/// The longest silence of the other process that a side puts up with, unless told otherwise.
+inline constexpr Seconds usual_silence{0.02};
+/// What a silence may be set to.
+inline constexpr Bounds silence_bounds = between(0.001, 10.0);
+
+/// What may reach a motor, from the limits of its device alone.
+///
+/// A command beyond `force_N` or faster than `rate_N_per_s` is held back to it; one that insists for longer than
+/// `patience` is no slip, and latches. A number that is none, and a device beyond `velocity_m_per_s` or `position_m`,
+/// latch at once. From then on the force falls to zero at the rate limit, then the drive is switched off, and stays so
+/// until `rearm`. A limit of 0 is none, and without a rate limit the force falls at once.
+///
+/// It stands behind `control::SafetyGate`, wherever the controller runs, and shares nothing with it but what both are
+/// for: no limiter, no filter, no clock of ticks. Speed is distance over time since a mark that moves on every
+/// `speed_window_ns`, so it takes an encoder's step for what it is, and finds a jump.
+class DeviceGuard {
+ public:
+  DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept;
+
+  /// What the sensors read at a tick. Real-time safe, as is all below.
+  void observe(double position_m, const Tick& tick) noexcept;
+  /// What may reach the actuators from this tick on, always finite. Ticks that were missed earn no faster change.
+  DeviceCommand pass(const DeviceCommand& wanted, const Tick& tick) noexcept;
+  /// Latches, for what is found elsewhere. The first cause stays.
+  void let_go(LetGo cause) noexcept;
+  /// Nothing is latched any more. The force goes on from where it is.
+  void rearm() noexcept;
+
+  /// What was latched.
+  [[nodiscard]] LetGo cause() const noexcept { return cause_; }
+  /// Calls of `pass` that held a command back, before anything was latched.
+  [[nodiscard]] std::int64_t held_back() const noexcept { return held_back_; }
+
+ private:
+  static constexpr std::int64_t speed_window_ns = 5'000'000;
+
+  DeviceLimits limits_;  ///< infinite where there is none
+  std::int64_t patience_ns_;
+  LetGo cause_ = LetGo::none;
+  DeviceCommand passed_{.enabled = false};
+  std::int64_t passed_ns_ = 0;
+  bool passed_any_ = false;
+  std::int64_t insisting_ns_ = 0;
+  std::int64_t held_back_ = 0;
+  bool marked_ = false;
+  double mark_m_ = 0.0;
+  std::int64_t mark_ns_ = 0;
+};
+
+/// That every limit is a number and none negative; of a device that is not simulated, that none is missing but that of
+/// a second actuator. Errors: `out_of_bounds` or `missing`, with the limit's name.
+Check check_limits(const Device& device);
+
+/// A device behind its wall, for the process whose servo thread drives it. `lost` once the wall has let go. All but
+/// `limits` is real-time safe as far as the device is.
+class GuardedDevice final : public Device {
+ public:
+  /// Around a device that outlives it, its limits checked.
+  explicit GuardedDevice(Device& device, Seconds patience = usual_silence)
+      : device_(&device), guard_(device.limits(), patience), patience_ns_(std::int64_t(1e9 * patience.value)) {}
+
+  [[nodiscard]] DeviceLimits limits() const override { return device_->limits(); }
+  [[nodiscard]] bool simulated() const noexcept override { return device_->simulated(); }
+  /// Lets go as well where nothing was written for longer than `patience`.
+  DeviceReading read(const Tick& tick) noexcept override;
+  void write(const DeviceCommand& command) noexcept override;
+  [[nodiscard]] DeviceHealth health() const noexcept override {
+    return guard_.cause() == LetGo::none ? device_->health() : DeviceHealth::lost;
+  }
+  [[nodiscard]] const DeviceGuard& guard() const noexcept { return guard_; }
+
+ private:
+  Device* device_;
+  DeviceGuard guard_;
+  std::int64_t patience_ns_;
+  Tick now_;
+  DeviceCommand wanted_{.enabled = false};
+  std::int64_t written_ns_ = 0;
+  bool written_ = false;  ///< ever
+};
+
+}  // namespace tactus::runtime
