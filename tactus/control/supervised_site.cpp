@@ -16,9 +16,18 @@ void fill(SiteRecord& record, const Site& site) noexcept {
 }  // namespace
 
 SupervisedMaster::Output SupervisedMaster::step(const Input& input) noexcept {
-  const SiteState state =
-      supervision_.decide({.requests = input.requests, .elapsed_ticks = input.elapsed_ticks, .fault = site_.fault()});
-  if (supervision_.rearms()) site_.rearm();
+  const bool contradicts =
+      std::isfinite(input.sensors.hand_force_N) && hand_sensor_.step({.acted_N = site_.gate().passed_N(),
+                                                                      .tip_force_N = -input.sensors.hand_force_N,
+                                                                      .elapsed_ticks = input.elapsed_ticks});
+  const SiteState state = supervision_.decide({.requests = input.requests,
+                                               .elapsed_ticks = input.elapsed_ticks,
+                                               .fault = site_.fault(),
+                                               .force_sensor = contradicts});
+  if (supervision_.rearms()) {
+    site_.rearm();
+    hand_sensor_.reset();
+  }
   const bool follows = state == SiteState::active && !input.requests.clutch;
 
   MasterInput sensors = input.sensors;
@@ -68,7 +77,9 @@ Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std
   if (!sites) return sites.error();
   const auto supervision = Supervision::make(params.supervision, SiteRole::master, session, dt);
   if (!supervision) return under("supervision", supervision.error());
-  return SupervisedMaster(std::move(sites->master), *supervision);
+  const auto hand_sensor = ForceSensorCheck::make(params.supervision.hand_sensor, dt);
+  if (!hand_sensor) return under("supervision.hand_sensor", hand_sensor.error());
+  return SupervisedMaster(std::move(sites->master), *supervision, *hand_sensor);
 }
 
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt) {

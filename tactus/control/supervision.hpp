@@ -21,6 +21,7 @@ struct SupervisionParams {
   MessageFollower::Params silence;
   Watchdog::Params watchdog;
   ForceSensorCheck::Params force_sensor;
+  ForceSensorCheck::Params hand_sensor{.residual_limit_N = 200.0};
   OverloadCheck::Params overload;
   double longest_stall_s = 0.02;
   double answer_within_s = 1.0;
@@ -31,6 +32,9 @@ struct SupervisionParams {
         field("silence", &SupervisionParams::silence, "What stands in their place when none come."),
         field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
         field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
+        field("hand_sensor", &SupervisionParams::hand_sensor,
+              "When the master's motor and the force sensor at the hand contradict one another; for a master that has "
+              "such a sensor, else out of reach."),
         field("overload", &SupervisionParams::overload, "How many ticks a site may miss before it holds."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),

@@ -28,6 +28,7 @@ FaultsParams::FaultsParams() {
   control.slave_gate.encoder.frozen_after_s = 0.015;
   control.handle_gate.rate_limit_N_per_s = 2000.0;
   control.supervision.force_sensor.residual_limit_N = 0.5;
+  control.supervision.hand_sensor.residual_limit_N = 0.6;
 }
 
 }  // namespace tactus::simulation

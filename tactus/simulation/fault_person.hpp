@@ -15,7 +15,8 @@ namespace tactus::simulation {
 class FaultPerson {
  public:
   /// `wall_m` is where the slave meets the wall, on the master's side.
-  FaultPerson(const FaultPlan& plan, double wall_m) : wall_m_(wall_m), leans_(plan.kind == FaultKind::delayed_wall) {
+  FaultPerson(const FaultPlan& plan, double wall_m)
+      : wall_m_(wall_m), leans_(plan.kind == FaultKind::delayed_wall || plan.kind == FaultKind::actuator_hot) {
     signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(3);
     phase_cycles_ = random.uniform();
     tap_Hz_ = random.uniform(0.6, 1.2);
@@ -25,6 +26,7 @@ class FaultPerson {
   /// Taps as a raised cosine, the wall in the middle of the way; or presses on it and stays.
   [[nodiscard]] double path_m(double time_s) const noexcept {
     using std::numbers::pi;
+    time_s = waits_ ? moving_s(time_s) : time_s;
     const double lean_s = time_s - fault_schedule::press_s;
     if (leans_) return wall_m_ - depth_m_ * std::cos(pi * std::clamp(2.0 * lean_s, 0.0, 1.0));
     return wall_m_ - depth_m_ * std::cos(2.0 * pi * (tap_Hz_ * time_s + 0.1 * phase_cycles_));
@@ -49,7 +51,17 @@ class FaultPerson {
   }
 
  private:
+  /// Of `time_s`, what the hand does not wait.
+  [[nodiscard]] double moving_s(double time_s) const noexcept {
+    using namespace fault_schedule;
+    const double began_s = std::max(time_s - still_until_s, 0.0);
+    const double rested_s = std::clamp(time_s - rearms_at_s_, 0.0, settled_after_s - realign_after_s);
+    return std::max(began_s - rested_s, 0.0);
+  }
+
   double wall_m_;
+  bool waits_;
+  double rearms_at_s_;
   bool leans_;
   double phase_cycles_ = 0.0, tap_Hz_ = 1.0, depth_m_ = 0.01;
 };

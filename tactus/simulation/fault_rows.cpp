@@ -105,12 +105,14 @@ std::vector<FaultRow> fault_rows(std::string_view only) {
 
 Teleoperator::Params params_of(const FaultRow& row, const FaultsParams& params) {
   Teleoperator::Params of = params;
+  if (row.prepare != nullptr) row.prepare(of);
   // The wall with delay is for the monitor, and needs a controller that lets the hand be pushed about.
   if (row.kind == FaultKind::delayed_wall) {
     of.control.cancellation = control::CancellationMode::off;
     of.person.grip.damping_N_s_per_m *= params.task.light_grip_fraction;
-    // Else its check could end what the monitor is to end.
+    // Else their checks could end what the monitor is to end.
     of.control.supervision.force_sensor.residual_limit_N = 100.0;
+    of.control.supervision.hand_sensor.residual_limit_N = 100.0;
   }
   if (!row.monitored) {
     for (control::SafetyGate::Params* gate : {&of.control.gate, &of.control.slave_gate}) {

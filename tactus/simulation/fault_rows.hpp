@@ -27,7 +27,8 @@ struct FaultRow {
   std::string_view expected;
   FaultRule rule = nullptr;  ///< besides those that hold for every run
   FaultControl control{};
-  bool monitored = true;  ///< false: the passivity monitor as loose as its bounds allow
+  void (*prepare)(Teleoperator::Params&) = nullptr;  ///< what the row's teleoperator has and others have not
+  bool monitored = true;                             ///< false: the passivity monitor as loose as its bounds allow
 };
 
 /// Every row, or the one with the id `only`.

@@ -3,17 +3,27 @@
 #include <tactus/simulation/fault_moment.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::simulation {
 
-/// What stands between a site's gate and the current of a motor: a drive that may fail, with an enable line and a
-/// supply. Of a plan that is for another part or site it is a sound one.
+/// What stands between a site's gate and the current of a motor: a drive that may fail, with an enable line. Of a plan
+/// that is for another part or site it is a sound one.
+///
+/// One that is cooled no more has a winding whose warmth follows the square of the force with the time constant below,
+/// 1 being as warm as it may become, at the force `size` for ever.
 class FaultyActuator {
  public:
-  FaultyActuator(const FaultPlan& plan, FaultSite site) : plan_(plan), here_(plan.site == site) {}
+  /// Of a winding without cooling.
+  static constexpr double winding_s = 4.0;
 
-  /// The force in N that the drive is made to give, from the one that it is told. Once a tick. Real-time safe.
-  double step(double commanded_N, const FaultMoment& moment) noexcept {
+  FaultyActuator(const FaultPlan& plan, FaultSite site, double tick_s)
+      : plan_(plan), here_(plan.site == site), cools_(std::exp(-tick_s / winding_s)) {}
+
+  /// The force in N that the drive is made to give, from the one that it is told; none where it is not `enabled`. Once
+  /// a tick. Real-time safe.
+  double step(double commanded_N, bool enabled, const FaultMoment& moment) noexcept {
+    if (!enabled) return 0.0;
     if (!here_ || !moment.during) return commanded_N;
     switch (plan_.kind) {
       case FaultKind::motor_reversed:
@@ -27,14 +37,23 @@ class FaultyActuator {
         return plan_.size;
       case FaultKind::actuator_saturated:
         return std::clamp(commanded_N, -plan_.size, plan_.size);
+      case FaultKind::actuator_hot: {
+        const double share = commanded_N / plan_.size;
+        warmth_ = share * share + cools_ * (warmth_ - share * share);
+        return commanded_N;
+      }
       default:
         return commanded_N;
     }
   }
+  /// Of a winding that is cooled no more; above 1 it is damaged.
+  [[nodiscard]] double warmth() const noexcept { return warmth_; }
 
  private:
   FaultPlan plan_;
   bool here_;
+  double cools_;  ///< in a tick
+  double warmth_ = 0.0;
 };
 
 }  // namespace tactus::simulation

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <tactus/control/site_supervisor.hpp>
+#include <tactus/mechanics/operator.hpp>
 #include <tactus/simulation/fault_moment.hpp>
+#include <tactus/simulation/internal/fault_schedule.hpp>
 
 namespace tactus::simulation {
 
@@ -18,12 +20,26 @@ class FaultyPerson {
     if (plan_.kind == FaultKind::hand_lets_go) return Hand::lets_go;
     return plan_.kind == FaultKind::handle_clamped ? Hand::is_clamped : Hand::holds;
   }
-  /// What reaches the sites of what is `pressed`. Once a tick. Real-time safe.
-  [[nodiscard]] control::SiteRequests presses(control::SiteRequests pressed, const FaultMoment&) const noexcept {
+  /// How far a clamp has pushed the handle from where it was, and how fast: by `size`, in the time below.
+  [[nodiscard]] mechanics::Operator::Output pushed(const FaultMoment& moment) const noexcept {
+    const double share = moment.since_s / push_s;
+    if (share >= 1.0) return {.position_m = plan_.size, .velocity_m_per_s = 0.0};
+    return {.position_m = share * plan_.size, .velocity_m_per_s = plan_.size / push_s};
+  }
+  /// What reaches a site of what is `pressed`. Once a tick. Real-time safe.
+  [[nodiscard]] control::SiteRequests presses(control::SiteRequests pressed, FaultSite site,
+                                              const FaultMoment& moment) const noexcept {
+    // A dead-man switch in the handle goes with the hand, and is not pressed again by itself; every second one stands
+    // on the floor.
+    const bool in_handle = plan_.kind == FaultKind::hand_lets_go && plan_.choice % 2 == 0;
+    const bool cleared = moment.since_s > plan_.length_s + fault_schedule::look_after_s;
+    if (in_handle && !moment.before && !cleared) pressed.dead_man = false;
+    if (plan_.kind == FaultKind::emergency_stop && moment.during && plan_.site == site) pressed.emergency_stop = true;
     return pressed;
   }
 
  private:
+  static constexpr double push_s = 0.3;
   FaultPlan plan_;
 };
 
