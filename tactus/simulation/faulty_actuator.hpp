@@ -10,12 +10,12 @@ namespace tactus::simulation {
 /// What stands between a site's gate and the current of a motor: a drive that may fail, with an enable line. Of a plan
 /// that is for another part or site it is a sound one.
 ///
-/// One that is cooled no more has a winding whose warmth follows the square of the force with the time constant below,
+/// One that is cooled poorly has a winding whose warmth follows the square of the force with the time constant below,
 /// 1 being as warm as it may become, at the force `size` for ever.
 class FaultyActuator {
  public:
-  /// Of a winding without cooling.
-  static constexpr double winding_s = 4.0;
+  /// Of a winding that is cooled poorly.
+  static constexpr double winding_s = 10.0;
 
   FaultyActuator(const FaultPlan& plan, FaultSite site, double tick_s)
       : plan_(plan), here_(plan.site == site), cools_(std::exp(-tick_s / winding_s)) {}
@@ -46,7 +46,7 @@ class FaultyActuator {
         return commanded_N;
     }
   }
-  /// Of a winding that is cooled no more; above 1 it is damaged.
+  /// Of a winding that is cooled poorly; above 1 it is damaged.
   [[nodiscard]] double warmth() const noexcept { return warmth_; }
 
  private:
