@@ -47,7 +47,8 @@ class EncoderCheck {
           field("frozen_force_N", &Params::frozen_force_N, units::newton, positive_up_to(200.0),
                 "Lasting change of the motor's force that must move the encoder by a count."),
           field("unbalanced_force_N", &Params::unbalanced_force_N, units::newton, positive_up_to(200.0),
-                "Lasting difference between the forces of motor and tip that must; at a slave with a force sensor."),
+                "Lasting difference between the forces of motor and tip, or of motor and hand, that must; where a "
+                "force sensor measures that."),
           field("frozen_after_s", &Params::frozen_after_s, units::second, positive_up_to(1.0),
                 "How long it may take to do so.")};
     }

@@ -11,7 +11,7 @@
 namespace tactus::control {
 
 /// What made a gate close. A fault is latched; a limit that merely clips is not a fault.
-enum class GateFault { none, not_finite, encoder_jump, encoder_frozen, workspace, velocity, energy };
+enum class GateFault { none, not_finite, encoder_jump, encoder_frozen, workspace, velocity, energy, reversed };
 constexpr auto enumerators(GateFault) {
   return std::array{Enumerator{GateFault::none, "none"},
                     Enumerator{GateFault::not_finite, "not-finite"},
@@ -19,15 +19,18 @@ constexpr auto enumerators(GateFault) {
                     Enumerator{GateFault::encoder_frozen, "encoder-frozen"},
                     Enumerator{GateFault::workspace, "workspace"},
                     Enumerator{GateFault::velocity, "velocity"},
-                    Enumerator{GateFault::energy, "energy"}};
+                    Enumerator{GateFault::energy, "energy"},
+                    Enumerator{GateFault::reversed, "reversed"}};
 }
 
-/// What changes the command right now: a different thing from a fault. Where several do, the first in this order.
-enum class ActiveLimit { none, energy, workspace, velocity, force, rate };
+/// What changes the command right now: a different thing from a fault. Where several do, the first of energy,
+/// workspace, velocity, thermal, force, rate.
+enum class ActiveLimit { none, energy, workspace, velocity, force, rate, thermal };
 constexpr auto enumerators(ActiveLimit) {
   return std::array{Enumerator{ActiveLimit::none, "none"},           Enumerator{ActiveLimit::energy, "energy"},
                     Enumerator{ActiveLimit::workspace, "workspace"}, Enumerator{ActiveLimit::velocity, "velocity"},
-                    Enumerator{ActiveLimit::force, "force"},         Enumerator{ActiveLimit::rate, "rate"}};
+                    Enumerator{ActiveLimit::force, "force"},         Enumerator{ActiveLimit::rate, "rate"},
+                    Enumerator{ActiveLimit::thermal, "thermal"}};
 }
 
 /// The very last stage before an actuator: a finite force, within its limit, that changes no faster than its rate

@@ -15,15 +15,17 @@ double share_beyond(double value, double limit) {
 
 double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::optional<double> resisting_N) noexcept {
   elapsed_ticks = std::max<std::int64_t>(elapsed_ticks, 1);
+  const double acted_N = force_.passed_N();
+  allowed_N_ = thermal_.step({.acted_N = acted_N, .peak_N = force_limit_N_, .elapsed_ticks = elapsed_ticks});
   if (!std::isfinite(position_m)) {
     latch(GateFault::not_finite);
     velocity_m_per_s_ = 0.0;
     return believed_m_;
   }
-  const double acted_N = force_.passed_N();
+  const double net_N = acted_N - resisting_N.value_or(0.0);
   const EncoderFault wrong = encoder_.step({.position_m = position_m,
                                             .acted_N = acted_N,
-                                            .unbalanced_N = resisting_N ? acted_N - *resisting_N : 0.0,
+                                            .unbalanced_N = resisting_N ? net_N : 0.0,
                                             .elapsed_ticks = elapsed_ticks});
   if (wrong == EncoderFault::frozen) latch(GateFault::encoder_frozen);
   if (wrong == EncoderFault::jump) {
@@ -36,6 +38,9 @@ double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::o
   damping_N_s_per_m_ = energy_.step({.acted_N = acted_N, .position_m = position_m, .elapsed_ticks = elapsed_ticks});
   if (std::fabs(position_m) >= fault_factor * position_limit_m_) latch(GateFault::workspace);
   if (std::fabs(velocity_m_per_s_) >= fault_factor * velocity_limit_m_per_s_) latch(GateFault::velocity);
+  if (reversal_.step({.net_N = net_N, .velocity_m_per_s = velocity_m_per_s_, .elapsed_ticks = elapsed_ticks})) {
+    latch(GateFault::reversed);
+  }
   if (energy_.held()) latch(GateFault::energy);
   return believed_m_;
 }
@@ -44,8 +49,9 @@ double SafetyGate::pass(double command_N) noexcept {
   const bool finite = std::isfinite(command_N);
   if (!finite) latch(GateFault::not_finite);
   limit_ = ActiveLimit::none;
-  double wanted_N = fault() == GateFault::none ? command_N : 0.0;
-  const bool damps = damping_N_s_per_m_ > 0.0 && (fault() == GateFault::none || fault() == GateFault::energy);
+  double wanted_N = fault() == GateFault::none && !let_go_ ? command_N : 0.0;
+  const bool damps =
+      !let_go_ && damping_N_s_per_m_ > 0.0 && (fault() == GateFault::none || fault() == GateFault::energy);
   if (fault() == GateFault::none) {
     const double position_share = share_beyond(std::fabs(believed_m_), position_limit_m_);
     const double velocity_share = share_beyond(std::fabs(velocity_m_per_s_), velocity_limit_m_per_s_);
@@ -62,6 +68,10 @@ double SafetyGate::pass(double command_N) noexcept {
     wanted_N -= damping_N_s_per_m_ * velocity_m_per_s_;
     limit_ = ActiveLimit::energy;
   }
+  if (std::fabs(wanted_N) > allowed_N_ && allowed_N_ < force_limit_N_) {
+    wanted_N = std::copysign(allowed_N_, wanted_N);
+    if (limit_ == ActiveLimit::none) limit_ = ActiveLimit::thermal;
+  }
   const double passed_N = force_.step(wanted_N);
   if (limit_ == ActiveLimit::none) limit_ = force_.limit();
   return passed_N;
@@ -71,10 +81,12 @@ void SafetyGate::rearm() noexcept {
   force_.rearm();
   encoder_.reset();
   energy_.reset();
+  reversal_.reset();
   derivative_.reset();
   believed_m_ = 0.0;
   velocity_m_per_s_ = 0.0;
   damping_N_s_per_m_ = 0.0;
+  let_go_ = false;
   fault_ = GateFault::none;
   limit_ = ActiveLimit::none;
 }

@@ -3,6 +3,8 @@
 #include <tactus/control/encoder_check.hpp>
 #include <tactus/control/force_gate.hpp>
 #include <tactus/control/passivity_monitor.hpp>
+#include <tactus/control/reversal_check.hpp>
+#include <tactus/control/thermal_limit.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
@@ -17,11 +19,13 @@ namespace tactus::control {
 ///
 /// 1. **finite**: a reading or a command that is not a number latches a fault before any limiter sees it;
 /// 2. **encoder**: a reading that cannot be true latches a fault, and the one before stands in its place;
-/// 3. **energy**: `PassivityMonitor` damps, then latches and damps alone;
-/// 4. **workspace** and **velocity**: from the limit outward a force that pushes on fades; at 1.25 times the limit it
+/// 3. **reversal**: speed gained against the force latches a fault;
+/// 4. **energy**: `PassivityMonitor` damps, then latches and damps alone;
+/// 5. **workspace** and **velocity**: from the limit outward a force that pushes on fades; at 1.25 times the limit it
 /// is
 ///    gone and a fault latched;
-/// 5. **force** and **rate**: `ForceGate`.
+/// 6. **thermal**: `ThermalLimit` folds the peak back to what the motor can give for ever;
+/// 7. **force** and **rate**: `ForceGate`.
 ///
 /// After a fault the force falls to zero at the rate limit and stays there until the gate is re-armed; after one of
 /// energy, damping stays. Every limit has an upper bound, so a configuration can tighten the gate and not remove it. It
@@ -35,6 +39,8 @@ class SafetyGate {
     double position_limit_m = 10.0;
     EncoderCheck::Params encoder{};
     PassivityMonitor::Params energy{};
+    ReversalCheck::Params reversal{};
+    ThermalLimit::Params thermal{};
     static constexpr auto fields() {
       return std::tuple{
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
@@ -46,7 +52,9 @@ class SafetyGate {
           field("position_limit_m", &Params::position_limit_m, units::metre, positive_up_to(10.0),
                 "Distance from zero from which on no force may add to it; a fault at 1.25 times as much."),
           field("encoder", &Params::encoder, "When a measured position cannot be true."),
-          field("energy", &Params::energy, "When the motor gives more energy than it may.")};
+          field("energy", &Params::energy, "When the motor gives more energy than it may."),
+          field("reversal", &Params::reversal, "When a motor pushes the wrong way."),
+          field("thermal", &Params::thermal, "What the motor may give for long.")};
     }
   };
   struct Input {
@@ -70,14 +78,19 @@ class SafetyGate {
     if (!encoder) return under("encoder", encoder.error());
     const auto energy = PassivityMonitor::make(params.energy, dt);
     if (!energy) return under("energy", energy.error());
+    const auto reversal = ReversalCheck::make(params.reversal, dt);
+    if (!reversal) return under("reversal", reversal.error());
+    const auto thermal = ThermalLimit::make(params.thermal, dt);
+    if (!thermal) return under("thermal", thermal.error());
     const auto velocity = signal::FilteredDerivative::make({.cutoff_Hz = velocity_cutoff_Hz}, dt);
     if (!velocity) return velocity.error();
-    return SafetyGate(params, *force, *encoder, *energy, *velocity);
+    return SafetyGate(params, *force, *encoder, *energy, *reversal, *thermal, *velocity);
   }
 
   /// Looks at a reading, before the controller does: the position in m to believe, which is the last good one where
   /// this is none. `elapsed_ticks` is more than 1 after a stall: all checks count the time that really passed.
-  /// `resisting_N` is what a sensor says that pushes back against the motor.
+  /// `resisting_N` is what a sensor says that pushes back against the motor: at a slave what is at its tip, at a master
+  /// the hand.
   /// Real-time safe.
   double believe(double position_m, std::int64_t elapsed_ticks = 1,
                  std::optional<double> resisting_N = std::nullopt) noexcept;
@@ -90,15 +103,19 @@ class SafetyGate {
     return pass(input.command_N);
   }
 
-  /// No fault, no force, as made.
+  /// No fault, no force, a cool motor, as made.
   void reset() noexcept {
     rearm();
     force_.reset();
+    thermal_.reset();
+    allowed_N_ = force_limit_N_;
   }
-  /// No fault any more and an empty account of energy; the force goes on from where it is.
+  /// No fault any more and an empty account of energy; the force goes on from where it is, and the motor is as warm.
   void rearm() noexcept;
   /// Latches `not_finite`, for what is found elsewhere.
   void refuse() noexcept { latch(GateFault::not_finite); }
+  /// No force from now on, damping neither, until the gate is re-armed; no fault.
+  void let_go() noexcept { let_go_ = true; }
 
   [[nodiscard]] GateFault fault() const noexcept { return fault_ != GateFault::none ? fault_ : force_.fault(); }
   [[nodiscard]] ActiveLimit limit() const noexcept { return limit_; }
@@ -113,12 +130,15 @@ class SafetyGate {
 
  private:
   SafetyGate(const Params& params, const ForceGate& force, const EncoderCheck& encoder, const PassivityMonitor& energy,
-             const signal::FilteredDerivative& velocity)
+             const ReversalCheck& reversal, const ThermalLimit& thermal, const signal::FilteredDerivative& velocity)
       : velocity_limit_m_per_s_(params.velocity_limit_m_per_s),
         position_limit_m_(params.position_limit_m),
+        force_limit_N_(params.force_limit_N),
         force_(force),
         encoder_(encoder),
         energy_(energy),
+        reversal_(reversal),
+        thermal_(thermal),
         derivative_(velocity) {}
 
   /// The first fault stays, but for one of energy, after which damping needs what any other fault takes away.
@@ -128,13 +148,18 @@ class SafetyGate {
 
   double velocity_limit_m_per_s_;
   double position_limit_m_;
+  double force_limit_N_;
   ForceGate force_;
   EncoderCheck encoder_;
   PassivityMonitor energy_;
+  ReversalCheck reversal_;
+  ThermalLimit thermal_;
   signal::FilteredDerivative derivative_;
   double believed_m_ = 0.0;
   double velocity_m_per_s_ = 0.0;
   double damping_N_s_per_m_ = 0.0;
+  double allowed_N_ = force_limit_N_;  ///< by the warmth of the motor
+  bool let_go_ = false;
   GateFault fault_ = GateFault::none;
   ActiveLimit limit_ = ActiveLimit::none;
 };

@@ -162,7 +162,7 @@ class MasterGates {
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// The position in m to believe, as `SafetyGate` says. Real-time safe.
   double believe(const MasterInput& read, std::int64_t elapsed_ticks) noexcept {
-    return motor_.believe(read.motor_position_m, elapsed_ticks);
+    return motor_.believe(read.motor_position_m, elapsed_ticks, -read.hand_force_N);
   }
   /// Puts what may reach the actuators in place of what was commanded. Real-time safe.
   void pass(MasterOutput& output) noexcept {
@@ -179,6 +179,8 @@ class MasterGates {
     motor_.rearm();
     handle_.rearm();
   }
+  /// Whether a force passes to any actuator.
+  [[nodiscard]] bool pass_a_force() const noexcept { return motor_.passed_N() != 0.0 || handle_.passed_N() != 0.0; }
 
  private:
   SafetyGate motor_;
@@ -200,6 +202,8 @@ class SlaveGates {
   void pass(SlaveOutput& output) noexcept { output.motor_force_N = motor_.pass(output.motor_force_N); }
   void reset() noexcept { motor_.reset(); }
   void rearm() noexcept { motor_.rearm(); }
+  /// Whether a force passes to the motor.
+  [[nodiscard]] bool pass_a_force() const noexcept { return motor_.passed_N() != 0.0; }
 
  private:
   SafetyGate motor_;
@@ -225,8 +229,9 @@ class Site {
   ~Site() = default;
 
   /// One tick; the forces in the output are what the gates let through. What the controller wants is scaled by `share`
-  /// before it, which brings a force in and out. `elapsed_ticks` is more than 1 after a stall. Real-time safe.
-  Output step(const Input& input, double share = 1.0, std::int64_t elapsed_ticks = 1) noexcept {
+  /// before it, which brings a force in and out, and `added_N` comes to it at the motor. `elapsed_ticks` is more than 1
+  /// after a stall. Real-time safe.
+  Output step(const Input& input, double share = 1.0, std::int64_t elapsed_ticks = 1, double added_N = 0.0) noexcept {
     // A site that reads nonsense lets go until it is re-armed, even where the nonsense would not have reached a force,
     // and its controller goes on with what was read last: no number that is none gets into its state.
     Input read = input;
@@ -238,6 +243,7 @@ class Site {
     believed_ = read;
     Output output = controller_->respond(believed_);
     if (share != 1.0) scale(output, share);
+    if (added_N != 0.0) output.motor_force_N += added_N;
     gates_.pass(output);
     controller_->applied(output.motor_force_N);
     return output;
@@ -256,6 +262,11 @@ class Site {
   }
   [[nodiscard]] GateFault fault() const noexcept { return gates_.motor().fault(); }
   [[nodiscard]] ActiveLimit limit() const noexcept { return gates_.motor().limit(); }
+  /// The forces go to zero at the rate limit and stay there until `rearm`, but for that of a second actuator, which
+  /// follows its share. Real-time safe.
+  void let_go() noexcept { gates_.motor().let_go(); }
+  /// Whether a force passes to any actuator.
+  [[nodiscard]] bool passes_a_force() const noexcept { return gates_.pass_a_force(); }
   /// The gate of the motor, to look at.
   [[nodiscard]] const SafetyGate& gate() const noexcept { return gates_.motor(); }
 

@@ -10,6 +10,7 @@ SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
   if (input.stalled) return SiteCause::stalled;
   if (input.overloaded) return SiteCause::overloaded;
   if (input.silent) return SiteCause::silent;
+  if (input.probe != SiteCause::none) return input.probe;
   if (input.unanswered) return SiteCause::unanswered;
   const bool stands = input.peer != SiteState::armed && input.peer != SiteState::active;
   // While armed, what stands under another number has not heard of this arming yet.
@@ -35,12 +36,12 @@ void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
 }
 
 void SiteSupervisor::become_active_where_ready(const Input& input) noexcept {
-  const bool same = input.peer_armings == armings_;
+  const bool ready = input.peer_armings == armings_ && input.proved;
   const bool master = role_ == SiteRole::master;
   if (master) {
     pressed_ = input.requests.dead_man && (pressed_ || !before_.dead_man);
-    if (!pressed_ || !same || (input.peer != SiteState::armed && input.peer != SiteState::active)) return;
-  } else if (!same || input.peer != SiteState::active) {
+    if (!pressed_ || !ready || (input.peer != SiteState::armed && input.peer != SiteState::active)) return;
+  } else if (!ready || input.peer != SiteState::active) {
     return;
   }
   state_ = SiteState::active;
@@ -58,15 +59,16 @@ SiteState SiteSupervisor::step(const Input& input) noexcept {
     // A master that starts anew counts anew.
     if (role_ == SiteRole::slave) armings_ = 0;
   }
-  if (input.fault && state_ != SiteState::fault) {
-    go(SiteState::fault, SiteCause::gate, input);
+  const bool emergency_stop = input.requests.emergency_stop;
+  if ((input.fault || emergency_stop) && state_ != SiteState::fault) {
+    go(SiteState::fault, emergency_stop ? SiteCause::emergency_stop : SiteCause::gate, input);
   } else if (state_ == SiteState::configure) {
     if (align) state_ = SiteState::align;
   } else if (state_ == SiteState::align || state_ == SiteState::hold) {
     arm_where_asked(input, arm);
   } else if (state_ == SiteState::fault) {
     // The gate is re-armed on the way out; a cause that is still there closes it again.
-    if (clear) go(SiteState::align, cause_, input);
+    if (clear && !emergency_stop) go(SiteState::align, cause_, input);
   } else if (const SiteCause cause = other_session ? SiteCause::other_session : reason_to_hold(input);
              cause != SiteCause::none) {
     go(SiteState::hold, cause, input);

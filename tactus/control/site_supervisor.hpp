@@ -22,7 +22,11 @@ enum class SiteCause {
   energy,
   gate,
   unanswered,
-  overloaded
+  overloaded,
+  probe_reversed,
+  probe_still,
+  probe_astray,
+  emergency_stop
 };
 constexpr auto enumerators(SiteCause) {
   return std::array{Enumerator{SiteCause::none, "none"},
@@ -36,7 +40,11 @@ constexpr auto enumerators(SiteCause) {
                     Enumerator{SiteCause::energy, "energy"},
                     Enumerator{SiteCause::gate, "gate"},
                     Enumerator{SiteCause::unanswered, "unanswered"},
-                    Enumerator{SiteCause::overloaded, "overloaded"}};
+                    Enumerator{SiteCause::overloaded, "overloaded"},
+                    Enumerator{SiteCause::probe_reversed, "probe-reversed"},
+                    Enumerator{SiteCause::probe_still, "probe-still"},
+                    Enumerator{SiteCause::probe_astray, "probe-astray"},
+                    Enumerator{SiteCause::emergency_stop, "emergency-stop"}};
 }
 
 enum class SiteRole { master, slave };
@@ -47,26 +55,28 @@ constexpr auto enumerators(SiteRole) {
 /// What a person asks of a site. `align`, `arm` and `clear` are heard when they rise, so a button that is stuck arms
 /// nothing. The dead-man switch must be pressed after arming and as long as the site shall follow.
 struct SiteRequests {
-  bool align = false;     ///< leave `configure`
-  bool arm = false;       ///< leave `align` or `hold`; at the master, for both sites
-  bool clear = false;     ///< leave `fault`, to `align`
-  bool dead_man = false;  ///< pressed; at the master
-  bool clutch = false;    ///< pressed: the hand moves and the slave does not; at the master
+  bool align = false;           ///< leave `configure`
+  bool arm = false;             ///< leave `align` or `hold`; at the master, for both sites
+  bool clear = false;           ///< leave `fault`, to `align`
+  bool dead_man = false;        ///< pressed; at the master
+  bool clutch = false;          ///< pressed: the hand moves and the slave does not; at the master
+  bool emergency_stop = false;  ///< pressed: into `fault`, and no way out of it
 };
 
 /// The state of one site, and why.
 ///
-///     configure –align→ align –arm→ armed –dead-man, and the other site armed→ active
+///     configure –align→ align –arm→ armed –sign probe, dead-man, and the other site armed→ active
 ///     active –dead-man let go→ armed
 ///     armed, active –silence, stall, overload, other site, sensor, energy→ hold –arm→ armed
-///     armed –no answer→ hold
-///     any –safety gate→ fault –clear→ align
+///     armed –no answer, sign probe not passed→ hold
+///     any –safety gate, emergency stop→ fault –clear→ align
 ///
 /// Arming is a number that the master counts up and every packet carries; a restarted master goes on from the number
 /// that it hears the slave has followed. The slave is armed when it sees the number rise, repeats it, and the master
 /// becomes active only once the slave does. Either site falls into hold when the other holds under the same number, or
 /// under any while this one is active, or was restarted; so one that was cut off alone does not come back with an
-/// arming that is over, and nothing but a new one leads out. An arming that the slave does not answer is given up.
+/// arming that is over, and nothing but a new one leads out. An arming that the slave does not answer is given up. A
+/// site whose motor is tried on arming follows only after the sign probe.
 class SiteSupervisor {
  public:
   struct Params {
@@ -81,13 +91,15 @@ class SiteSupervisor {
     std::int64_t session = 0;  ///< of the other site
     SiteState peer = SiteState::configure;
     std::int64_t peer_armings = 0;
-    bool silent = false;        ///< the watchdog barks
-    bool unanswered = false;    ///< the slave has not followed the arming for too long
-    bool stalled = false;       ///< this site was not stepped for too long
-    bool overloaded = false;    ///< this site was not stepped too often
-    bool force_sensor = false;  ///< the force sensor cannot be right
-    bool energy = false;        ///< the passivity monitor has latched
-    bool fault = false;         ///< the safety gate has, for any other reason
+    bool silent = false;                ///< the watchdog barks
+    bool unanswered = false;            ///< the slave has not followed the arming for too long
+    bool stalled = false;               ///< this site was not stepped for too long
+    bool overloaded = false;            ///< this site was not stepped too often
+    bool force_sensor = false;          ///< the force sensor cannot be right
+    SiteCause probe = SiteCause::none;  ///< why the sign probe was not passed
+    bool proved = true;                 ///< the sign probe was passed, or nobody asks for one
+    bool energy = false;                ///< the passivity monitor has latched
+    bool fault = false;                 ///< the safety gate has, for any other reason
   };
   using Output = SiteState;
 
@@ -117,7 +129,11 @@ class SiteSupervisor {
   SiteRole role_;
   SiteState state_ = SiteState::configure;
   SiteCause cause_ = SiteCause::started;
-  SiteRequests before_{true, true, true, true, true};  ///< what is pressed at the start is not heard
+  SiteRequests before_{.align = true,
+                       .arm = true,
+                       .clear = true,
+                       .dead_man = true,
+                       .clutch = true};  ///< what is pressed at the start is not heard
   std::int64_t session_ = 0;
   std::int64_t armings_ = 0;
   std::int64_t over_ = 0;  ///< the peer's arming that a slave no longer follows

@@ -7,7 +7,8 @@ namespace tactus::control {
 namespace {
 
 template <class Site>
-void fill(SiteRecord& record, const Site& site) noexcept {
+void fill(SiteRecord& record, const Site& site, const Supervision& supervision) noexcept {
+  record.enabled = supervision.state() != SiteState::configure && (!supervision.lets_go() || site.passes_a_force());
   record.limit = static_cast<std::int64_t>(site.limit());
   record.fault = static_cast<std::int64_t>(site.fault());
   record.given_J = site.gate().given_J();
@@ -28,11 +29,13 @@ SupervisedMaster::Output SupervisedMaster::step(const Input& input) noexcept {
     site_.rearm();
     hand_sensor_.reset();
   }
+  if (supervision_.lets_go()) site_.let_go();
   const bool follows = state == SiteState::active && !input.requests.clutch;
 
   MasterInput sensors = input.sensors;
   sensors.arrival = supervision_.arrival(offset_m_);
-  Output output{.site = site_.step(sensors, supervision_.blend(follows), input.elapsed_ticks),
+  const double probe_N = supervision_.probe(sensors.motor_position_m, site_.passes_a_force());
+  Output output{.site = site_.step(sensors, supervision_.blend(follows), input.elapsed_ticks, probe_N),
                 .packet = {},
                 .record = supervision_.record()};
   const double position_m = output.site.message.position_m;
@@ -44,7 +47,7 @@ SupervisedMaster::Output SupervisedMaster::step(const Input& input) noexcept {
   Message message = output.site.message;
   message.position_m = told_m_;
   output.packet = supervision_.packet(message);
-  fill(output.record, site_);
+  fill(output.record, site_, supervision_);
   output.record.offset_m = offset_m_;
   return output;
 }
@@ -61,14 +64,21 @@ SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
   if (supervision_.rearms()) {
     site_.rearm();
     force_sensor_.reset();
-    if (state == SiteState::align) supervision_.stand(input.sensors.motor_position_m);
+    // A slave that was released in hold may be elsewhere than it was told to be.
+    const bool was_released = supervision_.before() == SiteState::hold;
+    if (state == SiteState::align || was_released) supervision_.stand(input.sensors.motor_position_m);
   }
+  if (supervision_.lets_go()) site_.let_go();
+  if (supervision_.probes()) supervision_.stand(input.sensors.motor_position_m);
   SlaveInput sensors = input.sensors;
   sensors.arrival = supervision_.arrival(0.0);
-  const double share = supervision_.blend(state != SiteState::configure && state != SiteState::fault);
-  Output output{.site = site_.step(sensors, share, input.elapsed_ticks), .packet = {}, .record = supervision_.record()};
+  const double probe_N = supervision_.probe(sensors.motor_position_m, site_.passes_a_force());
+  const bool stands = state == SiteState::align || state == SiteState::armed;
+  const double share = supervision_.blend((stands || state == SiteState::active) && !supervision_.probes());
+  Output output{
+      .site = site_.step(sensors, share, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
   output.packet = supervision_.packet(output.site.message);
-  fill(output.record, site_);
+  fill(output.record, site_, supervision_);
   return output;
 }
 

@@ -44,8 +44,8 @@ class SupervisedMaster {
   double offset_m_ = 0.0;
 };
 
-/// The slave. Out of `configure` it stands where it is, by its own servo, until it follows; in `hold` where it was told
-/// to be last.
+/// The slave. Out of `configure` it stands where it is, by its own servo, until it follows. In `hold` it stands where
+/// it was told to be last while its force fades; armed again, it stands where it is then.
 class SupervisedSlave {
  public:
   struct Input {

@@ -4,6 +4,25 @@
 
 namespace tactus::control {
 
+namespace {
+
+SiteCause cause_of(ProbeVerdict verdict) {
+  switch (verdict) {
+    case ProbeVerdict::reversed:
+      return SiteCause::probe_reversed;
+    case ProbeVerdict::still:
+      return SiteCause::probe_still;
+    case ProbeVerdict::astray:
+      return SiteCause::probe_astray;
+    case ProbeVerdict::none:
+    case ProbeVerdict::passed:
+      break;
+  }
+  return SiteCause::none;
+}
+
+}  // namespace
+
 Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole role, std::int64_t session,
                                       Seconds dt) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
@@ -23,9 +42,20 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   if (!answer) return answer.error();
   const auto overload = OverloadCheck::make(params.overload, dt);
   if (!overload) return under("overload", overload.error());
+  const auto probe = SignProbe::make(params.probe, dt);
+  if (!probe) return under("probe", probe.error());
+  const double tried_after_s = params.blend_s + params.probe.duration_s;
+  if (params.probe.force_N > 0.0 && params.answer_within_s <= tried_after_s) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "answer_within_s",
+                 .message = format_number(params.answer_within_s) +
+                            " s must be more than blend_s and probe.duration_s together, " +
+                            format_number(tried_after_s) + " s: a slave answers once its motor was tried",
+                 .place = {}};
+  }
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *supervisor, role, params, session, dt);
+  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *probe, *supervisor, role, params, session, dt);
 }
 
 PacketVerdict Supervision::take(const Packet& packet) noexcept {
@@ -57,24 +87,32 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
   // Where a site does not follow, its state is the latch.
   if (!guards && fresh_) watchdog_.reset();
   const bool silent = watchdog_.step({.heard = fresh_, .elapsed_ticks = elapsed_ticks_});
-  return supervisor_.step({.requests = sight.requests,
-                           .heard = newest_.session != 0,
-                           .session = newest_.session,
-                           .peer = newest_.state,
-                           .peer_armings = newest_.armings,
-                           .silent = silent,
-                           .unanswered = unanswered(),
-                           .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
-                           .overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_}),
-                           .force_sensor = sight.force_sensor,
-                           .energy = sight.fault == GateFault::energy,
-                           .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
+  proved_ = proved_ || probe_.verdict() == ProbeVerdict::passed;
+  supervisor_.step({.requests = sight.requests,
+                    .heard = newest_.session != 0,
+                    .session = newest_.session,
+                    .peer = newest_.state,
+                    .peer_armings = newest_.armings,
+                    .silent = silent,
+                    .unanswered = unanswered(),
+                    .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
+                    .overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_}),
+                    .force_sensor = sight.force_sensor,
+                    .probe = cause_of(probe_.verdict()),
+                    .proved = proved_,
+                    .energy = sight.fault == GateFault::energy,
+                    .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
+  if (arms_from_rest()) proved_ = !must_be_proved_;
+  if (role_ == SiteRole::master || !probes()) answered_arming_ = supervisor_.armings();
+  return state();
+}
+
+bool Supervision::arms_from_rest() const noexcept {
+  return state() == SiteState::armed && (before_ == SiteState::align || before_ == SiteState::hold);
 }
 
 bool Supervision::rearms() const noexcept {
-  const bool entered = state() != before_;
-  const bool from_rest = before_ == SiteState::align || before_ == SiteState::hold;
-  return entered && (state() == SiteState::align || (state() == SiteState::armed && from_rest));
+  return arms_from_rest() || (state() == SiteState::align && before_ != SiteState::align);
 }
 
 Arrival Supervision::arrival(double offset_m) noexcept {
@@ -83,9 +121,15 @@ Arrival Supervision::arrival(double offset_m) noexcept {
   return follower_.step({.arrival = told, .following = state() == SiteState::active, .elapsed_ticks = elapsed_ticks_});
 }
 
+double Supervision::probe(double position_m, bool force_passes) noexcept {
+  probing_ = probes() && (probing_ || (share_ == 0.0 && !force_passes));
+  return probe_.step({.probing = probing_, .position_m = position_m, .elapsed_ticks = elapsed_ticks_});
+}
+
 double Supervision::blend(bool in) noexcept {
+  if (state() == SiteState::fault) return share_ = 0.0;
   // After a stall a force goes as far as it should have gone by now, but comes no farther than in one tick.
-  const double out_step = blend_step_ * static_cast<double>(elapsed_ticks_);
+  const double out_step = (state() == SiteState::hold ? hold_step_ : blend_step_) * static_cast<double>(elapsed_ticks_);
   return share_ = in ? std::min(share_ + blend_step_, 1.0) : std::max(share_ - out_step, 0.0);
 }
 
@@ -94,7 +138,7 @@ Packet Supervision::packet(const Message& message) noexcept {
           .sequence = ++sequence_,
           .age_s = 0.0,
           .state = state(),
-          .armings = supervisor_.armings(),
+          .armings = answered_arming_,
           .message = message};
 }
 

@@ -4,16 +4,28 @@
 #include <tactus/control/message_follower.hpp>
 #include <tactus/control/overload_check.hpp>
 #include <tactus/control/packet.hpp>
+#include <tactus/control/sign_probe.hpp>
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/control/watchdog.hpp>
 #include <tactus/core/signals.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
 namespace tactus::control {
+
+/// What becomes of a force in `hold`.
+struct HoldParams {
+  double release_s = 1.0;
+  static constexpr auto fields() {
+    return std::tuple{field("release_s", &HoldParams::release_s, units::second, positive_up_to(60.0),
+                            "Time in which the site's force fades to zero once it holds; a slave that must not sink "
+                            "or swing away needs a brake.")};
+  }
+};
 
 /// The group `[control.supervision]`: what a site makes of the other one and of its own state.
 struct SupervisionParams {
@@ -23,6 +35,8 @@ struct SupervisionParams {
   ForceSensorCheck::Params force_sensor;
   ForceSensorCheck::Params hand_sensor{.residual_limit_N = 200.0};
   OverloadCheck::Params overload;
+  SignProbe::Params probe;
+  HoldParams hold;
   double longest_stall_s = 0.02;
   double answer_within_s = 1.0;
   double blend_s = 0.1;
@@ -36,12 +50,14 @@ struct SupervisionParams {
               "When the master's motor and the force sensor at the hand contradict one another; for a master that has "
               "such a sensor, else out of reach."),
         field("overload", &SupervisionParams::overload, "How many ticks a site may miss before it holds."),
+        field("probe", &SupervisionParams::probe, "The force with which a site tries its motor when it is armed."),
+        field("hold", &SupervisionParams::hold, "What becomes of a force when the site holds."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
         field(
             "answer_within_s", &SupervisionParams::answer_within_s, units::second, positive_up_to(10.0),
             "How long the master waits for the slave to follow an arming before it gives it up and holds; longer than "
-            "the round trip."),
+            "the round trip, and with a sign probe than that, blend_s and probe.duration_s together."),
         field("blend_s", &SupervisionParams::blend_s, units::second, positive_up_to(10.0),
               "How long a force takes to come in when a site becomes active, and to go.")};
   }
@@ -90,6 +106,7 @@ struct SiteRecord {
   std::int64_t applied_session = 0;
   std::int64_t applied_sequence = 0;
   std::int64_t refused = 0;
+  bool enabled = false;
   bool fresh = false;
   double silence_s = 0.0;
   double share = 0.0;
@@ -107,6 +124,9 @@ struct SiteRecord {
                  "Session of the packet that was applied last."),
         observed("applied_sequence", &SiteRecord::applied_sequence, units::none, "", "", "", "Its sequence."),
         observed("refused", &SiteRecord::refused, units::none, "", "", "", "Packets so far that were not applied."),
+        observed("enabled", &SiteRecord::enabled, units::none, "", "", "",
+                 "The drive may have power: not in configure, and in fault, or where motor and force sensor contradict "
+                 "one another, only until the force is zero."),
         observed("fresh", &SiteRecord::fresh, units::none, "", "", "", "A packet was applied at this tick."),
         observed("silence_s", &SiteRecord::silence_s, units::second, "", "", "", "Since a packet was applied."),
         observed("share", &SiteRecord::share, units::none, "", "", "", "Of the controller's force that is let in."),
@@ -138,7 +158,13 @@ class Supervision {
   SiteState decide(const Sight& sight) noexcept;
   /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
   Arrival arrival(double offset_m) noexcept;
-  /// The share of the controller's force, on its way to 1 or 0. Once, after `decide`.
+  /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone and none
+  /// passes to the motor any more, `position_m` being measured. Once, after `decide` and before `blend`.
+  double probe(double position_m, bool force_passes) noexcept;
+  /// Whether the site is armed and its motor not yet tried: the controller's force must go.
+  [[nodiscard]] bool probes() const noexcept { return state() == SiteState::armed && !proved_; }
+  /// The share of the controller's force, on its way to 1 or 0; in `fault` 0 at once, for the gate to ramp. Once, after
+  /// `decide`.
   double blend(bool in) noexcept;
   /// The packet that says `message`. Once a tick.
   Packet packet(const Message& message) noexcept;
@@ -146,6 +172,12 @@ class Supervision {
   void stand(double position_m) noexcept { follower_.settle(position_m); }
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
+  /// Whether the motor must get no force any more: in `fault`, and in a `hold` because motor and force sensor
+  /// contradict one another, when the motor may be what is wrong.
+  [[nodiscard]] bool lets_go() const noexcept {
+    const bool contradicts = state() == SiteState::hold && supervisor_.cause() == SiteCause::force_sensor;
+    return state() == SiteState::fault || contradicts;
+  }
   [[nodiscard]] SiteState before() const noexcept { return before_; }
   /// Whether the site leaves what its gate or its controller latched, at this tick.
   [[nodiscard]] bool rearms() const noexcept;
@@ -154,19 +186,25 @@ class Supervision {
 
  private:
   [[nodiscard]] bool unanswered() noexcept;
+  [[nodiscard]] bool arms_from_rest() const noexcept;
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
-              const Watchdog& answer, const OverloadCheck& overload, const SiteSupervisor& supervisor, SiteRole role,
-              const SupervisionParams& params, std::int64_t session, Seconds dt)
+              const Watchdog& answer, const OverloadCheck& overload, const SignProbe& probe,
+              const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params, std::int64_t session,
+              Seconds dt)
       : judge_(judge),
         follower_(follower),
         watchdog_(watchdog),
         answer_(answer),
         overload_(overload),
+        probe_(probe),
         supervisor_(supervisor),
         role_(role),
         dt_s_(dt.value),
         longest_stall_s_(params.longest_stall_s),
         blend_step_(dt.value / params.blend_s),
+        hold_step_(dt.value /
+                   (role == SiteRole::slave ? params.hold.release_s : std::min(params.hold.release_s, params.blend_s))),
+        must_be_proved_(params.probe.force_N > 0.0),
         session_(session) {}
 
   PacketJudge judge_;
@@ -174,11 +212,14 @@ class Supervision {
   Watchdog watchdog_;
   Watchdog answer_;  ///< of the slave to an arming
   OverloadCheck overload_;
+  SignProbe probe_;
   SiteSupervisor supervisor_;
   SiteRole role_;
   double dt_s_;
   double longest_stall_s_;
   double blend_step_;
+  double hold_step_;  ///< of the share, in a tick of `hold`
+  bool must_be_proved_;
   std::int64_t session_;
   std::int64_t sequence_ = 0;
   Packet newest_;
@@ -187,6 +228,9 @@ class Supervision {
   std::int64_t elapsed_ticks_ = 1;
   std::int64_t refused_ = 0;
   std::int64_t awaited_arming_ = 0;
+  std::int64_t answered_arming_ = 0;  ///< that packets tell: a slave's only once its motor was tried
+  bool proved_ = false;               ///< the motor was tried since the site was armed, or need not be
+  bool probing_ = false;              ///< the trial is under way
   double share_ = 0.0;
   SiteState before_ = SiteState::configure;
 };

@@ -14,9 +14,13 @@ namespace tactus::simulation {
 /// The person of a run: where the hand means to be and which buttons are pressed when. Drawn by the plan's seed.
 class FaultPerson {
  public:
-  /// `wall_m` is where the slave meets the wall, on the master's side.
-  FaultPerson(const FaultPlan& plan, double wall_m)
-      : wall_m_(wall_m), leans_(plan.kind == FaultKind::delayed_wall || plan.kind == FaultKind::actuator_hot) {
+  /// `wall_m` is where the slave meets the wall, on the master's side. Who `waits` keeps the hand still while the motors
+  /// are tried on arming.
+  FaultPerson(const FaultPlan& plan, double wall_m, bool waits)
+      : wall_m_(wall_m),
+        waits_(waits),
+        rearms_at_s_(plan.start_s + plan.length_s + fault_schedule::realign_after_s),
+        leans_(plan.kind == FaultKind::delayed_wall || plan.kind == FaultKind::actuator_hot) {
     signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(3);
     phase_cycles_ = random.uniform();
     tap_Hz_ = random.uniform(0.6, 1.2);

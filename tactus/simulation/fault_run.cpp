@@ -204,7 +204,7 @@ void FaultRun::Run::step_slave() {
                  [&](const control::Packet& packet) { parts_.slave_site.take(packet); });
   control::SupervisedSlave::Input input{
       .sensors = {.motor_position_m = reading.motor_position_m, .tip_force_N = reading.tip_force_N, .arrival = {}},
-      .requests = requests(),
+      .requests = requests(FaultSite::slave),
       .elapsed_ticks = slave_.elapsed_ticks()};
   read(input.sensors.motor_position_m, input.sensors.tip_force_N, FaultSite::slave);
   for (const FaultInjection& injection : injections_) injection.spoil(FaultSite::slave, input.sensors);

@@ -1,8 +1,11 @@
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
 #include <tactus/control/overload_check.hpp>
+#include <tactus/control/reversal_check.hpp>
 #include <tactus/control/safety_gate.hpp>
+#include <tactus/control/sign_probe.hpp>
 #include <tactus/control/site_supervisor.hpp>
+#include <tactus/control/thermal_limit.hpp>
 #include <tactus/control/watchdog.hpp>
 
 #include "tests/laws.hpp"
@@ -58,6 +61,27 @@ struct Doubles<control::PassivityMonitor::Input> {
   }
 };
 template <>
+struct Doubles<control::ReversalCheck::Input> {
+  using Row = std::array<double, 3>;
+  static control::ReversalCheck::Input from(const Row& row) {
+    return {.net_N = row[0], .velocity_m_per_s = row[1], .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::ThermalLimit::Input> {
+  using Row = std::array<double, 3>;
+  static control::ThermalLimit::Input from(const Row& row) {
+    return {.acted_N = row[0], .peak_N = std::fabs(row[1]), .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::SignProbe::Input> {
+  using Row = std::array<double, 3>;
+  static control::SignProbe::Input from(const Row& row) {
+    return {.probing = row[0] > -0.99, .position_m = 1e-3 * row[1], .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
+  }
+};
+template <>
 struct Doubles<control::Packet> {
   using Row = std::array<double, 4>;
   static control::Packet from(const Row& row) {
@@ -108,8 +132,9 @@ struct Subject<control::SiteSupervisor> {
 
 using SafetyElements =
     ::testing::Types<control::ForceGate, control::EncoderCheck, control::ForceSensorCheck, control::PassivityMonitor,
-                     control::Watchdog, control::OverloadCheck, control::SafetyGate, control::PacketJudge,
-                     control::MessageFollower, control::SiteSupervisor>;
+                     control::Watchdog, control::OverloadCheck, control::ReversalCheck, control::ThermalLimit,
+                     control::SignProbe, control::SafetyGate, control::PacketJudge, control::MessageFollower,
+                     control::SiteSupervisor>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Safety, ElementLaws, SafetyElements);
 
 }  // namespace tactus::laws
