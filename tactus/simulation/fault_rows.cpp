@@ -17,7 +17,6 @@ std::string_view broken_rule_of_all(const FaultOutcome& outcome) {
   if (outcome.forces_above_limit > 0) return "a force above the limit";
   if (outcome.active_without_arming > 0) return "a site followed again without arming";
   if (outcome.left_workspace) return "a device left its workspace";
-  if (!outcome.active_at_end) return "not active again after clearing and arming";
   return {};
 }
 
@@ -28,6 +27,7 @@ std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bou
   if (std::max(master.strayed_m, slave.strayed_m) > bounds.strayed_m) return "handle or tool strayed too far";
   if (master.peak_force_N > bounds.hand_force_N) return "too much force on the hand";
   if (slave.peak_force_N > bounds.tool_force_N) return "too much force at the tool";
+  if (std::max(master.pressing_N, slave.pressing_N) > bounds.pressing_N) return "pressed too hard for long";
   if (outcome.release_s > bounds.release_s) return "not released in time";
   return {};
 }
@@ -113,6 +113,7 @@ Teleoperator::Params params_of(const FaultRow& row, const FaultsParams& params) 
     // Else their checks could end what the monitor is to end.
     of.control.supervision.force_sensor.residual_limit_N = 100.0;
     of.control.supervision.hand_sensor.residual_limit_N = 100.0;
+    of.control.gate.reversal.force_N = of.control.slave_gate.reversal.force_N = 100.0;
   }
   if (!row.monitored) {
     for (control::SafetyGate::Params* gate : {&of.control.gate, &of.control.slave_gate}) {
@@ -128,6 +129,7 @@ Teleoperator::Params params_of(const FaultRow& row, const FaultsParams& params) 
 std::string_view broken_rule(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome,
                              const FaultsParams& params) {
   if (const auto rule = broken_rule_of_all(outcome); !rule.empty()) return rule;
+  if (row.resumes && !outcome.active_at_end) return "not active again after clearing and arming";
   if (outcome.given_J > params.task.diverged_above_J) return "diverged";
   if (const auto bound = broken_bound(outcome, params.task.bounds); !bound.empty()) return bound;
   return row.rule ? row.rule(plan, outcome, params) : std::string_view{};

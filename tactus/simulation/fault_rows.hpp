@@ -28,7 +28,8 @@ struct FaultRow {
   FaultRule rule = nullptr;  ///< besides those that hold for every run
   FaultControl control{};
   void (*prepare)(Teleoperator::Params&) = nullptr;  ///< what the row's teleoperator has and others have not
-  bool monitored = true;                             ///< false: the passivity monitor as loose as its bounds allow
+  bool resumes = true;    ///< false: somebody may have to move a device back before the sites follow again
+  bool monitored = true;  ///< false: the passivity monitor as loose as its bounds allow
 };
 
 /// Every row, or the one with the id `only`.

@@ -19,6 +19,8 @@ namespace {
 
 /// A motor that gives less than this share of its limit has let go.
 constexpr double released_share = 0.05;
+/// How far a device may coast beyond where its gate latches a fault, as a factor.
+constexpr double coasting = 1.1;
 /// A force that is wrong for less than this is hardly wrong.
 constexpr double slowly_s = 0.02;
 /// What a clamp holds a handle with.
@@ -263,7 +265,7 @@ void FaultRun::Run::judge() {
   const auto view = [](control::SiteState state, bool gone, double step_N, const control::SafetyGate::Params& gate,
                        const mechanics::CableChain& mechanism, double drive_N, double outside_N) {
     const bool left =
-        std::fabs(mechanism.motor_position_m()) >= control::SafetyGate::fault_factor * gate.position_limit_m;
+        std::fabs(mechanism.motor_position_m()) >= coasting * control::SafetyGate::fault_factor * gate.position_limit_m;
     return FaultJudge::SiteView{.state = state,
                                 .gone = gone,
                                 .step_N = step_N,
