@@ -35,6 +35,7 @@ struct SupervisionParams {
   MessageFollower::Params silence;
   Watchdog::Params watchdog;
   ForceSensorCheck::Params force_sensor;
+  ForceSensorCheck::Params hand_sensor{.residual_limit_N = 200.0};
   OverloadCheck::Params overload;
   SignProbe::Params probe;
   HoldParams hold;
@@ -48,6 +49,9 @@ struct SupervisionParams {
         field("silence", &SupervisionParams::silence, "What stands in their place when none come."),
         field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
         field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
+        field("hand_sensor", &SupervisionParams::hand_sensor,
+              "When the master's motor and the force sensor at the hand contradict one another; for a master that has "
+              "such a sensor, else out of reach."),
         field("overload", &SupervisionParams::overload, "How many ticks a site may miss before it holds."),
         field("probe", &SupervisionParams::probe, "The force with which a site tries its motor when it is armed."),
         field("hold", &SupervisionParams::hold, "What becomes of a force when the site holds."),
@@ -128,7 +132,8 @@ struct SiteRecord {
         observed("applied_sequence", &SiteRecord::applied_sequence, units::none, "", "", "", "Its sequence."),
         observed("refused", &SiteRecord::refused, units::none, "", "", "", "Packets so far that were not applied."),
         observed("enabled", &SiteRecord::enabled, units::none, "", "", "",
-                 "The drive may have power: not in configure, and in fault only until the force is zero."),
+                 "The drive may have power: not in configure, and in fault, or where motor and force sensor contradict "
+                 "one another, only until the force is zero."),
         observed("fresh", &SiteRecord::fresh, units::none, "", "", "", "A packet was applied at this tick."),
         observed("silence_s", &SiteRecord::silence_s, units::second, "", "", "", "Since a packet was applied."),
         observed("share", &SiteRecord::share, units::none, "", "", "", "Of the controller's force that is let in."),
@@ -178,6 +183,12 @@ class Supervision {
   void stand(double position_m) noexcept { follower_.settle(position_m); }
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
+  /// Whether the motor must get no force any more: in `fault`, and in a `hold` because motor and force sensor
+  /// contradict one another, when the motor may be what is wrong.
+  [[nodiscard]] bool lets_go() const noexcept {
+    const bool contradicts = state() == SiteState::hold && supervisor_.cause() == SiteCause::force_sensor;
+    return state() == SiteState::fault || contradicts;
+  }
   [[nodiscard]] SiteState before() const noexcept { return before_; }
   /// What the other site has in common with this one.
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }

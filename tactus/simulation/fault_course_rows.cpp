@@ -84,15 +84,20 @@ void loose_limits(Teleoperator::Params& params, FaultPlan& plan) {
     gate->rate_limit_N_per_s = 1e6;
     gate->velocity_limit_m_per_s = 100.0;
     gate->position_limit_m = 10.0;
+    gate->reversal.force_N = 200.0;
+    gate->thermal.continuous_force_N = 100.0;
     gate->encoder = {.fastest_m_per_s = 100.0, .frozen_force_N = 200.0, .frozen_after_s = 1.0};
   }
   params.control.force_limit_N = 100.0;
   params.control.supervision.force_sensor.residual_limit_N = 200.0;
+  params.control.supervision.hand_sensor.residual_limit_N = 200.0;
   params.control.supervision.packets.longest_age_s = 10.0;
   loose_overload(params, plan);
   loose_pace(params, plan);
   for_ever(params);
 }
+/// So that there is a force to keep.
+void holds_firmly(Teleoperator::Params& params) { params.person.grip.stiffness_N_per_m *= 5.0; }
 /// A plan's other self, in which the defence is not asked: what that is, its element says.
 void unasked(Teleoperator::Params&, FaultPlan& plan) { plan.size = 1.0; }
 
@@ -127,7 +132,7 @@ std::vector<FaultRow> course_rows() {
        "by 1e-6 to 1e-3, or by 25 to 90 %, for 3 s",
        "a small drift stops nothing, a large one ends in hold",
        rate_drift,
-       {"the check of the pace", loose_pace}},
+       {"all limits", loose_limits}},
       {FaultKind::configurations_differ,
        "configurations-differ",
        "configurations differ",
@@ -135,6 +140,7 @@ std::vector<FaultRow> course_rows() {
        "never armed",
        configurations_differ,
        {"the comparison", unasked},
+       nullptr,
        false},
       {FaultKind::delay_asymmetric,
        "delay-asymmetric",
@@ -205,7 +211,8 @@ std::vector<FaultRow> course_rows() {
        "a live controller's drive is told the same for 1.5 s",
        "the drive lets go of it",
        stale_commands,
-       {"the drive's time-out", unasked}},
+       {"the drive's time-out", unasked},
+       holds_firmly},
   };
 }
 
@@ -255,7 +262,7 @@ void draw_course(FaultPlan& plan, signal::Random& random, double) {
       break;
     case FaultKind::stale_commands:
       plan.site = FaultSite::master;
-      plan.start_s = FaultPerson(plan, 0.0).deepest_after_s(plan.start_s);
+      plan.start_s = FaultPerson(plan, 0.0, false).deepest_after_s(plan.start_s);
       plan.length_s = 1.5;
       plan.size = drive_timeout_s;
       break;

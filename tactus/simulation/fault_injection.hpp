@@ -8,6 +8,7 @@
 #include <tactus/simulation/faulty_force_sensor.hpp>
 #include <tactus/simulation/faulty_peer.hpp>
 #include <tactus/simulation/faulty_person.hpp>
+#include <tactus/simulation/faulty_wiring.hpp>
 #include <tactus/simulation/internal/fault_schedule.hpp>
 
 #include <limits>
@@ -20,16 +21,21 @@ class FaultInjection {
   struct Site {
     FaultyClock clock;
     FaultyEncoder encoder;
+    FaultyWiring wiring;
     FaultyActuator actuator;
     FaultyPeer peer;
-    Site(const FaultPlan& plan, FaultSite site)
-        : clock(plan, site), encoder(plan, site), actuator(plan, site), peer(plan, site) {}
+    Site(const FaultPlan& plan, FaultSite site, double tick_s)
+        : clock(plan, site),
+          encoder(plan, site, tick_s),
+          wiring(plan, site),
+          actuator(plan, site, tick_s),
+          peer(plan, site) {}
   };
 
   FaultInjection(const FaultPlan& plan, double tick_s)
-      : master(plan, FaultSite::master),
-        slave(plan, FaultSite::slave),
-        force_sensor(plan),
+      : master(plan, FaultSite::master, tick_s),
+        slave(plan, FaultSite::slave, tick_s),
+        force_sensor(plan, tick_s),
         person(plan),
         plan_(plan),
         bad_(BadNumber::of(plan.choice)),

@@ -15,6 +15,8 @@ struct SiteHarm {
   double strayed_m = 0.0;
   double peak_force_N = 0.0;
   double release_s = 0.0;
+  double pressing_N = 0.0;
+  double drive_step_N = 0.0;
   static constexpr auto signals() {
     return std::tuple{observed("given_J", &SiteHarm::given_J, units::joule, "", "", "the motor gave it",
                                "Largest rise of the energy that the motor gave."),
@@ -25,7 +27,11 @@ struct SiteHarm {
                       observed("peak_force_N", &SiteHarm::peak_force_N, units::newton, "", "", "",
                                "Largest between the hand and the handle, or the tool and the wall."),
                       observed("release_s", &SiteHarm::release_s, units::second, "", "", "",
-                               "From the moment when no site was active until the motor gave no force for good.")};
+                               "From the moment when no site was active until the motor gave no force for good."),
+                      observed("pressing_N", &SiteHarm::pressing_N, units::newton, "", "", "",
+                               "Largest of it that lasts: low-passed over 0.1 s."),
+                      observed("drive_step_N", &SiteHarm::drive_step_N, units::newton, "", "", "",
+                               "Largest change in a tick of what the motor really gives, but for the fault's first.")};
   }
 };
 
@@ -45,9 +51,11 @@ struct FaultOutcome {
   double time_to_stop_s = 0.0;             ///< from the begin of the fault until no site was active
   double release_s = 0.0;                  ///< from then until both motors gave less than a small force for good
   std::int64_t detection_ticks = -1;       ///< from the begin of the fault to a latched fault or a hold; -1 is never
-  bool left_workspace = false;             ///< a device was beyond where its gate latches a fault, whatever it read
-  bool active_at_end = false;              ///< both, after clearing and arming where that was needed
-  double resume_step_N = 0.0;  ///< largest change of a force in a tick, from arming to 20 ms after following began
+  bool left_workspace = false;  ///< a device was a tenth beyond where its gate latches a fault, whatever it read
+  bool active_at_end = false;   ///< both, after clearing and arming where that was needed
+  double resume_step_N = 0.0;   ///< largest change of a force in a tick, from arming to 20 ms after following began
+  double fault_N = 0.0;         ///< largest force, slowly, by which the fault made a motor or a force sensor wrong
+  double winding_warmth = 0.0;  ///< of a motor without cooling; above 1 it is damaged
   SiteHarm master{}, slave{};
 };
 

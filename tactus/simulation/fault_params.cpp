@@ -20,6 +20,9 @@ FaultsParams::FaultsParams() {
     gate->encoder.frozen_force_N = 0.3;
     gate->energy = {
         .damp_above_J = 0.02, .hold_above_J = 0.05, .credit_J = 0.02, .drain_W = 0.05, .damping_N_s_per_m = 3.0};
+    // Neither a wall that throws the slave back nor a hand that pushes against the display gets there.
+    gate->reversal = {.force_N = 0.3, .gained_m_per_s = 0.1, .lasting_s = 0.003};
+    gate->thermal = {.continuous_force_N = 2.0, .time_constant_s = 10.0};
   }
   // A hand that turns around dwells within a count for up to 40 ms: docs/theory/safety.md.
   control.gate.encoder.frozen_after_s = 0.05;
@@ -28,6 +31,8 @@ FaultsParams::FaultsParams() {
   control.slave_gate.encoder.frozen_after_s = 0.015;
   control.handle_gate.rate_limit_N_per_s = 2000.0;
   control.supervision.force_sensor.residual_limit_N = 0.5;
+  control.supervision.hand_sensor.residual_limit_N = 0.6;
+  control.supervision.hold.release_s = 0.3;
 }
 
 }  // namespace tactus::simulation

@@ -17,10 +17,11 @@ constexpr auto enumerators(FaultsKind) { return std::array{Enumerator{FaultsKind
 struct HarmBounds {
   double given_J = 0.25;
   double speed_m_per_s = 2.5;
-  double strayed_m = 0.05;
+  double strayed_m = 0.15;
   double hand_force_N = 20.0;
   double tool_force_N = 90.0;
-  double release_s = 5.0;
+  double pressing_N = 10.0;
+  double release_s = 1.0;
   static constexpr auto fields() {
     return std::tuple{
         field("given_J", &HarmBounds::given_J, units::joule, positive, "Energy that a motor may give."),
@@ -31,6 +32,7 @@ struct HarmBounds {
         field("hand_force_N", &HarmBounds::hand_force_N, units::newton, positive, "Force between hand and handle."),
         field("tool_force_N", &HarmBounds::tool_force_N, units::newton, positive,
               "Force between the tool and what it touches."),
+        field("pressing_N", &HarmBounds::pressing_N, units::newton, positive, "Either of them where it lasts."),
         field("release_s", &HarmBounds::release_s, units::second, positive,
               "From the moment in which no site is active any more until the motors give no force.")};
   }

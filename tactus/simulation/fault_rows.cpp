@@ -10,14 +10,13 @@ using namespace fault_families;
 
 namespace {
 
-std::string_view broken_rule_of_all(const FaultRow& row, const FaultOutcome& outcome) {
+std::string_view broken_rule_of_all(const FaultOutcome& outcome) {
   if (outcome.not_finite > 0) return "an output was not finite";
   if (outcome.stale_applied > 0) return "a stale packet was applied";
   if (outcome.steps_above_rate > 0) return "a force step above the rate limit";
   if (outcome.forces_above_limit > 0) return "a force above the limit";
   if (outcome.active_without_arming > 0) return "a site followed again without arming";
   if (outcome.left_workspace) return "a device left its workspace";
-  if (row.ends_active && !outcome.active_at_end) return "not active again after clearing and arming";
   return {};
 }
 
@@ -28,12 +27,10 @@ std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bou
   if (std::max(master.strayed_m, slave.strayed_m) > bounds.strayed_m) return "handle or tool strayed too far";
   if (master.peak_force_N > bounds.hand_force_N) return "too much force on the hand";
   if (slave.peak_force_N > bounds.tool_force_N) return "too much force at the tool";
+  if (std::max(master.pressing_N, slave.pressing_N) > bounds.pressing_N) return "pressed too hard for long";
   if (outcome.release_s > bounds.release_s) return "not released in time";
   return {};
 }
-
-/// Stiffness of a firm grip over the operator's.
-constexpr double firm_grip = 5.0;
 
 bool detected(const FaultOutcome& outcome) { return outcome.detection_ticks >= 0; }
 
@@ -108,23 +105,25 @@ std::vector<FaultRow> fault_rows(std::string_view only) {
 
 Teleoperator::Params params_of(const FaultRow& row, const FaultsParams& params) {
   Teleoperator::Params of = params;
+  if (row.prepare != nullptr) row.prepare(of);
   // The wall with delay is for the monitor, and needs a controller that lets the hand be pushed about.
   if (row.kind == FaultKind::delayed_wall || row.kind == FaultKind::delay_asymmetric ||
       row.kind == FaultKind::delay_creeping) {
     of.control.cancellation = control::CancellationMode::off;
     of.person.grip.damping_N_s_per_m *= params.task.light_grip_fraction;
-    // Else its check could end what the monitor is to end.
+    // Else their checks could end what the monitor is to end.
     of.control.supervision.force_sensor.residual_limit_N = 100.0;
+    of.control.supervision.hand_sensor.residual_limit_N = 100.0;
+    of.control.gate.reversal.force_N = of.control.slave_gate.reversal.force_N = 100.0;
   }
-  // So that there is a force to keep.
-  if (row.kind == FaultKind::stale_commands) of.person.grip.stiffness_N_per_m *= firm_grip;
   if (!row.monitored) loosen_monitor(of);
   return of;
 }
 
 std::string_view broken_rule(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome,
                              const FaultsParams& params) {
-  if (const auto rule = broken_rule_of_all(row, outcome); !rule.empty()) return rule;
+  if (const auto rule = broken_rule_of_all(outcome); !rule.empty()) return rule;
+  if (row.resumes && !outcome.active_at_end) return "not active again after clearing and arming";
   if (outcome.given_J > params.task.diverged_above_J) return "diverged";
   if (const auto bound = broken_bound(outcome, params.task.bounds); !bound.empty()) return bound;
   return row.rule ? row.rule(plan, outcome, params) : std::string_view{};

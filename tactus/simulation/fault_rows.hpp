@@ -27,8 +27,9 @@ struct FaultRow {
   std::string_view expected;
   FaultRule rule = nullptr;  ///< besides those that hold for every run
   FaultControl control{};
-  bool ends_active = true;  ///< clearing and arming brings both sites back
-  bool monitored = true;    ///< false: the passivity monitor as loose as its bounds allow
+  void (*prepare)(Teleoperator::Params&) = nullptr;  ///< what the row's teleoperator has and others have not
+  bool resumes = true;    ///< false: somebody may have to move a device back before the sites follow again
+  bool monitored = true;  ///< false: the passivity monitor as loose as its bounds allow
 };
 
 /// Every row, or the one with the id `only`.

@@ -21,6 +21,10 @@ namespace {
 
 /// A motor that gives less than this share of its limit has let go.
 constexpr double released_share = 0.05;
+/// How far a device may coast beyond where its gate latches a fault, as a factor.
+constexpr double coasting = 1.1;
+/// A force that is wrong for less than this is hardly wrong.
+constexpr double slowly_s = 0.02;
 /// What a clamp holds a handle with.
 constexpr mechanics::LinearSpring::Params clamp{.stiffness_N_per_m = 20000.0, .damping_N_s_per_m = 50.0};
 
@@ -45,6 +49,7 @@ class FaultRun::Run {
     double motor_N = 0.0;
     double handle_N = 0.0;
     double drive_N = 0.0;
+    bool enabled = true;  ///< the line that switches the drive on
   };
 
   Run(const Teleoperator::Params& params, const FaultPlan& plan, const FaultPerson& person, Parts parts)
@@ -63,10 +68,12 @@ class FaultRun::Run {
         at_slave_(params.control.slave_gate.force_limit_N, params.control.slave_gate.rate_limit_N_per_s, tick_s_),
         of_master_(oldest_s(params, plan), tick_s_),
         of_slave_(oldest_s(params, plan), tick_s_),
-        judge_({person.wall_m(), person.depth_m(), released_share * params.control.gate.force_limit_N},
+        judge_({person.wall_m(), person.depth_m(), released_share * params.control.gate.force_limit_N, tick_s_},
                {params.environment.position_m, params.control.position_scale * person.depth_m(),
-                released_share * params.control.slave_gate.force_limit_N},
-               tick_s_) {
+                released_share * params.control.slave_gate.force_limit_N, tick_s_},
+               tick_s_),
+        misread_slowly_(slowly_s, tick_s_),
+        misdriven_slowly_(slowly_s, tick_s_) {
     ticks_ = std::lround((end_s() + fault_schedule::end_after_s) / tick_s_);
     of_master_.expect(ticks_);
     of_slave_.expect(ticks_);
@@ -102,11 +109,10 @@ class FaultRun::Run {
     return std::any_of(injections_.begin(), injections_.end(), [](const auto& injection) { return injection.cuts(); });
   }
 
-  control::SiteRequests requests() const;
-  double read_encoder(double position_m, FaultSite site);
-  double read_force_sensor(double force_N);
+  control::SiteRequests requests(FaultSite site) const;
+  void read(double& position_m, double& force_N, FaultSite site);
   void say(control::Packet& packet, FaultSite site);
-  double drive(double commanded_N, FaultSite site);
+  double drive(const Forces& told, FaultSite site);
   void hold_handle();
   void step_master();
   void step_slave();
@@ -129,6 +135,8 @@ class FaultRun::Run {
   Forces of_master_site_, of_slave_site_;
   FaultyPerson::Hand hand_ = FaultyPerson::Hand::holds;
   double clamped_at_m_ = 0.0;
+  double misread_N_ = 0.0;  ///< of the tip's force, by a fault
+  Lasting misread_slowly_, misdriven_slowly_;
   std::int64_t tick_ = 0;
   std::int64_t ticks_ = 0;
   bool missed_ = false;  ///< at this tick no site is stepped
@@ -138,7 +146,8 @@ Result<FaultRun::Run> FaultRun::Run::make(const Teleoperator::Params& params, co
   const auto clock = Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
   const Seconds tick{clock->tick_s};
-  const FaultPerson person(plan, params.environment.position_m / params.control.position_scale);
+  const FaultPerson person(plan, params.environment.position_m / params.control.position_scale,
+                           params.control.supervision.probe.force_N > 0.0);
   const double start_m = person.path_m(0.0);
   auto master = MasterPlant::make(params.master, params.person, *clock, start_m);
   if (!master) return master.error();
@@ -153,36 +162,38 @@ Result<FaultRun::Run> FaultRun::Run::make(const Teleoperator::Params& params, co
   return Run(params, plan, person, Parts{*clock, *master, *slave, *std::move(master_site), *std::move(slave_site)});
 }
 
-control::SiteRequests FaultRun::Run::requests() const {
+control::SiteRequests FaultRun::Run::requests(FaultSite site) const {
   control::SiteRequests pressed = FaultPerson::presses(moment().now_s, end_s(), judge_.rearms());
   for (const FaultInjection& injection : injections_) {
-    pressed = injection.person.presses(pressed, injection.moment());
+    pressed = injection.person.presses(pressed, site, injection.moment());
   }
   return pressed;
 }
 
-double FaultRun::Run::read_encoder(double position_m, FaultSite site) {
+/// Puts what reaches the site's inputs in place of what is true.
+void FaultRun::Run::read(double& position_m, double& force_N, FaultSite site) {
+  const double true_N = force_N;
   for (FaultInjection& injection : injections_) {
-    position_m = injection.at(site).encoder.step(position_m, injection.moment());
+    const FaultMoment& moment = injection.moment();
+    position_m = injection.at(site).encoder.step(position_m, moment);
+    if (site == FaultSite::slave) force_N = injection.force_sensor.step(force_N, moment);
+    injection.at(site).wiring.step(position_m, force_N, moment);
   }
-  return position_m;
+  if (site == FaultSite::slave) misread_N_ = force_N - true_N;
 }
 
-double FaultRun::Run::read_force_sensor(double force_N) {
-  for (FaultInjection& injection : injections_) force_N = injection.force_sensor.step(force_N, injection.moment());
+double FaultRun::Run::drive(const Forces& told, FaultSite site) {
+  double force_N = std::isfinite(told.motor_N) ? told.motor_N : 0.0;
+  for (FaultInjection& injection : injections_) {
+    FaultyActuator& actuator = injection.at(site).actuator;
+    force_N = actuator.step(force_N, told.enabled, injection.moment());
+    outcome_.winding_warmth = std::max(outcome_.winding_warmth, actuator.warmth());
+  }
   return force_N;
 }
 
 void FaultRun::Run::say(control::Packet& packet, FaultSite site) {
   for (FaultInjection& injection : injections_) injection.at(site).peer.step(packet, injection.moment());
-}
-
-double FaultRun::Run::drive(double commanded_N, FaultSite site) {
-  if (!std::isfinite(commanded_N)) return 0.0;
-  for (FaultInjection& injection : injections_) {
-    commanded_N = injection.at(site).actuator.step(commanded_N, injection.moment());
-  }
-  return commanded_N;
 }
 
 void FaultRun::Run::step_master() {
@@ -196,24 +207,25 @@ void FaultRun::Run::step_master() {
   if (master_.killed()) of_master_site_ = {};
   master_.receive(to_master_, tick_, injections_, tick_s_,
                   [&](const control::Packet& packet) { give(packet, parts_.master_site); });
-  control::SupervisedMaster::Input input{
-      .sensors = {.motor_position_m = read_encoder(reading.motor_position_m, FaultSite::master),
-                  .hand_force_N = reading.hand_force_N,
-                  .arrival = {},
-                  .grip = reading.grip},
-      .requests = requests(),
-      .elapsed_ticks = master_.elapsed_ticks()};
+  control::SupervisedMaster::Input input{.sensors = {.motor_position_m = reading.motor_position_m,
+                                                     .hand_force_N = reading.hand_force_N,
+                                                     .arrival = {},
+                                                     .grip = reading.grip},
+                                         .requests = requests(FaultSite::master),
+                                         .elapsed_ticks = master_.elapsed_ticks()};
+  read(input.sensors.motor_position_m, input.sensors.hand_force_N, FaultSite::master);
   for (const FaultInjection& injection : injections_) injection.spoil(FaultSite::master, input.sensors);
   if (!master_.stands_still()) {
     auto output = parts_.master_site.step(input);
     of_master_site_.motor_N = output.site.motor_force_N;
     of_master_site_.handle_N = output.site.handle_force_N;
+    of_master_site_.enabled = output.record.enabled;
     of_slave_.applied(output.record, tick_, outcome_);
     say(output.packet, FaultSite::master);
     of_master_.sent(output.packet, tick_);
     if (!cut()) to_slave_.send(output.packet, tick_, impaired_share(FaultSite::slave));
   }
-  of_master_site_.drive_N = drive(of_master_site_.motor_N, FaultSite::master);
+  of_master_site_.drive_N = drive(of_master_site_, FaultSite::master);
   at_master_.see(of_master_site_.motor_N, master_.excused(), outcome_);
   at_handle_.see(of_master_site_.handle_N, master_.excused(), outcome_);
 }
@@ -229,22 +241,22 @@ void FaultRun::Run::step_slave() {
   slave_.receive(to_slave_, tick_, injections_, tick_s_,
                  [&](const control::Packet& packet) { give(packet, parts_.slave_site); });
   control::SupervisedSlave::Input input{
-      .sensors = {.motor_position_m = read_encoder(reading.motor_position_m, FaultSite::slave),
-                  .tip_force_N = read_force_sensor(reading.tip_force_N),
-                  .arrival = {}},
-      .requests = requests(),
+      .sensors = {.motor_position_m = reading.motor_position_m, .tip_force_N = reading.tip_force_N, .arrival = {}},
+      .requests = requests(FaultSite::slave),
       .elapsed_ticks = slave_.elapsed_ticks()};
+  read(input.sensors.motor_position_m, input.sensors.tip_force_N, FaultSite::slave);
   for (const FaultInjection& injection : injections_) injection.spoil(FaultSite::slave, input.sensors);
   if (!slave_.stands_still()) {
     auto output = parts_.slave_site.step(input);
     of_slave_site_.motor_N = output.site.motor_force_N;
+    of_slave_site_.enabled = output.record.enabled;
     of_master_.applied(output.record, tick_, outcome_);
     say(output.packet, FaultSite::slave);
     of_slave_.sent(output.packet, tick_);
     // It arrives at the next tick at the earliest.
     if (!cut()) to_master_.send(output.packet, tick_ + 1, impaired_share(FaultSite::master));
   }
-  of_slave_site_.drive_N = drive(of_slave_site_.motor_N, FaultSite::slave);
+  of_slave_site_.drive_N = drive(of_slave_site_, FaultSite::slave);
   at_slave_.see(of_slave_site_.motor_N, slave_.excused(), outcome_);
 }
 
@@ -263,11 +275,16 @@ void FaultRun::Run::hold_handle() {
 
 void FaultRun::Run::advance() {
   const double now_s = moment().now_s;
+  const MasterPlant::Command command{.motor_force_N = of_master_site_.drive_N,
+                                     .handle_force_N = of_master_site_.handle_N};
   hold_handle();
-  const bool clamped = hand_ == FaultyPerson::Hand::is_clamped;
-  parts_.master.begin_tick({.motor_force_N = of_master_site_.drive_N, .handle_force_N = of_master_site_.handle_N},
-                           clamped ? clamped_at_m_ : person_.path_m(now_s),
-                           clamped ? clamped_at_m_ : person_.path_m(now_s + tick_s_));
+  if (hand_ == FaultyPerson::Hand::is_clamped) {
+    const mechanics::Operator::Output pushed = injections_.front().person.pushed(moment());
+    parts_.master.begin_tick(
+        command, {.position_m = clamped_at_m_ + pushed.position_m, .velocity_m_per_s = pushed.velocity_m_per_s});
+  } else {
+    parts_.master.begin_tick(command, person_.path_m(now_s), person_.path_m(now_s + tick_s_));
+  }
   parts_.slave.begin_tick(of_slave_site_.drive_N);
   for (int i = 0; i < parts_.clock.substeps; ++i) {
     parts_.master.substep(i);
@@ -276,10 +293,16 @@ void FaultRun::Run::advance() {
 }
 
 void FaultRun::Run::judge() {
+  if (moment().during) {
+    const auto wrong_N = [](const Forces& of) { return of.enabled ? of.drive_N - of.motor_N : 0.0; };
+    const double misdriven_N = wrong_N(of_master_site_) + wrong_N(of_slave_site_);  // at most one is
+    outcome_.fault_N = std::max(
+        {outcome_.fault_N, std::fabs(misread_slowly_.see(misread_N_)), std::fabs(misdriven_slowly_.see(misdriven_N))});
+  }
   const auto view = [](control::SiteState state, bool gone, double step_N, const control::SafetyGate::Params& gate,
                        const mechanics::CableChain& mechanism, double drive_N, double outside_N) {
     const bool left =
-        std::fabs(mechanism.motor_position_m()) >= control::SafetyGate::fault_factor * gate.position_limit_m;
+        std::fabs(mechanism.motor_position_m()) >= coasting * control::SafetyGate::fault_factor * gate.position_limit_m;
     return FaultJudge::SiteView{.state = state,
                                 .gone = gone,
                                 .step_N = step_N,

@@ -15,6 +15,8 @@ void add(SiteHarm& worst, const SiteHarm& one) {
   worst.strayed_m = std::max(worst.strayed_m, one.strayed_m);
   worst.peak_force_N = std::max(worst.peak_force_N, one.peak_force_N);
   worst.release_s = std::max(worst.release_s, one.release_s);
+  worst.pressing_N = std::max(worst.pressing_N, one.pressing_N);
+  worst.drive_step_N = std::max(worst.drive_step_N, one.drive_step_N);
 }
 
 void add(FaultOutcome& worst, const FaultOutcome& one) {
@@ -27,6 +29,8 @@ void add(FaultOutcome& worst, const FaultOutcome& one) {
   worst.given_J = std::max(worst.given_J, one.given_J);
   worst.resume_step_N = std::max(worst.resume_step_N, one.resume_step_N);
   worst.release_s = std::max(worst.release_s, one.release_s);
+  worst.fault_N = std::max(worst.fault_N, one.fault_N);
+  worst.winding_warmth = std::max(worst.winding_warmth, one.winding_warmth);
   add(worst.master, one.master);
   add(worst.slave, one.slave);
 }

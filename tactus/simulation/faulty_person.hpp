@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/control/site_supervisor.hpp>
+#include <tactus/mechanics/operator.hpp>
 #include <tactus/simulation/fault_moment.hpp>
 #include <tactus/simulation/internal/fault_schedule.hpp>
 
@@ -19,8 +20,20 @@ class FaultyPerson {
     if (plan_.kind == FaultKind::hand_lets_go || stuck_in_use()) return Hand::lets_go;
     return plan_.kind == FaultKind::handle_clamped ? Hand::is_clamped : Hand::holds;
   }
-  /// What reaches the sites of what is `pressed`. Once a tick. Real-time safe.
-  [[nodiscard]] control::SiteRequests presses(control::SiteRequests pressed, const FaultMoment& moment) const noexcept {
+  /// How far a clamp has pushed the handle from where it was, and how fast: by `size`, in the time below.
+  [[nodiscard]] mechanics::Operator::Output pushed(const FaultMoment& moment) const noexcept {
+    const double share = moment.since_s / push_s;
+    if (share >= 1.0) return {.position_m = plan_.size, .velocity_m_per_s = 0.0};
+    return {.position_m = share * plan_.size, .velocity_m_per_s = plan_.size / push_s};
+  }
+  /// What reaches a site of what is `pressed`. Once a tick. Real-time safe.
+  [[nodiscard]] control::SiteRequests presses(control::SiteRequests pressed, FaultSite site,
+                                              const FaultMoment& moment) const noexcept {
+    // A dead-man switch in the handle goes with the hand, and is not pressed again by itself; of size 1 it is a pedal.
+    const bool in_handle = plan_.kind == FaultKind::hand_lets_go && plan_.size == 0.0;
+    const bool cleared = moment.since_s > plan_.length_s + fault_schedule::clear_after_s;
+    if (in_handle && !moment.before && !cleared) pressed.dead_man = false;
+    if (plan_.kind == FaultKind::emergency_stop && moment.during && plan_.site == site) pressed.emergency_stop = true;
     switch (plan_.kind) {
       case FaultKind::dead_man_stuck:
         if (moment.during && plan_.size == 0.0) pressed.dead_man = true;
@@ -40,6 +53,7 @@ class FaultyPerson {
   }
 
  private:
+  static constexpr double push_s = 0.3;
   static constexpr double notices_s = 0.3;
 
   /// The dead-man switch sticks while the sites follow, and the person goes away; else from the start of the session.

@@ -35,10 +35,14 @@ class MasterPlant {
   Reading measure() noexcept;
   /// The person intends to be at `path_m` now and at `path_at_next_tick_m` then.
   void begin_tick(const Command& command, double path_m, double path_at_next_tick_m) noexcept {
+    begin_tick(command, person_.step({.path_m = path_m,
+                                      .path_at_next_tick_m = path_at_next_tick_m,
+                                      .handle_position_m = device_.mechanism().tip_position_m()}));
+  }
+  /// What holds the handle wants it at `aim`, as a clamp does, which corrects nothing.
+  void begin_tick(const Command& command, const mechanics::Operator::Output& aim) noexcept {
     next_ = command;
-    aim_ = person_.step({.path_m = path_m,
-                         .path_at_next_tick_m = path_at_next_tick_m,
-                         .handle_position_m = device_.mechanism().tip_position_m()});
+    aim_ = aim;
     ++ticks_;
   }
   /// The person holds the handle as that of `other` is held, from the next substep on, and the other way round.
