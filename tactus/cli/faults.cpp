@@ -26,6 +26,7 @@ struct FaultsOptions {
   std::optional<std::string> file;
   std::vector<std::string> set;
   std::optional<std::int64_t> seeds;
+  std::optional<std::string> only;
   std::optional<std::string> out;
   bool json = false;
   bool real_time = false;
@@ -40,6 +41,9 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
   if (!document) return document.error();
   if (options.seeds) {
     if (auto error = document->set("task.seeds=" + std::to_string(*options.seeds))) return error;
+  }
+  if (options.only) {
+    if (auto error = document->set("task.only=\"" + *options.only + "\"")) return error;
   }
   if (options.out) {
     if (auto error = check_writable(*options.out)) return error;
@@ -76,6 +80,7 @@ void add_faults(CLI::App& app, const std::string& command, int& status) {
   faults->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind faults; else the built-in one");
   add_set_option(*faults, options->set);
   faults->add_option("--seeds", options->seeds, "Runs of each fault");
+  faults->add_option("--only", options->only, "One fault by its id, as the rows of --json have it");
   faults->add_option("--out", options->out, "Folder for report.html, results.json and the figure")->type_name("DIR");
   faults->add_flag("--json", options->json, "Print one JSON document and nothing else");
   CLI::Option* real_time = faults->add_flag("--realtime", options->real_time,

@@ -10,6 +10,7 @@ SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
   if (input.force_sensor) return SiteCause::force_sensor;
   if (input.stalled) return SiteCause::stalled;
   if (input.overloaded) return SiteCause::overloaded;
+  if (input.out_of_pace) return SiteCause::pace;
   if (input.silent) return SiteCause::silent;
   if (input.probe != SiteCause::none) return input.probe;
   if (input.unanswered) return SiteCause::unanswered;

@@ -27,7 +27,8 @@ enum class SiteCause {
   probe_still,
   probe_astray,
   emergency_stop,
-  disagreement
+  disagreement,
+  pace
 };
 constexpr auto enumerators(SiteCause) {
   return std::array{Enumerator{SiteCause::none, "none"},
@@ -46,7 +47,8 @@ constexpr auto enumerators(SiteCause) {
                     Enumerator{SiteCause::probe_still, "probe-still"},
                     Enumerator{SiteCause::probe_astray, "probe-astray"},
                     Enumerator{SiteCause::emergency_stop, "emergency-stop"},
-                    Enumerator{SiteCause::disagreement, "disagreement"}};
+                    Enumerator{SiteCause::disagreement, "disagreement"},
+                    Enumerator{SiteCause::pace, "pace"}};
 }
 
 enum class SiteRole { master, slave };
@@ -101,6 +103,7 @@ class SiteSupervisor {
     bool unanswered = false;            ///< the slave has not followed the arming for too long
     bool stalled = false;               ///< this site was not stepped for too long
     bool overloaded = false;            ///< this site was not stepped too often
+    bool out_of_pace = false;           ///< the other site's clock is not this one's
     bool force_sensor = false;          ///< the force sensor cannot be right
     SiteCause probe = SiteCause::none;  ///< why the sign probe was not passed
     bool proved = true;                 ///< the sign probe was passed, or nobody asks for one

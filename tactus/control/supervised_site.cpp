@@ -8,8 +8,8 @@ namespace tactus::control {
 namespace {
 
 template <class Site>
-void fill(SiteRecord& record, const Site& site, SiteState state) noexcept {
-  record.enabled = state != SiteState::configure && (state != SiteState::fault || site.passes_a_force());
+void fill(SiteRecord& record, const Site& site, const Supervision& supervision) noexcept {
+  record.enabled = supervision.state() != SiteState::configure && (!supervision.lets_go() || site.passes_a_force());
   record.limit = static_cast<std::int64_t>(site.limit());
   record.fault = static_cast<std::int64_t>(site.fault());
   record.given_J = site.gate().given_J();
@@ -18,10 +18,19 @@ void fill(SiteRecord& record, const Site& site, SiteState state) noexcept {
 }  // namespace
 
 SupervisedMaster::Output SupervisedMaster::step(const Input& input) noexcept {
-  const SiteState state =
-      supervision_.decide({.requests = input.requests, .elapsed_ticks = input.elapsed_ticks, .fault = site_.fault()});
-  if (supervision_.rearms()) site_.rearm();
-  if (state == SiteState::fault) site_.let_go();
+  const bool contradicts =
+      std::isfinite(input.sensors.hand_force_N) && hand_sensor_.step({.acted_N = site_.gate().passed_N(),
+                                                                      .tip_force_N = -input.sensors.hand_force_N,
+                                                                      .elapsed_ticks = input.elapsed_ticks});
+  const SiteState state = supervision_.decide({.requests = input.requests,
+                                               .elapsed_ticks = input.elapsed_ticks,
+                                               .fault = site_.fault(),
+                                               .force_sensor = contradicts});
+  if (supervision_.rearms()) {
+    site_.rearm();
+    hand_sensor_.reset();
+  }
+  if (supervision_.lets_go()) site_.let_go();
   const bool follows = state == SiteState::active && !input.requests.clutch;
 
   MasterInput sensors = input.sensors;
@@ -39,7 +48,7 @@ SupervisedMaster::Output SupervisedMaster::step(const Input& input) noexcept {
   Message message = output.site.message;
   message.position_m = told_m_;
   output.packet = supervision_.packet(message);
-  fill(output.record, site_, state);
+  fill(output.record, site_, supervision_);
   output.record.offset_m = offset_m_;
   return output;
 }
@@ -60,7 +69,7 @@ SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
     const bool was_released = supervision_.before() == SiteState::hold;
     if (state == SiteState::align || was_released) supervision_.stand(input.sensors.motor_position_m);
   }
-  if (state == SiteState::fault) site_.let_go();
+  if (supervision_.lets_go()) site_.let_go();
   if (supervision_.probes()) supervision_.stand(input.sensors.motor_position_m);
   SlaveInput sensors = input.sensors;
   sensors.arrival = supervision_.arrival(0.0);
@@ -70,7 +79,7 @@ SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
   Output output{
       .site = site_.step(sensors, share, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
   output.packet = supervision_.packet(output.site.message);
-  fill(output.record, site_, state);
+  fill(output.record, site_, supervision_);
   return output;
 }
 
@@ -80,7 +89,9 @@ Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std
   const auto supervision =
       Supervision::make(params.supervision, SiteRole::master, session, dt, agreement_of(params, dt));
   if (!supervision) return under("supervision", supervision.error());
-  return SupervisedMaster(std::move(sites->master), *supervision);
+  const auto hand_sensor = ForceSensorCheck::make(params.supervision.hand_sensor, dt);
+  if (!hand_sensor) return under("supervision.hand_sensor", hand_sensor.error());
+  return SupervisedMaster(std::move(sites->master), *supervision, *hand_sensor);
 }
 
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt) {

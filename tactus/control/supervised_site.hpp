@@ -25,8 +25,8 @@ class SupervisedMaster {
     SiteRecord record;
   };
 
-  SupervisedMaster(MasterSite site, const Supervision& supervision)
-      : site_(std::move(site)), supervision_(supervision) {}
+  SupervisedMaster(MasterSite site, const Supervision& supervision, const ForceSensorCheck& hand_sensor)
+      : site_(std::move(site)), supervision_(supervision), hand_sensor_(hand_sensor) {}
 
   /// A packet that has come; any number of them before `step`. Real-time safe.
   PacketVerdict take(const Packet& packet) noexcept { return supervision_.take(packet); }
@@ -40,6 +40,7 @@ class SupervisedMaster {
  private:
   MasterSite site_;
   Supervision supervision_;
+  ForceSensorCheck hand_sensor_;  ///< the hand resists the motor as a wall does a slave
   double told_m_ = 0.0;
   double offset_m_ = 0.0;
 };

@@ -42,6 +42,9 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   if (!answer) return answer.error();
   const auto overload = OverloadCheck::make(params.overload, dt);
   if (!overload) return under("overload", overload.error());
+  const auto pace = PaceCheck::make(
+      {.slack_s = params.packets.longest_age_s + params.watchdog.timeout_s, .tolerance_share = params.pace_share}, dt);
+  if (!pace) return pace.error();
   const auto probe = SignProbe::make(params.probe, dt);
   if (!probe) return under("probe", probe.error());
   const double tried_after_s = params.blend_s + params.probe.duration_s;
@@ -55,12 +58,16 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   }
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *probe, *supervisor, role, params, session, dt,
-                     agreement);
+  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *pace, *probe, *supervisor, role, params,
+                     session, dt, agreement);
 }
 
 PacketVerdict Supervision::take(const Packet& packet) noexcept {
-  const PacketVerdict verdict = judge_.step(packet);
+  // A packet tells the cell that its number names: one that does not is an old one under a new number.
+  const AgreementExcerpt& said = packet.agreement;
+  const bool renumbered =
+      said.digest == agreement_.own().digest() && said.cell != agreement_.own().excerpt(packet.sequence).cell;
+  const PacketVerdict verdict = renumbered ? PacketVerdict::stale : judge_.step(packet);
   if (verdict == PacketVerdict::applied) {
     newest_ = packet;
     agreement_.take(packet.session, packet.agreement);
@@ -90,21 +97,24 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
   if (!guards && fresh_) watchdog_.reset();
   const bool silent = watchdog_.step({.heard = fresh_, .elapsed_ticks = elapsed_ticks_});
   proved_ = proved_ || probe_.verdict() == ProbeVerdict::passed;
-  supervisor_.step({.requests = sight.requests,
-                    .heard = newest_.session != 0,
-                    .session = newest_.session,
-                    .peer = newest_.state,
-                    .peer_armings = newest_.armings,
-                    .disagrees = agreement_.disagrees(),
-                    .silent = silent,
-                    .unanswered = unanswered(),
-                    .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
-                    .overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_}),
-                    .force_sensor = sight.force_sensor,
-                    .probe = cause_of(probe_.verdict()),
-                    .proved = proved_,
-                    .energy = sight.fault == GateFault::energy,
-                    .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
+  supervisor_.step(
+      {.requests = sight.requests,
+       .heard = newest_.session != 0,
+       .session = newest_.session,
+       .peer = newest_.state,
+       .peer_armings = newest_.armings,
+       .disagrees = agreement_.disagrees(),
+       .silent = silent,
+       .unanswered = unanswered(),
+       .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
+       .overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_}),
+       .out_of_pace = pace_.step(
+           {.following = before_ == SiteState::active, .sequence = newest_.sequence, .elapsed_ticks = elapsed_ticks_}),
+       .force_sensor = sight.force_sensor,
+       .probe = cause_of(probe_.verdict()),
+       .proved = proved_,
+       .energy = sight.fault == GateFault::energy,
+       .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
   if (arms_from_rest()) proved_ = !must_be_proved_;
   if (role_ == SiteRole::master || !probes()) answered_arming_ = supervisor_.armings();
   return state();

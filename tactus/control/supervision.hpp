@@ -4,6 +4,7 @@
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
 #include <tactus/control/overload_check.hpp>
+#include <tactus/control/pace_check.hpp>
 #include <tactus/control/packet.hpp>
 #include <tactus/control/sign_probe.hpp>
 #include <tactus/control/site_supervisor.hpp>
@@ -34,9 +35,11 @@ struct SupervisionParams {
   MessageFollower::Params silence;
   Watchdog::Params watchdog;
   ForceSensorCheck::Params force_sensor;
+  ForceSensorCheck::Params hand_sensor{.residual_limit_N = 200.0};
   OverloadCheck::Params overload;
   SignProbe::Params probe;
   HoldParams hold;
+  double pace_share = 0.25;
   double longest_stall_s = 0.02;
   double answer_within_s = 1.0;
   double blend_s = 0.1;
@@ -46,9 +49,15 @@ struct SupervisionParams {
         field("silence", &SupervisionParams::silence, "What stands in their place when none come."),
         field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
         field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
+        field("hand_sensor", &SupervisionParams::hand_sensor,
+              "When the master's motor and the force sensor at the hand contradict one another; for a master that has "
+              "such a sensor, else out of reach."),
         field("overload", &SupervisionParams::overload, "How many ticks a site may miss before it holds."),
         field("probe", &SupervisionParams::probe, "The force with which a site tries its motor when it is armed."),
         field("hold", &SupervisionParams::hold, "What becomes of a force when the site holds."),
+        field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),
+              "Share by which the other site's clock may run slower or faster before the site holds; above what it may "
+              "miss of its ticks."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
         field(
@@ -123,7 +132,8 @@ struct SiteRecord {
         observed("applied_sequence", &SiteRecord::applied_sequence, units::none, "", "", "", "Its sequence."),
         observed("refused", &SiteRecord::refused, units::none, "", "", "", "Packets so far that were not applied."),
         observed("enabled", &SiteRecord::enabled, units::none, "", "", "",
-                 "The drive may have power: not in configure, and in fault only until the force is zero."),
+                 "The drive may have power: not in configure, and in fault, or where motor and force sensor contradict "
+                 "one another, only until the force is zero."),
         observed("fresh", &SiteRecord::fresh, units::none, "", "", "", "A packet was applied at this tick."),
         observed("silence_s", &SiteRecord::silence_s, units::second, "", "", "", "Since a packet was applied."),
         observed("share", &SiteRecord::share, units::none, "", "", "", "Of the controller's force that is let in."),
@@ -173,6 +183,12 @@ class Supervision {
   void stand(double position_m) noexcept { follower_.settle(position_m); }
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
+  /// Whether the motor must get no force any more: in `fault`, and in a `hold` because motor and force sensor
+  /// contradict one another, when the motor may be what is wrong.
+  [[nodiscard]] bool lets_go() const noexcept {
+    const bool contradicts = state() == SiteState::hold && supervisor_.cause() == SiteCause::force_sensor;
+    return state() == SiteState::fault || contradicts;
+  }
   [[nodiscard]] SiteState before() const noexcept { return before_; }
   /// What the other site has in common with this one.
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }
@@ -185,7 +201,7 @@ class Supervision {
   [[nodiscard]] bool unanswered() noexcept;
   [[nodiscard]] bool arms_from_rest() const noexcept;
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
-              const Watchdog& answer, const OverloadCheck& overload, const SignProbe& probe,
+              const Watchdog& answer, const OverloadCheck& overload, const PaceCheck& pace, const SignProbe& probe,
               const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params, std::int64_t session,
               Seconds dt, const Agreement& agreement)
       : judge_(judge),
@@ -193,6 +209,7 @@ class Supervision {
         watchdog_(watchdog),
         answer_(answer),
         overload_(overload),
+        pace_(pace),
         probe_(probe),
         supervisor_(supervisor),
         role_(role),
@@ -210,6 +227,7 @@ class Supervision {
   Watchdog watchdog_;
   Watchdog answer_;  ///< of the slave to an arming
   OverloadCheck overload_;
+  PaceCheck pace_;
   SignProbe probe_;
   SiteSupervisor supervisor_;
   SiteRole role_;

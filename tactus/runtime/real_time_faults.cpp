@@ -57,13 +57,13 @@ Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& r
   ServoThreadParams clock = servo;
   clock.rate_Hz = params->servo.rate_Hz;
   if (auto error = check_servo_thread(clock)) return *std::move(error);
-  const auto tallies = simulation::run_faults(*params, [&progress](double done) { progress(0.5 * done); });
-  if (!tallies) return request.document.locate(tallies.error());
+  const auto table = simulation::run_faults(*params, [&progress](double done) { progress(0.5 * done); });
+  if (!table) return request.document.locate(table.error());
 
   simulation::FaultsInRealTime real{.params = *params, .tallies = {}, .timing = {}, .timing_json = {}};
   real.params.task.seeds = params->task.real_time_seeds;
   real.params.task.longest_cut_s = std::min(longest_cut_s, params->task.longest_cut_s);
-  const auto rows = simulation::fault_rows();
+  const auto rows = simulation::fault_rows(params->task.only);
   std::vector<FaultRun> runs;
   for (const auto& row : rows) {
     const auto of = simulation::params_of(row, real.params);
@@ -83,8 +83,8 @@ Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& r
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const auto first = outcomes->begin() + static_cast<std::ptrdiff_t>(std::min(row * seeds, outcomes->size()));
     const auto last = outcomes->begin() + static_cast<std::ptrdiff_t>(std::min((row + 1) * seeds, outcomes->size()));
-    real.tallies.push_back(simulation::tally(rows[row], real.params, simulation::draw_plans(rows[row], real.params),
-                                             {first, last}));
+    real.tallies.push_back(
+        simulation::tally(rows[row], real.params, simulation::draw_plans(rows[row], real.params), {first, last}));
   }
   real.timing = {timing_table(kept), late_ticks_table(kept)};
   real.timing_json = servo_json(kept);
@@ -94,7 +94,7 @@ Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& r
     table.add_row({std::to_string(outcomes->size()), std::to_string(runs.size())});
     real.timing.insert(real.timing.begin(), table);
   }
-  auto outcome = simulation::present_faults(request, *params, *tallies, real);
+  auto outcome = simulation::present_faults(request, *params, *table, real);
   if (interrupted) {
     auto document = nlohmann::ordered_json::parse(outcome.json);
     document["real_time"]["interrupted"] = {{"runs", outcomes->size()}, {"of", runs.size()}};

@@ -11,7 +11,8 @@ namespace tactus::simulation {
 /// One input, one value, one state of the site that reads it.
 struct BadNumber {
   enum class Input { position, force, grip, told_position, told_velocity, told_force, told_wave, told_energy, age };
-  static constexpr std::int64_t inputs = 9;
+  static constexpr std::int64_t master_inputs = 9;
+  static constexpr std::int64_t slave_inputs = 8;  ///< no grip
   static constexpr std::array values{std::numeric_limits<double>::quiet_NaN(),
                                      std::numeric_limits<double>::infinity(),
                                      -std::numeric_limits<double>::infinity(),
@@ -22,7 +23,7 @@ struct BadNumber {
                                      control::SiteState::armed,     control::SiteState::active,
                                      control::SiteState::hold,      control::SiteState::fault};
   static constexpr std::int64_t choices =
-      2 * inputs * static_cast<std::int64_t>(values.size()) * static_cast<std::int64_t>(states.size());
+      (master_inputs + slave_inputs) * static_cast<std::int64_t>(values.size() * states.size());
 
   bool at_master = true;
   Input input = Input::position;
@@ -39,8 +40,11 @@ struct BadNumber {
     };
     bad.state = states[static_cast<std::size_t>(take(static_cast<std::int64_t>(states.size())))];
     bad.value = values[static_cast<std::size_t>(take(static_cast<std::int64_t>(values.size())))];
-    bad.input = static_cast<Input>(take(inputs));
-    bad.at_master = take(2) == 0;
+    const std::int64_t input = take(master_inputs + slave_inputs);
+    bad.at_master = input < master_inputs;
+    const std::int64_t of_slave = input - master_inputs;
+    const std::int64_t skipped = of_slave >= static_cast<std::int64_t>(Input::grip) ? 1 : 0;
+    bad.input = static_cast<Input>(bad.at_master ? input : of_slave + skipped);
     return bad;
   }
 

@@ -6,6 +6,7 @@
 #include <tactus/simulation/presentation.hpp>
 #include <tactus/simulation/tapping.hpp>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -49,6 +50,41 @@ report::Table outcome_table(const std::vector<FaultTally>& tallies, const std::s
   return table;
 }
 
+report::Table harm_table(const std::vector<FaultTally>& tallies, const std::string& time) {
+  using Align = report::Column::Align;
+  report::Table table({{"fault", "", Align::left},
+                       {"master gave", "J"},
+                       {"slave gave", "J"},
+                       {"handle", "m/s"},
+                       {"tool", "m/s"},
+                       {"handle strayed", "mm"},
+                       {"tool strayed", "mm"},
+                       {"on the hand", "N"},
+                       {"at the tool", "N"},
+                       {"release", "ms"}},
+                      "What a fault did until the person cleared it, at most (" + time + " time)");
+  for (const FaultTally& tally : tallies) {
+    const SiteHarm &master = tally.worst.master, &slave = tally.worst.slave;
+    table.add_row({std::string(tally.row.name), report::number(master.given_J, 3), report::number(slave.given_J, 3),
+                   report::number(master.speed_m_per_s, 3), report::number(slave.speed_m_per_s, 3),
+                   report::number(1e3 * master.strayed_m, 3), report::number(1e3 * slave.strayed_m, 3),
+                   report::number(master.peak_force_N, 3), report::number(slave.peak_force_N, 3),
+                   tally.stopped > 0 ? report::number(1e3 * tally.worst.release_s, 4) : "-"});
+  }
+  return table;
+}
+
+report::Table control_table(const std::vector<FaultTally>& controls) {
+  using Align = report::Column::Align;
+  report::Table table({{"fault", "", Align::left}, {"switched off", "", Align::left}, {"not survived"}},
+                      "Controls: the same plans without what defends, which most must not survive");
+  for (const FaultTally& tally : controls) {
+    table.add_row({std::string(tally.row.name), std::string(tally.row.control.off),
+                   of(tally.tried - tally.survived, tally.tried)});
+  }
+  return table;
+}
+
 report::Table rule_table(const std::vector<FaultTally>& tallies, const std::string& time) {
   using Align = report::Column::Align;
   report::Table table({{"fault", "", Align::left},
@@ -85,6 +121,15 @@ std::string failures_text(const FaultTally& tally) {
   return text;
 }
 
+/// The trips of the row without a fault.
+std::string clean_text(const std::vector<FaultTally>& tallies, const std::string& time) {
+  const auto clean = std::find_if(tallies.begin(), tallies.end(),
+                                  [](const FaultTally& tally) { return tally.row.kind == FaultKind::none; });
+  if (clean == tallies.end()) return {};
+  return " Clean data: " + std::to_string(clean->detected) + " trips in " +
+         report::number(clean->simulated_s / 3600.0, 3) + " h of " + time + " time.";
+}
+
 std::string summary(const FaultsParams& params, const std::vector<FaultTally>& tallies, const std::string& time) {
   std::int64_t survived = 0, tried = 0;
   std::string text;
@@ -97,24 +142,62 @@ std::string summary(const FaultsParams& params, const std::vector<FaultTally>& t
     tried += tally.tried;
     text += failures_text(tally);
   }
-  const FaultTally& clean = tallies.front();
   return "Survived " + of(survived, tried) + " runs. Rate limit a tick: " +
-         report::number(params.control.gate.rate_limit_N_per_s / params.servo.rate_Hz, 3) +
-         " N. Clean data: " + std::to_string(clean.detected) + " trips in " +
-         report::number(clean.simulated_s / 3600.0, 3) + " h of " + time + " time.\n" + text;
+         report::number(params.control.gate.rate_limit_N_per_s / params.servo.rate_Hz, 3) + " N." +
+         clean_text(tallies, time) + "\n" + text;
+}
+
+/// How many controls failed as they must.
+std::string control_summary(const std::vector<FaultTally>& controls) {
+  std::string text;
+  std::int64_t failed = 0;
+  for (const FaultTally& tally : controls) {
+    failed += tally.fails() ? 1 : 0;
+    if (!tally.fails()) text += std::string(tally.row.name) + ": the control survives, so the row shows nothing.\n";
+  }
+  return of(failed, static_cast<std::int64_t>(controls.size())) +
+         " controls failed in half of their runs or more, as they must.\n" + text;
 }
 
 using Json = nlohmann::ordered_json;
+
+Json failures_json(const FaultTally& tally) {
+  Json failures = Json::array();
+  for (const FaultFailure& failure : tally.failures) {
+    failures.push_back({{"number", failure.number}, {"rule", failure.rule}});
+  }
+  return failures;
+}
+
+/// The figures of a described record by their keys.
+Json json_of(const SiteHarm& harm) {
+  Json document = Json::object();
+  for_each_signal<SiteHarm>([&](const auto& signal) { document[signal.name] = harm.*signal.member; });
+  return document;
+}
+
+Json controls_json(const std::vector<FaultTally>& controls) {
+  Json rows = Json::array();
+  for (const FaultTally& tally : controls) {
+    rows.push_back({{"id", tally.row.id},
+                    {"fault", tally.row.name},
+                    {"off", tally.row.control.off},
+                    {"as_expected", tally.fails()},
+                    {"tried", tally.tried},
+                    {"failed", tally.tried - tally.survived},
+                    {"master", json_of(tally.worst.master)},
+                    {"slave", json_of(tally.worst.slave)},
+                    {"not_survived", failures_json(tally)}});
+  }
+  return rows;
+}
 
 Json json_of(const std::vector<FaultTally>& tallies) {
   Json rows = Json::array();
   for (const FaultTally& tally : tallies) {
     const FaultOutcome& worst = tally.worst;
-    Json failures = Json::array();
-    for (const FaultFailure& failure : tally.failures) {
-      failures.push_back({{"number", failure.number}, {"rule", failure.rule}});
-    }
-    rows.push_back({{"fault", tally.row.name},
+    rows.push_back({{"id", tally.row.id},
+                    {"fault", tally.row.name},
                     {"injected", tally.row.injected},
                     {"expected", tally.row.expected},
                     {"monitor", tally.row.monitored ? "on" : "as loose as its bounds allow"},
@@ -137,12 +220,15 @@ Json json_of(const std::vector<FaultTally>& tallies) {
                     {"steps_above_rate_limit", worst.steps_above_rate},
                     {"forces_above_limit", worst.forces_above_limit},
                     {"active_without_arming", worst.active_without_arming},
-                    {"not_survived", std::move(failures)}});
+                    {"release_most_s", worst.release_s},
+                    {"master", json_of(worst.master)},
+                    {"slave", json_of(worst.slave)},
+                    {"not_survived", failures_json(tally)}});
   }
   return rows;
 }
 
-std::string json_of(const Request& request, const FaultsParams& params, const std::vector<FaultTally>& tallies,
+std::string json_of(const Request& request, const FaultsParams& params, const FaultTable& table,
                     const std::optional<FaultsInRealTime>& real_time) {
   Json document{{"experiment", request.name},
                 {"kind", "faults"},
@@ -151,7 +237,8 @@ std::string json_of(const Request& request, const FaultsParams& params, const st
                 {"seed", params.task.seed},
                 {"seeds", params.task.seeds},
                 {"rate_limit_N_per_tick", params.control.gate.rate_limit_N_per_s / params.servo.rate_Hz},
-                {"rows", json_of(tallies)}};
+                {"rows", json_of(table.rows)},
+                {"controls", controls_json(table.controls)}};
   if (real_time) {
     document["real_time"] = {{"seeds", real_time->params.task.seeds},
                              {"longest_cut_s", real_time->params.task.longest_cut_s},
@@ -208,47 +295,57 @@ Result<Outcome> FaultExperiment::run(const Request& request, const Progress& pro
   if (auto error = refuse_variations(request)) return *std::move(error);
   const auto params = request.document.read<FaultsParams>();
   if (!params) return params.error();
-  const auto tallies = run_faults(*params, progress);
-  if (!tallies) return request.document.locate(tallies.error());
-  return present_faults(request, *params, *tallies, std::nullopt);
+  const auto table = run_faults(*params, progress);
+  if (!table) return request.document.locate(table.error());
+  return present_faults(request, *params, *table, std::nullopt);
 }
 
-Outcome present_faults(const Request& request, const FaultsParams& params, const std::vector<FaultTally>& tallies,
+Outcome present_faults(const Request& request, const FaultsParams& params, const FaultTable& table,
                        const std::optional<FaultsInRealTime>& real_time) {
-  std::vector<report::Figure> figures{figure_of(tallies)};
+  std::vector<report::Figure> figures{figure_of(table.rows)};
   report::Page page(request.name + ": " + std::string(title));
   page.paragraph(
       "Two supervised sites, a person who taps a stiff wall, and one fault in each run, drawn by its seed. A witness "
       "outside of the sites reads what reaches the motors and what was sent when.");
   std::string text;
   const auto add = [&](const FaultsParams& of, const std::vector<FaultTally>& rows, const std::string& time) {
-    const report::Table outcomes = outcome_table(rows, time), rules = rule_table(rows, time);
+    const report::Table outcomes = outcome_table(rows, time), harm = harm_table(rows, time),
+                        rules = rule_table(rows, time);
     const std::string said = summary(of, rows, time);
     page.paragraph(said);
-    page.table(outcomes);
-    page.table(rules);
-    text += outcomes.to_text() + "\n" + rules.to_text() + "\n" + said;
+    for (const report::Table* one : {&outcomes, &harm, &rules}) {
+      page.table(*one);
+      text += one->to_text() + "\n";
+    }
+    text += said;
   };
-  add(params, tallies, "virtual");
+  add(params, table.rows, "virtual");
+  if (!table.controls.empty()) {
+    const report::Table controls = control_table(table.controls);
+    const std::string said = control_summary(table.controls);
+    page.table(controls);
+    page.paragraph(said);
+    text += "\n" + controls.to_text() + "\n" + said;
+  }
   page.figure(figures.front());
   if (real_time) {
     page.heading("In real time");
     text += "\n";
     add(real_time->params, real_time->tallies, "real");
-    for (const report::Table& table : real_time->timing) {
-      page.table(table);
+    for (const report::Table& timing : real_time->timing) {
+      page.table(timing);
       text += "\n";
-      text += table.to_text();
+      text += timing.to_text();
     }
   }
   std::vector<std::pair<std::string, std::string>> expected;
-  for (const FaultTally& tally : tallies) {
+  for (const FaultTally& tally : table.rows) {
     expected.emplace_back(tally.row.name, std::string(tally.row.injected) + ": " + std::string(tally.row.expected));
   }
   page.definitions(expected);
   add_provenance(page, request, configuration::to_toml(params));
   return Outcome{.text = std::move(text),
-                 .json = json_of(request, params, tallies, real_time),
+                 .json = json_of(request, params, table, real_time),
                  .html = page.to_html(),
                  .figures = std::move(figures)};
 }

@@ -25,14 +25,14 @@ Check refuse_variations(const Request& request);
 
 /// The same faults at the real clock, and how that was kept.
 struct FaultsInRealTime {
-  FaultsParams params;  ///< of these runs
-  std::vector<FaultTally> tallies;
+  FaultsParams params;              ///< of these runs
+  std::vector<FaultTally> tallies;  ///< of the rows; controls are for virtual time
   std::vector<report::Table> timing;
   std::string timing_json;  ///< one document
 };
 
 /// What came of the faults, for every reader.
-Outcome present_faults(const Request& request, const FaultsParams& params, const std::vector<FaultTally>& tallies,
+Outcome present_faults(const Request& request, const FaultsParams& params, const FaultTable& table,
                        const std::optional<FaultsInRealTime>& real_time);
 
 }  // namespace tactus::simulation

@@ -1,14 +1,13 @@
 #include <tactus/simulation/fault_plan.hpp>
+#include <tactus/simulation/internal/fault_families.hpp>
 
-#include <cmath>
+#include <algorithm>
 
 namespace tactus::simulation {
 
-namespace {
+using namespace fault_families;
 
-double between_logarithms(signal::Random& random, double lower, double upper) {
-  return lower * std::pow(upper / lower, random.uniform());
-}
+namespace {
 
 Impairment draw_impairment(FaultKind kind, signal::Random& random) {
   Impairment impairment;
@@ -22,6 +21,10 @@ Impairment draw_impairment(FaultKind kind, signal::Random& random) {
     impairment.duplicate_fraction = random.uniform(0.0, 0.3);
   } else if (kind == FaultKind::delayed_wall) {
     impairment.delay_s = random.uniform(0.015, 0.03);
+  } else if (kind == FaultKind::delay_asymmetric) {
+    impairment.delay_s = between_logarithms(random, 0.03, 0.38);
+  } else if (kind == FaultKind::delay_creeping) {
+    impairment.delay_s = random.uniform(0.05, 0.5);
   }
   return impairment;
 }
@@ -48,6 +51,10 @@ FaultPlan draw_plan(FaultKind kind, std::int64_t index, std::int64_t seed, doubl
       break;
     case FaultKind::cut:
       plan.length_s = between_logarithms(random, 0.01, longest_cut_s);
+      break;
+    case FaultKind::suspend:
+      plan.length_s = between_logarithms(random, std::min(1.0, longest_cut_s), longest_cut_s) + forgotten_s;
+      plan.size = drive_timeout_s;
       break;
     case FaultKind::restart:
       plan.length_s = between_logarithms(random, 0.02, 1.0);
@@ -76,6 +83,9 @@ FaultPlan draw_plan(FaultKind kind, std::int64_t index, std::int64_t seed, doubl
     case FaultKind::delayed_wall:
       plan.length_s = 3.0;
       break;
+    default:
+      draw_device(plan, random, sign);
+      draw_course(plan, random, sign);
   }
   plan.impairment = draw_impairment(kind, random);
   return plan;

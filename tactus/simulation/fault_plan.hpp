@@ -12,18 +12,54 @@ namespace tactus::simulation {
 
 enum class FaultKind {
   none,
-  loss_bursts,     ///< of packets, both ways
-  disorder,        ///< delay, jitter that reorders, duplicates, both ways
-  cut,             ///< no packet either way
-  restart,         ///< a site's process is killed and started again
-  bad_number,      ///< one input is no number, or a huge one, for one tick
-  encoder_spike,   ///< one reading far off
-  encoder_freeze,  ///< the reading stays
-  encoder_wrap,    ///< the counter loses its highest bit
-  force_dropout,   ///< the sensor at the tip reads nothing
-  force_bias,      ///< it reads too much
-  stall,           ///< a site is not stepped; its motor holds the last force
-  delayed_wall     ///< delay both ways and a light grip, against the wall
+  loss_bursts,            ///< of packets, both ways
+  disorder,               ///< delay, jitter that reorders, duplicates, both ways
+  cut,                    ///< no packet either way
+  restart,                ///< a site's process is killed and started again
+  bad_number,             ///< one input is no number, or a huge one, for one tick
+  encoder_spike,          ///< one reading far off
+  encoder_freeze,         ///< the reading stays
+  encoder_wrap,           ///< the counter loses its highest bit
+  force_dropout,          ///< the sensor at the tip reads nothing
+  force_bias,             ///< it reads too much
+  stall,                  ///< a site is not stepped; its motor holds the last force
+  delayed_wall,           ///< delay both ways and a light grip, against the wall
+  overload,               ///< a site misses ticks again and again
+  stop_and_go,            ///< stalls, each shorter than what holds, one after another
+  suspend,                ///< the machine sleeps, and its clock with it
+  rate_drift,             ///< a site's clock runs fast or slow
+  motor_reversed,         ///< a motor pushes the other way
+  torque_constant,        ///< it gives more or less than it is told
+  actuator_dead,          ///< it gives nothing
+  actuator_stuck,         ///< it keeps a force whatever it is told
+  actuator_saturated,     ///< it gives no more than a part of its limit
+  actuator_hot,           ///< its winding is cooled no more
+  encoder_reversed,       ///< the encoder counts the other way
+  encoder_slip,           ///< its shaft slips under load
+  encoder_scale,          ///< it counts too much or too little
+  encoder_drift,          ///< it creeps away
+  encoder_noise,          ///< it scatters
+  force_sensor_stuck,     ///< the force sensor keeps its reading
+  force_sensor_gain,      ///< it reads too much or too little
+  force_sensor_reversed,  ///< it reads the other way
+  force_sensor_drift,     ///< it creeps away
+  force_sensor_late,      ///< it reads what was
+  channels_swapped,       ///< encoder and force sensor are at each other's input
+  configurations_differ,  ///< the sites were given different parameters
+  delay_asymmetric,       ///< one way takes longer than the other
+  delay_creeping,         ///< the delay grows
+  peer_repeats,           ///< the other site says the same again and again
+  peer_wrong,             ///< it says what could be and is not
+  both_restarted,         ///< both processes are killed at once
+  dead_man_stuck,         ///< the dead-man switch stays pressed
+  console_lost,           ///< the person's console is gone
+  hand_lets_go,           ///< nobody holds the handle
+  handle_clamped,         ///< the handle is held fast
+  two_faults,             ///< two faults at once
+  fault_while_arming,     ///< a fault between arming and following
+  stale_commands,         ///< a live controller goes on with an old command
+  emergency_stop,         ///< the person presses the emergency stop
+  power_lost,             ///< a motor's supply fails and comes back
 };
 constexpr auto enumerators(FaultKind) {
   return std::array{Enumerator{FaultKind::none, "none"},
@@ -38,7 +74,43 @@ constexpr auto enumerators(FaultKind) {
                     Enumerator{FaultKind::force_dropout, "force-dropout"},
                     Enumerator{FaultKind::force_bias, "force-bias"},
                     Enumerator{FaultKind::stall, "stall"},
-                    Enumerator{FaultKind::delayed_wall, "delayed-wall"}};
+                    Enumerator{FaultKind::delayed_wall, "delayed-wall"},
+                    Enumerator{FaultKind::overload, "overload"},
+                    Enumerator{FaultKind::stop_and_go, "stop-and-go"},
+                    Enumerator{FaultKind::suspend, "suspend"},
+                    Enumerator{FaultKind::rate_drift, "rate-drift"},
+                    Enumerator{FaultKind::motor_reversed, "motor-reversed"},
+                    Enumerator{FaultKind::torque_constant, "torque-constant"},
+                    Enumerator{FaultKind::actuator_dead, "actuator-dead"},
+                    Enumerator{FaultKind::actuator_stuck, "actuator-stuck"},
+                    Enumerator{FaultKind::actuator_saturated, "actuator-saturated"},
+                    Enumerator{FaultKind::actuator_hot, "actuator-hot"},
+                    Enumerator{FaultKind::encoder_reversed, "encoder-reversed"},
+                    Enumerator{FaultKind::encoder_slip, "encoder-slip"},
+                    Enumerator{FaultKind::encoder_scale, "encoder-scale"},
+                    Enumerator{FaultKind::encoder_drift, "encoder-drift"},
+                    Enumerator{FaultKind::encoder_noise, "encoder-noise"},
+                    Enumerator{FaultKind::force_sensor_stuck, "force-sensor-stuck"},
+                    Enumerator{FaultKind::force_sensor_gain, "force-sensor-gain"},
+                    Enumerator{FaultKind::force_sensor_reversed, "force-sensor-reversed"},
+                    Enumerator{FaultKind::force_sensor_drift, "force-sensor-drift"},
+                    Enumerator{FaultKind::force_sensor_late, "force-sensor-late"},
+                    Enumerator{FaultKind::channels_swapped, "channels-swapped"},
+                    Enumerator{FaultKind::configurations_differ, "configurations-differ"},
+                    Enumerator{FaultKind::delay_asymmetric, "delay-asymmetric"},
+                    Enumerator{FaultKind::delay_creeping, "delay-creeping"},
+                    Enumerator{FaultKind::peer_repeats, "peer-repeats"},
+                    Enumerator{FaultKind::peer_wrong, "peer-wrong"},
+                    Enumerator{FaultKind::both_restarted, "both-restarted"},
+                    Enumerator{FaultKind::dead_man_stuck, "dead-man-stuck"},
+                    Enumerator{FaultKind::console_lost, "console-lost"},
+                    Enumerator{FaultKind::hand_lets_go, "hand-lets-go"},
+                    Enumerator{FaultKind::handle_clamped, "handle-clamped"},
+                    Enumerator{FaultKind::two_faults, "two-faults"},
+                    Enumerator{FaultKind::fault_while_arming, "fault-while-arming"},
+                    Enumerator{FaultKind::stale_commands, "stale-commands"},
+                    Enumerator{FaultKind::emergency_stop, "emergency-stop"},
+                    Enumerator{FaultKind::power_lost, "power-lost"}};
 }
 
 enum class FaultSite { master, slave };
@@ -116,15 +188,17 @@ struct FaultPlan {
         field("start_s", &FaultPlan::start_s, units::second, non_negative, "When it begins."),
         field("length_s", &FaultPlan::length_s, units::second, non_negative, "How long it lasts."),
         field("size", &FaultPlan::size, units::none, any_finite,
-              "How far an encoder spikes or wraps in m, how much a force sensor is off in N."),
-        field("choice", &FaultPlan::choice, non_negative, "Which input, value and state a bad number takes."),
+              "How far an encoder spikes or wraps in m, how much a force sensor is off in N; of another fault what its "
+              "row says."),
+        field("choice", &FaultPlan::choice, non_negative,
+              "The plan's number: which input, value and state a bad number takes."),
         field("seed", &FaultPlan::seed, non_negative, "Of the packets' fates and the person's path."),
         field("impairment", &FaultPlan::impairment, "How the network treats packets while the fault lasts.")};
   }
 };
 
 /// The plan number `index` of a kind: equal arguments, equal plan. Lengths are drawn evenly in their logarithm, a cut's
-/// from 10 ms to `longest_cut_s`, a stall's from 1 to 100 ms.
+/// from 10 ms to `longest_cut_s`, a suspension's from 1 s, a stall's from 1 to 100 ms.
 FaultPlan draw_plan(FaultKind kind, std::int64_t index, std::int64_t seed, double longest_cut_s);
 
 }  // namespace tactus::simulation

@@ -88,19 +88,74 @@ class PacketWitness {
 /// Counts the energy that a motor really gave, from its true position, and its largest rise.
 class EnergyWitness {
  public:
-  void see(double force_N, double position_m, FaultOutcome& outcome) {
-    if (started_) given_J_ += force_N * (position_m - before_m_);
-    started_ = true;
+  /// `force_N` acts from now on, `position_m` is the true one of the motor now. Returns the largest rise so far in J.
+  double see(double force_N, double position_m) {
+    given_J_ += force_N_ * (position_m - before_m_);
+    force_N_ = force_N;
     before_m_ = position_m;
     least_J_ = std::min(least_J_, given_J_);
-    outcome.given_J = std::max(outcome.given_J, given_J_ - least_J_);
+    return rise_J_ = std::max(rise_J_, given_J_ - least_J_);
   }
 
  private:
-  bool started_ = false;
+  double force_N_ = 0.0;
   double before_m_ = 0.0;
   double given_J_ = 0.0;
   double least_J_ = 0.0;
+  double rise_J_ = 0.0;
+};
+
+/// What is true at a site at a tick, whatever its sensors say. Positions and forces are positive toward the
+/// environment.
+struct SiteTruth {
+  double drive_N = 0.0;  ///< what the motor is made to give from now on
+  double motor_m = 0.0;
+  double tip_m = 0.0;  ///< handle or tool
+  double tip_m_per_s = 0.0;
+  double outside_N = 0.0;  ///< hand on handle or wall on tool
+};
+
+/// A low-pass of first order, for what lasts.
+class Lasting {
+ public:
+  Lasting(double time_constant_s, double tick_s) : share_(1.0 - std::exp(-tick_s / time_constant_s)) {}
+  double see(double value) { return value_ += share_ * (value - value_); }
+
+ private:
+  double share_;
+  double value_ = 0.0;
+};
+
+/// Measures what a fault does to the person and to what the slave touches, from its first tick on.
+class HarmWitness {
+ public:
+  /// `range_m` is how far to either side of `middle_m` the person leads the tip, `released_N` a force that is none.
+  HarmWitness(double middle_m, double range_m, double released_N, double tick_s)
+      : middle_m_(middle_m), range_m_(range_m), released_N_(released_N), pressing_(0.1, tick_s) {}
+
+  void see(const SiteTruth& truth, double now_s, SiteHarm& harm) {
+    harm.given_J = energy_.see(truth.drive_N, truth.motor_m);
+    harm.speed_m_per_s = std::max(harm.speed_m_per_s, std::fabs(truth.tip_m_per_s));
+    harm.strayed_m = std::max(harm.strayed_m, std::fabs(truth.tip_m - middle_m_) - range_m_);
+    harm.peak_force_N = std::max(harm.peak_force_N, std::fabs(truth.outside_N));
+    harm.pressing_N = std::max(harm.pressing_N, std::fabs(pressing_.see(truth.outside_N)));
+    if (started_) harm.drive_step_N = std::max(harm.drive_step_N, std::fabs(truth.drive_N - before_N_));
+    started_ = true;
+    before_N_ = truth.drive_N;
+    if (std::fabs(truth.drive_N) > released_N_) forced_s_ = now_s;
+  }
+  /// When the motor gave a force last.
+  [[nodiscard]] double forced_s() const { return forced_s_; }
+
+ private:
+  EnergyWitness energy_;
+  double middle_m_;
+  double range_m_;
+  double released_N_;
+  Lasting pressing_;
+  bool started_ = false;
+  double before_N_ = 0.0;
+  double forced_s_ = 0.0;
 };
 
 }  // namespace tactus::simulation

@@ -15,17 +15,17 @@ namespace tactus::simulation {
 /// ticks that it is asked, so packets wait for a site that is not stepped.
 class PacketRelay {
  public:
-  /// A relay that impairs packets while `impaired` is told to `send`. `tick_s` is the duration of a tick.
+  /// A relay that impairs packets while `send` is told to. `tick_s` is the duration of a tick.
   PacketRelay(const Impairment& impairment, signal::Random random, double tick_s)
       : link_(impairment, random),
         tick_s_(tick_s),
         slots_(static_cast<std::size_t>(std::ceil((impairment.delay_s + impairment.jitter_s) / tick_s)) + 2) {}
 
-  /// Sends a packet at `tick`. Does not allocate.
-  void send(const control::Packet& packet, std::int64_t tick, bool impaired) noexcept {
-    const PacketFate fate = impaired ? link_.next() : PacketFate{};
+  /// Sends a packet at `tick`. `share` of the impairment's delay is there now, 0 for no impairment. Does not allocate.
+  void send(const control::Packet& packet, std::int64_t tick, double share) noexcept {
+    const PacketFate fate = share > 0.0 ? link_.next() : PacketFate{};
     for (int copy = 0; copy < fate.copies; ++copy) {
-      const auto late = static_cast<std::int64_t>(fate.delay_s[static_cast<std::size_t>(copy)] / tick_s_);
+      const auto late = static_cast<std::int64_t>(share * fate.delay_s[static_cast<std::size_t>(copy)] / tick_s_);
       Slot& slot = slots_[static_cast<std::size_t>(tick + late) % slots_.size()];
       // What finds no room is lost, as in a queue of a network.
       if (slot.count < slot.waiting.size()) slot.waiting[slot.count++] = {packet, tick};

@@ -35,10 +35,14 @@ class MasterPlant {
   Reading measure() noexcept;
   /// The person intends to be at `path_m` now and at `path_at_next_tick_m` then.
   void begin_tick(const Command& command, double path_m, double path_at_next_tick_m) noexcept {
+    begin_tick(command, person_.step({.path_m = path_m,
+                                      .path_at_next_tick_m = path_at_next_tick_m,
+                                      .handle_position_m = device_.mechanism().tip_position_m()}));
+  }
+  /// What holds the handle wants it at `aim`, as a clamp does, which corrects nothing.
+  void begin_tick(const Command& command, const mechanics::Operator::Output& aim) noexcept {
     next_ = command;
-    aim_ = person_.step({.path_m = path_m,
-                         .path_at_next_tick_m = path_at_next_tick_m,
-                         .handle_position_m = device_.mechanism().tip_position_m()});
+    aim_ = aim;
     ++ticks_;
   }
   /// The person holds the handle as that of `other` is held, from the next substep on, and the other way round.
@@ -46,14 +50,23 @@ class MasterPlant {
     std::swap(grip_, other.grip_);
     device_.hold(mechanics::scaled(grip_, grip_factor_));
   }
+  /// The person holds the handle with `grip` from the next substep on, which must be one that `make` takes.
+  void hold(const mechanics::LinearSpring::Params& grip) noexcept {
+    grip_ = grip;
+    device_.hold(mechanics::scaled(grip_, grip_factor_));
+  }
   void substep(int index) noexcept {
     if (index == clock_.late_substeps) command_ = next_;
     const double middle_s = (index + 0.5) * clock_.substep_s;
-    device_.step({.commanded_force_N = command_.motor_force_N,
-                  .commanded_handle_force_N = command_.handle_force_N,
-                  .grip_position_m = aim_.position_m + middle_s * aim_.velocity_m_per_s,
-                  .grip_velocity_m_per_s = aim_.velocity_m_per_s});
+    const auto moved = device_.step({.commanded_force_N = command_.motor_force_N,
+                                     .commanded_handle_force_N = command_.handle_force_N,
+                                     .grip_position_m = aim_.position_m + middle_s * aim_.velocity_m_per_s,
+                                     .grip_velocity_m_per_s = aim_.velocity_m_per_s});
+    hand_force_N_ = moved.grip_force_N;
   }
+  /// The true force of the hand on the handle in the latest substep, positive toward the environment.
+  [[nodiscard]] double hand_force_N() const noexcept { return hand_force_N_; }
+  [[nodiscard]] const mechanics::CableChain& mechanism() const noexcept { return device_.mechanism(); }
 
  private:
   MasterPlant(const mechanics::CableDrivenMaster& device, const mechanics::Operator& person,
@@ -70,6 +83,7 @@ class MasterPlant {
   Command command_;
   Command next_;
   mechanics::Operator::Output aim_;
+  double hand_force_N_ = 0.0;
 };
 
 /// The slave device before its wall.
@@ -116,6 +130,7 @@ class SlavePlant {
   /// Since `begin_tick`.
   [[nodiscard]] const Contact& contact() const noexcept { return contact_; }
   [[nodiscard]] double tip_position_m() const noexcept { return device_.mechanism().tip_position_m(); }
+  [[nodiscard]] const mechanics::CableChain& mechanism() const noexcept { return device_.mechanism(); }
 
  private:
   SlavePlant(const mechanics::ElectricSlave& device, const Clock& clock) : device_(device), clock_(clock) {}

@@ -1,6 +1,7 @@
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
 #include <tactus/control/overload_check.hpp>
+#include <tactus/control/pace_check.hpp>
 #include <tactus/control/reversal_check.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/sign_probe.hpp>
@@ -38,6 +39,15 @@ template <>
 struct Doubles<control::OverloadCheck::Input> {
   using Row = std::array<double, 1>;
   static control::OverloadCheck::Input from(const Row& row) { return {.elapsed_ticks = row[0] > 0.5 ? 40 : 1}; }
+};
+template <>
+struct Doubles<control::PaceCheck::Input> {
+  using Row = std::array<double, 3>;
+  static control::PaceCheck::Input from(const Row& row) {
+    return {.following = row[0] > -0.5,
+            .sequence = static_cast<std::int64_t>(std::clamp(row[1], -1e9, 1e9)),
+            .elapsed_ticks = row[2] > 0.5 ? 40 : 1};
+  }
 };
 template <>
 struct Doubles<control::EncoderCheck::Input> {
@@ -132,9 +142,9 @@ struct Subject<control::SiteSupervisor> {
 
 using SafetyElements =
     ::testing::Types<control::ForceGate, control::EncoderCheck, control::ForceSensorCheck, control::PassivityMonitor,
-                     control::Watchdog, control::OverloadCheck, control::ReversalCheck, control::ThermalLimit,
-                     control::SignProbe, control::SafetyGate, control::PacketJudge, control::MessageFollower,
-                     control::SiteSupervisor>;
+                     control::Watchdog, control::OverloadCheck, control::PaceCheck, control::ReversalCheck,
+                     control::ThermalLimit, control::SignProbe, control::SafetyGate, control::PacketJudge,
+                     control::MessageFollower, control::SiteSupervisor>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Safety, ElementLaws, SafetyElements);
 
 }  // namespace tactus::laws

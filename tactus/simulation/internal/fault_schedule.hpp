@@ -7,8 +7,11 @@ namespace tactus::simulation::fault_schedule {
 
 /// When the person at the sites presses what, before the fault.
 inline constexpr double align_s = 0.05, arm_s = 0.10, press_s = 0.15, button_s = 0.01;
+/// Until when who waits for the motors to be tried keeps the hand still.
+inline constexpr double still_until_s = 0.5;
 /// After the fault: what is looked at first, then cleared, aligned, armed, pressed.
-inline constexpr double look_after_s = 0.25, realign_after_s = 0.29, rearm_after_s = 0.34, repress_after_s = 0.40;
+inline constexpr double look_after_s = 0.25, clear_after_s = look_after_s + 0.02, realign_after_s = 0.29,
+                        rearm_after_s = 0.34, repress_after_s = 0.40;
 inline constexpr double settled_after_s = 0.75, end_after_s = 0.9;
 inline constexpr double resume_watch_s = 0.02;
 

@@ -1,0 +1,95 @@
+#include <tactus/simulation/fault_pairs.hpp>
+#include <tactus/simulation/internal/fault_schedule.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+namespace tactus::simulation {
+
+namespace {
+
+/// What can strike beside another fault. A bad number brings the sites into states of its own, and what is there from
+/// the start leaves no session in which a second fault could strike.
+constexpr std::array striking{FaultKind::loss_bursts,
+                              FaultKind::disorder,
+                              FaultKind::cut,
+                              FaultKind::restart,
+                              FaultKind::encoder_spike,
+                              FaultKind::encoder_freeze,
+                              FaultKind::encoder_wrap,
+                              FaultKind::force_dropout,
+                              FaultKind::force_bias,
+                              FaultKind::stall,
+                              FaultKind::overload,
+                              FaultKind::stop_and_go,
+                              FaultKind::suspend,
+                              FaultKind::rate_drift,
+                              FaultKind::motor_reversed,
+                              FaultKind::torque_constant,
+                              FaultKind::actuator_dead,
+                              FaultKind::actuator_stuck,
+                              FaultKind::actuator_saturated,
+                              FaultKind::encoder_reversed,
+                              FaultKind::encoder_slip,
+                              FaultKind::encoder_scale,
+                              FaultKind::encoder_drift,
+                              FaultKind::encoder_noise,
+                              FaultKind::force_sensor_stuck,
+                              FaultKind::force_sensor_gain,
+                              FaultKind::force_sensor_reversed,
+                              FaultKind::force_sensor_drift,
+                              FaultKind::force_sensor_late,
+                              FaultKind::delay_creeping,
+                              FaultKind::peer_repeats,
+                              FaultKind::peer_wrong,
+                              FaultKind::hand_lets_go,
+                              FaultKind::handle_clamped,
+                              FaultKind::power_lost};
+
+constexpr double longest_cut_s = 1.0;
+
+FaultPlan strike(std::size_t which, const FaultPlan& plan, double start_s) {
+  const FaultKind kind = striking[which % striking.size()];
+  FaultPlan part = draw_plan(kind, plan.choice, plan.seed, longest_cut_s);
+  part.start_s = start_s;
+  return part;
+}
+
+}  // namespace
+
+std::vector<FaultPlan> plans_of(const FaultPlan& plan) {
+  signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(13);
+  if (plan.kind == FaultKind::two_faults) {
+    constexpr std::size_t pairs = striking.size() * (striking.size() + 1) / 2;
+    std::size_t second = static_cast<std::size_t>(plan.choice) % pairs, first = 0;
+    // Row by row of the half of a square.
+    while (second > first) second -= ++first;
+    const double second_s = plan.start_s + random.uniform(0.0, 0.3);
+    return {strike(first, plan, plan.start_s), strike(second, plan, second_s)};
+  }
+  if (plan.kind == FaultKind::fault_while_arming) {
+    using namespace fault_schedule;
+    return {strike(static_cast<std::size_t>(plan.choice), plan, random.uniform(arm_s, press_s + button_s))};
+  }
+  return {plan};
+}
+
+Impairment impairment_to(FaultSite site, const std::vector<FaultPlan>& plans) {
+  Impairment sum;
+  for (const FaultPlan& plan : plans) {
+    if (plan.kind == FaultKind::delay_asymmetric && plan.site != site) continue;
+    const Impairment& one = plan.impairment;
+    sum.delay_s += one.delay_s;
+    sum.jitter_s += one.jitter_s;
+    sum.duplicate_fraction = std::max(sum.duplicate_fraction, one.duplicate_fraction);
+    if (one.burst_begins_fraction > sum.burst_begins_fraction) {
+      sum.burst_begins_fraction = one.burst_begins_fraction;
+      sum.burst_ends_fraction = one.burst_ends_fraction;
+      sum.burst_loss_fraction = one.burst_loss_fraction;
+    }
+  }
+  return sum;
+}
+
+}  // namespace tactus::simulation

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <tactus/simulation/fault_plan.hpp>
+
+#include <vector>
+
+namespace tactus::simulation {
+
+/// The faults of one run: the plan itself, or those that it stands for. Two at once are drawn from all kinds, every
+/// pair of them once in 630 consecutive choices; one while arming begins between the buttons for arming and for
+/// following.
+std::vector<FaultPlan> plans_of(const FaultPlan& plan);
+
+/// How the network treats packets on the way to a site while all of `plans` are there.
+Impairment impairment_to(FaultSite site, const std::vector<FaultPlan>& plans);
+
+}  // namespace tactus::simulation
