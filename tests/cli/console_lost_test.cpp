@@ -160,7 +160,7 @@ struct Pair {
               "10"};
     for (const std::string set :
          {"servo.rate_Hz=1000", "plant.longest_step_s=5e-5", "control.supervision.watchdog.timeout_s=0.5",
-          "control.supervision.longest_stall_s=0.5"}) {
+          "control.supervision.longest_stall_s=0.5", "control.supervision.overload.missed_share=0.9"}) {
       all.insert(all.end(), {"--set", set});
     }
     if (site == "master") all.emplace_back("--arm");

@@ -32,7 +32,7 @@ class TwoSites : public ::testing::Test {
     const std::string text = R"(
       site() { name=$1; shift; exec $TACTUS run $EXPERIMENT --set servo.rate_Hz=1000 --set plant.longest_step_s=5e-5 \
                --set control.supervision.watchdog.timeout_s=0.3 --set control.supervision.longest_stall_s=0.3 \
-               --key key --json "$@" >$name.json 2>$name.log <&9; }
+               --set control.supervision.overload.missed_share=0.9 --key key --json "$@" >$name.json 2>$name.log <&9; }
       wait_for() { for i in $(seq 300); do grep -q "$2" $1.log 2>/dev/null && return; sleep 0.1; done; exit 3; }
       wait_for_next() { lines=$(wc -l <$1.log); for i in $(seq 300); do
                         tail -n +$((lines + 1)) $1.log | grep -q "$2" && return; sleep 0.1; done; exit 4; }
