@@ -172,6 +172,8 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
       lines << second_line(second) << std::flush;
       run.seconds.push_back(second);
     }
+    SiteMisfit misfit;
+    while (exchange.misfits.try_pop(misfit)) std::cerr << "tactus: " << describe(misfit, run.role) << "\n";
   };
   while (!(*servo)->ended()) {
     if (interruption.asked()) (*servo)->stop();

@@ -2,6 +2,7 @@
 
 #include <tactus/cli/site_buttons.hpp>
 #include <tactus/cli/site_log.hpp>
+#include <tactus/cli/site_misfit.hpp>
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/link/endpoint.hpp>
 #include <tactus/runtime/servo_thread.hpp>
@@ -80,6 +81,7 @@ class RepeatedTaps {
 struct SiteExchange {
   telemetry::Ring<SiteWord, 16> words;  ///< of the person
   telemetry::Ring<SiteSecond, 64> seconds;
+  telemetry::Ring<SiteMisfit, 2> misfits;  ///< each once
 };
 
 /// One site of two: the link, a supervised site and its simulated plant. The step of a servo thread; does not allocate,
@@ -146,6 +148,7 @@ class SiteLoop {
   void measure(const Stepped& stepped) noexcept;
   void log(const runtime::Tick& tick, const SiteLogRecord& record) noexcept;
   void end_second() noexcept;
+  void tell_misfit(std::uint16_t other_version) noexcept;
   [[nodiscard]] control::SiteState state() const noexcept {
     return std::visit([](const auto& work) { return work.site.state(); }, work_);
   }
@@ -174,6 +177,10 @@ class SiteLoop {
   std::int64_t second_ticks_ = 0;
   double second_peak_N_ = 0.0;
   std::uint64_t second_expected_ = 0, second_arrived_ = 0;
+  // Of the misfits.
+  std::int64_t listened_session_ = 0;  ///< that was heard when the second before ended
+  std::int64_t told_session_ = 0;
+  std::uint16_t told_version_ = 0;
 };
 
 }  // namespace tactus::cli
