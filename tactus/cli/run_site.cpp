@@ -139,6 +139,8 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
       lines.say(second_line(second));
       run.seconds.push_back(second);
     }
+    SiteMisfit misfit;
+    while (exchange.misfits.try_pop(misfit)) errors.say("tactus: " + describe(misfit, run.role) + "\n");
   };
   while (!(*servo)->ended()) {
     take_seconds();

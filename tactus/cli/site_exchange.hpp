@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/cli/site_buttons.hpp>
+#include <tactus/cli/site_misfit.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/runtime/end_request.hpp>
 #include <tactus/telemetry/ring.hpp>
@@ -28,6 +29,7 @@ struct SiteExchange {
   std::atomic<bool> person_lost{false};  ///< nobody holds the dead-man switch any more
   runtime::EndRequest end;
   telemetry::Ring<SiteSecond, 64> seconds;
+  telemetry::Ring<SiteMisfit, 2> misfits;  ///< each once
 };
 
 }  // namespace tactus::cli

@@ -259,6 +259,23 @@ void SiteLoop::end_second() noexcept {
   second_peak_N_ = 0.0;
   second_expected_ = counters.expected;
   second_arrived_ = counters.arrived;
+  tell_misfit(counters.other_version);
+}
+
+void SiteLoop::tell_misfit(std::uint16_t other_version) noexcept {
+  const auto& agreement =
+      std::visit([](const auto& work) -> const control::AgreementCheck& { return work.site.agreement(); }, work_);
+  const std::int64_t session = agreement.session();
+  // Until all cells have come, or had a second for it.
+  const bool known = agreement.complete() || session == listened_session_;
+  if (other_version != told_version_) {
+    told_version_ = other_version;
+    exchange_->misfits.try_push({.other_version = other_version});
+  } else if (agreement.disagrees() && known && session != told_session_) {
+    told_session_ = session;
+    exchange_->misfits.try_push({.agreement = agreement});
+  }
+  listened_session_ = session;
 }
 
 void SiteLoop::finish() noexcept {

@@ -130,6 +130,7 @@ class SiteLoop {
   void measure(const Stepped& stepped) noexcept;
   void log(const runtime::Tick& tick, const SiteLogRecord& record) noexcept;
   void end_second() noexcept;
+  void tell_misfit(std::uint16_t other_version) noexcept;
   [[nodiscard]] control::SiteState state() const noexcept {
     return std::visit([](const auto& work) { return work.site.state(); }, work_);
   }
@@ -160,6 +161,10 @@ class SiteLoop {
   std::int64_t second_ticks_ = 0;
   double second_peak_N_ = 0.0;
   std::uint64_t second_expected_ = 0, second_arrived_ = 0;
+  // Of the misfits.
+  std::int64_t listened_session_ = 0;  ///< that was heard when the second before ended
+  std::int64_t told_session_ = 0;
+  std::uint16_t told_version_ = 0;
 };
 
 }  // namespace tactus::cli

@@ -90,9 +90,9 @@ Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& r
   real.timing_json = servo_json(kept);
   const bool interrupted = outcomes->size() < runs.size();
   if (interrupted) {
-    report::Table table({{"runs at the real clock"}, {"of"}}, "Interrupted");
-    table.add_row({std::to_string(outcomes->size()), std::to_string(runs.size())});
-    real.timing.insert(real.timing.begin(), table);
+    report::Table told({{"runs at the real clock"}, {"of"}}, "Interrupted");
+    told.add_row({std::to_string(outcomes->size()), std::to_string(runs.size())});
+    real.timing.insert(real.timing.begin(), told);
   }
   auto outcome = simulation::present_faults(request, *params, *table, real);
   if (interrupted) {

@@ -140,6 +140,28 @@ TEST_F(TwoSites, ASlaveThatIsKilledAndComesBackFollowsOnlyAfterArming) {
   EXPECT_LT(master["longest_silence_at_hold_s"], 0.5);
 }
 
+TEST_F(TwoSites, OfOtherParametersAreNotArmedAndBothSayWhichKeyDiffers) {
+  shell(R"(
+    site slave --site slave --listen 127.0.0.1:$P2 --peer 127.0.0.1:$P0 & slave=$!
+    site master --site master --listen 127.0.0.1:$P0 --peer 127.0.0.1:$P2 --arm \
+      --set control.slave_gate.force_limit_N=7.5 & master=$!
+    wait_for master ' disagreement '
+    wait_for slave ' disagreement '
+    wait_for master 'control.slave_gate.force_limit_N is 7.5 N here and .* N at the slave: start both'
+    wait_for slave 'control.slave_gate.force_limit_N is .* N here and 7.5 N at the master: start both'
+    kill -USR1 $master
+    wait_for_next master ' disagreement '
+    wait_for_next slave ' disagreement '
+    kill -INT $master $slave
+    wait
+  )");
+  for (const char* name : {"master", "slave"}) {
+    EXPECT_EQ(result(name)["armings"], 0);
+    EXPECT_EQ(result(name)["ticks_in"]["armed"], 0);
+    EXPECT_EQ(result(name)["ticks_in"]["active"], 0);
+  }
+}
+
 TEST_F(Command, OneSiteRefusesWhatCannotBeWithTheRemedy) {
   const auto refused = [this](std::vector<std::string> more, const std::string& words) {
     std::vector<std::string> arguments{"run", TACTUS_EXPERIMENT_FOLDER "/tapping.toml", "--site", "master"};
