@@ -62,12 +62,20 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
                      session, dt, agreement);
 }
 
-PacketVerdict Supervision::take(const Packet& packet) noexcept {
-  // A packet tells the cell that its number names: one that does not is an old one under a new number.
+/// A packet tells the cell that its number names. One that does not is an old one under a new number, and so may be the
+/// next that does by chance: its session is believed again once all cells have come in their turn.
+bool Supervision::is_renumbered(const Packet& packet) noexcept {
   const AgreementExcerpt& said = packet.agreement;
-  const bool renumbered =
-      said.digest == agreement_.own().digest() && said.cell != agreement_.own().excerpt(packet.sequence).cell;
-  const PacketVerdict verdict = renumbered ? PacketVerdict::stale : judge_.step(packet);
+  const Agreement& own = agreement_.own();
+  if (said.digest == own.digest() && said.cell != own.excerpt(packet.sequence).cell) {
+    doubted_session_ = packet.session;
+    believed_from_ = packet.sequence + static_cast<std::int64_t>(own.size());
+  }
+  return packet.session == doubted_session_ && packet.sequence <= believed_from_;
+}
+
+PacketVerdict Supervision::take(const Packet& packet) noexcept {
+  const PacketVerdict verdict = is_renumbered(packet) ? PacketVerdict::stale : judge_.step(packet);
   if (verdict == PacketVerdict::applied) {
     newest_ = packet;
     agreement_.take(packet.session, packet.agreement);

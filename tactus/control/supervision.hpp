@@ -198,6 +198,7 @@ class Supervision {
   [[nodiscard]] SiteRecord record() const noexcept;
 
  private:
+  [[nodiscard]] bool is_renumbered(const Packet& packet) noexcept;
   [[nodiscard]] bool unanswered() noexcept;
   [[nodiscard]] bool arms_from_rest() const noexcept;
   Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
@@ -238,6 +239,8 @@ class Supervision {
   bool must_be_proved_;
   std::int64_t session_;
   std::int64_t sequence_ = 0;
+  std::int64_t doubted_session_ = 0;  ///< which put new numbers on old packets
+  std::int64_t believed_from_ = 0;    ///< number of its packets after which they count again
   AgreementCheck agreement_;
   Packet newest_;
   bool arrived_ = false;

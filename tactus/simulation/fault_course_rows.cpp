@@ -1,3 +1,4 @@
+#include <tactus/simulation/fault_pairs.hpp>
 #include <tactus/simulation/fault_person.hpp>
 #include <tactus/simulation/faulty_configuration.hpp>
 #include <tactus/simulation/internal/fault_families.hpp>
@@ -63,6 +64,17 @@ std::string_view stale_commands(const FaultPlan&, const FaultOutcome& outcome, c
   return outcome.stopped && outcome.master.release_s <= longest_s ? "" : "a motor kept an old command";
 }
 
+/// The first of both must end as it must end alone, the other one notwithstanding.
+std::string_view two_faults(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
+  const FaultPlan first = plans_of(plan).front();
+  for (const FaultRow& row : fault_rows()) {
+    // What a row's own teleoperator is there to see, this one may not.
+    if (row.kind == first.kind && row.rule != nullptr && row.prepare == nullptr)
+      return row.rule(first, outcome, params);
+  }
+  return {};
+}
+
 void loose_overload(Teleoperator::Params& params, FaultPlan&) {
   params.control.supervision.overload = {.missed_share = 0.9, .window_s = 10.0};
 }
@@ -95,6 +107,10 @@ void loose_limits(Teleoperator::Params& params, FaultPlan& plan) {
   loose_overload(params, plan);
   loose_pace(params, plan);
   for_ever(params);
+}
+/// A workspace not much larger than the task.
+void stays_near(Teleoperator::Params& params) {
+  params.control.gate.position_limit_m = params.control.slave_gate.position_limit_m = 0.06;
 }
 /// So that there is a force to keep.
 void holds_firmly(Teleoperator::Params& params) { params.person.grip.stiffness_N_per_m *= 5.0; }
@@ -195,16 +211,18 @@ std::vector<FaultRow> course_rows() {
        "two-faults",
        "two faults at once",
        "every pair of kinds that strike",
-       "within the limits",
-       nullptr,
-       {"all limits", loose_limits}},
+       "within the limits, the first as alone",
+       two_faults,
+       {"all limits", loose_limits},
+       stays_near},
       {FaultKind::fault_while_arming,
        "fault-while-arming",
        "fault while arming",
        "every kind that strikes",
        "within the limits",
        nullptr,
-       {"all limits", loose_limits}},
+       {"all limits", loose_limits},
+       stays_near},
       {FaultKind::stale_commands,
        "stale-commands",
        "old commands",

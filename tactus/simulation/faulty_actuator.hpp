@@ -24,6 +24,8 @@ class FaultyActuator {
   /// a tick. Real-time safe.
   double step(double commanded_N, bool enabled, const FaultMoment& moment) noexcept {
     if (!moment.during) last_N_ = commanded_N;
+    // An old command says that the drive is enabled, too.
+    if (here_ && plan_.kind == FaultKind::stale_commands && moment.during) return obey_old(commanded_N, moment);
     if (!enabled) return 0.0;
     if (!here_ || !moment.during) return commanded_N;
     switch (plan_.kind) {
@@ -40,8 +42,6 @@ class FaultyActuator {
         return std::clamp(commanded_N, -plan_.size, plan_.size);
       case FaultKind::suspend:
         return misses_ticks(plan_, moment) ? obey_old(commanded_N, moment) : commanded_N;
-      case FaultKind::stale_commands:
-        return obey_old(commanded_N, moment);
       case FaultKind::actuator_hot: {
         const double share = commanded_N / plan_.size;
         warmth_ = share * share + cools_ * (warmth_ - share * share);

@@ -63,8 +63,11 @@ TEST(FaultsOfTheCourse, ASiteThatRepeatsItselfHasFreshNumbersAndOldNews) {
 
 TEST(FaultsOfTheCourse, AMachineThatSleepsDoesNotCountTheTicksThatItMissesAndAProcessThatIsStoppedDoes) {
   for (const std::int64_t choice : {0, 1}) {
-    const FaultPlan plan{
-        .kind = FaultKind::suspend, .start_s = 0.002, .length_s = 0.004, .choice = choice, .impairment = {}};
+    const FaultPlan plan{.kind = FaultKind::suspend,
+                         .start_s = 0.002,
+                         .length_s = 0.0035 + forgotten_s,
+                         .choice = choice,
+                         .impairment = {}};
     std::vector<FaultInjection> injections{FaultInjection(plan, 1e-3)};
     FaultProcess process(FaultSite::master);
     std::int64_t elapsed_ticks = 0;
@@ -79,7 +82,7 @@ TEST(FaultsOfTheCourse, AMachineThatSleepsDoesNotCountTheTicksThatItMissesAndAPr
 }
 
 /// A control that survives would say that the row shows nothing.
-TEST(FaultsOfTheCourse, ADriveThatKeepsAnOldCommandGivesEnergyAndOneThatLetsGoDoesNot) {
+TEST(FaultsOfTheCourse, ADriveThatKeepsAnOldCommandPushesOnAndOneThatLetsGoDoesNot) {
   const FaultsParams params;
   const FaultRow row = fault_rows("stale-commands").front();
   for (std::int64_t i = 0; i < 3; ++i) {
