@@ -19,6 +19,8 @@ constexpr double tick_s = 1e-3;
 /// itself; the person at the master presses the dead-man switch as soon as it is armed.
 class TwoSites {
  public:
+  /// Where motors are tried on arming, they move springs.
+  explicit TwoSites(bool tried = false) : tried_(tried) {}
   bool to_slave = true, to_master = true;
   bool slave_fault = false;
   /// The session and the number of each arming under which the slave was armed.
@@ -39,8 +41,8 @@ class TwoSites {
       from_slave_.push_back(slave_.site.packet({}));
     }
   }
-  void restart_slave() { slave_ = Site(SiteRole::slave, ++slave_session_); }
-  void restart_master() { master_ = Site(SiteRole::master, ++master_session_); }
+  void restart_slave() { slave_ = Site(SiteRole::slave, ++slave_session_, tried_); }
+  void restart_master() { master_ = Site(SiteRole::master, ++master_session_, tried_); }
   [[nodiscard]] SiteState master() const { return master_.site.state(); }
   [[nodiscard]] SiteState slave() const { return slave_.site.state(); }
   [[nodiscard]] SiteCause master_cause() const { return static_cast<SiteCause>(master_.site.record().cause); }
@@ -50,8 +52,15 @@ class TwoSites {
 
  private:
   struct Site {
-    Site(SiteRole role, std::int64_t session) : site(Supervision::make({}, role, session, Seconds{tick_s}).value()) {}
+    Site(SiteRole role, std::int64_t session, bool tried)
+        : site(Supervision::make(params(tried), role, session, Seconds{tick_s}).value()) {}
+    static SupervisionParams params(bool tried) {
+      SupervisionParams params;
+      params.probe.force_N = tried ? 0.5 : 0.0;
+      return params;
+    }
     Supervision site;
+    double position_m = 0.0;
     bool born = true;
   };
   static constexpr std::size_t delay_ticks = 5;
@@ -66,12 +75,14 @@ class TwoSites {
     const bool guards = follows(at.site.state());
     at.site.decide({.requests = {.align = !at.born, .arm = arm, .dead_man = guards && !arm},
                     .fault = fault ? GateFault::not_finite : GateFault::none});
+    at.position_m = 1e-3 * at.site.probe(at.position_m, false);
     at.born = false;
   }
 
   std::int64_t master_session_ = 1, slave_session_ = 1001;
-  Site master_{SiteRole::master, 1};
-  Site slave_{SiteRole::slave, 1001};
+  bool tried_;
+  Site master_{SiteRole::master, 1, tried_};
+  Site slave_{SiteRole::slave, 1001, tried_};
   std::deque<Packet> from_master_, from_slave_;
 };
 
@@ -83,6 +94,16 @@ TEST(Arming, SitesThatHearEachOtherStandUntilAPersonArms) {
   sites.run(50, true);
   EXPECT_TRUE(sites.both_active());
   sites.run(10000);
+  EXPECT_TRUE(sites.both_active());
+}
+
+TEST(Arming, ASlaveWhoseMotorIsTriedAnswersOnceItWasSoTheMasterWaits) {
+  TwoSites sites(true);
+  sites.run(50);
+  sites.run(90, true);
+  EXPECT_EQ(sites.master(), SiteState::armed);
+  EXPECT_EQ(sites.slave(), SiteState::armed);
+  sites.run(40);
   EXPECT_TRUE(sites.both_active());
 }
 
@@ -190,7 +211,7 @@ TEST(Arming, WithoutTheOtherSiteThereIsNoArming) {
 // whatever happened, in peace and without a person neither site goes on following one that does not.
 TEST(Arming, NeverDoesTheSlaveFollowAnArmingThatIsOver) {
   EXPECT_TRUE(rc::check([] {
-    TwoSites sites;
+    TwoSites sites(*rc::gen::arbitrary<bool>());
     sites.run(20);
     for (const int what : *rc::gen::container<std::vector<int>>(rc::gen::inRange(0, 8))) {
       switch (what) {
