@@ -122,12 +122,12 @@ std::vector<FaultRow> device_rows() {
        "0.2 to 0.5 times the force, at the master also 2 to 3 times, for 1.5 s", "hold where it matters", wrong_force,
        balance, feels_as_it_is},
       {FaultKind::actuator_dead, "actuator-dead", "actuator dead", "gives nothing for 1.5 s", "hold where it matters",
-       wrong_force, balance, feels_as_it_is},
+       wrong_force, signs, feels_as_it_is},
       {FaultKind::actuator_stuck, "actuator-stuck", "actuator stuck",
        "gives 1 to 5 N at the master, 0.2 to 0.5 N at the slave, either way, for 1 s", "hold, drive off", wrong_force,
        limits},
       {FaultKind::actuator_saturated, "actuator-saturated", "actuator saturated",
-       "gives 0.1 to 0.5 N at most for 1.5 s", "hold where it matters", wrong_force, balance, feels_as_it_is},
+       "gives 0.1 to 0.5 N at most for 1.5 s", "hold where it matters", wrong_force, signs, feels_as_it_is},
       {FaultKind::actuator_hot,
        "actuator-hot",
        "actuator hot",
@@ -182,7 +182,7 @@ std::vector<FaultRow> device_rows() {
        stopped_at_once,
        {"the button's wire", without_button}},
       {FaultKind::power_lost, "power-lost", "power lost", "of a motor for 100 to 500 ms",
-       "hold; no jump when it comes back", comes_back, balance, feels_as_it_is},
+       "hold; no jump when it comes back", comes_back, signs, feels_as_it_is},
   };
 }
 
