@@ -70,7 +70,9 @@ constexpr double out_of_reach_N = 200.0;
 void without_balance(Teleoperator::Params& of, FaultPlan&) {
   of.control.supervision.force_sensor.residual_limit_N = out_of_reach_N;
   of.control.supervision.hand_sensor.residual_limit_N = out_of_reach_N;
-  of.control.slave_gate.encoder.unbalanced_force_N = out_of_reach_N;
+  for (control::SafetyGate::Params* gate : {&of.control.gate, &of.control.slave_gate}) {
+    gate->encoder.frozen_force_N = gate->encoder.unbalanced_force_N = out_of_reach_N;
+  }
 }
 void without_probe(Teleoperator::Params& of, FaultPlan&) { of.control.supervision.probe.force_N = 0.0; }
 /// All that could tell that a motor or an encoder goes the wrong way.
@@ -96,7 +98,6 @@ void without_limits(Teleoperator::Params& of, FaultPlan& plan) {
     gate->rate_limit_N_per_s = 1e6;
     gate->position_limit_m = 10.0;
     gate->encoder.fastest_m_per_s = 100.0;
-    gate->encoder.frozen_force_N = out_of_reach_N;
     gate->energy = {.damp_above_J = 100.0, .hold_above_J = 200.0, .credit_J = 100.0, .drain_W = 50.0};
     gate->thermal.continuous_force_N = 100.0;
   }
@@ -106,8 +107,9 @@ void without_limits(Teleoperator::Params& of, FaultPlan& plan) {
 void with_pedal(Teleoperator::Params&, FaultPlan& plan) { plan.size = 1.0; }
 void without_button(Teleoperator::Params&, FaultPlan& plan) { plan.kind = FaultKind::none; }
 
-constexpr FaultControl balance{"balance of forces", without_balance}, probe{"sign probe", without_probe},
-    signs{"sign probe, reversal latch, balance of forces, velocity limit", without_signs},
+constexpr FaultControl balance{"balance of forces, frozen-encoder check", without_balance},
+    probe{"sign probe", without_probe},
+    signs{"sign probe, reversal latch, balance of forces, frozen-encoder check, velocity limit", without_signs},
     limits{"every limit as wide as its bounds allow", without_limits};
 
 }  // namespace
@@ -117,14 +119,15 @@ std::vector<FaultRow> device_rows() {
       {FaultKind::motor_reversed, "motor-reversed", "motor reversed", "from the start, or for 1 s while following",
        "refused on arming, or latched", wrong_sign, signs, tries_motors},
       {FaultKind::torque_constant, "torque-constant", "torque constant wrong",
-       "0.2 to 0.5 or 2 to 3 times the force for 1.5 s", "hold where it matters", wrong_force, balance, feels_as_it_is},
+       "0.2 to 0.5 times the force, at the master also 2 to 3 times, for 1.5 s", "hold where it matters", wrong_force,
+       balance, feels_as_it_is},
       {FaultKind::actuator_dead, "actuator-dead", "actuator dead", "gives nothing for 1.5 s", "hold where it matters",
-       wrong_force, balance, feels_as_it_is},
+       wrong_force, signs, feels_as_it_is},
       {FaultKind::actuator_stuck, "actuator-stuck", "actuator stuck",
        "gives 1 to 5 N at the master, 0.2 to 0.5 N at the slave, either way, for 1 s", "hold, drive off", wrong_force,
        limits},
       {FaultKind::actuator_saturated, "actuator-saturated", "actuator saturated",
-       "gives 0.1 to 0.5 N at most for 1.5 s", "hold where it matters", wrong_force, balance, feels_as_it_is},
+       "gives 0.1 to 0.5 N at most for 1.5 s", "hold where it matters", wrong_force, signs, feels_as_it_is},
       {FaultKind::actuator_hot,
        "actuator-hot",
        "actuator hot",
@@ -141,7 +144,8 @@ std::vector<FaultRow> device_rows() {
        "no farther than the workspace",
        nullptr,
        {"workspace limit", without_workspace},
-       works_close},
+       works_close,
+       false},
       {FaultKind::encoder_scale, "encoder-scale", "encoder scale wrong",
        "from the start: 0.1 to 0.25 of the way at the master, 4 to 10 times at the slave", "refused on arming", seen,
        probe, tries_motors},
@@ -154,7 +158,7 @@ std::vector<FaultRow> device_rows() {
        "0.1 to 0.3 or 3 to 10 times the force for 1.5 s", "hold where it matters", wrong_force, balance,
        feels_as_it_is},
       {FaultKind::force_sensor_reversed, "force-sensor-reversed", "force sensor reversed", "for 1.5 s",
-       "hold where it matters", wrong_force, balance, feels_as_it_is},
+       "hold where it matters", wrong_force, limits, feels_as_it_is},
       {FaultKind::force_sensor_drift, "force-sensor-drift", "force sensor drifts", "by 1 to 10 N/s for 1.5 s", "hold",
        wrong_force, balance, feels_as_it_is},
       {FaultKind::force_sensor_late, "force-sensor-late", "force sensor late", "by 200 to 500 ms for 1.5 s",
@@ -178,7 +182,7 @@ std::vector<FaultRow> device_rows() {
        stopped_at_once,
        {"the button's wire", without_button}},
       {FaultKind::power_lost, "power-lost", "power lost", "of a motor for 100 to 500 ms",
-       "hold; no jump when it comes back", comes_back, balance, feels_as_it_is},
+       "hold; no jump when it comes back", comes_back, signs, feels_as_it_is},
   };
 }
 
@@ -199,7 +203,8 @@ void draw_device(FaultPlan& plan, signal::Random& random, double sign) {
       break;
     case FaultKind::torque_constant:
       plan.length_s = 1.5;
-      plan.size = below_or_above(random, 0.2, 0.5, 2.0, 3.0);
+      plan.size = plan.site == FaultSite::master ? below_or_above(random, 0.2, 0.5, 2.0, 3.0)
+                                                 : between_logarithms(random, 0.2, 0.5);
       break;
     case FaultKind::actuator_dead:
       plan.length_s = 1.5;

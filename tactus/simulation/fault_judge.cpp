@@ -11,13 +11,14 @@ using namespace fault_schedule;
 void FaultJudge::see_states(const SiteView& master, const SiteView& slave, const FaultMoment& moment,
                             bool before_rearming, FaultOutcome& outcome) {
   const auto since_ticks = static_cast<std::int64_t>(std::lround(moment.since_s / tick_s_));
-  bool none_active = true;
+  bool none_active = true, all_latched = true;
   for (int i = 0; i < 2; ++i) {
     const SiteView& site = i == 0 ? master : slave;
     const bool active = !site.gone && site.state == SiteState::active;
     none_active = none_active && !active;
     const bool latched = site.gone || site.state == SiteState::hold || site.state == SiteState::fault;
     if (latched && outcome.detection_ticks < 0) outcome.detection_ticks = since_ticks;
+    all_latched = all_latched && latched;
     outcome.left_workspace = outcome.left_workspace || site.left_workspace;
     if (!before_rearming) continue;
     if (left_[i] && active) ++outcome.active_without_arming;
@@ -28,6 +29,7 @@ void FaultJudge::see_states(const SiteView& master, const SiteView& slave, const
     outcome.time_to_stop_s = static_cast<double>(since_ticks) * tick_s_;
     stopped_at_s_ = moment.now_s;
   }
+  if (before_rearming && all_latched && latched_at_s_ < 0.0) latched_at_s_ = moment.now_s;
 }
 
 void FaultJudge::see(const SiteView& master, const SiteView& slave, const FaultMoment& moment, double end_s,
@@ -48,8 +50,9 @@ void FaultJudge::see(const SiteView& master, const SiteView& slave, const FaultM
     if (outcome.stopped) {
       outcome.master.release_s = std::max(at_master_.forced_s() - stopped_at_s_, 0.0);
       outcome.slave.release_s = std::max(at_slave_.forced_s() - stopped_at_s_, 0.0);
-      outcome.release_s = std::max(outcome.master.release_s, outcome.slave.release_s);
     }
+    const double forced_s = std::max(at_master_.forced_s(), at_slave_.forced_s());
+    if (latched_at_s_ >= 0.0) outcome.release_s = std::max(forced_s - latched_at_s_, 0.0);
     rearms_ = !both;
   }
   if (rearms_ && now_s > end_s + rearm_after_s && now_s < end_s + repress_after_s + resume_watch_s) {

@@ -37,7 +37,8 @@ class FaultJudge {
   EnergyWitness energy_;
   bool rearms_ = false;
   bool left_[2] = {false, false};  ///< master, slave: `active` after the fault began
-  double stopped_at_s_ = 0.0;
+  double stopped_at_s_ = 0.0;      ///< neither site active any more
+  double latched_at_s_ = -1.0;     ///< both sites, first; negative is never
 };
 
 }  // namespace tactus::simulation

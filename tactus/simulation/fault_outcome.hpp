@@ -49,10 +49,10 @@ struct FaultOutcome {
   bool active_in_fault = false;            ///< both sites, while it lasted
   bool stopped = false;                    ///< a site left `active` after the fault began
   double time_to_stop_s = 0.0;             ///< from the begin of the fault until no site was active
-  double release_s = 0.0;                  ///< from then until both motors gave less than a small force for good
-  std::int64_t detection_ticks = -1;       ///< from the begin of the fault to a latched fault or a hold; -1 is never
-  bool left_workspace = false;  ///< a device was a tenth beyond where its gate latches a fault, whatever it read
-  bool active_at_end = false;   ///< both, after clearing and arming where that was needed
+  double release_s = 0.0;  ///< from both in a hold or fault until their motors gave less than a small force for good
+  std::int64_t detection_ticks = -1;  ///< from the begin of the fault to a latched fault or a hold; -1 is never
+  bool left_workspace = false;        ///< a device was a tenth beyond where its gate latches a fault, whatever it read
+  bool active_at_end = false;         ///< both, after clearing and arming where that was needed
   double resume_step_N = 0.0;   ///< largest change of a force in a tick, from arming to 20 ms after following began
   double fault_N = 0.0;         ///< largest force, slowly, by which the fault made a motor or a force sensor wrong
   double winding_warmth = 0.0;  ///< of a motor without cooling; above 1 it is damaged

@@ -34,7 +34,7 @@ struct HarmBounds {
               "Force between the tool and what it touches."),
         field("pressing_N", &HarmBounds::pressing_N, units::newton, positive, "Either of them where it lasts."),
         field("release_s", &HarmBounds::release_s, units::second, positive,
-              "From the moment in which no site is active any more until the motors give no force.")};
+              "From the moment in which both sites are in hold or fault until the motors give no force.")};
   }
 };
 
