@@ -25,8 +25,7 @@ struct FaultsOptions {
   std::optional<std::string> file;
   std::vector<std::string> set;
   std::optional<std::int64_t> seeds;
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions output;
   bool real_time = false;
   runtime::ServoThreadParams servo;
 };
@@ -39,14 +38,12 @@ Check run(const FaultsOptions& options, const std::string& command) {
   if (options.seeds) {
     if (auto error = document->set("task.seeds=" + std::to_string(*options.seeds))) return error;
   }
-  if (options.out) {
-    if (auto error = check_writable(*options.out)) return error;
-  }
-  const simulation::Request request{
-      .document = *std::move(document),
-      .variations = {},
-      .name = options.file ? std::filesystem::path(*options.file).stem().string() : std::string("faults"),
-      .command = command};
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
+  const simulation::Request request{.document = *std::move(document),
+                                    .variations = {},
+                                    .name = options.file ? experiment_name(*options.file) : std::string("faults"),
+                                    .command = command};
   const auto outcome = [&] {
     ProgressLine line(request.name);
     const auto progress = [&line](double done) { line.update(done); };
@@ -54,7 +51,7 @@ Check run(const FaultsOptions& options, const std::string& command) {
                              : simulation::FaultExperiment().run(request, progress);
   }();
   if (!outcome) return outcome.error();
-  return write_outcome(options.out, *outcome, options.json);
+  return write_outcome(*output, *outcome);
 }
 
 }  // namespace
@@ -65,8 +62,7 @@ void add_faults(CLI::App& app, const std::string& command, int& status) {
   faults->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind faults; else the built-in one");
   add_set_option(*faults, options->set);
   faults->add_option("--seeds", options->seeds, "Runs of each fault");
-  faults->add_option("--out", options->out, "Folder for report.html, results.json and the figure")->type_name("DIR");
-  faults->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  add_output_options(*faults, options->output, "Folder for report.html, results.json and the figure");
   CLI::Option* real_time = faults->add_flag("--realtime", options->real_time,
                                             "After that some of them again at the real clock, on a servo thread");
   add_servo_options(*faults, options->servo);

@@ -112,8 +112,6 @@ class Person {
   bool open_ = true;
 };
 
-std::filesystem::path log_folder(const std::string& out) { return std::filesystem::path(out) / "log"; }
-
 }  // namespace
 
 void add_site_options(CLI::App& verb, SiteOptions& options) {
@@ -132,7 +130,7 @@ void add_site_options(CLI::App& verb, SiteOptions& options) {
 }
 
 Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_params, const simulation::Request& request,
-               const std::optional<std::string>& out, bool json) {
+               OutputFolder& output, std::uint64_t log_limit_bytes) {
   const configuration::Document& document = request.document;
   const auto experiment = simulation::choose_experiment(document);
   if (!experiment) return experiment.error();
@@ -152,8 +150,9 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   if (!loop) return document.locate(loop.error());
   const std::string configuration = configuration::to_toml(*params);
   std::optional<SiteLog> log;
-  if (out) {
-    auto created = SiteLog::create(log_folder(*out), request, configuration, run.role);
+  if (output.wanted()) {
+    if (auto error = output.begin()) return error;
+    auto created = SiteLog::create(output.log_folder(), request, configuration, run.role, log_limit_bytes);
     if (!created) return created.error();
     log.emplace(*std::move(created));
     loop->log_to(log->streams());
@@ -164,7 +163,7 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   servo_params.rate_Hz = params->servo.rate_Hz;
   auto servo = runtime::ServoThread<SiteLoop>::start(servo_params, *std::move(loop));
   if (!servo) return servo.error();
-  std::ostream& lines = json ? std::cerr : std::cout;
+  std::ostream& lines = output.json() ? std::cerr : std::cout;
   lines << second_head(run.role) << std::flush;
   const auto take_seconds = [&] {
     SiteSecond second;
@@ -188,8 +187,8 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
     log_error = log->close();
     run.log_dropped = log->dropped();
   }
-  if (auto error = write_outcome(out, site_outcome(run, request, configuration), json)) return error;
-  if (log && !log_error) (json ? std::cerr : std::cout) << "Log: " << log_folder(*out).string() << "\n";
+  if (auto error = write_outcome(output, site_outcome(run, request, configuration))) return error;
+  if (log && !log_error) output.announce_log(log->removed());
   return log_error;
 }
 
