@@ -14,7 +14,7 @@ help: ## List these commands
 run: configure ## Build tactus and run the main experiment into out/tapping
 	cmake --build --preset release --parallel $(JOBS) --target tactus
 	$(BUILD)/bin/tactus run experiments/tapping.toml \
-	  --vary control.force_gain=1,3,5,7,10,15 --vary control.cancellation=off,on --out out/tapping
+	  --vary control.force_gain=1,3,5,7,10,15 --vary control.cancellation=off,on --out out/tapping --overwrite
 
 live: configure page ## Build tactus and its live page, and serve it: be the operator in a browser
 	cmake --build --preset release --parallel $(JOBS) --target tactus

@@ -1,6 +1,5 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/standard_output.hpp>
-#include <tactus/report/files.hpp>
 
 #include <iostream>
 
@@ -25,14 +24,11 @@ void add_axis_options(CLI::App& verb, AxisOptions& options) {
   verb.add_option("--force-sign", roles.force_sign, "-1 turns the actuator's force round")
       ->type_name("SIGN")
       ->check(CLI::IsMember({-1.0, 1.0}));
-  verb.add_option("--out", options.out, "Folder for report.html, results.json and the model")->type_name("DIR");
-  verb.add_flag("--json", options.json, "Print one JSON document and nothing else");
+  add_output_options(verb, options.output, "Folder for report.html, results.json and the model");
 }
 
 Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool needs_measured) {
-  if (options.out && options.out->empty()) {
-    return Error{ErrorCode::syntax, {}, "no folder is named: write one, as in --out results", "--out"};
-  }
+  if (const auto output = OutputFolder::open(options.output); !output) return output.error();
   identification::AxisRoles roles = options.roles;
   roles.file = options.file;
   auto axis = identification::read_axis(roles, needs_measured);
@@ -44,17 +40,17 @@ Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool
 
 Check present(const AxisOptions& options, const std::string& text, const std::string& json, const report::Page& page,
               const std::string& model) {
-  std::cout << (options.json ? json : text);
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
+  std::cout << (output->json() ? json : text);
   if (auto error = flush_standard_output()) return error;
-  if (!options.out) return std::nullopt;
-  const std::filesystem::path folder = *options.out;
-  if (auto error = report::prepare_directory(folder)) return error;
+  if (!output->wanted()) return std::nullopt;
   if (!model.empty()) {
-    if (auto error = report::write_file(folder / "model.toml", model)) return error;
+    if (auto error = output->write("model.toml", model)) return error;
   }
-  if (auto error = report::write_file(folder / "results.json", json)) return error;
-  if (auto error = report::write_file(folder / "report.html", page.to_html())) return error;
-  (options.json ? std::cerr : std::cout) << "Report: " << (folder / "report.html").string() << "\n";
+  if (auto error = output->write("results.json", json)) return error;
+  if (auto error = output->write("report.html", page.to_html())) return error;
+  output->announce();
   return std::nullopt;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/identification/axis_recording.hpp>
 #include <tactus/report/page.hpp>
@@ -18,14 +19,13 @@ namespace tactus::cli {
 struct AxisOptions {
   std::string file;
   identification::AxisRoles roles;
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions output;
 };
 
 /// Adds RECORDING, the roles of its columns, `--out` and `--json` to a verb.
 void add_axis_options(CLI::App& verb, AxisOptions& options);
 
-/// The recording that the options name.
+/// The recording that the options name, once it is clear that results may be left where they shall be.
 Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool needs_measured = false);
 
 /// Prints `text` or `json`, then writes results.json, report.html and, if given, model.toml to `--out`.

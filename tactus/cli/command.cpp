@@ -1,7 +1,9 @@
 #include <tactus/cli/command.hpp>
+#include <tactus/cli/printable_output.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
+#include <tactus/report/text.hpp>
 
 #include <csignal>
 #include <cstdio>
@@ -45,12 +47,14 @@ int run(int argc, char** argv) {
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "tactus";
   std::string command = shell_word(name);
   for (int i = 1; i < argc; ++i) command += " " + shell_word(argv[i]);
+  command = report::printable(command);  // it stands in reports, and in model files as a comment of one line
 
   // Else the number of one that was closed would be given to a log or a socket, which would be read or printed to. This
   // way round, so that reading from it and printing to it fail as before.
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(standard, F_GETFD) < 0) (void)open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
+  const PrintableOutput output(std::cout), errors(std::cerr);
   // A reader of the results that went away is an error like a full disk and not the end.
   std::signal(SIGPIPE, SIG_IGN);
   int status = 0;

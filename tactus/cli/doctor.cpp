@@ -1,3 +1,4 @@
+#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
@@ -25,8 +26,7 @@ using runtime::Finding;
 struct DoctorOptions {
   runtime::ServoThreadParams servo;
   double duration_s = 3.0;
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions output;
 };
 
 report::Table table_of(const std::vector<Finding>& findings) {
@@ -79,7 +79,7 @@ std::string json_of(const std::vector<Finding>& findings, const runtime::Measure
                                     {"remedy", finding.remedy}});
   }
   document["servo"] = nlohmann::ordered_json::parse(runtime::servo_json(measurement.report));
-  return document.dump(2) + "\n";
+  return json_text(document);
 }
 
 /// Whether the machine can keep time.
@@ -90,9 +90,8 @@ Result<bool> examine(const DoctorOptions& options, const std::string& command) {
     error.place = "--duration-s";
     return error;
   }
-  if (options.out) {
-    if (auto error = check_writable(*options.out)) return *std::move(error);
-  }
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
   const auto measurement = runtime::measure_lateness(options.servo, options.duration_s);
   if (!measurement) return measurement.error();
   const auto findings =
@@ -102,7 +101,7 @@ Result<bool> examine(const DoctorOptions& options, const std::string& command) {
                                     .json = json_of(findings, *measurement),
                                     .html = html_of(findings, timing, measurement->report, command),
                                     .figures = {timing}};
-  if (auto error = write_outcome(options.out, outcome, options.json)) return *std::move(error);
+  if (auto error = write_outcome(*output, outcome)) return *std::move(error);
   return runtime::can_keep_time(findings);
 }
 
@@ -116,8 +115,7 @@ void add_doctor(CLI::App& app, const std::string& command, int& status) {
       ->capture_default_str();
   verb->add_option("--duration-s", options->duration_s, "How long to measure")->type_name("S")->capture_default_str();
   add_servo_options(*verb, options->servo);
-  verb->add_option("--out", options->out, "Folder for report.html, results.json and the figure")->type_name("DIR");
-  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  add_output_options(*verb, options->output, "Folder for report.html, results.json and the figure");
   verb->callback([options, &app, &command, &status] {
     const auto can = examine(*options, command);
     if (!can) std::cerr << app.get_name() << ": " << describe(can.error()) << "\n";

@@ -1,4 +1,5 @@
 #include <tactus/cli/axis_options.hpp>
+#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/control/inverse_model_estimator.hpp>
@@ -85,7 +86,7 @@ std::string json_of(const EstimateOptions& options, const AxisRecording& axis, c
   const bool moved_freely = free.duration_s >= shortest_free_motion_s;
   document["free_motion_residual" + unit] = moved_freely ? Json(free.rms) : Json(nullptr);
   document["free_motion_s"] = free.duration_s;
-  return document.dump(2) + "\n";
+  return json_text(document);
 }
 
 Check estimate_force(const EstimateOptions& options, const std::string& command) {

@@ -1,4 +1,7 @@
 #include <tactus/cli/experiment_options.hpp>
+#include <tactus/report/text.hpp>
+
+#include <filesystem>
 
 #include <CLI/CLI.hpp>
 
@@ -23,6 +26,10 @@ void add_experiment_options(CLI::App& verb, ExperimentOptions& options) {
       ->type_name("FILE")
       ->allow_extra_args(false);
   add_set_option(verb, options.set);
+}
+
+std::string experiment_name(const std::string& file) {
+  return report::printable(std::filesystem::path(file).stem().string());
 }
 
 Result<configuration::Document> load_experiment(const ExperimentOptions& options) {

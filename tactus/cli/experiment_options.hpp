@@ -27,6 +27,9 @@ Result<configuration::Document> with_set(Result<configuration::Document> documen
 /// Adds it to a verb: `EXPERIMENT`, `--with`, `--set`.
 void add_experiment_options(CLI::App& verb, ExperimentOptions& options);
 
+/// What an experiment is called in reports and messages: its file's name without the ending, as it can be printed.
+std::string experiment_name(const std::string& file);
+
 /// The file, the keys of others in the place of its own, and the values on top. Errors: those of `Document`.
 Result<configuration::Document> load_experiment(const ExperimentOptions& options);
 

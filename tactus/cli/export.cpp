@@ -1,3 +1,5 @@
+#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/output_folder.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/telemetry/export.hpp>
@@ -20,6 +22,7 @@ struct ExportOptions {
   std::string to;
   std::optional<std::string> topic;
   std::optional<std::string> out;
+  bool overwrite = false;
   bool json = false;
 };
 
@@ -97,8 +100,7 @@ std::string json_of(const telemetry::LogContent& content, const std::filesystem:
       document["topics"].back()["signals"].push_back({{"name", column.name}, {"unit", column.unit}});
     }
   }
-  // A log may come from anywhere; what is not UTF-8 in it is replaced.
-  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(document);
 }
 
 Check run(const ExportOptions& options) {
@@ -106,6 +108,7 @@ Check run(const ExportOptions& options) {
   if (!content) return content.error();
   if (auto error = check_topics(options, *content)) return error;
   const std::filesystem::path file = options.out ? std::filesystem::path(*options.out) : default_file(options);
+  if (auto error = may_write(file, options.overwrite, options.out ? "--out" : options.log)) return error;
   if (auto error = write(options, *content, file)) return error;
   std::cout << (options.json ? json_of(*content, file) : text_of(*content, file));
   return std::nullopt;
@@ -122,6 +125,7 @@ void add_export(CLI::App& app, int& status) {
       ->check(CLI::IsMember({"csv", "mat", "hdf5"}));
   verb->add_option("--topic", options->topic, "Only this topic; csv needs it where the log has several");
   verb->add_option("--out", options->out, "File to write; without it, beside the log")->type_name("FILE");
+  verb->add_flag("--overwrite", options->overwrite, "Replace the file if it is there");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
   verb->callback([options, &app, &status] {
     if (const auto error = run(*options)) {

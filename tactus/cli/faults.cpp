@@ -27,8 +27,7 @@ struct FaultsOptions {
   std::vector<std::string> set;
   std::optional<std::int64_t> seeds;
   std::optional<std::string> only;
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions output;
   bool real_time = false;
   runtime::ServoThreadParams servo;
 };
@@ -45,14 +44,12 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
   if (options.only) {
     if (auto error = document->set("task.only=\"" + *options.only + "\"")) return error;
   }
-  if (options.out) {
-    if (auto error = check_writable(*options.out)) return error;
-  }
-  const simulation::Request request{
-      .document = *std::move(document),
-      .variations = {},
-      .name = options.file ? std::filesystem::path(*options.file).stem().string() : std::string("faults"),
-      .command = command};
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
+  const simulation::Request request{.document = *std::move(document),
+                                    .variations = {},
+                                    .name = options.file ? experiment_name(*options.file) : std::string("faults"),
+                                    .command = command};
   runtime::EndRequest end;
   std::unique_ptr<Interruption> interruption;
   const auto listen = [&]() -> Result<const runtime::EndRequest*> {
@@ -69,7 +66,7 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
   }();
   if (!outcome) return outcome.error();
   if (interruption) status = interruption->exit_status();
-  return write_outcome(options.out, *outcome, options.json);
+  return write_outcome(*output, *outcome);
 }
 
 }  // namespace
@@ -81,8 +78,7 @@ void add_faults(CLI::App& app, const std::string& command, int& status) {
   add_set_option(*faults, options->set);
   faults->add_option("--seeds", options->seeds, "Runs of each fault");
   faults->add_option("--only", options->only, "One fault by its id, as the rows of --json have it");
-  faults->add_option("--out", options->out, "Folder for report.html, results.json and the figure")->type_name("DIR");
-  faults->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  add_output_options(*faults, options->output, "Folder for report.html, results.json and the figure");
   CLI::Option* real_time = faults->add_flag("--realtime", options->real_time,
                                             "After that some of them again at the real clock, on a servo thread");
   add_servo_options(*faults, options->servo);

@@ -1,4 +1,6 @@
 #include <tactus/cli/identify.hpp>
+#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/output_folder.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/configuration/toml_writer.hpp>
@@ -8,7 +10,6 @@
 #include <tactus/identification/isolation_figures.hpp>
 #include <tactus/identification/quick.hpp>
 #include <tactus/identification/session.hpp>
-#include <tactus/report/files.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -65,8 +66,7 @@ struct BenchOptions {
   std::string rig;
   std::int64_t seed = 1;
   std::optional<std::string> session;
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions output;
 };
 
 /// `model.toml`: what `tactus run --with` loads.
@@ -117,7 +117,7 @@ std::string json_of(const Isolation& isolation, const ImpactCheck& check, const 
     document["stages"].push_back({{"name", stage.title}, {"residual_rms_m", stage.residual_rms_m}});
   }
   document["impact_residual"] = check.residual;
-  return document.dump(2) + "\n";
+  return json_text(document);
 }
 
 report::Table table_of(const Isolation& isolation, const SimulatedRig& rig) {
@@ -139,10 +139,9 @@ report::Table table_of(const Isolation& isolation, const SimulatedRig& rig) {
   return table;
 }
 
-Check write_results(const Recipe& recipe, const BenchOptions& options, const Isolation& isolation,
-                    const ImpactCheck& check, const ModelFile& model, const SimulatedRig& rig, const std::string& json,
+Check write_results(const Recipe& recipe, OutputFolder& output, const Isolation& isolation, const ImpactCheck& check,
+                    const ModelFile& model, const SimulatedRig& rig, const std::string& json,
                     const report::Table& table, const std::string& command) {
-  const std::filesystem::path folder = *options.out;
   const std::string origin = "# " + command + "\n";
   report::Page page(std::string(recipe.title) + " of " + rig.name());
   page.table(table);
@@ -152,13 +151,13 @@ Check write_results(const Recipe& recipe, const BenchOptions& options, const Iso
   const std::string model_text = origin + configuration::to_toml(model);
   page.code(model_text, "model.toml, for tactus run --with");
   page.footer("tactus " + std::string(version()), command);
-  if (auto error = report::write_file(folder / "model.toml", model_text)) return error;
-  if (auto error = report::write_file(folder / "rig.toml", "# The truth behind " + rig.name() + "\n" +
-                                                               configuration::to_toml(rig.truth().benched))) {
+  if (auto error = output.write("model.toml", model_text)) return error;
+  if (auto error = output.write(
+          "rig.toml", "# The truth behind " + rig.name() + "\n" + configuration::to_toml(rig.truth().benched))) {
     return error;
   }
-  if (auto error = report::write_file(folder / "results.json", json)) return error;
-  return report::write_file(folder / "report.html", page.to_html());
+  if (auto error = output.write("results.json", json)) return error;
+  return output.write("report.html", page.to_html());
 }
 
 Check identify(const Recipe& recipe, const BenchOptions& options, const std::string& command) {
@@ -167,9 +166,8 @@ Check identify(const Recipe& recipe, const BenchOptions& options, const std::str
   }
   auto rig = SimulatedRig::make(simulation::draw_rig(options.seed));
   if (!rig) return rig.error();
-  if (options.out) {
-    if (auto error = report::prepare_directory(*options.out)) return error;
-  }
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
   AnnouncedRig announced(*rig);
   identification::Rig* bench = &announced;
   std::optional<SessionRig> session;
@@ -189,17 +187,16 @@ Check identify(const Recipe& recipe, const BenchOptions& options, const std::str
 
   const std::string json = json_of(*isolation, *check, *rig);
   const report::Table table = table_of(*isolation, *rig);
-  if (options.json) {
+  if (output->json()) {
     std::cout << json;
   } else {
     std::cout << table.to_text() << "Of what impacts induce above 20 Hz, the model leaves "
               << report::number(100.0 * check->residual, 2) << " %.\n";
   }
   if (auto error = flush_standard_output()) return error;
-  if (!options.out) return {};
-  if (auto error = write_results(recipe, options, *isolation, *check, model, *rig, json, table, command)) return error;
-  (options.json ? std::cerr : std::cout) << "Report: " << (std::filesystem::path(*options.out) / "report.html").string()
-                                         << "\n";
+  if (!output->wanted()) return {};
+  if (auto error = write_results(recipe, *output, *isolation, *check, model, *rig, json, table, command)) return error;
+  output->announce();
   return {};
 }
 
@@ -211,9 +208,8 @@ void add_bench_verb(CLI::App& identify_verb, const Recipe& recipe, const std::st
   verb->add_option("--seed", options->seed, "Which of the simulated rigs")->check(CLI::NonNegativeNumber);
   verb->add_option("--session", options->session, "Folder that keeps every run, to stop and go on later")
       ->type_name("DIR");
-  verb->add_option("--out", options->out, "Folder for report.html, results.json, model.toml and rig.toml")
-      ->type_name("DIR");
-  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  options->output.own_files = {"model.toml", "rig.toml"};
+  add_output_options(*verb, options->output, "Folder for report.html, results.json, model.toml and rig.toml");
   verb->callback([&recipe, options, name, &command, &status] {
     if (const auto error = identify(recipe, *options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

@@ -1,8 +1,9 @@
 #include <tactus/cli/identify.hpp>
+#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/output_folder.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/identification/frequency_response.hpp>
 #include <tactus/recording/recording.hpp>
-#include <tactus/report/files.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/text.hpp>
 
@@ -38,8 +39,7 @@ struct FrfOptions {
   double lower_Hz = 0.0;
   double upper_Hz = std::numeric_limits<double>::infinity();
   bool compare = false;
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions results;
 };
 
 struct Pair {
@@ -292,25 +292,22 @@ std::string json_of(const Estimates& found, const std::vector<Row>& rows, const 
                          {"spread", found.linearity->spread},
                          {"worst_Hz", found.linearity->worst_Hz}};
   }
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
-Check write_results(const FrfOptions& options, const std::string& csv, const std::string& json,
-                    const report::Page& page, const report::Figure& figure) {
-  const std::filesystem::path folder = *options.out;
-  if (auto error = report::prepare_directory(folder)) return error;
-  if (auto error = report::write_file(folder / "response.csv", csv)) return error;
-  if (auto error = report::write_file(folder / "figure-1.svg", report::to_svg(figure))) return error;
-  if (auto error = report::write_file(folder / "results.json", json)) return error;
-  if (auto error = report::write_file(folder / "report.html", page.to_html())) return error;
-  (options.json ? std::cerr : std::cout) << "Report: " << (folder / "report.html").string() << "\n";
+Check write_results(OutputFolder& output, const std::string& csv, const std::string& json, const report::Page& page,
+                    const report::Figure& figure) {
+  if (auto error = output.write("response.csv", csv)) return error;
+  if (auto error = output.write("figure-1.svg", report::to_svg(figure))) return error;
+  if (auto error = output.write("results.json", json)) return error;
+  if (auto error = output.write("report.html", page.to_html())) return error;
+  output.announce();
   return std::nullopt;
 }
 
 Check identify(const FrfOptions& options, const std::string& command) {
-  if (options.out && options.out->empty()) {
-    return Error{ErrorCode::syntax, {}, "no folder is named: write one, as in --out results", "--out"};
-  }
+  auto output = OutputFolder::open(options.results);
+  if (!output) return output.error();
   const auto runs = read_runs(options);
   if (!runs) return runs.error();
   const auto found = estimate_all(options, *runs);
@@ -326,9 +323,9 @@ Check identify(const FrfOptions& options, const std::string& command) {
   const std::string text = found->how + ", " + std::to_string(runs->size()) +
                            (runs->size() == 1 ? " recording\n" : " recordings\n") + table.to_text() +
                            (found->linearity ? verdict(*found->linearity) + "\n" : std::string());
-  std::cout << (options.json ? json : text);
+  std::cout << (output->json() ? json : text);
   if (auto error = flush_standard_output()) return error;
-  if (!options.out) return std::nullopt;
+  if (!output->wanted()) return std::nullopt;
 
   const report::Figure figure = figure_of(rows, unit, !found->response.coherence.empty());
   report::Page page("Frequency response from " + options.input + " to " + options.output);
@@ -337,7 +334,7 @@ Check identify(const FrfOptions& options, const std::string& command) {
   page.figure(figure);
   page.table(table);
   page.footer("Made by tactus.", command);
-  return write_results(options, csv_of(rows), json, page, figure);
+  return write_results(*output, csv_of(rows), json, page, figure);
 }
 
 }  // namespace
@@ -363,9 +360,8 @@ void add_identify_frf(CLI::App& identify_verb, const std::string& name, const st
   verb->add_option("--lower-Hz", options->lower_Hz, "Nothing below this frequency")->type_name("HZ");
   verb->add_option("--upper-Hz", options->upper_Hz, "Nothing above this frequency")->type_name("HZ");
   verb->add_flag("--compare", options->compare, "Say whether the recordings show one linear device");
-  verb->add_option("--out", options->out, "Folder for report.html, results.json, response.csv and the figure")
-      ->type_name("DIR");
-  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  options->results.own_files = {"response.csv"};
+  add_output_options(*verb, options->results, "Folder for report.html, results.json, response.csv and the figure");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

@@ -1,5 +1,6 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
+#include <tactus/cli/json_text.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/control/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
@@ -67,7 +68,7 @@ std::string json_of(const InverseDynamics& model, const AxisRecording& axis, con
                                       {"determined", determined(row.estimate)},
                                       {"least_squares", row.least_squares}});
   }
-  return document.dump(2) + "\n";
+  return json_text(document);
 }
 
 /// The file that `tactus estimate force` loads. Friction below zero, which the fit may find within its interval, is
@@ -142,6 +143,7 @@ Check identify_inverse(const InverseOptions& options, const std::string& command
 void add_identify_inverse(CLI::App& identify, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<InverseOptions>();
   CLI::App* verb = identify.add_subcommand("inverse", "Inverse dynamic model of one axis from a recording");
+  options->axis.output.own_files = {"model.toml"};
   add_axis_options(*verb, options->axis);
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")->type_name("HZ");
   verb->callback([options, name, &command, &status] {

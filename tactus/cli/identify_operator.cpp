@@ -1,5 +1,6 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
+#include <tactus/cli/json_text.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/operator_impedance.hpp>
 #include <tactus/report/table.hpp>
@@ -110,7 +111,7 @@ std::string json_of(const OperatorImpedances& found, const AxisRecording& axis, 
                                    {"verdict", word_of(window.verdict)},
                                    {"parameters", parameters_of(window, axis.rotary)}});
   }
-  return document.dump(2) + "\n";
+  return json_text(document);
 }
 
 /// `12 ± 3`, in brackets where the data do not tell it.

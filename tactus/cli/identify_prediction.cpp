@@ -1,5 +1,6 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/identify.hpp>
+#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/identification/prediction_time.hpp>
@@ -32,8 +33,7 @@ struct PredictionOptions {
   double band_Hz = 1.0;
   std::string recording, command, position;
   std::int64_t command_column = 1, position_column = 1;
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions output;
 };
 
 struct Motion {
@@ -102,13 +102,12 @@ simulation::Outcome outcome_of(const PredictionOptions& options, const TimeConst
                                     {"limit_s", found.limit_s},
                                     {"from_data_s", found.from_data_s},
                                     {"error_rms_N", found.error_rms_N}};
-  return {.text = table.to_text() + felt + "\n", .json = json.dump(2) + "\n", .html = page.to_html(), .figures = {}};
+  return {.text = table.to_text() + felt + "\n", .json = json_text(json), .html = page.to_html(), .figures = {}};
 }
 
 Check identify(const PredictionOptions& options, const std::string& command) {
-  if (options.out) {
-    if (auto error = check_writable(*options.out)) return error;
-  }
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
   auto document = with_set(configuration::Document::load(options.experiment), options.set);
   if (!document) return document.error();
   const auto params = document->read<simulation::InverseModelChirpParams>();
@@ -128,15 +127,13 @@ Check identify(const PredictionOptions& options, const std::string& command) {
       params->estimator, options.blocks);
   if (!data) return document->locate(under("estimator", data.error()));
 
-  const simulation::Request request{.document = *document,
-                                    .variations = {},
-                                    .name = std::filesystem::path(options.experiment).stem().string(),
-                                    .command = command};
+  const simulation::Request request{
+      .document = *document, .variations = {}, .name = experiment_name(options.experiment), .command = command};
   const TimeConstants found{.closed_form_s = *closed,
                             .limit_s = *limit,
                             .from_data_s = data->time_constant_s,
                             .error_rms_N = data->error_rms_N};
-  return write_outcome(options.out, outcome_of(options, found, request, configuration::to_toml(*params)), options.json);
+  return write_outcome(*output, outcome_of(options, found, request, configuration::to_toml(*params)));
 }
 
 }  // namespace
@@ -157,8 +154,7 @@ void add_identify_prediction(CLI::App& identify_verb, const std::string& name, c
       ->needs(recording);
   verb->add_option("--command-column", options->command_column, "Column of that variable (.mat), from 1");
   verb->add_option("--position-column", options->position_column, "Column of that variable (.mat), from 1");
-  verb->add_option("--out", options->out, "Folder for report.html and results.json")->type_name("DIR");
-  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  add_output_options(*verb, options->output, "Folder for report.html and results.json");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

@@ -12,12 +12,12 @@
 namespace tactus::cli {
 
 /// While it lives, SIGINT (Ctrl-C), SIGTERM and SIGHUP do not end the program. The first one asks what runs to come to
-/// its end. Another SIGINT or SIGTERM insists: no force from the next tick on, and the program ends with the exit status
-/// 128 and the signal's number, whatever it was about to write.
+/// its end. Another SIGINT or SIGTERM insists: no force from the next tick on, and the program ends with the exit
+/// status 128 and the signal's number, whatever it was about to write.
 ///
 /// They are waited for by a thread that does nothing else, so that nothing that stalls keeps them from being heard.
-/// Signals are held back in the thread that makes it and in those that this one starts afterwards; so make it first. One
-/// at a time.
+/// Signals are held back in the thread that makes it and in those that this one starts afterwards; so make it first.
+/// One at a time.
 class Interruption {
  public:
   /// `end` must outlive it. Errors: `failed` where the system gives no thread.

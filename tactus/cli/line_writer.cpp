@@ -1,4 +1,5 @@
 #include <tactus/cli/line_writer.hpp>
+#include <tactus/cli/printable_output.hpp>
 #include <tactus/cli/quiet_thread.hpp>
 
 #include <algorithm>
@@ -87,13 +88,13 @@ LineWriter::~LineWriter() {
   if (thread_.joinable()) (void)finish({});
 }
 
-void LineWriter::say(std::string line) {
+void LineWriter::say(std::string_view line) {
   const std::lock_guard lock(state_->mutex);
   if (state_->failed || state_->waiting.size() >= most_waiting) {
     ++state_->dropped;
     return;
   }
-  state_->waiting.push_back(std::move(line));
+  state_->waiting.push_back(printable_lines(line));
   state_->changed.notify_all();
 }
 
@@ -102,10 +103,10 @@ std::uint64_t LineWriter::dropped() const {
   return state_->dropped;
 }
 
-Check LineWriter::finish(std::string last) {
+Check LineWriter::finish(std::string_view last) {
   std::unique_lock lock(state_->mutex);
   State& state = *state_;
-  state.waiting.push_back(std::move(last));
+  state.waiting.push_back(printable_lines(last));
   state.closed = true;
   state.changed.notify_all();
   const auto all_done = [&state] { return state.failed || (state.waiting.empty() && !state.busy); };

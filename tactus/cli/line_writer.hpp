@@ -4,13 +4,14 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
+#include <string_view>
 #include <thread>
 
 namespace tactus::cli {
 
 /// Lines on their way to a terminal, a pipe or a file. A thread of its own writes them and waits for whoever does not
-/// read; those who say them never wait. At most `most_waiting` lines wait; those that come then are dropped and counted.
+/// read; those who say them never wait. They are shown as `printable_lines` says. At most `most_waiting` lines wait;
+/// those that come then are dropped and counted.
 class LineWriter {
  public:
   static constexpr std::size_t most_waiting = 256;
@@ -22,12 +23,12 @@ class LineWriter {
   ~LineWriter();
 
   /// Any thread.
-  void say(std::string line);
+  void say(std::string_view line);
   /// Lines that were dropped so far. Any thread.
   [[nodiscard]] std::uint64_t dropped() const;
   /// After all that waits a text of any length, and nothing more. Waits until all is written, or nothing more was for
   /// 0.2 s. Errors: `unwritable` where not all of it came through.
-  Check finish(std::string last);
+  Check finish(std::string_view last);
 
  private:
   struct State;

@@ -1,5 +1,6 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
@@ -62,7 +63,7 @@ std::string json_of(const std::string& name, const PlantStatus& status, const ru
                                         {"cause", name_of(status.cause)},
                                         {"missed", status.missed},
                                         {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}};
-  return document.dump(2) + "\n";
+  return json_text(document);
 }
 
 Result<simulation::TappingParams> params_of(const PlantOptions& options) {

@@ -1,8 +1,8 @@
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/report/text.hpp>
 
 #include <cmath>
 #include <cstdio>
-#include <utility>
 
 #include <unistd.h>
 
@@ -12,7 +12,8 @@ namespace {
 constexpr const char* erase_line = "\r\033[K";
 }
 
-ProgressLine::ProgressLine(std::string title) : title_(std::move(title)), shown_(isatty(STDERR_FILENO) == 1) {}
+ProgressLine::ProgressLine(std::string_view title)
+    : title_(report::printable(title)), shown_(isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   if (shown_) std::fputs(erase_line, stderr);

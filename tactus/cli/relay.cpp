@@ -1,5 +1,6 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/passages.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
@@ -144,7 +145,7 @@ void print(const Way::Counters& to_slave, const Way::Counters& to_master, bool j
     table.add_row({name, std::to_string(c->arrived), std::to_string(c->lost), std::to_string(c->doubled),
                    std::to_string(c->overflowed), std::to_string(c->passed)});
   }
-  std::cout << (json ? document.dump(2) + "\n" : table.to_text());
+  std::cout << (json ? json_text(document) : table.to_text());
 }
 
 Check run(const RelayOptions& options) {

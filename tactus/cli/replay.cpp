@@ -1,3 +1,4 @@
+#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
@@ -53,8 +54,7 @@ std::string json_of(const runtime::Replay& replay) {
     document["difference"] = {{"topic", found->topic},   {"tap", found->tap},           {"tick", found->tick},
                               {"signal", found->signal}, {"recorded", found->recorded}, {"replayed", found->replayed}};
   }
-  // A log may come from anywhere; what is not UTF-8 in it is replaced.
-  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(document);
 }
 
 }  // namespace

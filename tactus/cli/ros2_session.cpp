@@ -1,3 +1,4 @@
+#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
@@ -104,21 +105,19 @@ struct Session {
 
 std::string json_of(const simulation::Request& request, const Ros2Options& options, const Session& session,
                     const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo) {
-  return nlohmann::ordered_json{{"experiment", request.name},
-                                {"command", request.command},
-                                {"namespace", options.name_space},
-                                {"time_s", session.time_s()},
-                                {"contacts", session.contacts},
-                                {"peak_contact_force_N", session.peak_force_N},
-                                {"driven", session.parts->path.driven()},
-                                {"published", counts.published},
-                                {"dropped", counts.dropped},
-                                {"messages_lost", counts.lost},
-                                {"wishes", counts.wishes},
-                                {"commands_refused", counts.refused},
-                                {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}}
-             .dump(2) +
-         "\n";
+  return json_text({{"experiment", request.name},
+                    {"command", request.command},
+                    {"namespace", options.name_space},
+                    {"time_s", session.time_s()},
+                    {"contacts", session.contacts},
+                    {"peak_contact_force_N", session.peak_force_N},
+                    {"driven", session.parts->path.driven()},
+                    {"published", counts.published},
+                    {"dropped", counts.dropped},
+                    {"messages_lost", counts.lost},
+                    {"wishes", counts.wishes},
+                    {"commands_refused", counts.refused},
+                    {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}});
 }
 
 report::Table table_of(const Ros2Options& options, const Session& session, const ros2::Bridge::Counts& counts) {
@@ -189,7 +188,8 @@ double TapScript::position_m(double time_s) const {
   return time_s < tap.back.start_time_s ? tap.reach.position_m(time_s) : tap.back.position_m(time_s);
 }
 
-Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options) {
+Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options,
+                                             OutputFolder& output) {
   const auto params = request.document.read<simulation::TappingParams>();
   if (!params) return params.error();
   auto parts = make_parts(*params);
@@ -202,9 +202,11 @@ Result<simulation::Outcome> run_ros2_session(const simulation::Request& request,
 
   std::optional<telemetry::Recorder> recorder;
   RecordStream* stream = nullptr;
-  if (options.log_folder) {
-    if (auto error = report::prepare_directory(*options.log_folder)) return *std::move(error);
-    auto opened = telemetry::Recorder::create(*options.log_folder / "log.mcap");
+  const std::filesystem::path log_file = output.log_folder() / "log.mcap";
+  if (output.wanted()) {
+    if (auto error = output.begin()) return *std::move(error);
+    if (auto error = report::prepare_directory(output.log_folder())) return *std::move(error);
+    auto opened = telemetry::Recorder::create(log_file, options.log_limit_bytes);
     if (!opened) return opened.error();
     recorder.emplace(*std::move(opened));
     auto about = log_origin();
@@ -224,12 +226,11 @@ Result<simulation::Outcome> run_ros2_session(const simulation::Request& request,
                   .log = stream,
                   .to_wall_ns = wall_ns - runtime::monotonic_ns(),
                   .end = &options.end};
-  const auto report =
-      runtime::run_servo(servo, [&](const runtime::Tick& tick) noexcept { return session(tick); });
+  const auto report = runtime::run_servo(servo, [&](const runtime::Tick& tick) noexcept { return session(tick); });
   bridge->close();
   if (recorder) {
     if (auto error = recorder->stop()) return *std::move(error);
-    if (auto error = telemetry::write_bag_metadata(*options.log_folder / "log.mcap", recorder->log())) {
+    if (auto error = telemetry::write_bag_metadata(log_file, recorder->log())) {
       return *std::move(error);
     }
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/ros2/bridge.hpp>
@@ -10,8 +11,6 @@
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <cstdint>
-#include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,14 +41,16 @@ ros2::Snapshot snapshot_of(const simulation::Teleoperator::Record& record, std::
 struct Ros2Options {
   std::string name_space = "tactus";
   runtime::ServoThreadParams servo = {};  ///< the rate is that of the experiment
-  const runtime::EndRequest& end;  ///< that somebody may make while it runs
-  std::optional<std::filesystem::path> log_folder = {};
+  const runtime::EndRequest& end;         ///< that somebody may make while it runs
+  std::uint64_t log_limit_bytes = 0;      ///< as in `LogWriter::create`
 };
 
 /// Runs the teleoperator of a `tapping` experiment among ROS 2 nodes, on a servo thread, for as long as the taps of
-/// `TapScript` take or until its end is asked for; then its forces fall at the rate limits of the gates. Deadlines that are missed are made up for, so that its time keeps to
-/// the real one. Errors: those of the experiment's file, of the network and of the log; `failed`
-/// once a safety gate has closed or the devices have left their workspace.
-Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options);
+/// `TapScript` take or until its end is asked for; then its forces fall at the rate limits of the gates. Deadlines that
+/// are missed are made up for, so that its time keeps to the real one. A log goes into the folder of `output`, if there
+/// is one. Errors: those of the experiment's file, of the network and of the log; `failed` once a safety gate has
+/// closed or the devices have left their workspace.
+Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options,
+                                             OutputFolder& output);
 
 }  // namespace tactus::cli

@@ -11,7 +11,7 @@
 #include <tactus/runtime/real_time_tapping.hpp>
 #include <tactus/simulation/experiment.hpp>
 
-#include <filesystem>
+#include <cstdint>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -29,8 +29,8 @@ namespace {
 struct RunOptions {
   ExperimentOptions experiment;
   std::vector<std::string> vary;
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions output;
+  std::uint64_t log_limit = 0;
   bool real_time = false;
   std::optional<std::string> plant;
   double plant_silence_s = runtime::usual_silence.value;
@@ -51,33 +51,33 @@ Result<simulation::Request> make_request(const RunOptions& options, const std::s
   }
   return simulation::Request{.document = *std::move(document),
                              .variations = std::move(variations),
-                             .name = std::filesystem::path(options.experiment.file).stem().string(),
+                             .name = experiment_name(options.experiment.file),
                              .command = command};
 }
 
-void say_log(const RunOptions& options, const std::filesystem::path& folder) {
-  (options.json ? std::cerr : std::cout) << "Log: " << folder.string() << "\n";
-}
-
 /// `status` is what an interruption makes the exit status.
-Check run_in_real_time(const RunOptions& options, const simulation::Request& request, int& status) {
+Check run_in_real_time(const RunOptions& options, const simulation::Request& request, OutputFolder& output,
+                       int& status) {
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();
-  runtime::RealTimeOptions real_time{.servo = options.servo, .log = {}, .about = log_origin(), .end = &end};
+  runtime::RealTimeOptions real_time{
+      .servo = options.servo, .log = {}, .log_limit_bytes = options.log_limit, .about = log_origin(), .end = &end};
   if (options.plant) {
     real_time.plant = runtime::PlantChoice{.name = *options.plant, .silence = Seconds{options.plant_silence_s}};
   }
-  const std::filesystem::path folder = std::filesystem::path(options.out.value_or("")) / "log";
-  if (options.out) real_time.log = folder / "log.mcap";
+  if (output.wanted()) {
+    real_time.log = output.log_folder() / "log.mcap";
+    real_time.before_log = [&output] { return output.begin(); };
+  }
   const auto done = [&] {
     ProgressLine line(request.name);
     return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
   }();
   if (!done) return done.error();
   if (done->interrupted) status = (*interruption)->exit_status();
-  if (auto error = write_outcome(options.out, done->outcome, options.json)) return error;
-  if (options.out && !done->log) say_log(options, folder);
+  if (auto error = write_outcome(output, done->outcome)) return error;
+  if (output.wanted() && !done->log) output.announce_log();
   return done->log;
 }
 
@@ -85,7 +85,8 @@ Error refuse_ros2(std::string message) {
   return {.code = ErrorCode::inconsistent, .parameter = {}, .message = std::move(message), .place = "--ros2"};
 }
 
-Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request& request, std::string_view kind) {
+Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request& request, std::string_view kind,
+                           OutputFolder& output) {
   if (kind != "tapping") {
     return refuse_ros2("an experiment of kind " + std::string(kind) +
                        " cannot be run in real time: choose one of kind tapping");
@@ -96,12 +97,12 @@ Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request&
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();
-  Ros2Options session{.name_space = options.name_space, .servo = options.servo, .end = end};
-  if (options.out) session.log_folder = std::filesystem::path(*options.out) / "log";
-  const auto outcome = run_ros2_session(request, session);
+  const Ros2Options session{
+      .name_space = options.name_space, .servo = options.servo, .end = end, .log_limit_bytes = options.log_limit};
+  const auto outcome = run_ros2_session(request, session, output);
   if (!outcome) return outcome.error();
-  if (auto error = write_outcome(options.out, *outcome, options.json)) return error;
-  if (session.log_folder) say_log(options, *session.log_folder);
+  if (auto error = write_outcome(output, *outcome)) return error;
+  if (output.wanted()) output.announce_log();
   return std::nullopt;
 }
 
@@ -120,9 +121,8 @@ Check refuse_servo_options_without_a_servo_thread(const CLI::App& verb, const Ru
 Check run(const RunOptions& options, const std::string& command, int& status) {
   const auto request = make_request(options, command);
   if (!request) return request.error();
-  if (options.out) {
-    if (auto error = check_writable(*options.out)) return error;
-  }
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
   if (!options.site.site.empty()) {
     if (!options.vary.empty()) {
       return Error{.code = ErrorCode::inconsistent,
@@ -130,13 +130,13 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
                    .message = "one site runs one combination: leave --vary out",
                    .place = "--site"};
     }
-    return run_site(options.site, options.servo, *request, options.out, options.json);
+    return run_site(options.site, options.servo, *request, *output, options.log_limit);
   }
   const auto experiment = simulation::choose_experiment(request->document);
   if (!experiment) return experiment.error();
 
-  if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind());
-  if (options.real_time) return run_in_real_time(options, *request, status);
+  if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
+  if (options.real_time) return run_in_real_time(options, *request, *output, status);
 
   Result<simulation::Outcome> outcome = [&] {
     ProgressLine line(request->name);
@@ -144,11 +144,10 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
   }();
   if (!outcome) return outcome.error();
 
-  if (auto error = write_outcome(options.out, *outcome, options.json)) return error;
-  if (!options.out || outcome->traces.empty()) return std::nullopt;
-  const std::filesystem::path folder = std::filesystem::path(*options.out) / "log";
-  if (auto error = write_run_log(folder, *request, *outcome)) return error;
-  say_log(options, folder);
+  if (auto error = write_outcome(*output, *outcome)) return error;
+  if (!output->wanted() || outcome->traces.empty()) return std::nullopt;
+  if (auto error = write_run_log(output->log_folder(), *request, *outcome, options.log_limit)) return error;
+  output->announce_log();
   return std::nullopt;
 }
 
@@ -161,9 +160,8 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations: key=a,b,c")
       ->type_name("KEY=A,B,C")
       ->allow_extra_args(false);
-  verb->add_option("--out", options->out, "Folder for report.html, results.json, the figures and the log")
-      ->type_name("DIR");
-  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  add_output_options(*verb, options->output, "Folder for report.html, results.json, the figures and the log");
+  add_log_limit_option(*verb, options->log_limit);
   CLI::Option* real_time = verb->add_flag("--realtime", options->real_time,
                                           "Run it at the real clock, on a servo thread, with simulated devices");
   CLI::Option* plant = verb->add_option("--plant", options->plant,

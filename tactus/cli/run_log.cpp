@@ -28,11 +28,11 @@ std::map<std::string, std::string> log_origin() {
 }
 
 Check write_run_log(const std::filesystem::path& folder, const simulation::Request& request,
-                    const simulation::Outcome& outcome) {
+                    const simulation::Outcome& outcome, std::uint64_t most_bytes) {
   using Record = simulation::Teleoperator::Record;
   if (auto error = report::prepare_directory(folder)) return error;
   const std::filesystem::path file = folder / "log.mcap";
-  auto log = telemetry::LogWriter::create(file);
+  auto log = telemetry::LogWriter::create(file, most_bytes);
   if (!log) return log.error();
 
   auto about = log_origin();

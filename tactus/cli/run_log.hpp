@@ -3,6 +3,7 @@
 #include <tactus/core/result.hpp>
 #include <tactus/simulation/experiment.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -15,7 +16,8 @@ std::map<std::string, std::string> log_origin();
 /// Writes the traces of an outcome as a log: `folder/log.mcap`, with `metadata.yaml` for ROS 2 bag tools. One trace is
 /// the topic `/teleoperator`, several are `/run_1/teleoperator` and so on, by the row of the table; of more than 64,
 /// 64 evenly chosen ones. Times are virtual and nothing of the moment is written, so equal runs leave equal bytes.
+/// `most_bytes` as in `LogWriter::create`.
 Check write_run_log(const std::filesystem::path& folder, const simulation::Request& request,
-                    const simulation::Outcome& outcome);
+                    const simulation::Outcome& outcome, std::uint64_t most_bytes);
 
 }  // namespace tactus::cli

@@ -59,20 +59,18 @@ Result<link::Endpoint::Settings> link_settings(const SiteOptions& options) {
   return link::Endpoint::Settings{.site = role_of(options), .peer = *peer, .listen = *listen, .key = key};
 }
 
-std::filesystem::path log_folder(const std::string& out) { return std::filesystem::path(out) / "log"; }
-
 /// Files first: a terminal that nobody reads keeps nothing from them, and with them what it misses is no loss.
-Check leave_outcome(const simulation::Outcome& outcome, const std::optional<std::string>& out, Check log_error,
-                    bool json, LineWriter& output, LineWriter& errors) {
+Check leave_outcome(const simulation::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
+                    LineWriter& output, LineWriter& errors) {
   std::string where;
-  if (out) {
-    if (auto error = write_results(*out, outcome)) return error;
-    where = "Report: " + report::printable((std::filesystem::path(*out) / "report.html").string()) + "\n";
-    if (!log_error) where += "Log: " + report::printable(log_folder(*out).string()) + "\n";
+  if (folder.wanted()) {
+    if (auto error = write_results(folder, outcome)) return error;
+    where = folder.report_line();
+    if (!log_error) where += folder.log_line(removed);
   }
-  const Check unread = output.finish(json ? outcome.json : outcome.text + where);
-  if (json) errors.say(where);
-  if (!out) return unread;
+  const Check unread = output.finish(folder.json() ? outcome.json : outcome.text + where);
+  if (folder.json()) errors.say(where);
+  if (!folder.wanted()) return unread;
   if (unread) errors.say("tactus: " + describe(*unread) + "; the report has all of it\n");
   return log_error;
 }
@@ -95,7 +93,7 @@ void add_site_options(CLI::App& verb, SiteOptions& options) {
 }
 
 Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_params, const simulation::Request& request,
-               const std::optional<std::string>& out, bool json) {
+               OutputFolder& folder, std::uint64_t log_limit_bytes) {
   const configuration::Document& document = request.document;
   const auto experiment = simulation::choose_experiment(document);
   if (!experiment) return experiment.error();
@@ -114,7 +112,7 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   const auto interruption = Interruption::start(exchange.end);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
-  LineWriter& lines = json ? errors : output;
+  LineWriter& lines = folder.json() ? errors : output;
   const auto person = Person::listen_to(STDIN_FILENO, run.role, exchange, errors);
   if (!person) return person.error();
   auto loop =
@@ -122,8 +120,9 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   if (!loop) return document.locate(loop.error());
   const std::string configuration = configuration::to_toml(*params);
   std::optional<SiteLog> log;
-  if (out) {
-    auto created = SiteLog::create(log_folder(*out), request, configuration, run.role);
+  if (folder.wanted()) {
+    if (auto error = folder.begin()) return error;
+    auto created = SiteLog::create(folder.log_folder(), request, configuration, run.role, log_limit_bytes);
     if (!created) return created.error();
     log.emplace(*std::move(created));
     loop->log_to(log->streams());
@@ -157,7 +156,8 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
     log_error = log->close();
     run.log_dropped = log->dropped();
   }
-  return leave_outcome(site_outcome(run, request, configuration), out, std::move(log_error), json, output, errors);
+  return leave_outcome(site_outcome(run, request, configuration), folder, std::move(log_error),
+                       log ? log->removed() : 0, output, errors);
 }
 
 }  // namespace tactus::cli

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/experiment.hpp>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -29,10 +31,10 @@ struct SiteOptions {
 void add_site_options(CLI::App& verb, SiteOptions& options);
 
 /// Runs one site of the request's experiment in real time until it ends or is interrupted: a line a second, then
-/// tables. In the folder `out`, if there is one, it leaves a report, and every tick in `log/log.mcap`. With `json` the
+/// tables. In the folder of `output`, if there is one, it leaves a report, and every tick in its log. With JSON the
 /// lines go to standard error and one document to standard output. What a person asks for is read from standard input,
 /// a `SiteWord` a line; SIGUSR1 arms. Of `servo`, the rate is the experiment's.
 Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo, const simulation::Request& request,
-               const std::optional<std::string>& out, bool json);
+               OutputFolder& output, std::uint64_t log_limit_bytes);
 
 }  // namespace tactus::cli

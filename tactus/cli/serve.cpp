@@ -36,7 +36,8 @@ struct ServeOptions {
   live::ServerOptions server;
   bool allow_tuning = false;
   std::string page;
-  std::optional<std::string> out;
+  OutputOptions output;
+  std::uint64_t log_limit = 0;
   double duration_s = 0.0;
 };
 
@@ -58,15 +59,13 @@ Result<configuration::Document> experiment_of(const ServeOptions& options) {
 }
 
 Check serve(const ServeOptions& options, const std::string& command) {
-  if (options.out) {
-    if (auto error = check_writable(*options.out)) return error;
-  }
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
   const auto document = experiment_of(options);
   if (!document) return document.error();
   const auto settings = live::Settings::make(*document);
   if (!settings) return document->locate(settings.error());
-  const std::string name =
-      options.experiment.empty() ? "tapping" : std::filesystem::path(options.experiment).stem().string();
+  const std::string name = options.experiment.empty() ? "tapping" : experiment_name(options.experiment);
   const auto view = live::LiveView::make(*settings, {.allow_tuning = options.allow_tuning, .experiment = name});
   if (!view) return document->locate(view.error());
   const std::string configuration = configuration::to_toml(*document->read<simulation::TappingParams>());
@@ -87,10 +86,11 @@ Check serve(const ServeOptions& options, const std::string& command) {
 
   std::optional<telemetry::Recorder> log;
   std::filesystem::path log_file;
-  if (options.out) {
-    log_file = std::filesystem::path(*options.out) / "log" / "log.mcap";
+  if (output->wanted()) {
+    log_file = output->log_folder() / "log.mcap";
+    if (auto error = output->begin()) return error;
     if (auto error = report::prepare_directory(log_file.parent_path())) return error;
-    auto recorder = telemetry::Recorder::create(log_file);
+    auto recorder = telemetry::Recorder::create(log_file, options.log_limit);
     if (!recorder) return recorder.error();
     log.emplace(*std::move(recorder));
     auto about = log_origin();
@@ -123,16 +123,15 @@ Check serve(const ServeOptions& options, const std::string& command) {
   session.lost_ticks = (*view)->lost_ticks();
   const simulation::Request request{.document = *document, .variations = {}, .name = name, .command = command};
   if (auto error = write_outcome(
-          options.out, serve_outcome(session, (*view)->history(), settings->descriptions(), request, configuration),
-          false)) {
+          *output, serve_outcome(session, (*view)->history(), settings->descriptions(), request, configuration))) {
     return error;
   }
   if (log) {
     if (auto error = log->stop()) return error;
     std::uint64_t dropped = 0;
     for (const std::uint64_t count : log->dropped()) dropped += count;
-    std::cout << "Log: " << log_file.parent_path().string() << ", " << log->log().acknowledged() << " records, "
-              << dropped << " dropped\n";
+    std::cout << "Log: " << log_file.parent_path().string() << ", " << log->log().acknowledged() - log->log().removed()
+              << " records, " << dropped << " dropped\n";
     return telemetry::write_bag_metadata(log_file, log->log());
   }
   return std::nullopt;
@@ -153,8 +152,10 @@ void add_serve(CLI::App& app, const std::string& command, int& status) {
       ->capture_default_str();
   verb->add_flag("--allow-tuning", options->allow_tuning, "Let clients change parameters, within their bounds");
   verb->add_option("--page", options->page, "Folder of the built page")->type_name("DIR");
-  verb->add_option("--out", options->out, "Folder for report.html, results.json, the figure and a log of every tick")
-      ->type_name("DIR");
+  add_output_options(*verb, options->output,
+                     "Folder for report.html, results.json, the figure and a log of every tick");
+  verb->remove_option(verb->get_option("--json"));  // what is printed is where to look, not results
+  add_log_limit_option(*verb, options->log_limit);
   verb->add_option("--duration", options->duration_s, "Seconds to serve; 0 is until interrupted")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();

@@ -1,3 +1,4 @@
+#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/serve_report.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/report/figure.hpp>
@@ -188,7 +189,7 @@ std::string json_of(const ServeSession& session, const SessionHistory& history) 
                                         {"settings", std::move(settings)},
                                         {"contacts", std::move(contacts)},
                                         {"forgotten_contacts", history.forgotten()}};
-  return document.dump(2) + "\n";
+  return json_text(document);
 }
 
 }  // namespace

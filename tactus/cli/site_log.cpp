@@ -25,10 +25,10 @@ void SiteLogRecord::tell(const control::Packet& packet) noexcept {
 }
 
 Result<SiteLog> SiteLog::create(const std::filesystem::path& folder, const simulation::Request& request,
-                                std::string_view configuration, control::SiteRole role) {
+                                std::string_view configuration, control::SiteRole role, std::uint64_t most_bytes) {
   if (auto error = report::prepare_directory(folder)) return *std::move(error);
   std::filesystem::path file = folder / "log.mcap";
-  auto recorder = telemetry::Recorder::create(file);
+  auto recorder = telemetry::Recorder::create(file, most_bytes);
   if (!recorder) return recorder.error();
   auto about = log_origin();
   about["experiment"] = request.name;

@@ -102,9 +102,9 @@ struct SiteStreams {
 class SiteLog {
  public:
   /// Opens `folder/log.mcap`; the folder is made. The log says what ran: experiment, configuration with its seeds,
-  /// version, machine and which site. Errors: `unwritable`.
+  /// version, machine and which site. `most_bytes` and errors as in `LogWriter::create`.
   static Result<SiteLog> create(const std::filesystem::path& folder, const simulation::Request& request,
-                                std::string_view configuration, control::SiteRole role);
+                                std::string_view configuration, control::SiteRole role, std::uint64_t most_bytes = 0);
 
   [[nodiscard]] const SiteStreams& streams() const { return streams_; }
   /// Writes what is waiting, ends the log and adds `metadata.yaml` for ROS 2 bag tools. After the last push. Errors:
@@ -112,6 +112,8 @@ class SiteLog {
   Check close();
   /// Records that found their ring full, of both topics.
   [[nodiscard]] std::uint64_t dropped() const;
+  /// Records that went with the oldest parts of a log with a limit. After `close`.
+  [[nodiscard]] std::uint64_t removed() const { return recorder_.log().removed(); }
 
  private:
   SiteLog(std::filesystem::path file, telemetry::Recorder recorder)

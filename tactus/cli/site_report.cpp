@@ -1,3 +1,4 @@
+#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/site_report.hpp>
 #include <tactus/report/figure.hpp>
 #include <tactus/report/page.hpp>
@@ -216,7 +217,7 @@ std::string json_of(const SiteRun& run) {
                                   {"seconds", seconds},
                                   {"servo", nlohmann::ordered_json::parse(runtime::servo_json(run.servo))}};
   if (run.log_dropped) document["log_dropped"] = *run.log_dropped;
-  return document.dump(2) + "\n";
+  return json_text(document);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include <tactus/cli/experiment_options.hpp>
+#include <tactus/cli/output_folder.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/stability.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/configuration/document.hpp>
-#include <tactus/report/files.hpp>
 #include <tactus/stability/map.hpp>
 #include <tactus/stability/map_hdf5.hpp>
 #include <tactus/stability/map_report.hpp>
@@ -29,8 +29,7 @@ struct MapOptions {
   std::vector<std::string> set;
   std::vector<std::string> vary;
   std::string precision = "double";
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions output;
 };
 
 /// Which process of how many this is, as the launcher of Open MPI tells every program that it starts.
@@ -57,12 +56,12 @@ Result<stability::MapRequest> make_request(const MapOptions& options, const conf
   request.precision =
       options.precision == "float" ? stability::MapPrecision::lanes_of_float : stability::MapPrecision::lanes_of_double;
   request.share = share_of_this_process();
-  if (options.out) request.folder = *options.out;
-  if ((options.out && options.out->empty()) || (request.share.ranks > 1 && !options.out)) {
+  if (options.output.folder) request.folder = *options.output.folder;
+  if (request.share.ranks > 1 && !options.output.folder) {
     return Error{.code = ErrorCode::syntax,
                  .parameter = {},
                  .message =
-                     "no folder is named, and several processes need one that they share: write one, as in "
+                     "several processes need a folder that they share: write one, as in "
                      "--out results",
                  .place = "--out"};
   }
@@ -70,26 +69,27 @@ Result<stability::MapRequest> make_request(const MapOptions& options, const conf
 }
 
 /// Prints, and writes what `--out` names.
-Check present(const MapOptions& options, const stability::MapResult& map, const stability::MapReport& report) {
-  std::cout << (options.json ? report.json : report.text);
+Check present(OutputFolder& output, const stability::MapResult& map, const stability::MapReport& report) {
+  std::cout << (output.json() ? report.json : report.text);
   if (auto error = flush_standard_output()) return error;
-  if (!options.out) return {};
-  const std::filesystem::path folder = *options.out;
-  if (auto error = report::write_file(folder / "map.csv", stability::to_csv(map))) return error;
-  if (auto error = stability::write_hdf5(folder / "map.h5", map)) return error;
+  if (!output.wanted()) return {};
+  if (auto error = output.write("map.csv", stability::to_csv(map))) return error;
+  if (auto error = stability::write_hdf5(output.path() / "map.h5", map)) return error;
   if (report.svg) {
-    if (auto error = report::write_file(folder / "map.svg", *report.svg)) return error;
+    if (auto error = output.write("map.svg", *report.svg)) return error;
   }
-  if (auto error = report::write_file(folder / "results.json", report.json)) return error;
-  if (auto error = report::write_file(folder / "report.html", report.html)) return error;
-  stability::remove_partial(folder);
-  (options.json ? std::cerr : std::cout) << "Report: " << (folder / "report.html").string() << "\n";
+  if (auto error = output.write("results.json", report.json)) return error;
+  if (auto error = output.write("report.html", report.html)) return error;
+  stability::remove_partial(output.path());
+  output.announce();
   return {};
 }
 
 Check run(const MapOptions& options, const std::string& command) {
   auto document = with_set(configuration::Document::load(options.file), options.set);
   if (!document) return document.error();
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
   const auto request = make_request(options, *document);
   if (!request) return request.error();
   const auto start = std::chrono::steady_clock::now();
@@ -100,11 +100,9 @@ Check run(const MapOptions& options, const std::string& command) {
   if (!map) return document->locate(map.error());
   if (request->share.rank > 0) return {};
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const simulation::Request about{.document = *std::move(document),
-                                  .variations = {},
-                                  .name = std::filesystem::path(options.file).stem().string(),
-                                  .command = command};
-  return present(options, *map, stability::report_map(*map, request->base, elapsed_s, about));
+  const simulation::Request about{
+      .document = *std::move(document), .variations = {}, .name = experiment_name(options.file), .command = command};
+  return present(*output, *map, stability::report_map(*map, request->base, elapsed_s, about));
 }
 
 }  // namespace
@@ -120,10 +118,10 @@ void add_stability_map(CLI::App& stability, const std::string& name, const std::
       ->allow_extra_args(false);
   verb->add_option("--precision", options->precision, "double, or float with the boundary again in double")
       ->check(CLI::IsMember({"double", "float"}));
-  verb->add_option("--out", options->out,
-                   "Folder for report.html, map.csv, map.h5, map.svg and results.json; a killed run goes on from there")
-      ->type_name("DIR");
-  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  options->output.own_files = {"map.csv", "map.h5", "map.svg"};
+  add_output_options(
+      *verb, options->output,
+      "Folder for report.html, map.csv, map.h5, map.svg and results.json; a killed run goes on from there");
   verb->callback([options, name, &command, &status] {
     if (const auto error = run(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

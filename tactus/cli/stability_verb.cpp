@@ -19,27 +19,23 @@ namespace {
 struct StabilityOptions {
   std::string file;
   std::vector<std::string> set;
-  std::optional<std::string> out;
-  bool json = false;
+  OutputOptions output;
   stability::ReportOptions report;
 };
 
 Check run(const StabilityOptions& options, const StabilityReport& report, const std::string& command) {
   auto document = with_set(configuration::Document::load(options.file), options.set);
   if (!document) return document.error();
-  if (options.out) {
-    if (auto error = check_writable(*options.out)) return error;
-  }
-  const simulation::Request request{.document = *std::move(document),
-                                    .variations = {},
-                                    .name = std::filesystem::path(options.file).stem().string(),
-                                    .command = command};
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
+  const simulation::Request request{
+      .document = *std::move(document), .variations = {}, .name = experiment_name(options.file), .command = command};
   const auto outcome = [&] {
     ProgressLine line(request.name);
     return report(request, options.report, [&line](double done) { line.update(done); });
   }();
   if (!outcome) return outcome.error();
-  return write_outcome(options.out, *outcome, options.json);
+  return write_outcome(*output, *outcome);
 }
 
 }  // namespace
@@ -67,8 +63,7 @@ void add_stability_verb(CLI::App& stability, const std::string& verb, const std:
       ->add_option("--uncertainty", options->report.uncertainty,
                    "Share by which the controller's model may be wrong, 0 to 0.9")
       ->check(CLI::Range(0.0, 0.9));
-  added->add_option("--out", options->out, "Folder for report.html, results.json and the figures")->type_name("DIR");
-  added->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  add_output_options(*added, options->output, "Folder for report.html, results.json and the figures");
   added->callback([options, report, name, &command, &status] {
     if (const auto error = run(*options, report, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

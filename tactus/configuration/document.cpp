@@ -8,6 +8,7 @@
 #include <fstream>
 #include <system_error>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace tactus::configuration {
@@ -147,10 +148,14 @@ Check Document::set(std::string_view assignment) {
 }
 
 Check Document::merge(const Document& other) {
+  std::unordered_map<std::string_view, const Entry*> mine;
+  for (const Entry& entry : entries_) mine.emplace(entry.path, &entry);
+  std::unordered_set<std::string_view> replaced;
+  std::vector<Entry> fresh;
   for (const Entry& entry : other.entries_) {
     const bool section = std::holds_alternative<Table>(entry.value);
-    if (const Entry* present = find(entry.path); present != nullptr) {
-      if (section != std::holds_alternative<Table>(present->value)) {
+    if (const auto present = mine.find(entry.path); present != mine.end()) {
+      if (section != std::holds_alternative<Table>(present->second->value)) {
         Error problem = refusal(ErrorCode::wrong_type, entry.path,
                                 concat({"this is a ", section ? "section here and a value" : "value here and a section",
                                         " in ", name_, ": write it alike in both"}));
@@ -158,11 +163,13 @@ Check Document::merge(const Document& other) {
         return problem;
       }
       if (section) continue;
+      replaced.insert(entry.path);
     }
-    std::erase_if(entries_, [&](const Entry& mine) { return mine.path == entry.path; });
-    entries_.push_back(entry);
-    if (entry.file.empty()) entries_.back().file = other.name_;
+    fresh.push_back(entry);
+    if (entry.file.empty()) fresh.back().file = other.name_;
   }
+  std::erase_if(entries_, [&](const Entry& entry) { return replaced.contains(entry.path); });
+  entries_.insert(entries_.end(), fresh.begin(), fresh.end());
   return {};
 }
 

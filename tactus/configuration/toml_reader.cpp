@@ -30,6 +30,9 @@ namespace {
 // values this bounds the depth to 16 times 100 tables, far below what a stack holds.
 constexpr std::ptrdiff_t most_dots_in_a_line = 100;
 
+// Every key is kept with its section, so a long section over many keys would take the square of the text's size.
+constexpr std::size_t longest_path = 500;
+
 Position position_of(const toml::source_position& position) { return {position.line, position.column}; }
 
 std::string place(const std::string& name, Position position) {
@@ -79,9 +82,16 @@ Value value_of(const toml::node& node) {
   }
 }
 
-void append_entries(const toml::table& table, const std::string& section, std::vector<Entry>& entries) {
+Check append_entries(const toml::table& table, const std::string& section, const std::string& document,
+                     std::vector<Entry>& entries) {
   for (const auto& [key, node] : table) {
     const std::string name = is_bare_key(key.str()) ? std::string(key.str()) : toml_string(key.str());
+    if (section.size() + name.size() > longest_path) {
+      return syntax_error("the key " + printable(name, 40) + " takes " + std::to_string(section.size() + name.size()) +
+                              " letters with its section, more than the " + std::to_string(longest_path) +
+                              " that are read: shorten it",
+                          place(document, position_of(key.source().begin)));
+    }
     Entry entry{.path = join(section, name),
                 .value = value_of(node),
                 .key_position = position_of(key.source().begin),
@@ -90,8 +100,11 @@ void append_entries(const toml::table& table, const std::string& section, std::v
                 .typed = {},
                 .file = {}};
     entries.push_back(entry);
-    if (const toml::table* below = node.as_table()) append_entries(*below, entry.path, entries);
+    if (const toml::table* below = node.as_table()) {
+      if (Check problem = append_entries(*below, entry.path, document, entries)) return problem;
+    }
   }
+  return {};
 }
 
 Error error_of(const toml::parse_error& error, const std::string& name) {
@@ -109,7 +122,7 @@ Result<std::vector<Entry>> read_toml(std::string_view text, const std::string& n
   const toml::parse_result parsed = toml::parse(text, name);
   if (!parsed) return error_of(parsed.error(), name);
   std::vector<Entry> entries;
-  append_entries(parsed.table(), {}, entries);
+  if (Check problem = append_entries(parsed.table(), {}, name, entries)) return *std::move(problem);
   // toml++ keeps its keys in alphabetical order. A section precedes its keys before and after this sort, because its
   // own name is written no later than theirs.
   std::stable_sort(entries.begin(), entries.end(),

@@ -1,5 +1,6 @@
 #include <tactus/recording/csv_file.hpp>
 #include <tactus/recording/file_bytes.hpp>
+#include <tactus/recording/limits.hpp>
 #include <tactus/recording/names.hpp>
 
 #include <algorithm>
@@ -24,20 +25,22 @@ std::string_view next_line(std::string_view text, std::size_t& offset) {
   return line;
 }
 
-/// Splits a line into fields. False if a quote stays open.
-bool split(std::string_view line, char separator, std::vector<CsvField>& fields) {
+/// How many fields a line has; none if a quote stays open. No more than a table may have are kept.
+std::optional<std::size_t> split(std::string_view line, char separator, std::vector<CsvField>& fields) {
   fields.clear();
+  std::size_t count = 0;
   std::size_t start = 0;
   bool quoted = false;
   for (std::size_t i = 0; i <= line.size(); ++i) {
     if (i < line.size() && line[i] == '"') quoted = !quoted;
     if (i < line.size() && (quoted || line[i] != separator)) continue;
+    if (++count > most_table_columns) continue;
     std::string_view field = trim(line.substr(start, i - start));
     if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
     fields.push_back({field, field.empty() ? start + 1 : static_cast<std::size_t>(field.data() - line.data()) + 1});
     start = i + 1;
   }
-  return !quoted;
+  return quoted ? std::nullopt : std::optional(count);
 }
 
 /// The separator that stands most often outside quotes.
@@ -103,7 +106,7 @@ std::string CsvFile::place_of(std::size_t line, std::size_t character) const {
 Result<CsvFile> CsvFile::open(const std::filesystem::path& file) {
   CsvFile table;
   table.file_ = file;
-  Result<std::string> bytes = file_bytes(file);
+  Result<std::string> bytes = file_bytes(file, most_table_bytes);
   if (!bytes) return bytes.error();
   table.text_ = *std::move(bytes);
   if (table.text_.starts_with("\xEF\xBB\xBF")) table.text_.erase(0, 3);
@@ -133,9 +136,14 @@ Check CsvFile::parse_header() {
   }
   separator_ = separator_of(header);
   std::vector<CsvField> fields;
-  if (!split(header, separator_, fields)) {
-    return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line",
-                  file_.string() + ":" + std::to_string(line_number));
+  const auto count = split(header, separator_, fields);
+  const std::string place = file_.string() + ":" + std::to_string(line_number);
+  if (!count) return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line", place);
+  if (*count > most_table_columns) {
+    return broken(ErrorCode::out_of_bounds,
+                  "the header has " + std::to_string(*count) + " columns, more than the " +
+                      std::to_string(most_table_columns) + " that are read; keep those that are needed",
+                  place);
   }
   const bool only_numbers = std::all_of(
       fields.begin(), fields.end(), [](const CsvField& field) { return parse_number(field.text).fault == nullptr; });
@@ -143,7 +151,7 @@ Check CsvFile::parse_header() {
     return broken(ErrorCode::syntax,
                   "a header is needed before the numbers '" + std::string(trim(header).substr(0, 40)) +
                       "'; put a line such as 'time [s],force [N]' there, without a # before it",
-                  file_.string() + ":" + std::to_string(line_number));
+                  place);
   }
   for (const CsvField& field : fields) {
     heads_.push_back(without_doubled_quotes(field.text));
@@ -162,16 +170,20 @@ Check CsvFile::count_rows() {
   text_.resize(std::max(text_.find_last_not_of(" \r\n") + 1, data_start_));
   for (std::size_t offset = data_start_; offset < text_.size(); ++rows_) {
     const std::string_view line = next_line(text_, offset);
-    const std::string place = place_of(rows_);
-    if (!split(line, separator_, fields)) {
-      return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line", place);
+    if (rows_ == most_samples) {
+      return broken(ErrorCode::out_of_bounds,
+                    "holds more than the " + std::to_string(most_samples) +
+                        " samples that are read; cut it into smaller files, or keep fewer samples a second",
+                    file_.string());
     }
-    if (fields.size() == heads_.size()) continue;
+    const auto count = split(line, separator_, fields);
+    if (!count) return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line", place_of(rows_));
+    if (*count == heads_.size()) continue;
     return broken(ErrorCode::syntax,
-                  in_quotes(trim(line).substr(0, 40)) + " has " + std::to_string(fields.size()) +
+                  in_quotes(trim(line).substr(0, 40)) + " has " + std::to_string(*count) +
                       " fields where the header has " + std::to_string(heads_.size()) +
                       "; complete or remove the line, and write numbers with a decimal point",
-                  place);
+                  place_of(rows_));
   }
   if (rows_ < 2) {
     return broken(ErrorCode::missing, "holds " + std::to_string(rows_) + " samples; a signal needs two or more",

@@ -1,3 +1,4 @@
+#include <tactus/recording/limits.hpp>
 #include <tactus/recording/mat_file.hpp>
 #include <tactus/recording/mat_guard.hpp>
 #include <tactus/recording/names.hpp>
@@ -201,6 +202,14 @@ Result<Column> MatFile::read(std::string_view variable, std::int64_t column) con
                  .parameter = {},
                  .message = in_quotes(entry.name) + " of '" + file_.string() + "' holds " + std::to_string(entry.rows) +
                             " samples; a signal needs two or more",
+                 .place = {}};
+  }
+  if (entry.rows > static_cast<std::int64_t>(most_samples)) {
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = {},
+                 .message = in_quotes(entry.name) + " of '" + file_.string() + "' holds " + std::to_string(entry.rows) +
+                            " samples, more than the " + std::to_string(most_samples) +
+                            " that are read; cut it, or keep fewer samples a second",
                  .place = {}};
   }
   matvar_t& data = *found->variable;

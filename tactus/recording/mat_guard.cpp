@@ -1,4 +1,5 @@
 #include <tactus/recording/file_bytes.hpp>
+#include <tactus/recording/limits.hpp>
 #include <tactus/recording/mat_guard.hpp>
 
 #include <algorithm>
@@ -102,16 +103,31 @@ class Cursor {
   bool swapped_;
 };
 
-/// What is wrong with a file; empty if nothing is.
-using Fault = std::string;
+/// What is wrong with a variable; empty if nothing is.
+struct Fault {
+  Fault() = default;
+  Fault(const char* text) : what(text) {}  // implicit, so that `return "it is damaged";` reads well
+  Fault(std::string text, bool is_too_large) : what(std::move(text)), too_large(is_too_large) {}
+  [[nodiscard]] bool empty() const { return what.empty(); }
 
-Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level);
+  std::string what;
+  bool too_large = false;  ///< sound, but more than is read
+};
 
-Fault check_children(Cursor& cursor, std::size_t count, bool swapped, int depth) {
+/// What all variables share: the order of bytes, and how much the rest of the file may still take.
+struct Walk {
+  bool swapped;
+  std::size_t bytes_left = most_unpacked_bytes;
+  std::size_t arrays_left = most_mat_arrays;
+};
+
+Fault check_matrix(Bytes content, Walk& walk, int depth, bool top_level);
+
+Fault check_children(Cursor& cursor, std::size_t count, Walk& walk, int depth) {
   for (std::size_t i = 0; i < count; ++i) {
     const auto child = cursor.next();
     if (!child || child->type != matrix || child->packed) return "a member of a struct or cell array is missing";
-    if (Fault fault = check_matrix(child->content, swapped, depth + 1, false); !fault.empty()) return fault;
+    if (Fault fault = check_matrix(child->content, walk, depth + 1, false); !fault.empty()) return fault;
   }
   return {};
 }
@@ -123,7 +139,7 @@ std::optional<std::size_t> count_fields(Cursor& cursor) {
   if (!length || !length->packed || length->type != int32 || length->content.size() != 4) return std::nullopt;
   if (!names || names->type != int8) return std::nullopt;
   const std::size_t size = cursor.word(length->content, 0);
-  if (size == 0 || names->content.size() % size != 0) return std::nullopt;
+  if (size == 0 || size > longest_mat_name || names->content.size() % size != 0) return std::nullopt;
   for (std::size_t start = 0; start < names->content.size(); start += size) {
     const Bytes name = names->content.subspan(start, size);
     if (std::find(name.begin(), name.end(), 0) == name.end()) return std::nullopt;
@@ -178,12 +194,17 @@ std::optional<std::size_t> count_members(const Cursor& cursor, const DataElement
   return count;
 }
 
-Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level) {
+Fault check_matrix(Bytes content, Walk& walk, int depth, bool top_level) {
   constexpr int deepest = 16;
   constexpr std::uint32_t complex_flag = 0x0800;
+  if (walk.arrays_left == 0) {
+    return {"with it the file has more than the " + std::to_string(most_mat_arrays) + " arrays and members of structs",
+            true};
+  }
+  --walk.arrays_left;
   if (content.empty() && !top_level) return {};
   if (depth > deepest) return "structs are nested too deep";
-  Cursor cursor(content, swapped);
+  Cursor cursor(content, walk.swapped);
   const auto flags = cursor.next();
   if (!flags || flags->type != uint32 || flags->packed || flags->content.size() != 8) return "array flags are missing";
   const std::uint32_t bits = cursor.word(flags->content, 0);
@@ -197,7 +218,7 @@ Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level) {
   const auto dimensions = cursor.next();
   const auto name = cursor.next();
   if (!dimensions || !name) return "dimensions or name are missing";
-  if (name->type != int8) return "a name is no text";
+  if (name->type != int8 || name->content.size() > longest_mat_name) return "a name is no text, or too long";
   // Members are named by their struct; matio takes it for granted that they have no name of their own.
   if (!top_level && !name->content.empty()) return "a member has a name of its own";
   // A sparse array may have more members than bytes.
@@ -209,7 +230,7 @@ Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level) {
     Fault fault = check_numbers(cursor, *count);
     return fault.empty() && (bits & complex_flag) != 0 ? check_numbers(cursor, *count) : fault;
   }
-  if (kind == cell || kind == function) return check_children(cursor, *count, swapped, depth);
+  if (kind == cell || kind == function) return check_children(cursor, *count, walk, depth);
   if (kind == structure || kind == object) {
     if (kind == object) {
       const auto class_name = cursor.next();
@@ -217,56 +238,71 @@ Fault check_matrix(Bytes content, bool swapped, int depth, bool top_level) {
     }
     const auto fields = count_fields(cursor);
     if (!fields) return "names of fields are damaged";
-    return check_children(cursor, *fields * *count, swapped, depth);
+    return check_children(cursor, *fields * *count, walk, depth);
   }
   if (kind == text) return check_text(cursor);
   if (kind == sparse) return check_sparse(cursor, (bits & complex_flag) != 0);
   return "a class is unknown";
 }
 
-/// The whole content of a zlib stream, nothing if it is damaged or is not one whole stream.
-std::optional<std::vector<unsigned char>> inflate_whole(Bytes packed) {
-  std::vector<unsigned char> content;
+Fault too_large(std::size_t packed, std::size_t unpacked) {
+  return {"its " + std::to_string(packed) + " bytes claim " + std::to_string(unpacked) +
+              " unpacked, where all variables together may take " + std::to_string(most_unpacked_bytes >> 20U) + " MiB",
+          true};
+}
+
+/// Unpacks a zlib stream that holds one data element and nothing else, as far as it may be unpacked.
+Fault unpack(Bytes packed, Walk& walk, std::vector<unsigned char>& content) {
+  constexpr const char* damaged = "its compressed data are damaged";
   std::vector<unsigned char> chunk(std::size_t{1} << 16U);
   z_stream stream{};
-  if (inflateInit(&stream) != Z_OK) return std::nullopt;
+  if (inflateInit(&stream) != Z_OK) return damaged;
   // zlib takes a pointer to mutable input, which it does not change.
   stream.next_in = const_cast<unsigned char*>(packed.data());
   stream.avail_in = static_cast<uInt>(packed.size());
   int state = Z_OK;
-  while (state == Z_OK) {
+  Fault fault;
+  for (std::size_t most = 0; state == Z_OK && fault.empty();) {
     stream.next_out = chunk.data();
     stream.avail_out = static_cast<uInt>(chunk.size());
     state = inflate(&stream, Z_NO_FLUSH);
     content.insert(content.end(), chunk.data(), stream.next_out);
+    // The element says at its beginning how long it is.
+    if (most == 0 && content.size() >= tag_size) {
+      most = tag_size + padded(Cursor({}, walk.swapped).word(content, 1));
+      if (most > walk.bytes_left) fault = too_large(packed.size(), most);
+    }
+    if (most != 0 && content.size() > most) fault = damaged;
   }
   inflateEnd(&stream);
-  if (state != Z_STREAM_END || stream.avail_in != 0) return std::nullopt;
-  return content;
+  if (!fault.empty()) return fault;
+  if (state != Z_STREAM_END || stream.avail_in != 0) return damaged;
+  walk.bytes_left -= content.size();
+  return {};
 }
 
-Fault check_variable(const DataElement& element, bool swapped) {
+Fault check_variable(const DataElement& element, Walk& walk) {
   if (element.packed) return "it begins with a damaged tag";
   if (element.type == matrix) {
-    return check_matrix(element.content, swapped, 0, true);
+    return check_matrix(element.content, walk, 0, true);
   }
   if (element.type != compressed) return "it is of an unknown type";
-  const auto content = inflate_whole(element.content);
-  if (!content) return "its compressed data are damaged";
-  Cursor cursor(*content, swapped);
+  std::vector<unsigned char> content;
+  if (Fault fault = unpack(element.content, walk, content); !fault.empty()) return fault;
+  Cursor cursor(content, walk.swapped);
   const auto inner = cursor.next();
   if (!inner || inner->packed || inner->type != matrix || !cursor.at_end()) return "its compressed data are incomplete";
-  return check_matrix(inner->content, swapped, 0, true);
+  return check_matrix(inner->content, walk, 0, true);
 }
 
-Error refused(const std::filesystem::path& file, std::string message) {
-  return {.code = ErrorCode::syntax, .parameter = {}, .message = std::move(message), .place = file.string()};
+Error refused(const std::filesystem::path& file, std::string message, ErrorCode code = ErrorCode::syntax) {
+  return {.code = code, .parameter = {}, .message = std::move(message), .place = file.string()};
 }
 
 }  // namespace
 
 Result<std::size_t> check_mat_file(const std::filesystem::path& file) {
-  const Result<std::string> raw = file_bytes(file);
+  const Result<std::string> raw = file_bytes(file, most_mat_bytes);
   if (!raw) return raw.error();
   const Bytes bytes(reinterpret_cast<const unsigned char*>(raw->data()), raw->size());
   const std::string_view head = std::string_view(*raw).substr(0, header_size);
@@ -278,16 +314,23 @@ Result<std::size_t> check_mat_file(const std::filesystem::path& file) {
   if (!little && mark != std::string_view("\x01\x00MI", 4)) {
     return refused(file, "is not a MATLAB file of version 5; save it from MATLAB, Octave or SciPy with '-v7'");
   }
-  const bool swapped = little != (std::endian::native == std::endian::little);
-  Cursor cursor(bytes.subspan(header_size), swapped);
+  Walk walk{.swapped = little != (std::endian::native == std::endian::little)};
+  Cursor cursor(bytes.subspan(header_size), walk.swapped);
   std::size_t variables = 0;
   while (!cursor.at_end()) {
     const auto element = cursor.next();
     ++variables;
-    const Fault fault = element ? check_variable(*element, swapped) : "the file ends within it";
+    const Fault fault = element ? check_variable(*element, walk) : "the file ends within it";
+    const std::string number = std::to_string(variables);
+    if (fault.too_large || variables > most_mat_variables) {
+      return refused(file,
+                     "holds more than is read, at variable " + number + ": " +
+                         (fault.too_large ? fault.what : "it is one more than may be in a file") +
+                         "; save only the variables that are needed, large ones with '-v6'",
+                     ErrorCode::out_of_bounds);
+    }
     if (fault.empty()) continue;
-    return refused(
-        file, "is damaged in variable " + std::to_string(variables) + ": " + fault + "; copy or save the file again");
+    return refused(file, "is damaged in variable " + number + ": " + fault.what + "; copy or save the file again");
   }
   return variables;
 }

@@ -35,7 +35,7 @@ Error cannot(ErrorCode code, std::string message) {
 
 Result<Signal> resample(const Signal& signal, Seconds sample_time) {
   constexpr double equal_share = 1e-6;
-  constexpr double most_samples = 1e9;
+  constexpr double most_new_samples = 1e8;
   if (!signal.sample_time_s) {
     return cannot(ErrorCode::missing, "the sample time of '" + signal.name +
                                           "' is unknown; state sample_time_s or name the time column with `time`");
@@ -60,9 +60,9 @@ Result<Signal> resample(const Signal& signal, Seconds sample_time) {
 
   const auto last = static_cast<double>(signal.values.size() - 1);
   const double steps = std::floor(last / step * (1.0 + 1e-12));
-  if (steps >= most_samples) {
+  if (steps >= most_new_samples) {
     return cannot(ErrorCode::out_of_bounds, format_number(sample_time.value) +
-                                                " s would make more than 1e9 samples of '" + signal.name +
+                                                " s would make more than 1e8 samples of '" + signal.name +
                                                 "'; choose a longer sample time");
   }
   result.values.resize(static_cast<std::size_t>(steps) + 1);

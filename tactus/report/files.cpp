@@ -24,6 +24,8 @@ Error unwritable(const fs::path& path, const std::string& action, const std::str
     remedy = "create the folder first or choose one that exists";
   } else if (code == std::errc::not_a_directory || code == std::errc::file_exists) {
     remedy = "a part of the path is a file: choose another folder or move that file away";
+  } else if (code == std::errc::too_many_symbolic_link_levels) {
+    remedy = "remove the link or choose another place";
   } else if (code == std::errc::is_a_directory) {
     remedy = "choose the name of a file";
   }
@@ -93,7 +95,11 @@ class TemporaryFile {
 template <class Fill>
 Check replace_unguarded(const fs::path& path, Fill&& fill) {
   std::error_code code;
-  const fs::file_status status = fs::status(path, code);
+  const fs::file_status status = fs::symlink_status(path, code);
+  if (fs::is_symlink(status)) {
+    return unwritable(path, "write", "it is a symbolic link, which is never followed",
+                      std::make_error_code(std::errc::too_many_symbolic_link_levels));
+  }
   if (fs::is_directory(status)) {
     return unwritable(path, "write", std::make_error_code(std::errc::is_a_directory));
   }

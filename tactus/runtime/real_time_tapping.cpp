@@ -80,8 +80,11 @@ struct Log {
 
 Result<std::unique_ptr<Log>> open_log(const simulation::Request& request, const RealTimeOptions& options,
                                       const Cases& cases) {
+  if (options.before_log) {
+    if (auto error = options.before_log()) return *std::move(error);
+  }
   if (auto error = report::prepare_directory(options.log->parent_path())) return *std::move(error);
-  auto recorder = telemetry::Recorder::create(*options.log);
+  auto recorder = telemetry::Recorder::create(*options.log, options.log_limit_bytes);
   if (!recorder) return recorder.error();
   auto log = std::make_unique<Log>(Log{*std::move(recorder), {}});
   auto about = options.about;

@@ -6,7 +6,9 @@
 #include <tactus/runtime/shared_device.hpp>
 #include <tactus/simulation/experiment.hpp>
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -23,7 +25,9 @@ struct PlantChoice {
 struct RealTimeOptions {
   ServoThreadParams servo;                   ///< the rate is that of the experiment
   std::optional<std::filesystem::path> log;  ///< file that takes every tick while it runs; its folder is made
+  std::uint64_t log_limit_bytes = 0;         ///< as in `LogWriter::create`
   std::map<std::string, std::string> about;  ///< for the log, beside the configuration
+  std::function<Check()> before_log{};       ///< called once the request has proved right, before the log is opened
   std::optional<PlantChoice> plant{};        ///< else devices are simulated on the servo thread
   const EndRequest* end = nullptr;           ///< that somebody may make while it runs; outlives the run
 };

@@ -1,38 +1,89 @@
+#include <tactus/report/text.hpp>
 #include <tactus/telemetry/export.hpp>
 #include <tactus/telemetry/export_parts.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::telemetry {
 
-std::string identifier_of(std::string_view topic) {
+namespace {
+
+constexpr std::size_t longest_name = 63;
+constexpr std::size_t longest_text = 255;
+
+std::string identifier(std::string_view text, const std::string& stem) {
   std::string name;
-  for (const char c : topic) {
+  for (const char c : text) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
     name += plain ? c : '_';
   }
   name.erase(0, name.find_first_not_of('_'));
   const bool begins_well = !name.empty() && !(name.front() >= '0' && name.front() <= '9');
-  return begins_well ? name : "topic_" + name;
+  if (!begins_well) name.insert(0, stem);
+  name.resize(std::min(name.size(), longest_name));
+  return name;
 }
 
-LogTable with_time(LogTable table) {
+std::string one_line(std::string_view text) {
+  std::string line = report::printable(text);
+  if (line.size() <= longest_text) return line;
+  std::size_t end = longest_text;
+  while (end > 0 && (static_cast<unsigned char>(line[end]) & 0xc0U) == 0x80U) --end;  // no part of a character
+  line.resize(end);
+  return line;
+}
+
+}  // namespace
+
+std::string identifier_of(std::string_view topic) { return identifier(topic, "topic_"); }
+
+Identifiers::Identifiers(std::string stem, std::initializer_list<std::string_view> reserved) : stem_(std::move(stem)) {
+  for (const std::string_view name : reserved) given_.emplace(name, 2);
+}
+
+std::string Identifiers::unique(std::string_view name) {
+  const std::string wanted = identifier(name, stem_);
+  std::string given = wanted;
+  for (auto [alike, is_new] = given_.try_emplace(wanted, 2); !is_new; is_new = given_.try_emplace(given, 2).second) {
+    const std::string number = "_" + std::to_string(alike->second++);
+    given = wanted.substr(0, longest_name - number.size()) + number;
+  }
+  return given;
+}
+
+ExportColumns::ExportColumns(const LogTable& table) : columns(table.columns) {
   const bool has_time =
-      std::any_of(table.columns.begin(), table.columns.end(), [](const Column& c) { return c.name == "time_s"; });
-  if (has_time) return table;
-  std::vector<double> seconds;
-  seconds.reserve(table.times_ns.size());
-  for (const std::uint64_t time_ns : table.times_ns) seconds.push_back(1e-9 * static_cast<double>(time_ns));
-  table.columns.push_back({.name = "time_s", .unit = "s", .doc = "When it was logged."});
-  table.values.push_back(std::move(seconds));
-  std::rotate(table.columns.rbegin(), table.columns.rbegin() + 1, table.columns.rend());
-  std::rotate(table.values.rbegin(), table.values.rbegin() + 1, table.values.rend());
-  return table;
+      std::any_of(columns.begin(), columns.end(), [](const Column& column) { return column.name == "time_s"; });
+  values.reserve(columns.size() + 1);
+  if (!has_time) {
+    seconds_.reserve(table.times_ns.size());
+    for (const std::uint64_t time_ns : table.times_ns) seconds_.push_back(1e-9 * static_cast<double>(time_ns));
+    columns.insert(columns.begin(), {.name = "time_s", .unit = "s", .doc = "When it was logged."});
+    values.emplace_back(seconds_);
+  }
+  for (const std::vector<double>& column : table.values) values.emplace_back(column);
+  Identifiers names("signal_", {"units"});  // a member of its own in a MATLAB file
+  for (Column& column : columns) {
+    column.name = names.unique(column.name);
+    for (std::string* text : {&column.unit, &column.site, &column.frame, &column.sign}) *text = one_line(*text);
+  }
+}
+
+std::vector<std::string> names_of(const std::vector<LogTable>& tables) {
+  Identifiers names("topic_", {"about"});
+  std::vector<std::string> all;
+  for (const LogTable& table : tables) all.push_back(names.unique(table.topic));
+  return all;
 }
 
 std::map<std::string, std::string> about(const LogSummary& summary) {
+  std::map<std::string, std::string> texts;
   const auto found = summary.metadata.find("tactus");
-  return found == summary.metadata.end() ? std::map<std::string, std::string>{} : found->second;
+  if (found == summary.metadata.end()) return texts;
+  Identifiers names("key_");
+  for (const auto& [key, text] : found->second) texts.emplace(names.unique(key), text);
+  return texts;
 }
 
 Check refuse_empty(const LogContent& content, const std::filesystem::path& file) {

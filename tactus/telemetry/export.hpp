@@ -12,7 +12,9 @@ namespace tactus::telemetry {
 /// Columns of a log for other programs. Each writes beside the file first and then takes its name, so a reader sees all
 /// or nothing. After the run only. Errors: `unwritable`, `missing` for a log without messages.
 ///
-/// A table whose record has no `time_s` gets one, from the times of its messages.
+/// A table whose record has no `time_s` gets one, from the times of its messages. Names of topics, signals and keys are
+/// letters, digits and `_`, a letter first, at most 63 characters, each given once: what a log of others has otherwise
+/// is changed, cut or numbered (`_2`), in the order of the log.
 
 /// One table as text: `name [unit]` heads, numbers that read back equal. What `recording::read` reads.
 Check export_csv(const LogTable& table, const std::filesystem::path& file);

@@ -3,9 +3,23 @@
 #include <tactus/telemetry/export.hpp>
 #include <tactus/telemetry/export_parts.hpp>
 
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
 namespace tactus::telemetry {
 
 namespace {
+
+/// The unit between the only brackets of the head, which is how a reader finds it.
+std::string with_unit(std::string name, std::string unit) {
+  std::replace(unit.begin(), unit.end(), '[', '(');
+  std::replace(unit.begin(), unit.end(), ']', ')');
+  return name + " [" + unit + "]";
+}
 
 /// `displayed_force [N]` for `displayed_force_N`.
 std::string head_of(const Column& column) {
@@ -13,27 +27,58 @@ std::string head_of(const Column& column) {
   const Unit unit = unit_at_end_of(column.name);
   std::string name = column.name;
   if (unit.symbol == column.unit) name.resize(name.size() - std::string_view(unit.suffix).size());
-  return name + " [" + column.unit + "]";
+  return with_unit(std::move(name), column.unit);
+}
+
+/// A field as it stands in a line: in quotes where it would be taken for more than one.
+std::string field_of(const std::string& text) {
+  if (text.find_first_of(",;\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  return quoted + '"';
+}
+
+/// The line of heads. Where two would be equal without the end of the name that says the unit, it stays.
+std::string heads_of(const std::vector<Column>& columns) {
+  std::set<std::string> given;
+  std::string line;
+  for (const Column& column : columns) {
+    std::string head = head_of(column);
+    if (!given.insert(head).second) head = with_unit(column.name, column.unit);
+    line += (line.empty() ? "" : ",") + field_of(head);
+  }
+  return line + '\n';
+}
+
+struct CloseStream {
+  void operator()(std::FILE* file) const { (void)std::fclose(file); }
+};
+
+bool put(std::FILE* file, std::string& text) {
+  const bool whole = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+  text.clear();
+  return whole;
 }
 
 }  // namespace
 
 Check export_csv(const LogTable& original, const std::filesystem::path& file) {
-  const LogTable table = with_time(original);
-  std::string text;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    if (i != 0) text += ',';
-    text += head_of(table.columns[i]);
-  }
-  text += '\n';
-  for (std::size_t row = 0; row < table.times_ns.size(); ++row) {
-    for (std::size_t i = 0; i < table.values.size(); ++i) {
-      if (i != 0) text += ',';
-      text += format_number(table.values[i][row]);
+  const ExportColumns table(original);
+  return report::replace_file(file, [&](const std::string& temporary) {
+    constexpr std::size_t piece = std::size_t{1} << 20U;
+    std::unique_ptr<std::FILE, CloseStream> stream(std::fopen(temporary.c_str(), "wbe"));
+    if (!stream) return false;
+    std::string text = heads_of(table.columns);
+    for (std::size_t row = 0; row < original.times_ns.size(); ++row) {
+      for (std::size_t i = 0; i < table.values.size(); ++i) {
+        if (i != 0) text += ',';
+        text += format_number(table.values[i][row]);
+      }
+      text += '\n';
+      if (text.size() >= piece && !put(stream.get(), text)) return false;
     }
-    text += '\n';
-  }
-  return report::write_file(file, text);
+    return put(stream.get(), text) && std::fclose(stream.release()) == 0;
+  });
 }
 
 }  // namespace tactus::telemetry

@@ -10,12 +10,13 @@ namespace tactus::telemetry {
 Check export_hdf5(const LogContent& content, const std::filesystem::path& file) {
   if (auto error = refuse_empty(content, file)) return error;
   report::Hdf5File hdf;
-  for (const LogTable& original : content.tables) {
-    const LogTable table = with_time(original);
+  const std::vector<std::string> names = names_of(content.tables);
+  for (std::size_t one = 0; one < content.tables.size(); ++one) {
+    const ExportColumns table(content.tables[one]);
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       const Column& column = table.columns[i];
       const std::array<std::size_t, 1> rows{table.values[i].size()};
-      hdf.add_numbers(identifier_of(table.topic) + "/" + column.name, rows, table.values[i],
+      hdf.add_numbers(names[one] + "/" + column.name, rows, table.values[i],
                       {{"unit", column.unit}, {"site", column.site}, {"frame", column.frame}, {"sign", column.sign}});
     }
   }

@@ -89,12 +89,13 @@ Check export_mat(const LogContent& content, const std::filesystem::path& file) {
     std::unique_ptr<mat_t, CloseFile> mat(Mat_CreateVer(temporary.c_str(), nullptr, MAT_FT_MAT5));
     if (!mat) return false;
     bool done = true;
-    for (const LogTable& original : content.tables) {
-      const LogTable table = with_time(original);
-      Struct topic(identifier_of(table.topic));
+    const std::vector<std::string> names = names_of(content.tables);
+    for (std::size_t one = 0; one < content.tables.size(); ++one) {
+      const ExportColumns table(content.tables[one]);
+      Struct topic(names[one]);
       Struct units("");
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        topic.add(table.columns[i].name, column_vector(table.values[i]));
+        topic.add(table.columns[i].name, column_vector({table.values[i].begin(), table.values[i].end()}));
         units.add(table.columns[i].name, text(table.columns[i].unit));
       }
       done = done && units.sound();

@@ -4,15 +4,47 @@
 #include <tactus/telemetry/log_reader.hpp>
 
 #include <filesystem>
+#include <initializer_list>
 #include <map>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace tactus::telemetry {
 
-/// The table with a column `time_s`.
-LogTable with_time(LogTable table);
+/// Names as every library of others takes them, given once each: letters, digits and `_`, a letter first, at most 63
+/// characters (MATLAB's limit; matio writes longer ones beyond its buffers). What is another character becomes `_`; of
+/// names that are alike then, the second ends in `_2`, the third in `_3`.
+class Identifiers {
+ public:
+  /// `stem` stands before a name that does not begin with a letter.
+  explicit Identifiers(std::string stem, std::initializer_list<std::string_view> reserved = {});
+  std::string unique(std::string_view name);
 
-/// What the log says about the run that it comes from; empty where it says nothing.
+ private:
+  std::string stem_;
+  std::map<std::string, std::size_t> given_;  ///< and the number that the next one alike gets
+};
+
+/// Columns of a table as they are exported, a column `time_s` among them: their names are `Identifiers`, their texts
+/// one printable line each of at most 255 bytes.
+struct ExportColumns {
+  explicit ExportColumns(const LogTable& table);
+  ExportColumns(const ExportColumns&) = delete;
+  ExportColumns& operator=(const ExportColumns&) = delete;
+
+  std::vector<Column> columns;
+  std::vector<std::span<const double>> values;  ///< of the table, or `seconds`
+
+ private:
+  std::vector<double> seconds_;
+};
+
+/// What the tables of a log are called, in their order.
+std::vector<std::string> names_of(const std::vector<LogTable>& tables);
+
+/// What the log says about the run that it comes from, its keys as identifiers; empty where it says nothing.
 std::map<std::string, std::string> about(const LogSummary& summary);
 
 /// The error for a log that has nothing to export.

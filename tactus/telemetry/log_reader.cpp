@@ -21,6 +21,10 @@ using mcap::Cursor;
 using mcap::Opcode;
 
 constexpr std::uint64_t largest_record_bytes = std::uint64_t{64} * 1024 * 1024;
+/// Of what a file declares: schemas, channels and metadata.
+constexpr std::uint64_t most_declared_bytes = std::uint64_t{16} * 1024 * 1024;
+/// Read and unpacked, which bounds the time that a file can take.
+constexpr std::uint64_t most_unpacked_bytes = std::uint64_t{4} << 30U;
 
 struct Closer {
   void operator()(std::FILE* file) const { (void)std::fclose(file); }
@@ -51,6 +55,7 @@ class Scan {
       const auto opcode = static_cast<Opcode>(cursor.take<unsigned char>());
       const auto length = cursor.take<std::uint64_t>();
       if (length > left_) break;  // cut off here
+      if (!may_unpack(length)) break;
       // The checksum of the data section covers all before the record that holds it, that of the summary all up to
       // itself in the footer.
       const std::uint32_t crc_before = crc_;
@@ -143,6 +148,19 @@ class Scan {
     }
   }
 
+  bool may_unpack(std::uint64_t bytes) {
+    if (bytes <= work_left_) {
+      work_left_ -= bytes;
+      return true;
+    }
+    error_ = Error{.code = ErrorCode::out_of_bounds,
+                   .parameter = {},
+                   .message = "the log takes more than " + std::to_string(most_unpacked_bytes >> 30U) +
+                              " GiB unpacked: cut it, or record in parts with a limit",
+                   .place = {}};
+    return false;
+  }
+
   /// What a file declares is kept, so there is a limit to how much of it there may be.
   bool may_remember(std::size_t bytes) {
     const bool fits = bytes <= memory_left_;
@@ -205,6 +223,7 @@ class Scan {
       // The frame must not promise more than the chunk does, so that nothing large is asked for in vain.
       sound = ZSTD_getFrameContentSize(records.data(), records.size()) == size;
       if (sound) {
+        if (!may_unpack(size)) return;
         chunk_.resize(static_cast<std::size_t>(size));
         const std::size_t got = ZSTD_decompress(chunk_.data(), chunk_.size(), records.data(), records.size());
         if (ZSTD_getErrorCode(got) == ZSTD_error_memory_allocation) throw std::bad_alloc();
@@ -242,7 +261,8 @@ class Scan {
   std::uint32_t crc_ = 0;
   bool in_summary_ = false;
   bool stop_ = false;
-  std::uint64_t memory_left_ = largest_record_bytes;
+  std::uint64_t memory_left_ = most_declared_bytes;
+  std::uint64_t work_left_ = most_unpacked_bytes;
   std::string buffer_;
   std::string chunk_;
   std::map<std::uint16_t, Schema> schemas_;

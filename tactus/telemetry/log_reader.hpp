@@ -44,11 +44,12 @@ struct LogSummary {
 /// Reads an MCAP file from front to back, the messages of every complete chunk in the order in which they were written,
 /// those of a file that was cut at any byte included. No index is needed or believed.
 ///
-/// Memory is bounded whatever the file says: a record beyond 64 MiB, before or after decompression, is skipped as
-/// damaged. Compression: zstd or none. `visit` may end the reading by returning an error.
+/// Memory and time are bounded whatever the file says: a record beyond 64 MiB, before or after decompression, is
+/// skipped as damaged, and so is what a file declares beyond 16 MiB. Compression: zstd or none. `visit` may end the
+/// reading by returning an error.
 ///
-/// Errors: `missing` for a file that is not there, `syntax` for one that does not begin as an MCAP file; any of
-/// `visit`.
+/// Errors: `missing` for a file that is not there, `syntax` for one that does not begin as an MCAP file,
+/// `out_of_bounds` for one that takes more than 4 GiB unpacked; any of `visit`.
 Result<LogSummary> scan_log(const std::filesystem::path& file,
                             const std::function<Check(const LogChannel&, const LogMessage&)>& visit);
 
@@ -68,8 +69,9 @@ struct LogContent {
 };
 
 /// Reads all channels into memory. A channel whose messages are not CDR of a `ros2msg` definition with plain numbers is
-/// an error (`wrong_type`) that names it; so is content beyond 2^27 numbers (`out_of_bounds`). With `topic`, only that
-/// one. A folder stands for its one `.mcap` file.
+/// an error (`wrong_type`) that names it; so is content beyond 2^26 numbers (`out_of_bounds`). With `topic`, only that
+/// one. A folder stands for its one `.mcap` file, or for the parts of one log, `log_0.mcap`, `log_1.mcap` and so on,
+/// which are read as one.
 Result<LogContent> read_log(const std::filesystem::path& file_or_folder, const std::optional<std::string>& topic = {});
 
 }  // namespace tactus::telemetry

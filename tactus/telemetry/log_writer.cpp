@@ -1,19 +1,16 @@
 #include <tactus/core/version.hpp>
+#include <tactus/telemetry/log_part.hpp>
 #include <tactus/telemetry/log_writer.hpp>
 #include <tactus/telemetry/mcap_format.hpp>
 
 #include <algorithm>
-#include <cerrno>
 #include <exception>
-#include <limits>
 #include <new>
 #include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
-#include <fcntl.h>
-#include <unistd.h>
 #include <zstd.h>
 
 namespace tactus::telemetry {
@@ -29,7 +26,9 @@ using mcap::Opcode;
 
 constexpr int fastest_compression = 1;
 
-std::string reason_of(int error_number) { return std::generic_category().message(error_number); }
+/// Of a log with a limit; one of them is being written.
+constexpr std::size_t most_parts = 4;
+constexpr std::uint64_t bytes_for_bag_metadata = std::uint64_t{64} * 1024;
 
 struct ContextDeleter {
   void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
@@ -41,17 +40,6 @@ Compressor new_compressor() {
   return made;
 }
 
-/// The first and the last time of what was added.
-struct Span {
-  std::uint64_t first_ns = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t last_ns = 0;
-  void add(std::uint64_t time_ns) {
-    first_ns = std::min(first_ns, time_ns);
-    last_ns = std::max(last_ns, time_ns);
-  }
-  [[nodiscard]] std::uint64_t first_or_zero() const { return std::min(first_ns, last_ns); }
-};
-
 /// The chunk that is being filled.
 struct Chunk {
   struct IndexEntry {
@@ -59,80 +47,121 @@ struct Chunk {
   };
   std::string records;
   std::map<std::uint16_t, std::vector<IndexEntry>> index;
-  Span span;
+  TimeSpan span;
 };
 
 }  // namespace
 
 struct LogWriter::State {
-  std::string path;
-  int descriptor = -1;
-  std::uint64_t offset = 0;    ///< end of what the system has taken
-  std::uint32_t data_crc = 0;  ///< of all that, while it is the data section
-  std::string pending;         ///< schemas, channels and metadata that are not in the file yet
-  std::string summary;         ///< schemas and channels, for the end of the file
-  std::string chunk_indexes;   ///< for the end of the file
-  std::vector<std::pair<std::string, std::string>> pending_metadata;  ///< name and record
-  std::string metadata_indexes;
+  struct Metadata {
+    std::string name, record;
+  };
+
+  std::filesystem::path file;
+  std::uint64_t most_part_bytes = 0;  ///< 0: one file without a limit
+  std::unique_ptr<LogPart> part;
+  std::vector<std::unique_ptr<LogPart>> ended;  ///< earlier parts that are still there
+  std::uint64_t parts = 0;                      ///< that were begun
+  std::uint64_t removed = 0;                    ///< messages, with the oldest parts
+  std::string pending;                          ///< head, schemas and channels that are not in the file yet
+  std::string declarations;                     ///< all schemas and channels
+  std::vector<Metadata> metadata;
+  std::size_t metadata_written = 0;
   std::map<std::string, std::uint16_t> schemas;  ///< by type name
   std::vector<ChannelCount> counts;
   Chunk chunk;
-  Span span;
   std::uint64_t newest_ns = 0;
   std::uint64_t acknowledged = 0;
   std::uint64_t lost = 0;
-  std::uint32_t chunks = 0;
-  std::uint32_t metadata_records = 0;
   std::optional<Error> first_error;
   Compressor compressor = new_compressor();
   std::string compressed;
+  bool closed = false;
 
-  State() = default;
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  ~State() {
-    if (descriptor >= 0) ::close(descriptor);
-  }
+  /// A chunk and its message indexes as they stand in the file, and what its end says of them.
+  struct Records {
+    std::string bytes, index;
+  };
 
-  Check put(std::string_view bytes);
+  Check begin_part();
+  Check next_part();
+  Check declare();
+  void compress_chunk();
+  [[nodiscard]] Records chunk_records() const;
+  Check put_chunk(const std::vector<std::uint64_t>& messages);
   Check flush();
   Check close();
-  [[nodiscard]] std::string chunk_record();
-  [[nodiscard]] std::string statistics() const;
 };
 
-/// All of `bytes` or nothing: what was written of a failed part is cut off again.
-Check LogWriter::State::put(std::string_view bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t written =
-        ::pwrite(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      const std::string reason = written < 0 ? reason_of(errno) : "nothing was written";
-      // A device cannot be cut; then there is nothing to keep readable either.
-      const bool cut = ::ftruncate(descriptor, static_cast<off_t>(offset)) == 0;
-      return Error{.code = ErrorCode::unwritable,
-                   .parameter = {},
-                   .message = "the log could not be written (" + reason + "): give it a place with room" +
-                              (cut || done == 0 ? "" : "; it ends within a record"),
-                   .place = path};
-    }
-    done += static_cast<std::size_t>(written);
+Check LogWriter::State::begin_part() {
+  std::filesystem::path name = file;
+  if (most_part_bytes != 0) {
+    name.replace_filename(file.stem().string() + "_" + std::to_string(parts) + file.extension().string());
   }
-  data_crc = crc32_of(bytes, data_crc);
-  offset += bytes.size();
+  auto made = LogPart::create(name);
+  if (!made) return made.error();
+  ++parts;
+  part = *std::move(made);
+  part->declare(counts.size());
+  pending = mcap::magic;
+  std::string header;
+  append_text(header, "ros2");
+  append_text(header, "tactus " + std::string(version()));
+  append_record(pending, Opcode::header, header);
+  pending += declarations;
+  metadata_written = 0;
   return std::nullopt;
 }
 
-/// Chunk and message indexes of the open chunk; leaves the chunk's index record in `chunk_indexes`.
-std::string LogWriter::State::chunk_record() {
+/// Ends the open part, begins another and removes the oldest where there would be too many.
+Check LogWriter::State::next_part() {
+  Check error = part->end(declarations, schemas.size());
+  ended.push_back(std::move(part));
+  if (ended.size() == most_parts) {
+    const LogPart& oldest = *ended.front();
+    std::error_code failed;
+    std::filesystem::remove(oldest.path(), failed);
+    if (failed && !error) {
+      error = Error{.code = ErrorCode::unwritable,
+                    .parameter = {},
+                    .message = "the oldest part of the log could not be removed (" + failed.message() +
+                               "): the log may grow beyond its limit",
+                    .place = oldest.path().string()};
+    }
+    for (const std::uint64_t messages : oldest.written()) removed += messages;
+    ended.erase(ended.begin());
+  }
+  if (error && !first_error) first_error = error;
+  return begin_part();
+}
+
+/// Writes what stands before the first message that needs it.
+Check LogWriter::State::declare() {
+  if (!part) {
+    if (auto error = begin_part()) return error;  // the last one could not be begun
+  }
+  if (!pending.empty()) {
+    if (auto error = part->put(pending)) return error;
+    pending.clear();
+  }
+  for (; metadata_written < metadata.size(); ++metadata_written) {
+    const Metadata& next = metadata[metadata_written];
+    if (auto error = part->put_metadata(next.name, next.record)) return error;
+  }
+  return std::nullopt;
+}
+
+void LogWriter::State::compress_chunk() {
   compressed.resize(ZSTD_compressBound(chunk.records.size()));
   const std::size_t size = ZSTD_compressCCtx(compressor.get(), compressed.data(), compressed.size(),
                                              chunk.records.data(), chunk.records.size(), fastest_compression);
-  const bool smaller = ZSTD_isError(size) == 0;
+  compressed.resize(ZSTD_isError(size) == 0 ? size : 0);
+}
+
+LogWriter::State::Records LogWriter::State::chunk_records() const {
+  const bool smaller = !compressed.empty();
   const std::string_view compression = smaller ? "zstd" : "";
-  const std::string_view records = smaller ? std::string_view(compressed).substr(0, size) : chunk.records;
+  const std::string_view records = smaller ? compressed : chunk.records;
 
   std::string content;
   append(content, chunk.span.first_or_zero());
@@ -142,14 +171,14 @@ std::string LogWriter::State::chunk_record() {
   append_text(content, compression);
   append(content, std::uint64_t{records.size()});
   content += records;
-  std::string bytes;
-  append_record(bytes, Opcode::chunk, content);
+  Records made;
+  append_record(made.bytes, Opcode::chunk, content);
 
-  const std::uint64_t chunk_length = bytes.size();
+  const std::uint64_t chunk_length = made.bytes.size();
   std::string places;
   for (const auto& [channel, entries] : chunk.index) {
     append(places, channel);
-    append(places, std::uint64_t{offset + bytes.size()});
+    append(places, std::uint64_t{part->offset() + made.bytes.size()});
     std::string index;
     append(index, channel);
     append(index, static_cast<std::uint32_t>(16 * entries.size()));
@@ -157,57 +186,68 @@ std::string LogWriter::State::chunk_record() {
       append(index, time_ns);
       append(index, at);
     }
-    append_record(bytes, Opcode::message_index, index);
+    append_record(made.bytes, Opcode::message_index, index);
   }
 
-  std::string summary_of_chunk;
-  append(summary_of_chunk, chunk.span.first_or_zero());
-  append(summary_of_chunk, chunk.span.last_ns);
-  append(summary_of_chunk, offset);
-  append(summary_of_chunk, chunk_length);
-  append_text(summary_of_chunk, places);
-  append(summary_of_chunk, std::uint64_t{bytes.size() - chunk_length});
-  append_text(summary_of_chunk, compression);
-  append(summary_of_chunk, std::uint64_t{records.size()});
-  append(summary_of_chunk, std::uint64_t{chunk.records.size()});
-  append_record(chunk_indexes, Opcode::chunk_index, summary_of_chunk);
-  return bytes;
+  std::string summary;
+  append(summary, chunk.span.first_or_zero());
+  append(summary, chunk.span.last_ns);
+  append(summary, part->offset());
+  append(summary, chunk_length);
+  append_text(summary, places);
+  append(summary, std::uint64_t{made.bytes.size() - chunk_length});
+  append_text(summary, compression);
+  append(summary, std::uint64_t{records.size()});
+  append(summary, std::uint64_t{chunk.records.size()});
+  append_record(made.index, Opcode::chunk_index, summary);
+  return made;
+}
+
+/// Writes the chunk into the open part, or into another one where it does not fit any more.
+Check LogWriter::State::put_chunk(const std::vector<std::uint64_t>& messages) {
+  if (auto error = declare()) return error;
+  compress_chunk();
+  Records made = chunk_records();
+  const auto too_large = [&] {
+    return most_part_bytes != 0 &&
+           part->size_with(made.bytes.size(), made.index.size(), declarations.size()) > most_part_bytes;
+  };
+  if (too_large() && part->chunks() > 0) {
+    if (auto error = next_part()) return error;
+    if (auto error = declare()) return error;
+    made = chunk_records();
+  }
+  if (too_large()) {
+    return Error{.code = ErrorCode::unwritable,
+                 .parameter = {},
+                 .message = "a part of the log may take " + std::to_string(most_part_bytes) +
+                            " bytes, in which not one chunk fits beside what describes it: allow the log more",
+                 .place = part->path().string()};
+  }
+  return part->put_chunk(made.bytes, made.index, chunk.span, messages);
 }
 
 Check LogWriter::State::flush() {
-  Check error = pending.empty() ? std::nullopt : put(pending);
-  if (!error) pending.clear();
-  while (!error && !pending_metadata.empty()) {
-    const auto& [name, record] = pending_metadata.front();
-    std::string index;
-    append(index, offset);
-    append(index, std::uint64_t{record.size()});
-    append_text(index, name);
-    error = put(record);
-    if (error) break;
-    append_record(metadata_indexes, Opcode::metadata_index, index);
-    ++metadata_records;
-    pending_metadata.erase(pending_metadata.begin());
-  }
-  if (!chunk.records.empty()) {
-    std::uint64_t messages = 0;
-    for (const auto& [channel, entries] : chunk.index) messages += entries.size();
-    if (!error) {
-      const std::size_t indexed = chunk_indexes.size();
-      error = put(chunk_record());
-      if (error) chunk_indexes.resize(indexed);
-    }
+  if (closed) return first_error;
+  Check error;
+  if (chunk.records.empty()) {
+    error = declare();
+  } else {
+    std::vector<std::uint64_t> messages(counts.size());
+    std::uint64_t all = 0;
     for (const auto& [channel, entries] : chunk.index) {
-      (error ? counts[channel].lost : counts[channel].written) += entries.size();
+      messages[channel] = entries.size();
+      all += entries.size();
+    }
+    error = put_chunk(messages);
+    for (std::size_t channel = 0; channel < counts.size(); ++channel) {
+      (error ? counts[channel].lost : counts[channel].written) += messages[channel];
     }
     if (error) {
-      lost += messages;
-      error->message += "; " + std::to_string(messages) + " messages are lost";
+      lost += all;
+      error->message += "; " + std::to_string(all) + " messages are lost";
     } else {
-      acknowledged += messages;
-      ++chunks;
-      span.add(chunk.span.first_ns);
-      span.add(chunk.span.last_ns);
+      acknowledged += all;
     }
     chunk.records.clear();
     chunk.index.clear();
@@ -217,52 +257,12 @@ Check LogWriter::State::flush() {
   return error;
 }
 
-std::string LogWriter::State::statistics() const {
-  std::string content;
-  append(content, acknowledged);
-  append(content, static_cast<std::uint16_t>(schemas.size()));
-  append(content, static_cast<std::uint32_t>(counts.size()));
-  append(content, std::uint32_t{0});  // attachments
-  append(content, metadata_records);
-  append(content, chunks);
-  append(content, span.first_or_zero());
-  append(content, span.last_ns);
-  std::string written;
-  for (std::size_t channel = 0; channel < counts.size(); ++channel) {
-    append(written, static_cast<std::uint16_t>(channel));
-    append(written, counts[channel].written);
-  }
-  append_text(content, written);
-  return content;
-}
-
 Check LogWriter::State::close() {
-  if (descriptor < 0) return first_error;
+  if (closed) return first_error;
   Check error = flush();
-  if (!error) {
-    std::string end;
-    std::string crc_of_data;
-    append(crc_of_data, data_crc);
-    append_record(end, Opcode::data_end, crc_of_data);
-    const std::size_t summary_at = end.size();
-    end += summary;
-    append_record(end, Opcode::statistics, statistics());
-    end += chunk_indexes + metadata_indexes;
-    // The footer's CRC covers the summary and the footer up to the CRC itself.
-    end += static_cast<char>(Opcode::footer);
-    append(end, std::uint64_t{20});
-    append(end, std::uint64_t{offset + summary_at});
-    append(end, std::uint64_t{0});  // no section of summary offsets
-    append(end, crc32_of(std::string_view(end).substr(summary_at)));
-    end += mcap::magic;
-    error = put(end);
-  }
-  if (::close(std::exchange(descriptor, -1)) != 0 && !error) {
-    error = Error{.code = ErrorCode::unwritable,
-                  .parameter = {},
-                  .message = "the log could not be closed (" + reason_of(errno) + "): look whether its disk is full",
-                  .place = path};
-  }
+  closed = true;
+  if (!error) error = part->end(declarations, schemas.size());
+  if (part) ended.push_back(std::move(part));
   if (error && !first_error) first_error = error;
   return first_error;
 }
@@ -279,22 +279,18 @@ LogWriter::~LogWriter() {
   }
 }
 
-Result<LogWriter> LogWriter::create(const std::filesystem::path& file) {
-  auto state = std::make_unique<State>();
-  state->path = file.string();
-  state->descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (state->descriptor < 0) {
-    return Error{
-        .code = ErrorCode::unwritable,
-        .parameter = {},
-        .message = "the log could not be made (" + reason_of(errno) + "): name a place where files can be written",
-        .place = file.string()};
+Result<LogWriter> LogWriter::create(const std::filesystem::path& file, std::uint64_t most_bytes) {
+  if (most_bytes != 0 && most_bytes < least_limit_bytes) {
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = {},
+                 .message = "a log of at most " + std::to_string(most_bytes) + " bytes holds too little: allow it " +
+                            std::to_string(least_limit_bytes >> 20U) + " MiB or more",
+                 .place = file.string()};
   }
-  state->pending = mcap::magic;
-  std::string header;
-  append_text(header, "ros2");
-  append_text(header, "tactus " + std::string(version()));
-  append_record(state->pending, Opcode::header, header);
+  auto state = std::make_unique<State>();
+  state->file = file;
+  if (most_bytes != 0) state->most_part_bytes = (most_bytes - bytes_for_bag_metadata) / most_parts;
+  if (auto error = state->begin_part()) return *std::move(error);
   return LogWriter(std::move(state));
 }
 
@@ -321,7 +317,8 @@ std::uint16_t LogWriter::add_channel(const ChannelDescription& channel) {
   append_map(content, column_metadata(channel.columns));
   append_record(records, Opcode::channel, content);
   state.pending += records;
-  state.summary += records;
+  state.declarations += records;
+  if (state.part) state.part->declare(state.counts.size());
   return id;
 }
 
@@ -331,7 +328,7 @@ void LogWriter::add_metadata(const std::string& name, const std::map<std::string
   append_map(bytes, content);
   std::string record;
   append_record(record, Opcode::metadata, bytes);
-  state_->pending_metadata.emplace_back(name, std::move(record));
+  state_->metadata.push_back({name, std::move(record)});
 }
 
 void LogWriter::write(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns,
@@ -359,8 +356,21 @@ Check LogWriter::close() { return state_->close(); }
 const std::vector<ChannelCount>& LogWriter::counts() const { return state_->counts; }
 std::uint64_t LogWriter::acknowledged() const { return state_->acknowledged; }
 std::uint64_t LogWriter::lost() const { return state_->lost; }
-std::uint64_t LogWriter::first_time_ns() const { return state_->span.first_or_zero(); }
-std::uint64_t LogWriter::last_time_ns() const { return state_->span.last_ns; }
+std::uint64_t LogWriter::removed() const { return state_->removed; }
+
+std::vector<LogPartSummary> LogWriter::parts() const {
+  std::vector<LogPartSummary> summaries;
+  const auto add = [&summaries](const LogPart& part) {
+    summaries.push_back({.file = part.path(),
+                         .first_time_ns = part.span().first_or_zero(),
+                         .last_time_ns = part.span().last_ns,
+                         .messages = part.written()});
+  };
+  for (const auto& part : state_->ended) add(*part);
+  if (state_->part) add(*state_->part);
+  return summaries;
+}
+
 std::uint64_t LogWriter::newest_time_ns() const { return state_->newest_ns; }
 
 }  // namespace tactus::telemetry

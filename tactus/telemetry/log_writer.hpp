@@ -28,6 +28,14 @@ struct ChannelCount {
   std::uint64_t lost = 0;     ///< in chunks that could not be written
 };
 
+/// One file of a log.
+struct LogPartSummary {
+  std::filesystem::path file;
+  std::uint64_t first_time_ns = 0;  ///< of its messages; both 0 where there is none
+  std::uint64_t last_time_ns = 0;
+  std::vector<std::uint64_t> messages;  ///< by channel, acknowledged
+};
+
 /// Writes an MCAP file (profile `ros2`, messages as CDR, schemas as `ros2msg`) that a killed process cannot spoil.
 ///
 /// Messages gather in a chunk. A full one is compressed (zstd), gets its CRC-32 and goes to the system in one write;
@@ -38,14 +46,24 @@ struct ChannelCount {
 /// Where a write fails (a full disk), the file is cut back to its last complete record, the messages of the chunk are
 /// counted as lost, and the next chunk is tried again: the file stays readable, the gap has a number.
 ///
-/// Equal calls write equal bytes: no clock is read. One thread at a time. Blocks on the disk: never on the servo path.
+/// A log with a limit is a ring of up to four files, `log_0.mcap`, `log_1.mcap` and so on, of a quarter of the limit
+/// each. When one is full it is ended and the next begun, and the oldest removed, so that the newest messages are
+/// there, no more than the limit is taken at any time, and each file is a whole log.
+///
+/// Memory does not grow with the log. Equal calls write equal bytes: no clock is read. One thread at a time. Blocks on
+/// the disk: never on the servo path.
 class LogWriter {
  public:
   /// Content of a chunk before compression at which it is written.
   static constexpr std::size_t chunk_bytes = std::size_t{256} * 1024;
 
-  /// Makes or replaces the file. Errors: `unwritable`. A full disk shows only when the first chunk is written.
-  static Result<LogWriter> create(const std::filesystem::path& file);
+  /// The least that a log may be limited to.
+  static constexpr std::uint64_t least_limit_bytes = std::uint64_t{8} << 20U;
+
+  /// Makes or replaces the file; a link is not followed. With `most_bytes` other than 0 the log is limited to so much,
+  /// its `metadata.yaml` included. Errors: `unwritable`; `out_of_bounds` for a limit below `least_limit_bytes`. A full
+  /// disk shows only when the first chunk is written.
+  static Result<LogWriter> create(const std::filesystem::path& file, std::uint64_t most_bytes = 0);
 
   LogWriter(LogWriter&&) noexcept;
   LogWriter& operator=(LogWriter&&) noexcept;
@@ -68,9 +86,10 @@ class LogWriter {
   /// Messages that the system has taken.
   [[nodiscard]] std::uint64_t acknowledged() const;
   [[nodiscard]] std::uint64_t lost() const;
-  /// Time of the first and the last acknowledged message; both 0 before there is one.
-  [[nodiscard]] std::uint64_t first_time_ns() const;
-  [[nodiscard]] std::uint64_t last_time_ns() const;
+  /// Messages that were acknowledged, and went with the oldest files of a log with a limit.
+  [[nodiscard]] std::uint64_t removed() const;
+  /// The files that are there, the oldest first.
+  [[nodiscard]] std::vector<LogPartSummary> parts() const;
   /// Latest time of any message that was given, acknowledged or not.
   [[nodiscard]] std::uint64_t newest_time_ns() const;
 

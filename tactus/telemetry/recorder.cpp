@@ -76,8 +76,8 @@ Recorder::~Recorder() {
   }
 }
 
-Result<Recorder> Recorder::create(const std::filesystem::path& file) {
-  auto log = LogWriter::create(file);
+Result<Recorder> Recorder::create(const std::filesystem::path& file, std::uint64_t most_bytes) {
+  auto log = LogWriter::create(file, most_bytes);
   if (!log) return log.error();
   return Recorder(std::make_unique<State>(*std::move(log)));
 }

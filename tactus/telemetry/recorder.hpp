@@ -85,7 +85,8 @@ class RecordStream final : public Stream {
 /// counts and the result of `stop`, and never the thread that pushes.
 class Recorder {
  public:
-  static Result<Recorder> create(const std::filesystem::path& file);
+  /// As `LogWriter::create`.
+  static Result<Recorder> create(const std::filesystem::path& file, std::uint64_t most_bytes = 0);
   Recorder(Recorder&&) noexcept;
   Recorder& operator=(Recorder&&) = delete;
   ~Recorder();  ///< stops

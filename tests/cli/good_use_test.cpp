@@ -107,8 +107,8 @@ TEST_F(GoodUse, TheReportNeedsNothingButItself) {
 }
 
 TEST_F(GoodUse, TheSameCommandTwiceLeavesTheSameBytes) {
-  const Words command{"run",   quick_experiment(), "--vary", "control.cancellation=off,on",
-                      "--set", "task.taps=3",      "--out",  "results"};
+  const Words command{"run",   quick_experiment(), "--vary",     "control.cancellation=off,on", "--set", "task.taps=3",
+                      "--out", "results",          "--overwrite"};
   const Outcome first = tactus(command);
   ASSERT_EQ(first.status, 0) << first.err;
   const Words names = files();

@@ -58,7 +58,7 @@ class TwoSites : public ::testing::Test {
 
   /// Messages of each topic of a log, as another verb reads it.
   [[nodiscard]] nlohmann::json messages_of(const std::string& log) const {
-    shell("$TACTUS export " + log + " --to mat --out export.mat --json >export.json 2>/dev/null");
+    shell("$TACTUS export " + log + " --to mat --out export.mat --overwrite --json >export.json 2>/dev/null");
     const nlohmann::json document = result("export");
     nlohmann::json messages;
     for (const auto& topic : document["topics"]) messages[topic["topic"].get<std::string>()] = topic["messages"];

@@ -1,5 +1,6 @@
 #include <tactus/configuration/document.hpp>
 
+#include <ctime>
 #include <random>
 #include <string>
 #include <string_view>
@@ -152,6 +153,43 @@ TEST(HostileText, HugeTextIsRefusedOrReadWithoutHugeWork) {
   std::string many;
   for (int i = 0; i < 5000; ++i) many.append("[k").append(std::to_string(i)).append(repeat(".a", 80)).append("]\n");
   EXPECT_FALSE(holds(many));
+}
+
+/// Processor time of a job, in seconds.
+template <class Job>
+double seconds_of(Job&& job) {
+  const std::clock_t start = std::clock();
+  job();
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+std::string keys(int count) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text.append("k").append(std::to_string(i)).append("=1\n");
+  return text;
+}
+
+std::string keys_under(std::size_t letters, int count) {
+  return repeat("[", 1).append(repeat("s", letters)).append("]\n").append(keys(count));
+}
+
+TEST(HostileText, ALongSectionOverManyKeysDoesNotTakeTheSquareOfItsSize) {
+  const Result<Document> document = Document::parse(keys_under(100000, 10000), "t.toml");  // a gigabyte of paths
+  ASSERT_FALSE(document);
+  EXPECT_EQ(document.error().place, "t.toml:1:2");
+  EXPECT_NE(document.error().message.find("more than the 500"), std::string::npos) << document.error().message;
+  EXPECT_TRUE(Document::parse(keys_under(400, 10), "t.toml"));
+}
+
+TEST(HostileText, MergingTakesTimeInProportionToTheKeys) {
+  const auto merging = [](int count) {
+    const auto other = Document::parse(keys(count), "other.toml");
+    EXPECT_TRUE(other);
+    auto document = Document::parse(keys(count / 2), "t.toml");
+    return seconds_of([&] { EXPECT_FALSE(document->merge(*other)); });
+  };
+  // A tenth of a second, where the square took ten.
+  EXPECT_LT(merging(100000), 1.0 + 3.0 * merging(50000));
 }
 
 }  // namespace

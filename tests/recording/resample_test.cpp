@@ -95,7 +95,7 @@ TEST(Resample, ASlowerRateIsRefusedBecauseItWouldFoldFastContentIntoSlow) {
 TEST(Resample, WhatHasNoSampleTimeOrNoneThatCanBeIsRefused) {
   Signal signal = sampled(0.0005, 100, [](double t) { return t; });
   for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) EXPECT_FALSE(resample(signal, Seconds(bad)));
-  EXPECT_TRUE(says(resample(signal, Seconds(1e-14)).error().message, "1e9 samples"));
+  EXPECT_TRUE(says(resample(signal, Seconds(1e-14)).error().message, "1e8 samples"));
   signal.sample_time_s.reset();
   EXPECT_TRUE(says(resample(signal, Seconds(0.0002)).error().message, "state sample_time_s"));
 }

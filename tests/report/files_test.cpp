@@ -95,6 +95,15 @@ TEST_F(Files, AFolderInThePlaceOfTheFileIsRefused) {
   EXPECT_EQ(entries(), 1);
 }
 
+TEST_F(Files, ALinkIsNeitherFollowedNorReplaced) {
+  std::ofstream(folder_ / "precious") << "kept";
+  fs::create_symlink("precious", folder_ / "report.html");
+  expect_error(write_file(folder_ / "report.html", "x"), folder_ / "report.html", "symbolic link");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "report.html"));
+  EXPECT_EQ(content(folder_ / "precious"), "kept");
+  EXPECT_EQ(entries(), 2);
+}
+
 TEST_F(Files, ADeviceIsNeverReplacedByAFile) {
   expect_error(write_file("/dev/null", "x"), "/dev/null", "not a regular file");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));

@@ -3,6 +3,8 @@
 #include <tactus/telemetry/recorder.hpp>
 
 #include <filesystem>
+#include <fstream>
+#include <set>
 #include <string>
 
 #include "tests/file_size_limit.hpp"
@@ -95,6 +97,73 @@ TEST_F(Export, ARecordWithoutATimeGetsThatOfItsMessages) {
   ASSERT_TRUE(dropped) << describe(dropped.error());
   EXPECT_EQ(dropped->values, (std::vector<double>{0, 1, 2, 3, 4}));
   EXPECT_NEAR(dropped->sample_time_s.value_or(0.0), 0.002, 1e-12);
+}
+
+/// A topic and a signal that no library of others stands: long, not letters, twice the same once they are cut.
+LogTable hostile_table(const std::string& topic, double value) {
+  LogTable table{.topic = topic, .type_name = "t", .columns = {}, .values = {}, .times_ns = {0, 1'000'000}};
+  const std::string long_name(3000, 'a');
+  for (const std::string& name :
+       {long_name, long_name + "b", std::string("=cmd|' /C calc'!A0"), std::string("a/b/../c"), std::string("a.b"),
+        std::string("units"), std::string(), std::string("7,\"\n8")}) {
+    table.columns.push_back({.name = name, .unit = std::string("x\033[2J,\"\n").append(500, 'u')});
+    table.values.push_back({value, value + 1.0});
+    value += 10.0;
+  }
+  return table;
+}
+
+TEST_F(Export, NamesThatNoLibraryStandsAreCutAndMadeUniqueInEveryFormat) {
+  const std::string long_topic = "/" + std::string(2041, 't');
+  LogContent content;
+  content.summary.metadata["tactus"] = {
+      {std::string(5000, 'k'), "text"}, {std::string(5001, 'k'), "other"}, {"1=", ""}};
+  double value = 0.0;
+  for (const std::string& topic :
+       {long_topic, long_topic + "x", std::string("/about"), std::string("//../=x\033[2J")}) {
+    content.tables.push_back(hostile_table(topic, value += 1000.0));
+  }
+  ASSERT_FALSE(export_mat(content, folder_ / "hostile.mat"));
+  ASSERT_FALSE(export_hdf5(content, folder_ / "hostile.h5"));
+  const auto entries = recording::contents(folder_ / "hostile.mat");
+  ASSERT_TRUE(entries) << describe(entries.error());
+  std::set<std::string> names;
+  std::size_t signals = 0;
+  for (const auto& entry : *entries) {
+    EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
+    EXPECT_LE(entry.name.size(), 3U * 64U);
+    if (!entry.readable) continue;
+    const auto read = recording::read({.file = folder_ / "hostile.mat", .variable = entry.name});
+    ASSERT_TRUE(read) << describe(read.error());
+    const std::size_t column = signals % 9;  // the times and eight signals
+    const double expected = 1000.0 * static_cast<double>(1 + signals / 9) + 10.0 * static_cast<double>(column) - 10.0;
+    EXPECT_EQ(read->values.front(), column == 0 ? 0.0 : expected) << entry.name;
+    ++signals;
+  }
+  EXPECT_EQ(signals, 4U * 9U);
+  const std::string cut(63, 't'), second = std::string(61, 't') + "_2";
+  for (const std::string& name : {cut, second, std::string("about_2"), std::string("x__2J")}) {
+    EXPECT_TRUE(names.contains(name + ".units_2")) << name;
+    EXPECT_TRUE(names.contains(name + ".signal_")) << name;
+    EXPECT_TRUE(names.contains(name + "." + std::string(63, 'a'))) << name;
+    EXPECT_TRUE(names.contains(name + "." + std::string(61, 'a') + "_2")) << name;
+  }
+
+  ASSERT_FALSE(export_csv(content.tables[0], folder_ / "hostile.csv"));
+  std::ifstream file(folder_ / "hostile.csv");
+  std::string head, first, second_row, more;
+  std::getline(file, head);
+  std::getline(file, first);
+  std::getline(file, second_row);
+  EXPECT_FALSE(std::getline(file, more)) << "no name made a line of its own";
+  EXPECT_EQ(head.find('\033'), std::string::npos);
+  EXPECT_EQ(head.find(",="), std::string::npos);
+  const auto columns = recording::contents(folder_ / "hostile.csv");
+  ASSERT_TRUE(columns) << describe(columns.error());
+  EXPECT_EQ(columns->size(), 9U);
+  const auto last = recording::read({.file = folder_ / "hostile.csv", .variable = "signal_7___8"});
+  ASSERT_TRUE(last) << describe(last.error());
+  EXPECT_EQ(last->values.back(), 1071.0);
 }
 
 TEST(ExportNames, ATopicBecomesAnIdentifier) {

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace CLI {  // NOLINT: the name is not ours
+class App;
+}
+
+namespace tactus::cli {
+
+/// What a command line says about where results go.
+struct OutputOptions {
+  std::optional<std::string> folder;  ///< none: nothing is left
+  bool overwrite = false;
+  bool json = false;
+  /// What the verb writes beside report.html, results.json, figures and a log.
+  std::vector<std::string> own_files;
+};
+
+/// Adds `--out`, `--overwrite` and `--json` to a verb. `help` is that of `--out`.
+void add_output_options(CLI::App& verb, OutputOptions& options, const std::string& help);
+/// Adds `--log-limit` to a verb; 0 stands for none.
+void add_log_limit_option(CLI::App& verb, std::uint64_t& most_bytes);
+
+/// The folder of `--out`. What a run has left there is replaced as a whole with `--overwrite` and never without; a
+/// symbolic link is never followed, be it the folder itself or a file in it.
+class OutputFolder {
+ public:
+  /// Proves, before long work and without making the folder, that results may and could be written there: a request
+  /// that turns out to be wrong leaves everything as it was.
+  static Result<OutputFolder> open(const OutputOptions& options);
+
+  [[nodiscard]] bool wanted() const { return options_.folder.has_value(); }
+  [[nodiscard]] bool json() const { return options_.json; }
+  [[nodiscard]] std::filesystem::path path() const { return options_.folder.value_or(""); }
+  [[nodiscard]] std::filesystem::path log_folder() const { return path() / "log"; }
+
+  /// Makes the folder and removes what an earlier run left in it, once: the first to write calls it.
+  Check begin();
+  /// Writes a file, all or nothing, after `begin`.
+  Check write(const std::string& name, std::string_view content);
+  /// Says where the report is, in a line.
+  [[nodiscard]] std::string report_line() const;
+  /// The same of the log, of which `removed` records went for its limit.
+  [[nodiscard]] std::string log_line(std::uint64_t removed = 0) const;
+  /// Prints these lines, on standard error where standard output is a JSON document.
+  void announce() const;
+  void announce_log(std::uint64_t removed = 0) const;
+
+ private:
+  explicit OutputFolder(OutputOptions options) : options_(std::move(options)) {}
+  [[nodiscard]] std::vector<std::filesystem::path> left() const;
+  [[nodiscard]] Check check() const;
+
+  OutputOptions options_;
+  bool begun_ = false;
+};
+
+/// Refuses a file that is there unless it may be replaced, and a symbolic link in any case. `place` is the option that
+/// names it.
+Check may_write(const std::filesystem::path& file, bool overwrite, const std::string& place);
+
+}  // namespace tactus::cli

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <mutex>
+#include <ostream>
+#include <streambuf>
+#include <string>
+#include <string_view>
+
+namespace tactus::cli {
+
+/// `text` as it is safe to show on a terminal: `report::printable`, but line feeds and tabs stay.
+std::string printable_lines(std::string_view text);
+
+/// While it lives, all that a stream is given reaches its place through `printable_lines`. Names from files, logs,
+/// datagrams and arguments stand in messages everywhere; here is the one place that all of them pass.
+///
+/// Whole lines go on at once, the rest when the stream is flushed. Any thread.
+class PrintableOutput final : public std::streambuf {
+ public:
+  explicit PrintableOutput(std::ostream& stream);
+  ~PrintableOutput() override;
+  PrintableOutput(const PrintableOutput&) = delete;
+  PrintableOutput& operator=(const PrintableOutput&) = delete;
+
+ protected:
+  std::streamsize xsputn(const char* text, std::streamsize size) override;
+  int_type overflow(int_type character) override;
+  int sync() override;
+
+ private:
+  /// Passes on the first `size` bytes of what waits.
+  bool pass_on(std::size_t size);
+  bool take(std::string_view text);
+
+  std::ostream& stream_;
+  std::streambuf* target_;
+  std::mutex mutex_;
+  std::string waiting_;
+};
+
+}  // namespace tactus::cli
