@@ -108,10 +108,6 @@ void loose_limits(Teleoperator::Params& params, FaultPlan& plan) {
   loose_pace(params, plan);
   for_ever(params);
 }
-/// A workspace not much larger than the task.
-void stays_near(Teleoperator::Params& params) {
-  params.control.gate.position_limit_m = params.control.slave_gate.position_limit_m = 0.06;
-}
 /// So that there is a force to keep.
 void holds_firmly(Teleoperator::Params& params) { params.person.grip.stiffness_N_per_m *= 5.0; }
 /// A plan's other self, in which the defence is not asked: what that is, its element says.
@@ -207,22 +203,10 @@ std::vector<FaultRow> course_rows() {
        "no site follows within 100 ms",
        console_lost,
        {"its end is no release", unasked}},
-      {FaultKind::two_faults,
-       "two-faults",
-       "two faults at once",
-       "every pair of kinds that strike",
-       "within the limits, the first as alone",
-       two_faults,
-       {"all limits", loose_limits},
-       stays_near},
-      {FaultKind::fault_while_arming,
-       "fault-while-arming",
-       "fault while arming",
-       "every kind that strikes",
-       "within the limits",
-       nullptr,
-       {"all limits", loose_limits},
-       stays_near},
+      {FaultKind::two_faults, "two-faults", "two faults at once", "every pair of kinds that strike",
+       "within the limits, the first as alone", two_faults},
+      {FaultKind::fault_while_arming, "fault-while-arming", "fault while arming", "every kind that strikes",
+       "within the limits"},
       {FaultKind::stale_commands,
        "stale-commands",
        "old commands",

@@ -7,7 +7,7 @@
 namespace tactus::simulation {
 
 /// The faults of one run: the plan itself, or those that it stands for. Two at once are drawn from all kinds, every
-/// pair of them once in 630 consecutive choices; one while arming begins between the buttons for arming and for
+/// pair of them once before any comes again; one while arming begins between the buttons for arming and for
 /// following.
 std::vector<FaultPlan> plans_of(const FaultPlan& plan);
 
