@@ -28,7 +28,8 @@ class Document {
   /// every key keeps its default.
   ///
   /// Errors: `syntax`, with line and column, for text that is not TOML, a key that is written twice, more than 16
-  /// levels of nested values, a line with more than 100 dots, and text beyond 1 MiB.
+  /// levels of nested values, a line with more than 100 dots, a key of more than 500 letters with its section, and
+  /// text beyond 1 MiB.
   static Result<Document> parse(std::string_view text, std::string name);
 
   /// Overrides one value: `control.force_gain=3`. The last override of a key wins.

@@ -17,7 +17,7 @@ namespace tactus::recording {
 /// everything above half of it back into the signal, so a recording has to be low-pass filtered first, knowingly.
 /// Sample times that differ by less than one part in a million count as equal, and the values come back untouched.
 ///
-/// Errors: a signal without a sample time; a sample time out of bounds; a result of more than 1e9 samples. Not
+/// Errors: a signal without a sample time; a sample time out of bounds; a result of more than 1e8 samples. Not
 /// real-time safe. Source: Catmull and Rom, A class of local interpolating splines, 1974.
 Result<Signal> resample(const Signal& signal, Seconds sample_time);
 
