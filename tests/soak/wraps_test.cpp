@@ -142,7 +142,9 @@ TEST(Wraps, ToldEnergiesThatPassAMillionJoulesOrAPowerOfTwoStopNothing) {
   // What is told in the run crosses the number; a double still tells 0.5 uJ there.
   for (const double number : {1e6, std::ldexp(1.0, 31), std::ldexp(1.0, 32)}) {
     SCOPED_TRACE(number);
-    const Trace trace = run(params, {.energy_J = number - 0.5 * from_zero.told_J});
+    // So many packets ago that no motor was needed which is stronger than a site's may be.
+    const auto sequence = static_cast<std::int64_t>(number);
+    const Trace trace = run(params, {.sequence = sequence, .energy_J = number - 0.5 * from_zero.told_J});
     EXPECT_TRUE(trace.became_active && trace.stayed_active);
   }
 }
