@@ -1,4 +1,4 @@
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>

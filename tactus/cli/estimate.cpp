@@ -1,5 +1,5 @@
 #include <tactus/cli/axis_options.hpp>
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/control/inverse_model_estimator.hpp>

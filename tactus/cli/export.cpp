@@ -1,4 +1,4 @@
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/report/table.hpp>

@@ -1,5 +1,5 @@
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/identification/frequency_response.hpp>

@@ -1,6 +1,6 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/control/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>

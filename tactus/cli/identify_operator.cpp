@@ -1,6 +1,6 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/operator_impedance.hpp>
 #include <tactus/report/table.hpp>

@@ -1,6 +1,6 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/identification/prediction_time.hpp>

@@ -1,6 +1,6 @@
 #include <tactus/cli/experiment_options.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/interruption.hpp>
-#include <tactus/cli/json_text.hpp>
 #include <tactus/cli/passages.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>

@@ -1,4 +1,4 @@
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>

@@ -1,4 +1,4 @@
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/serve_report.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/report/figure.hpp>

@@ -1,4 +1,4 @@
-#include <tactus/cli/json_text.hpp>
+#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/site_report.hpp>
 #include <tactus/report/figure.hpp>
 #include <tactus/report/page.hpp>

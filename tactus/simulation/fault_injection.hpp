@@ -2,6 +2,7 @@
 
 #include <tactus/simulation/bad_number.hpp>
 #include <tactus/simulation/fault_moment.hpp>
+#include <tactus/simulation/fault_schedule.hpp>
 #include <tactus/simulation/faulty_actuator.hpp>
 #include <tactus/simulation/faulty_clock.hpp>
 #include <tactus/simulation/faulty_encoder.hpp>
@@ -9,7 +10,6 @@
 #include <tactus/simulation/faulty_peer.hpp>
 #include <tactus/simulation/faulty_person.hpp>
 #include <tactus/simulation/faulty_wiring.hpp>
-#include <tactus/simulation/internal/fault_schedule.hpp>
 
 #include <limits>
 

@@ -1,5 +1,5 @@
 #include <tactus/simulation/fault_judge.hpp>
-#include <tactus/simulation/internal/fault_schedule.hpp>
+#include <tactus/simulation/fault_schedule.hpp>
 
 #include <algorithm>
 

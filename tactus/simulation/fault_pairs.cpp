@@ -1,5 +1,5 @@
 #include <tactus/simulation/fault_pairs.hpp>
-#include <tactus/simulation/internal/fault_schedule.hpp>
+#include <tactus/simulation/fault_schedule.hpp>
 
 #include <algorithm>
 #include <array>

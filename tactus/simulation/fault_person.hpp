@@ -2,7 +2,7 @@
 
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/simulation/fault_moment.hpp>
-#include <tactus/simulation/internal/fault_schedule.hpp>
+#include <tactus/simulation/fault_schedule.hpp>
 
 #include <algorithm>
 #include <cmath>
