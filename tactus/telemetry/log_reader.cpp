@@ -87,7 +87,7 @@ class Scan {
     left_ -= count;
     if (std::fread(into.data(), 1, into.size(), file_) == into.size()) return true;
     // What ends early is a cut off log; what cannot be read is none that could be told about.
-    if (std::ferror(file_) != 0) {
+    if (std::feof(file_) == 0) {
       error_ = Error{.code = ErrorCode::failed,
                      .parameter = {},
                      .message = "the log could not be read to its end (" + std::generic_category().message(errno) +
