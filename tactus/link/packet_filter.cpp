@@ -44,7 +44,7 @@ bool attach(int descriptor, std::array<sock_filter, Count> instructions) noexcep
 bool admit_records(int descriptor, SiteRole own_site, std::size_t message_bytes, std::uint64_t least) noexcept {
   constexpr std::uint32_t dtls_1_2 = 0xfefd, message_type = 23;
   // The kernel reads numbers highest byte first, as DTLS writes them; a frame has its lowest byte first.
-  constexpr std::uint32_t magic =
+  constexpr std::uint32_t head_of_a_frame =
       (frame_magic & 0xff) << 24 | (frame_magic & 0xff00) << 8 | (frame_magic >> 8 & 0xff00) | frame_magic >> 24;
   constexpr auto shortest = static_cast<std::uint32_t>(udp_head + shortest_frame_bytes);
   constexpr auto longest = static_cast<std::uint32_t>(udp_head + longest_frame_bytes);
@@ -52,7 +52,7 @@ bool admit_records(int descriptor, SiteRole own_site, std::size_t message_bytes,
   const auto record = static_cast<std::uint32_t>(udp_head + message_bytes + SecureChannel::overhead_bytes);
   const auto upper = static_cast<std::uint32_t>(least >> 32), lower = static_cast<std::uint32_t>(least);
   return attach(descriptor, std::array{load(BPF_W, 0),
-                                       equal(magic, 0, 5),  // a frame
+                                       equal(head_of_a_frame, 0, 5),  // a frame
                                        load(BPF_B, frame_site_at),
                                        equal(other, 0, 17),
                                        load_size(),

@@ -15,7 +15,7 @@ namespace tactus::telemetry {
 namespace {
 
 /// The unit between the only brackets of the head, which is how a reader finds it.
-std::string with_unit(std::string name, std::string unit) {
+std::string with_unit(const std::string& name, std::string unit) {
   std::replace(unit.begin(), unit.end(), '[', '(');
   std::replace(unit.begin(), unit.end(), ']', ')');
   return name + " [" + unit + "]";
@@ -27,7 +27,7 @@ std::string head_of(const Column& column) {
   const Unit unit = unit_at_end_of(column.name);
   std::string name = column.name;
   if (unit.symbol == column.unit) name.resize(name.size() - std::string_view(unit.suffix).size());
-  return with_unit(std::move(name), column.unit);
+  return with_unit(name, column.unit);
 }
 
 /// A field as it stands in a line: in quotes where it would be taken for more than one.
