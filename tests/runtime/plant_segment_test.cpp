@@ -234,7 +234,9 @@ TEST(PlantSegment, AFaultOfItsOwnStillEndsAProgram) {
   }
   int status = 0;
   waitpid(child, &status, 0);
-  EXPECT_FALSE(WIFEXITED(status) && WEXITSTATUS(status) >= 42) << "a page that no file has was read";
+  // A sanitizer ends it by a status of its own.
+  const bool read = WIFEXITED(status) && (WEXITSTATUS(status) == 42 || WEXITSTATUS(status) == 43);
+  EXPECT_FALSE(read) << "a page that no file has was read";
 }
 
 TEST(PlantSegment, ANameIsLettersDigitsAndDashes) {
