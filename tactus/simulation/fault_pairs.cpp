@@ -39,7 +39,14 @@ std::vector<FaultPlan> plans_of(const FaultPlan& plan) {
     // Row by row of the half of a square.
     while (second > first) second -= ++first;
     const double second_s = plan.start_s + random.uniform(0.0, 0.3);
-    return {strike(first, plan, plan.start_s), strike(second, plan, second_s)};
+    std::vector<FaultPlan> both{strike(first, plan, plan.start_s), strike(second, plan, second_s)};
+    // A hand that let go stays away while anything else is wrong: pressing the switch again is no arming, and is
+    // allowed.
+    const double end_s = std::max(both[0].start_s + both[0].length_s, both[1].start_s + both[1].length_s);
+    for (FaultPlan& part : both) {
+      if (part.kind == FaultKind::hand_lets_go) part.length_s = end_s - part.start_s;
+    }
+    return both;
   }
   if (plan.kind == FaultKind::fault_while_arming) {
     using namespace fault_schedule;
