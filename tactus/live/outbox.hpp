@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -33,7 +34,7 @@ class Outbox {
   explicit Outbox(const Limits& limits) : limits_(limits) {}
 
   /// False where the frame may not be dropped and there are too many such, or no room even without all that may be: a
-  /// client that asks and never reads the answers. The frame in front stays where it is while it is being sent.
+  /// client that asks and never reads the answers. The frame that is being sent is not touched.
   [[nodiscard]] bool push(Frame frame) {
     if (!frame.may_be_dropped) {
       if (answers_ == limits_.answers) return false;
@@ -41,8 +42,8 @@ class Outbox {
     }
     bytes_ += frame.size();
     frames_.push_back(std::move(frame));
-    std::size_t next = sending_ ? 1 : 0;
-    while (frames_.size() > limits_.frames || bytes_ > limits_.bytes) {
+    std::size_t next = 0;
+    while (size() > limits_.frames || bytes_ > limits_.bytes) {
       while (next < frames_.size() && !frames_[next].may_be_dropped) ++next;
       if (next == frames_.size()) return false;
       bytes_ -= frames_[next].size();
@@ -52,34 +53,35 @@ class Outbox {
     return true;
   }
 
-  [[nodiscard]] bool empty() const { return frames_.empty(); }
-  [[nodiscard]] bool is_sending() const { return sending_; }
-  [[nodiscard]] std::size_t size() const { return frames_.size(); }
+  [[nodiscard]] bool empty() const { return size() == 0; }
+  [[nodiscard]] bool is_sending() const { return sending_.has_value(); }
+  [[nodiscard]] std::size_t size() const { return frames_.size() + (sending_ ? 1 : 0); }
   [[nodiscard]] std::size_t bytes() const { return bytes_; }
   /// Frames lost so far.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
   /// So many frames are lost before they were made.
   void lose(std::size_t frames) { dropped_ += frames; }
 
-  /// The oldest frame, which stays in place until `sent`. There must be one.
+  /// The oldest frame. It and its bytes stay where they are until `sent`, whatever is pushed meanwhile. There must be
+  /// one, and none that is being sent.
   const Frame& begin_sending() {
-    sending_ = true;
-    return frames_.front();
+    sending_ = std::move(frames_.front());
+    frames_.pop_front();
+    return *sending_;
   }
   void sent() {
-    bytes_ -= frames_.front().size();
-    if (!frames_.front().may_be_dropped) --answers_;
-    frames_.pop_front();
-    sending_ = false;
+    bytes_ -= sending_->size();
+    if (!sending_->may_be_dropped) --answers_;
+    sending_.reset();
   }
 
  private:
   Limits limits_;
   std::deque<Frame> frames_;
+  std::optional<Frame> sending_;  ///< out of the queue, where a dropped frame moves its neighbours
   std::size_t bytes_ = 0;
   std::size_t answers_ = 0;
   std::uint64_t dropped_ = 0;
-  bool sending_ = false;
 };
 
 }  // namespace tactus::live

@@ -167,6 +167,22 @@ TEST(Conversation, AFrameThatIsBeingSentIsNeverTheOneToGo) {
   EXPECT_EQ(outbox.bytes(), 1U);
 }
 
+TEST(Conversation, BytesThatAreBeingSentStayWhereTheyAreWhileOthersAreDropped) {
+  Outbox outbox({.frames = 40, .bytes = 10000});
+  const auto push = [&outbox](int i) { return outbox.push({.may_be_dropped = true, .head = std::to_string(i)}); };
+  for (int i = 0; i < 40; ++i) ASSERT_TRUE(push(i));
+  const Frame& frame = outbox.begin_sending();
+  const char* const bytes = frame.head.data();  // short enough to lie inside the string: a socket reads them here
+  for (int i = 40; i < 200; ++i) {
+    ASSERT_TRUE(push(i));
+    ASSERT_EQ(frame.head, "0") << "after " << i;
+    ASSERT_EQ(static_cast<const void*>(frame.head.data()), bytes);
+  }
+  outbox.sent();
+  EXPECT_EQ(outbox.dropped(), 160U);
+  EXPECT_EQ(outbox.begin_sending().head, "161");
+}
+
 TEST(Conversation, WhoAsksAndNeverReadsIsGivenUpAndNotGrownInto) {
   Example example;
   Conversation conversation(1, example, {.outbox = {.frames = 50, .bytes = 100000}});
