@@ -170,7 +170,7 @@ Window unobserved(const Options& options, const Load& beside) {
   const BusyThreads busy(beside);
   return window(
       options, engine,
-      [&engine](const runtime::Tick&) noexcept {
+      [&engine](const station::Tick&) noexcept {
         engine.step();
         return true;
       },
@@ -203,7 +203,7 @@ Window observed(const Options& options, const Observers& who, Seen& seen) {
   }
   Window result = window(
       options, engine,
-      [&engine, bridge = bridge ? &*bridge : nullptr](const runtime::Tick& tick) noexcept {
+      [&engine, bridge = bridge ? &*bridge : nullptr](const station::Tick& tick) noexcept {
         engine.step();
         if (bridge != nullptr) {
           bridge->publish(cli::snapshot_of(engine.newest(0), tick.deadline_ns, true));

@@ -18,7 +18,7 @@ runtime::ServoReport run_tap(const simulation::TappingEnsemble& ensemble, std::s
   if (!made) return {};
   runtime::RealTimeTap& running = **made;
   auto report = runtime::run_servo({.rate_Hz = ensemble.tap(tap).params.servo.rate_Hz},
-                                   [&running](const runtime::Tick& tick) noexcept { return running.step(tick); });
+                                   [&running](const station::Tick& tick) noexcept { return running.step(tick); });
   return report ? *report : runtime::ServoReport{};
 }
 

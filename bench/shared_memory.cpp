@@ -24,7 +24,7 @@ using tactus::simulation::quantile;
 constexpr int windows = 41;
 constexpr tactus::Seconds silence{10.0};
 
-Tick now() { return {.began_ns = monotonic_ns()}; }
+tactus::station::Tick now() { return {.began_ns = monotonic_ns()}; }
 
 /// What is exchanged: the one side tells a number and asks whether it has come back, the other one answers.
 struct Contestant {
@@ -84,7 +84,7 @@ int main() {
   owner.begin(1);
   controller.begin(1);
   // The clock of a tick is the servo thread's; here it stands, and readings are told apart by what they say.
-  Tick tick = now();
+  tactus::station::Tick tick = now();
   owner.publish(tick, 0, {});
   (void)controller.read(tick);
 

@@ -29,7 +29,7 @@ struct PlantOptions {
   ExperimentOptions experiment;
   std::string name = "plant";
   double duration_s = 0.0;
-  double silence_s = runtime::usual_silence.value;
+  double silence_s = station::usual_silence.value;
   bool json = false;
   runtime::ServoThreadParams servo;
 };
@@ -42,7 +42,7 @@ std::string line_of(const PlantStatus& now, const PlantStatus& before, std::int6
          (now.held_back > before.held_back
               ? ", " + std::to_string(now.held_back - before.held_back) + " commands held back to the limits"
               : "") +
-         (now.let_go > before.let_go ? std::string(", let go: ") + runtime::in_words(now.cause) : "") + "\n";
+         (now.let_go > before.let_go ? std::string(", let go: ") + station::in_words(now.cause) : "") + "\n";
 }
 
 std::string text_of(const std::string& name, const PlantStatus& status, const runtime::ServoReport& servo) {
@@ -99,7 +99,7 @@ Check own_plant(const PlantOptions& options) {
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();
   LineWriter output(STDOUT_FILENO), errors(STDERR_FILENO);
-  const auto step = [&server](const runtime::Tick& tick) noexcept {
+  const auto step = [&server](const station::Tick& tick) noexcept {
     server.step(tick);
     return true;
   };

@@ -50,7 +50,7 @@ class Way {
     std::uint64_t arrived = 0, lost = 0, doubled = 0, overflowed = 0, passed = 0;
   };
 
-  Way(const simulation::Channel::Params& params, double mean_burst, double duplicate_fraction)
+  Way(const station::Channel::Params& params, double mean_burst, double duplicate_fraction)
       : delay_ns_(params.delay_s * 1e9),
         jitter_ns_(params.jitter_s * 1e9),
         duplicate_fraction_(duplicate_fraction),

@@ -66,7 +66,7 @@ struct Session {
 
   [[nodiscard]] double time_s() const noexcept { return static_cast<double>(done) * parts->teleoperator.tick_s(); }
 
-  bool operator()(const runtime::Tick& tick) noexcept {
+  bool operator()(const station::Tick& tick) noexcept {
     if (end->insisted()) return false;
     if (first_tick < 0) {
       first_tick = tick.number;
@@ -226,7 +226,7 @@ Result<simulation::Outcome> run_ros2_session(const simulation::Request& request,
                   .log = stream,
                   .to_wall_ns = wall_ns - runtime::monotonic_ns(),
                   .end = &options.end};
-  const auto report = runtime::run_servo(servo, [&](const runtime::Tick& tick) noexcept { return session(tick); });
+  const auto report = runtime::run_servo(servo, [&](const station::Tick& tick) noexcept { return session(tick); });
   bridge->close();
   if (recorder) {
     if (auto error = recorder->stop()) return *std::move(error);

@@ -33,7 +33,7 @@ struct RunOptions {
   std::uint64_t log_limit = 0;
   bool real_time = false;
   std::optional<std::string> plant;
-  double plant_silence_s = runtime::usual_silence.value;
+  double plant_silence_s = station::usual_silence.value;
   runtime::ServoThreadParams servo;
   SiteOptions site;
   bool ros2 = false;

@@ -24,6 +24,14 @@ void SiteLogRecord::tell(const control::Packet& packet) noexcept {
   told_energy_J = packet.message.energy_J;
 }
 
+control::Message SiteLogRecord::told() const noexcept {
+  return {.position_m = told_position_m,
+          .velocity_m_per_s = told_velocity_m_per_s,
+          .force_N = told_force_N,
+          .wave = told_wave,
+          .energy_J = told_energy_J};
+}
+
 Result<SiteLog> SiteLog::create(const std::filesystem::path& folder, const simulation::Request& request,
                                 std::string_view configuration, control::SiteRole role, std::uint64_t most_bytes) {
   if (auto error = report::prepare_directory(folder)) return *std::move(error);

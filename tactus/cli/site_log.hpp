@@ -44,6 +44,7 @@ struct SiteLogRecord : control::SiteRecord {
   void hear(const control::Message& message) noexcept;
   /// What was sent at this tick.
   void tell(const control::Packet& packet) noexcept;
+  [[nodiscard]] control::Message told() const noexcept;
 
   static constexpr auto signals() {
     using R = SiteLogRecord;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace tactus::cli {
@@ -79,46 +80,55 @@ SiteLoop::SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpo
   totals_.force_step_limit_N = force_step_limit_N;
 }
 
-SiteLoop::Stepped SiteLoop::Master::step(const control::SiteRequests& requests, std::int64_t elapsed_ticks) noexcept {
-  const auto reading = plant.measure();
-  const auto output = site.step({.sensors = {.motor_position_m = reading.motor_position_m,
-                                             .hand_force_N = reading.hand_force_N,
-                                             .arrival = {},
-                                             .grip = reading.grip},
-                                 .requests = requests,
-                                 .elapsed_ticks = elapsed_ticks});
+void SiteLoop::Master::advance() noexcept {
   const double now_s = path_s;
   if (site.state() == control::SiteState::active) path_s += clock.tick_s;
-  plant.begin_tick({.motor_force_N = output.site.motor_force_N, .handle_force_N = output.site.handle_force_N},
-                   path.position_m(now_s), path.position_m(path_s));
+  plant.begin_tick(path.position_m(now_s), path.position_m(path_s));
   for (int i = 0; i < clock.substeps; ++i) plant.substep(i);
-  Stepped stepped{.packet = output.packet, .record = {output.record}};
-  stepped.record.position_m = reading.motor_position_m;
-  stepped.record.read_force_N = reading.hand_force_N;
-  stepped.record.grip = reading.grip;
-  stepped.record.motor_force_N = output.site.motor_force_N;
-  stepped.record.handle_force_N = output.site.handle_force_N;
-  stepped.record.induced_position_m = output.site.induced_position_m;
-  stepped.record.intended_position_m = output.site.intended_position_m;
-  return stepped;
 }
 
-SiteLoop::Stepped SiteLoop::Slave::step(const control::SiteRequests& requests, std::int64_t elapsed_ticks) noexcept {
-  const auto reading = plant.measure();
-  const auto output = site.step(
-      {.sensors = {.motor_position_m = reading.motor_position_m, .tip_force_N = reading.tip_force_N, .arrival = {}},
-       .requests = requests,
-       .elapsed_ticks = elapsed_ticks});
-  plant.begin_tick(output.site.motor_force_N);
+void SiteLoop::Slave::advance() noexcept {
+  plant.begin_tick();
   for (int i = 0; i < clock.substeps; ++i) plant.substep(i);
-  Stepped stepped{.packet = output.packet, .record = {output.record}};
-  stepped.record.position_m = reading.motor_position_m;
-  stepped.record.read_force_N = reading.tip_force_N;
-  stepped.record.motor_force_N = output.site.motor_force_N;
-  return stepped;
 }
 
-bool SiteLoop::operator()(const runtime::Tick& tick) noexcept {
+/// The way of the site: the link, and the books of what came on it.
+struct SiteLoop::LinkWay {
+  SiteLoop& loop;
+  template <class Take>
+  void receive(const station::Tick& tick, Take&& take) noexcept {
+    const auto packets = loop.endpoint_.receive(tick.began_ns);
+    loop.condition_ = loop.endpoint_.condition(tick.began_ns);
+    for (const control::Packet& packet : packets) loop.count(packet, take(packet));
+  }
+  void send(const control::Packet& packet, const station::Tick& tick) noexcept {
+    loop.endpoint_.send(packet, tick.began_ns);
+  }
+};
+
+template <class Site>
+SiteLogRecord SiteLoop::recorded(const station::Tick& tick, const station::Step<Site>& done) const noexcept {
+  SiteLogRecord record{done.output.record};
+  record.tick = tick.number;
+  record.missed = tick.missed;
+  record.age_s = newest_.age_s;
+  record.round_trip_s = condition_.round_trip_s;
+  record.link_silence_s = condition_.silence_s;
+  record.position_m = done.reading.position_m;
+  record.read_force_N = done.reading.force_N;
+  record.motor_force_N = done.output.site.motor_force_N;
+  if constexpr (std::is_same_v<Site, control::SupervisedMaster>) {
+    record.grip = done.reading.grip;
+    record.handle_force_N = done.output.site.handle_force_N;
+    record.induced_position_m = done.output.site.induced_position_m;
+    record.intended_position_m = done.output.site.intended_position_m;
+  }
+  record.hear(newest_.message);
+  record.tell(done.output.packet);
+  return record;
+}
+
+bool SiteLoop::operator()(const station::Tick& tick) noexcept {
   // The motor is simulated and ends with the program.
   if (exchange_->end.insisted()) return false;
   const std::int64_t now_ns = tick.began_ns;
@@ -126,23 +136,20 @@ bool SiteLoop::operator()(const runtime::Tick& tick) noexcept {
     start_ns_ = now_ns;
     second_ends_ns_ = now_ns + 1'000'000'000;
   }
-  receive(now_ns);
   const control::SiteState before = state();
   const control::SiteRequests pressed = requests();
-  Stepped stepped = std::visit([&](auto& work) { return work.step(pressed, tick.missed + 1); }, work_);
-  endpoint_.send(stepped.packet, now_ns);
-
-  stepped.record.tick = tick.number;
-  stepped.record.missed = tick.missed;
-  stepped.record.age_s = newest_.age_s;
-  stepped.record.round_trip_s = condition_.round_trip_s;
-  stepped.record.link_silence_s = condition_.silence_s;
-  stepped.record.hear(newest_.message);
-  stepped.record.tell(stepped.packet);
-  judge(before, stepped.record);
-  measure(stepped);
-  log(tick, stepped.record);
-  last_ = stepped.record;
+  const SiteLogRecord record = std::visit(
+      [&](auto& work) noexcept {
+        LinkWay way{*this};
+        const auto done = station::step(work.site, work.plant, way, tick, pressed);
+        work.advance();
+        return recorded(tick, done);
+      },
+      work_);
+  judge(before, record);
+  measure(record);
+  log(tick, record);
+  last_ = record;
 
   ++totals_.ticks;
   ++second_ticks_;
@@ -152,7 +159,7 @@ bool SiteLoop::operator()(const runtime::Tick& tick) noexcept {
     second_ends_ns_ += 1'000'000'000;
   }
   if (settings_.duration_s > 0.0 && totals_.duration_s >= settings_.duration_s) leaving_ = true;
-  return !ended(stepped.record, tick.missed + 1);
+  return !ended(record, tick.missed + 1);
 }
 
 bool SiteLoop::ended(const SiteLogRecord& record, std::int64_t elapsed_ticks) noexcept {
@@ -163,24 +170,19 @@ bool SiteLoop::ended(const SiteLogRecord& record, std::int64_t elapsed_ticks) no
   return (record.motor_force_N == 0.0 && record.handle_force_N == 0.0) || leaving_s_ >= runtime::longest_ramp_s;
 }
 
-void SiteLoop::receive(std::int64_t now_ns) noexcept {
-  const auto packets = endpoint_.receive(now_ns);
-  condition_ = endpoint_.condition(now_ns);
-  for (const control::Packet& packet : packets) {
-    const auto verdict = std::visit([&](auto& work) { return work.site.take(packet); }, work_);
-    ++totals_.packets[verdict];
-    if (verdict != control::PacketVerdict::applied) continue;
-    const bool older = packet.session == newest_.session && packet.sequence <= newest_.sequence;
-    if (older || packet.age_s > longest_age_s_) ++totals_.stale_applied;
-    newest_ = packet;
-    for (Arrivals* sums : {&arrivals_, &second_}) {
-      ++sums->packets;
-      sums->round_trip_sum_s += condition_.round_trip_s;
-      sums->age_sum_s += packet.age_s;
-    }
-    totals_.round_trip_max_s = std::max(totals_.round_trip_max_s, condition_.round_trip_s);
-    totals_.age_max_s = std::max(totals_.age_max_s, packet.age_s);
+void SiteLoop::count(const control::Packet& packet, control::PacketVerdict verdict) noexcept {
+  ++totals_.packets[verdict];
+  if (verdict != control::PacketVerdict::applied) return;
+  const bool older = packet.session == newest_.session && packet.sequence <= newest_.sequence;
+  if (older || packet.age_s > longest_age_s_) ++totals_.stale_applied;
+  newest_ = packet;
+  for (Arrivals* sums : {&arrivals_, &second_}) {
+    ++sums->packets;
+    sums->round_trip_sum_s += condition_.round_trip_s;
+    sums->age_sum_s += packet.age_s;
   }
+  totals_.round_trip_max_s = std::max(totals_.round_trip_max_s, condition_.round_trip_s);
+  totals_.age_max_s = std::max(totals_.age_max_s, packet.age_s);
 }
 
 control::SiteRequests SiteLoop::requests() noexcept {
@@ -218,9 +220,9 @@ void SiteLoop::judge(control::SiteState before, const SiteLogRecord& record) noe
   }
 }
 
-void SiteLoop::measure(const Stepped& stepped) noexcept {
-  const double force_N = stepped.record.motor_force_N;
-  if (!std::isfinite(force_N) || !control::is_finite(stepped.packet.message)) ++totals_.not_finite;
+void SiteLoop::measure(const SiteLogRecord& record) noexcept {
+  const double force_N = record.motor_force_N;
+  if (!std::isfinite(force_N) || !control::is_finite(record.told())) ++totals_.not_finite;
   const double step_N = std::fabs(force_N - last_.motor_force_N);
   constexpr double round_off = 1e-12;
   if (step_N > totals_.force_step_limit_N * (1.0 + round_off)) ++totals_.steps_above_limit;
@@ -233,7 +235,7 @@ void SiteLoop::measure(const Stepped& stepped) noexcept {
   }
 }
 
-void SiteLoop::log(const runtime::Tick& tick, const SiteLogRecord& record) noexcept {
+void SiteLoop::log(const station::Tick& tick, const SiteLogRecord& record) noexcept {
   const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - streams_.origin_ns);
   if (streams_.site != nullptr) streams_.site->push(due_ns, record);
   if (streams_.servo != nullptr) streams_.servo->push(due_ns, runtime::recorded(tick));

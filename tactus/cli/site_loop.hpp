@@ -8,6 +8,7 @@
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/simulation/site_plants.hpp>
 #include <tactus/simulation/tapping.hpp>
+#include <tactus/station/step.hpp>
 
 #include <array>
 #include <cstdint>
@@ -82,7 +83,7 @@ class SiteLoop {
 
   /// One tick. After `duration_s`, or once the end is asked for, the site leaves what it does and its forces go; false
   /// when they are gone. False at once where the end is insisted on.
-  bool operator()(const runtime::Tick& tick) noexcept;
+  bool operator()(const station::Tick& tick) noexcept;
 
   /// Hands on the second that has begun. After the last tick, once.
   void finish() noexcept;
@@ -90,23 +91,20 @@ class SiteLoop {
   [[nodiscard]] SiteTotals totals() const;
 
  private:
-  struct Stepped {
-    control::Packet packet;
-    SiteLogRecord record;
-  };
+  struct LinkWay;
   struct Master {
     simulation::MasterPlant plant;
     control::SupervisedMaster site;
     RepeatedTaps path;
     simulation::Clock clock;
     double path_s = 0.0;  ///< how far along the path the person is; a person waits while the site is not active
-    Stepped step(const control::SiteRequests& requests, std::int64_t elapsed_ticks) noexcept;
+    void advance() noexcept;
   };
   struct Slave {
     simulation::SlavePlant plant;
     control::SupervisedSlave site;
     simulation::Clock clock;
-    Stepped step(const control::SiteRequests& requests, std::int64_t elapsed_ticks) noexcept;
+    void advance() noexcept;
   };
   using Work = std::variant<Master, Slave>;
 
@@ -122,13 +120,15 @@ class SiteLoop {
 
   SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpoint endpoint, Work work, double tick_s,
            const control::SupervisionParams& supervision, double force_step_limit_N);
-  void receive(std::int64_t now_ns) noexcept;
+  void count(const control::Packet& packet, control::PacketVerdict verdict) noexcept;
+  template <class Site>
+  [[nodiscard]] SiteLogRecord recorded(const station::Tick& tick, const station::Step<Site>& done) const noexcept;
   control::SiteRequests requests() noexcept;
   /// Whether the site is about to end and has no force any more, or took too long to lose it.
   [[nodiscard]] bool ended(const SiteLogRecord& record, std::int64_t elapsed_ticks) noexcept;
   void judge(control::SiteState before, const SiteLogRecord& record) noexcept;
-  void measure(const Stepped& stepped) noexcept;
-  void log(const runtime::Tick& tick, const SiteLogRecord& record) noexcept;
+  void measure(const SiteLogRecord& record) noexcept;
+  void log(const station::Tick& tick, const SiteLogRecord& record) noexcept;
   void end_second() noexcept;
   void tell_misfit(std::uint16_t other_version) noexcept;
   [[nodiscard]] control::SiteState state() const noexcept {

@@ -211,10 +211,13 @@ class SlaveGates {
 
 /// A controller behind its safety gates, one for each actuator. They stand outside of the controller, so none can leave
 /// them out. A copy is a fork: it owns a clone of the controller.
-template <class Input, class Output, class Gates>
+template <class In, class Out, class Gates>
 class Site {
  public:
-  using Controller = SiteController<Input, Output>;
+  using Sensors = In;
+  using Output = Out;
+  using Wish = double;  ///< what share of the controller's force is wanted
+  using Controller = SiteController<Sensors, Output>;
 
   Site(std::unique_ptr<Controller> controller, const Gates& gates)
       : controller_(std::move(controller)), gates_(gates) {}
@@ -231,10 +234,10 @@ class Site {
   /// One tick; the forces in the output are what the gates let through. What the controller wants is scaled by `share`
   /// before it, which brings a force in and out, and `added_N` comes to it at the motor. `elapsed_ticks` is more than 1
   /// after a stall. Real-time safe.
-  Output step(const Input& input, double share = 1.0, std::int64_t elapsed_ticks = 1, double added_N = 0.0) noexcept {
+  Output step(const Sensors& input, double share = 1.0, std::int64_t elapsed_ticks = 1, double added_N = 0.0) noexcept {
     // A site that reads nonsense lets go until it is re-armed, even where the nonsense would not have reached a force,
     // and its controller goes on with what was read last: no number that is none gets into its state.
-    Input read = input;
+    Sensors read = input;
     if (!is_finite(input)) {
       gates_.motor().refuse();
       mend(read, believed_);
@@ -271,13 +274,13 @@ class Site {
   [[nodiscard]] const SafetyGate& gate() const noexcept { return gates_.motor(); }
 
   /// Exchanges the controller for that of `other` and keeps the gates, so that no limit is lost. The new one first
-  /// lives through `ticks` ticks of `present` and of the force that the motor has now: its filters and models are then
-  /// where a long rest at this very instant would have brought them. Does not allocate.
-  void exchange_controller(Site& other, const Input& present, double motor_force_N, int ticks) noexcept {
+  /// lives through `ticks` ticks of what was read last and of the force that the motor has now: its filters and models
+  /// are then where a long rest at this very instant would have brought them. Does not allocate.
+  void exchange_controller(Site& other, int ticks) noexcept {
     std::swap(controller_, other.controller_);
     for (int i = 0; i < ticks; ++i) {
-      controller_->respond(present);
-      controller_->applied(motor_force_N);
+      controller_->respond(believed_);
+      controller_->applied(gates_.motor().passed_N());
     }
   }
 
@@ -289,7 +292,7 @@ class Site {
 
   std::unique_ptr<Controller> controller_;
   Gates gates_;
-  Input believed_{};
+  Sensors believed_{};
 };
 
 using MasterSite = Site<MasterInput, MasterOutput, MasterGates>;

@@ -14,8 +14,10 @@ namespace tactus::control {
 /// that it told last and gives no force: what the hand moved meanwhile becomes the workspace offset.
 class SupervisedMaster {
  public:
+  using Sensors = MasterInput;
+  using Wish = SiteRequests;
   struct Input {
-    MasterInput sensors{};  ///< its arrival is not used: packets say what came
+    Sensors sensors{};  ///< its arrival is not used: packets say what came
     SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;  ///< since the step before; more after a stall
   };
@@ -49,8 +51,10 @@ class SupervisedMaster {
 /// it was told to be last while its force fades; armed again, it stands where it is then.
 class SupervisedSlave {
  public:
+  using Sensors = SlaveInput;
+  using Wish = SiteRequests;
   struct Input {
-    SlaveInput sensors{};  ///< its arrival is not used: packets say what came
+    Sensors sensors{};  ///< its arrival is not used: packets say what came
     SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;
   };

@@ -182,7 +182,7 @@ Finding lateness(const Measurement& measurement) {
 Result<Measurement> measure_lateness(const ServoThreadParams& params, double duration_s) {
   const auto before = read_stolen();
   const auto last = static_cast<std::int64_t>(std::llround(duration_s * params.rate_Hz));
-  auto report = run_servo(params, [last](const Tick& tick) noexcept { return tick.number < last; });
+  auto report = run_servo(params, [last](const station::Tick& tick) noexcept { return tick.number < last; });
   if (!report) return report.error();
   Measurement measurement{.report = *std::move(report), .stolen_fraction = {}};
   const auto after = read_stolen();

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
-#include <tactus/runtime/device.hpp>
 #include <tactus/runtime/shared_device.hpp>
 #include <tactus/runtime/shared_mapping.hpp>
 #include <tactus/runtime/shared_slots.hpp>
+#include <tactus/station/device.hpp>
 
 #include <array>
 #include <atomic>
@@ -32,8 +32,8 @@ struct SimulatedTruth {
 
 /// What a plant says of itself once.
 struct PlantFacts {
-  DeviceLimits master;
-  DeviceLimits slave;
+  station::DeviceLimits master;
+  station::DeviceLimits slave;
   bool simulated = false;     ///< false: hardware
   std::int64_t taps = 0;      ///< that it can be asked for; 0 for hardware, which cannot be put back to a start
   std::string configuration;  ///< TOML of all that makes the plant what it is
@@ -53,8 +53,8 @@ struct PlantLayout {
   std::atomic<std::uint64_t> magic;       ///< written last: from then on the facts stand
   std::atomic<std::uint64_t> owner;       ///< process
   std::atomic<std::uint64_t> controller;  ///< process; 0 once it has left in good order
-  DeviceLimits master_limits;
-  DeviceLimits slave_limits;
+  station::DeviceLimits master_limits;
+  station::DeviceLimits slave_limits;
   std::int64_t simulated;
   std::int64_t taps;
   std::uint64_t configuration_length;

@@ -4,8 +4,8 @@ namespace tactus::runtime {
 
 Result<std::unique_ptr<PlantServer>> PlantServer::make(const std::string& name, const simulation::TappingParams& params,
                                                        Seconds silence) {
-  if (!silence_bounds.contain(silence.value)) {
-    Error error = out_of_bounds({}, silence.value, silence_bounds, units::second);
+  if (!station::silence_bounds.contain(silence.value)) {
+    Error error = out_of_bounds({}, silence.value, station::silence_bounds, units::second);
     error.place = "--silence-s";
     return error;
   }
@@ -62,12 +62,12 @@ void PlantServer::begin(const PlantRequest& request) noexcept {
 
 void PlantServer::read() noexcept {
   SimulatedPlant& plant = plants_[current_];
-  const Tick now{.number = plant.ticks()};
+  const station::Tick now{.number = plant.ticks()};
   master_reading_ = plant.master().read(now);
   slave_reading_ = plant.slave().read(now);
 }
 
-void PlantServer::step(const Tick& tick) noexcept {
+void PlantServer::step(const station::Tick& tick) noexcept {
   const PlantRequest request = segment_.request();
   if (!request.tap && request.session != session_) begin(request);
   if (const std::uint64_t made = made_.load(std::memory_order_acquire); made != 0) {
@@ -90,7 +90,7 @@ void PlantServer::step(const Tick& tick) noexcept {
     running_ = true;
     start_tick_ = tick.number - 1;
   }
-  Tick own = tick;
+  station::Tick own = tick;
   own.number = running_ ? tick.number - start_tick_ : 0;
   const std::int64_t before = plant.ticks();
   while (const auto truth = plant.next(own)) segment_->simulated_truth.publish(*truth);

@@ -18,14 +18,14 @@ namespace tactus::runtime {
 
 /// How a plant went so far.
 struct PlantStatus {
-  std::uint64_t readings = 0;  ///< told
-  std::uint64_t commands = 0;  ///< that controllers told
-  std::int64_t missed = 0;     ///< ticks
-  std::int64_t taps = 0;       ///< begun
-  std::int64_t let_go = 0;     ///< taps in which a device let go of its controller
-  LetGo cause = LetGo::none;   ///< of the last of them
-  std::int64_t held_back = 0;  ///< commands that were beyond what a device may
-  bool cut = false;            ///< another process has cut the shared memory: nobody can drive any more
+  std::uint64_t readings = 0;                   ///< told
+  std::uint64_t commands = 0;                   ///< that controllers told
+  std::int64_t missed = 0;                      ///< ticks
+  std::int64_t taps = 0;                        ///< begun
+  std::int64_t let_go = 0;                      ///< taps in which a device let go of its controller
+  station::LetGo cause = station::LetGo::none;  ///< of the last of them
+  std::int64_t held_back = 0;                   ///< commands that were beyond what a device may
+  bool cut = false;  ///< another process has cut the shared memory: nobody can drive any more
   std::optional<std::int64_t> controller;
 };
 
@@ -44,7 +44,7 @@ class PlantServer {
   PlantServer& operator=(const PlantServer&) = delete;
 
   /// One tick, on the servo thread. Real-time safe.
-  void step(const Tick& tick) noexcept;
+  void step(const station::Tick& tick) noexcept;
   /// Makes the devices of a tap that was asked for. On another thread, always the same one, every few ms; it allocates.
   void serve();
   /// Any thread. Not real-time safe.
@@ -61,8 +61,8 @@ class PlantServer {
   Seconds silence_;
   DeviceServer master_;
   DeviceServer slave_;
-  DeviceReading master_reading_;
-  DeviceReading slave_reading_;
+  station::DeviceReading master_reading_;
+  station::DeviceReading slave_reading_;
   std::size_t current_ = 0;             ///< written by the servo thread, while `made_` is not 0
   std::atomic<std::uint64_t> made_{0};  ///< session that the other plant was made for; 0 once it is taken
   std::uint64_t served_ = 0;            ///< session that was made last
@@ -70,7 +70,7 @@ class PlantServer {
   bool running_ = false;
   std::int64_t start_tick_ = 0;
   std::atomic<std::int64_t> missed_{0}, taps_{0}, let_go_{0}, held_back_{0};
-  std::atomic<LetGo> cause_{LetGo::none};
+  std::atomic<station::LetGo> cause_{station::LetGo::none};
 };
 
 }  // namespace tactus::runtime

@@ -30,7 +30,7 @@ Result<std::vector<FaultOutcome>> play(std::vector<FaultRun>& runs, const ServoT
   std::size_t over = 0;
   for (std::size_t first = 0; first < runs.size(); first += side_by_side) {
     const std::span<FaultRun> batch(runs.data() + first, std::min(side_by_side, runs.size() - first));
-    const auto report = run_servo(servo, [batch, &end](const Tick& tick) noexcept {
+    const auto report = run_servo(servo, [batch, &end](const station::Tick& tick) noexcept {
       bool more = false;
       for (FaultRun& run : batch) more = run.step(tick.missed) || more;
       return more && !end.asked();

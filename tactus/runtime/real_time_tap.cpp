@@ -22,14 +22,15 @@ Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const simulation::Tap& ta
   const Teleoperator::Params& params = tap.params;
   const auto clock = simulation::Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
-  auto loop = LocalTeleoperator::make(params.control, params.channel, Seconds{clock->tick_s},
+  auto loop =
+      station::BareTeleoperator::make(params.control, params.channel, Seconds{clock->tick_s},
                                       params.control.position_scale * tap.path.start_m, plant.master(), plant.slave());
   if (!loop) return loop.error();
   return std::unique_ptr<RealTimeTap>(new RealTimeTap(tap, observation_s, streams, *clock, plant, *std::move(loop)));
 }
 
 RealTimeTap::RealTimeTap(const simulation::Tap& tap, double observation_s, const RealTimeStreams& streams,
-                         const simulation::Clock& clock, TapPlant& plant, LocalTeleoperator loop)
+                         const simulation::Clock& clock, TapPlant& plant, station::BareTeleoperator loop)
     : clock_(clock), plant_(&plant), loop_(std::move(loop)), observer_(tap, observation_s), streams_(streams) {
   // Filled and emptied, so that every page of it is there.
   trace_.resize(observer_.most_ticks());
@@ -53,13 +54,13 @@ bool RealTimeTap::complete(const SimulatedTruth& truth) noexcept {
   return observer_.observe(record_, loop_.healthy());
 }
 
-bool RealTimeTap::step(const Tick& tick) noexcept {
+bool RealTimeTap::step(const station::Tick& tick) noexcept {
   if (first_tick_ < 0) {
     first_tick_ = tick.number;
     start_ns_ = tick.deadline_ns - streams_.origin_ns;
   }
   // Time counts from the first step, as the devices' does.
-  Tick own = tick;
+  station::Tick own = tick;
   own.number -= first_tick_;
   while (!over_) {
     const auto truth = plant_->next(own);
@@ -69,11 +70,8 @@ bool RealTimeTap::step(const Tick& tick) noexcept {
     record_.tip_position_m = truth->tip_position_m;
   }
   if (over_) return let_go(own);
-  const LocalTeleoperator::Output output = loop_.step(own);
-  record_ = Teleoperator::recorded(
-      static_cast<double>(plant_ticks_) * clock_.tick_s,
-      {.motor_position_m = output.master.position_m, .hand_force_N = output.master.force_N, .grip = output.master.grip},
-      {.motor_position_m = output.slave.position_m, .tip_force_N = output.slave.force_N}, output.sites);
+  const station::BarePair::Output output = loop_.step(own, 1.0);
+  record_ = Teleoperator::recorded(static_cast<double>(plant_ticks_) * clock_.tick_s, output);
   record_.tip_position_m = plant_->tip_position_m();
   const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - streams_.origin_ns);
   if (streams_.sites != nullptr) streams_.sites->push(due_ns, recorded(streams_.tap, own, output));
@@ -81,7 +79,7 @@ bool RealTimeTap::step(const Tick& tick) noexcept {
   return !(plant_->lost() && loop_.at_rest());
 }
 
-bool RealTimeTap::let_go(const Tick& own) noexcept {
+bool RealTimeTap::let_go(const station::Tick& own) noexcept {
   loop_.let_go(own);
   letting_go_s_ += static_cast<double>(own.missed + 1) * clock_.tick_s;
   if (!loop_.at_rest() && letting_go_s_ < longest_ramp_s) return true;

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <tactus/runtime/end_request.hpp>
-#include <tactus/runtime/local_teleoperator.hpp>
 #include <tactus/runtime/servo_record.hpp>
 #include <tactus/runtime/simulated_plant.hpp>
 #include <tactus/runtime/sites_record.hpp>
 #include <tactus/simulation/tap_observer.hpp>
+#include <tactus/station/local_teleoperator.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
 #include <cstdint>
@@ -45,7 +45,7 @@ class RealTimeTap {
   RealTimeTap& operator=(const RealTimeTap&) = delete;
 
   /// One tick; false once the tap is over and no site commands a force. Real-time safe.
-  bool step(const Tick& tick) noexcept;
+  bool step(const station::Tick& tick) noexcept;
   /// From the next tick on the sites let go. Of the thread that steps. Real-time safe.
   void end() noexcept { over_ = true; }
   /// No force at once, as the last thing. Of the thread that steps. Real-time safe.
@@ -57,16 +57,16 @@ class RealTimeTap {
 
  private:
   RealTimeTap(const simulation::Tap& tap, double observation_s, const RealTimeStreams& streams,
-              const simulation::Clock& clock, TapPlant& plant, LocalTeleoperator loop);
+              const simulation::Clock& clock, TapPlant& plant, station::BareTeleoperator loop);
   /// Ends the open record with what the plant did, and hands it on; false once the tap is over.
   bool complete(const SimulatedTruth& truth) noexcept;
   /// One tick on the way to no force; false at its end.
-  bool let_go(const Tick& own) noexcept;
+  bool let_go(const station::Tick& own) noexcept;
 
   simulation::Clock clock_;
   std::unique_ptr<SimulatedPlant> own_;
   TapPlant* plant_;
-  LocalTeleoperator loop_;
+  station::BareTeleoperator loop_;
   simulation::TapObserver observer_;
   RealTimeStreams streams_;
   simulation::Teleoperator::Record record_;

@@ -123,7 +123,7 @@ struct RealTimeRun {
 
 /// Steps the tap to its end, or to the one that was asked for.
 Result<ServoReport> run_tap(RealTimeTap& tap, const ServoThreadParams& servo, const EndRequest& end) {
-  return run_servo(servo, [&tap, &end](const Tick& tick) noexcept {
+  return run_servo(servo, [&tap, &end](const station::Tick& tick) noexcept {
     if (end.insisted()) {
       tap.release();
       return false;

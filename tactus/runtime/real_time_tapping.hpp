@@ -18,7 +18,7 @@ namespace tactus::runtime {
 /// A plant that another process owns.
 struct PlantChoice {
   std::string name;
-  Seconds silence = usual_silence;  ///< the longest that it may be silent
+  Seconds silence = station::usual_silence;  ///< the longest that it may be silent
 };
 
 /// How an experiment is to be run in real time.

@@ -27,25 +27,25 @@ Error refuse(ErrorCode code, std::string message) {
 }
 
 /// Reads what the log says.
-class RecordedDevice final : public Device {
+class RecordedDevice final : public station::Device {
  public:
-  explicit RecordedDevice(const DeviceLimits& limits) : limits_(limits) {}
-  [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  explicit RecordedDevice(const station::DeviceLimits& limits) : limits_(limits) {}
+  [[nodiscard]] station::DeviceLimits limits() const override { return limits_; }
   [[nodiscard]] bool simulated() const noexcept override { return true; }
-  DeviceReading read(const Tick&) noexcept override { return reading; }
-  void write(const DeviceCommand&) noexcept override {}
-  [[nodiscard]] DeviceHealth health() const noexcept override { return DeviceHealth::good; }
-  DeviceReading reading;
+  station::DeviceReading read(const station::Tick&) noexcept override { return reading; }
+  void write(const station::DeviceCommand&) noexcept override {}
+  [[nodiscard]] station::DeviceHealth health() const noexcept override { return station::DeviceHealth::good; }
+  station::DeviceReading reading;
 
  private:
-  DeviceLimits limits_;
+  station::DeviceLimits limits_;
 };
 
 /// The sites of one tap between recorded devices.
 struct RecordedTap {
   RecordedDevice master;
   RecordedDevice slave;
-  std::unique_ptr<LocalTeleoperator> loop;
+  std::unique_ptr<station::BareTeleoperator> loop;
 
   static Result<std::unique_ptr<RecordedTap>> make(const simulation::Tap& tap) {
     const auto& params = tap.params;
@@ -53,10 +53,11 @@ struct RecordedTap {
         RecordedTap{RecordedDevice({.force_N = params.master.amplifier.limit_N,
                                     .handle_force_N = params.master.handle_actuator.limit_N}),
                     RecordedDevice({.force_N = params.slave.amplifier.limit_N}), nullptr});
-    auto loop = LocalTeleoperator::make(params.control, params.channel, Seconds{1.0 / params.servo.rate_Hz},
+    auto loop =
+        station::BareTeleoperator::make(params.control, params.channel, Seconds{1.0 / params.servo.rate_Hz},
                                         params.control.position_scale * tap.path.start_m, made->master, made->slave);
     if (!loop) return loop.error();
-    made->loop = std::make_unique<LocalTeleoperator>(*std::move(loop));
+    made->loop = std::make_unique<station::BareTeleoperator>(*std::move(loop));
     return made;
   }
 };
@@ -136,9 +137,9 @@ Check replay_run(const LogTable& table, const TappingParams& params, Replay& rep
                            .force_N = recorded_step.hand_force_N,
                            .grip = recorded_step.grip};
     tap->slave.reading = {.position_m = recorded_step.slave_position_m, .force_N = recorded_step.tip_force_N};
-    const Tick tick{.number = recorded_step.tick, .missed = recorded_step.missed};
+    const station::Tick tick{.number = recorded_step.tick, .missed = recorded_step.missed};
     ++replay.ticks;
-    replay.difference = compare(table, recorded_step, recorded(number, tick, tap->loop->step(tick)));
+    replay.difference = compare(table, recorded_step, recorded(number, tick, tap->loop->step(tick, 1.0)));
     if (replay.difference) return std::nullopt;
   }
   return std::nullopt;

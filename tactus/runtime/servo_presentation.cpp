@@ -23,21 +23,21 @@ struct Share {
 constexpr std::array shares{Share{"median", "p50", 0.5}, Share{"p90", "p90", 0.9}, Share{"p99", "p99", 0.99},
                             Share{"p99.9", "p999", 0.999}, Share{"worst", "worst", 1.0}};
 
-std::string_view explain(LateCause cause) {
+std::string_view explain(station::LateCause cause) {
   switch (cause) {
-    case LateCause::none:
+    case station::LateCause::none:
       return "in time";
-    case LateCause::computing:
+    case station::LateCause::computing:
       return "the step computed too long";
-    case LateCause::blocking:
+    case station::LateCause::blocking:
       return "the step waited for a lock, a file or a sleep";
-    case LateCause::paging:
+    case station::LateCause::paging:
       return "memory came from disk";
-    case LateCause::waking:
+    case station::LateCause::waking:
       return "the thread was woken late";
-    case LateCause::preempted:
+    case station::LateCause::preempted:
       return "the kernel gave the core to somebody else";
-    case LateCause::stalled:
+    case station::LateCause::stalled:
       return "interrupts, or a hypervisor that took the processor away";
   }
   return "";
@@ -92,9 +92,9 @@ report::Table timing_table(const ServoReport& report) {
 
 report::Table late_ticks_table(const ServoReport& report) {
   report::Table table({{"late ticks", "", Align::left}, {"whose", "", Align::left}, {"count"}, {"", "", Align::left}});
-  for (const LateCause cause : late_causes) {
-    table.add_row({name_of(cause), is_ours(cause) ? "ours" : "the machine's", std::to_string(report.late_for(cause)),
-                   std::string(explain(cause))});
+  for (const station::LateCause cause : station::late_causes) {
+    table.add_row({name_of(cause), station::is_ours(cause) ? "ours" : "the machine's",
+                   std::to_string(report.late_for(cause)), std::string(explain(cause))});
   }
   table.add_row({"all", "", std::to_string(report.late_ours() + report.late_machine()),
                  std::to_string(report.missed) + " deadlines missed, at most " + std::to_string(report.longest_gap) +
@@ -143,7 +143,7 @@ std::string timing_text(const ServoReport& report) {
 
 std::string servo_json(const ServoReport& report) {
   nlohmann::ordered_json late;
-  for (const LateCause cause : late_causes) late[name_of(cause)] = report.late_for(cause);
+  for (const station::LateCause cause : station::late_causes) late[name_of(cause)] = report.late_for(cause);
   nlohmann::ordered_json rights = nlohmann::ordered_json::array();
   for (const Right& right : report.rights) {
     rights.push_back({{"what", right.what},

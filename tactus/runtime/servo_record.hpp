@@ -29,7 +29,7 @@ struct ServoRecord {
 };
 
 /// The record of a step. Real-time safe.
-inline ServoRecord recorded(const Tick& tick) noexcept {
+inline ServoRecord recorded(const station::Tick& tick) noexcept {
   return {.tick = tick.number,
           .missed = tick.missed,
           .lateness_s = 1e-9 * static_cast<double>(tick.began_ns - tick.deadline_ns),

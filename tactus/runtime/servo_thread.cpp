@@ -66,25 +66,25 @@ Check check_servo_thread(const ServoThreadParams& params) {
                .place = {}};
 }
 
-LateCause classify(const TickEvidence& tick, std::int64_t period_ns) noexcept {
-  if (tick.late_ns + tick.duration_ns <= period_ns) return LateCause::none;
-  if (tick.late_ns >= tick.duration_ns) return LateCause::waking;
-  if (tick.major_faults > 0) return LateCause::paging;
-  if (2 * tick.own_ns >= tick.duration_ns) return LateCause::computing;
+station::LateCause classify(const TickEvidence& tick, std::int64_t period_ns) noexcept {
+  if (tick.late_ns + tick.duration_ns <= period_ns) return station::LateCause::none;
+  if (tick.late_ns >= tick.duration_ns) return station::LateCause::waking;
+  if (tick.major_faults > 0) return station::LateCause::paging;
+  if (2 * tick.own_ns >= tick.duration_ns) return station::LateCause::computing;
   // One voluntary switch is the wait for the deadline.
-  if (tick.voluntary_switches > 1) return LateCause::blocking;
-  return tick.involuntary_switches > 0 ? LateCause::preempted : LateCause::stalled;
+  if (tick.voluntary_switches > 1) return station::LateCause::blocking;
+  return tick.involuntary_switches > 0 ? station::LateCause::preempted : station::LateCause::stalled;
 }
 
 std::int64_t ServoReport::late_ours() const {
   std::int64_t sum = 0;
-  for (const LateCause cause : late_causes) sum += is_ours(cause) ? late_for(cause) : 0;
+  for (const station::LateCause cause : station::late_causes) sum += station::is_ours(cause) ? late_for(cause) : 0;
   return sum;
 }
 
 std::int64_t ServoReport::late_machine() const {
   std::int64_t sum = 0;
-  for (const LateCause cause : late_causes) sum += is_ours(cause) ? 0 : late_for(cause);
+  for (const station::LateCause cause : station::late_causes) sum += station::is_ours(cause) ? 0 : late_for(cause);
   return sum;
 }
 
@@ -122,7 +122,7 @@ TickKeeper::Usage TickKeeper::usage() noexcept {
           .major_faults = counts.ru_majflt};
 }
 
-Tick TickKeeper::wait() noexcept {
+station::Tick TickKeeper::wait() noexcept {
   const std::int64_t deadline_ns = start_ns_ + next_ * period_ns_;
   sleep_until(deadline_ns - spin_ns_);
   const std::int64_t awake_ns = monotonic_ns();

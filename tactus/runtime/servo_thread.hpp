@@ -3,6 +3,7 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/runtime/duration_histogram.hpp>
 #include <tactus/runtime/rights.hpp>
+#include <tactus/station/tick.hpp>
 
 #include <array>
 #include <atomic>
@@ -36,26 +37,6 @@ struct ServoThreadParams {
   }
 };
 
-/// Why a tick was late. The first three are ours, the others the machine's.
-enum class LateCause {
-  none,
-  computing,  ///< the step itself used the processor for most of its time
-  blocking,   ///< the step waited: a lock, a file, a sleep
-  paging,     ///< the step touched memory that had to come from disk
-  waking,     ///< the machine woke the thread late
-  preempted,  ///< the kernel gave the core to somebody else during the step
-  stalled  ///< the thread had the core and made no progress: interrupts, or a hypervisor that took the processor away
-};
-inline constexpr std::array late_causes{LateCause::computing, LateCause::blocking,  LateCause::paging,
-                                        LateCause::waking,    LateCause::preempted, LateCause::stalled};
-constexpr bool is_ours(LateCause cause) { return cause != LateCause::none && cause <= LateCause::paging; }
-constexpr auto enumerators(LateCause) {
-  return std::array{Enumerator{LateCause::none, "none"},         Enumerator{LateCause::computing, "computing"},
-                    Enumerator{LateCause::blocking, "blocking"}, Enumerator{LateCause::paging, "paging"},
-                    Enumerator{LateCause::waking, "waking"},     Enumerator{LateCause::preempted, "preempted"},
-                    Enumerator{LateCause::stalled, "stalled"}};
-}
-
 /// What is measured of a tick, times in ns.
 struct TickEvidence {
   std::int64_t late_ns = 0;      ///< from the deadline to the begin of the step
@@ -70,33 +51,24 @@ struct TickEvidence {
 /// processor was longer than the step, the machine woke the thread late. Else the step was too long: because of us
 /// where at least half of it was our own processor time, where it waited, or where memory came from disk; else because
 /// of the machine. Where a hypervisor does not tell the time that it steals, stolen time counts as our own.
-LateCause classify(const TickEvidence& tick, std::int64_t period_ns) noexcept;
-
-/// A tick, as the step is told of it. Times in ns of CLOCK_MONOTONIC.
-struct Tick {
-  std::int64_t number = 0;                ///< of its deadline, from 0, missed ones counted
-  std::int64_t missed = 0;                ///< deadlines between the tick before and this one that no step answered
-  std::int64_t deadline_ns = 0;           ///< when it was due
-  std::int64_t began_ns = 0;              ///< when the thread was awake
-  std::int64_t previous_duration_ns = 0;  ///< of the step before; 0 for the first
-  LateCause previous_cause = LateCause::none;
-};
+station::LateCause classify(const TickEvidence& tick, std::int64_t period_ns) noexcept;
 
 /// How a servo thread kept time.
 struct ServoReport {
   std::vector<Right> rights;  ///< what was asked of the system, granted or not
   std::int64_t period_ns = 0;
-  std::int64_t ticks = 0;                                   ///< steps that ran
-  std::int64_t missed = 0;                                  ///< deadlines that no step answered
-  std::int64_t longest_gap = 0;                             ///< most deadlines missed at once
-  std::array<std::int64_t, late_causes.size() + 1> late{};  ///< ticks that ended after the next deadline, by cause
+  std::int64_t ticks = 0;        ///< steps that ran
+  std::int64_t missed = 0;       ///< deadlines that no step answered
+  std::int64_t longest_gap = 0;  ///< most deadlines missed at once
+  std::array<std::int64_t, station::late_causes.size() + 1>
+      late{};                     ///< ticks that ended after the next deadline, by cause
   std::int64_t minor_faults = 0;  ///< page faults of the thread while it ran, served from memory
   std::int64_t major_faults = 0;  ///< page faults of the thread while it ran, served from disk
   std::int64_t involuntary_switches = 0;
   DurationHistogram lateness;  ///< from deadline to begin of the step
   DurationHistogram duration;  ///< of the step
 
-  [[nodiscard]] std::int64_t late_for(LateCause cause) const { return late[static_cast<std::size_t>(cause)]; }
+  [[nodiscard]] std::int64_t late_for(station::LateCause cause) const { return late[static_cast<std::size_t>(cause)]; }
   [[nodiscard]] std::int64_t late_ours() const;
   [[nodiscard]] std::int64_t late_machine() const;
   /// Adds the counts of another run of the same period; the rights stay those of the first.
@@ -112,7 +84,7 @@ class TickKeeper {
   /// The first deadline is one period from now. Real-time safe, as are the other members.
   TickKeeper(const ServoThreadParams& params, ServoReport& report) noexcept;
   /// Sleeps until the next deadline; the last `spin_s` of it asks the clock.
-  [[nodiscard]] Tick wait() noexcept;
+  [[nodiscard]] station::Tick wait() noexcept;
   /// The step has ended. Two system calls, 0.6 us: after the command is out.
   void end() noexcept;
 
@@ -130,7 +102,7 @@ class TickKeeper {
   std::int64_t period_ns_;
   std::int64_t spin_ns_;
   std::int64_t start_ns_;
-  Tick tick_;
+  station::Tick tick_;
   std::int64_t next_ = 0;  ///< number of the next deadline
   std::int64_t spun_ns_ = 0;
   Usage first_;
@@ -158,7 +130,7 @@ Check check_servo_thread(const ServoThreadParams& params);
 
 /// What a servo thread runs once a tick; false ends the thread. Must not allocate, lock, throw or block.
 template <class Step>
-concept ServoStep = std::is_nothrow_invocable_r_v<bool, Step&, const Tick&>;
+concept ServoStep = std::is_nothrow_invocable_r_v<bool, Step&, const station::Tick&>;
 
 /// A thread that calls `step` once a period, at absolute deadlines of CLOCK_MONOTONIC, under SCHED_FIFO with locked
 /// memory, a touched stack and denormals flushed, as far as the system grants it: what it does not grant is in the
@@ -211,7 +183,7 @@ class ServoThread {
     }
     TickKeeper keeper(servo.params_, servo.report_);
     for (bool more = true; more && !servo.stopped_.load(std::memory_order_relaxed);) {
-      const Tick tick = keeper.wait();
+      const station::Tick tick = keeper.wait();
       more = servo.step_(tick);
       keeper.end();
     }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <tactus/core/units.hpp>
-#include <tactus/runtime/device_guard.hpp>
 #include <tactus/runtime/shared_slots.hpp>
+#include <tactus/station/device_guard.hpp>
 
 #include <cstdint>
 
@@ -11,11 +11,11 @@ namespace tactus::runtime {
 
 /// Owner to controller.
 struct SharedReading {
-  DeviceReading reading;
-  std::int64_t tick = 0;         ///< of the owner
-  std::int64_t time_ns = 0;      ///< of CLOCK_MONOTONIC, when the owner's tick began
-  std::uint64_t gave_up_on = 0;  ///< session whose commands the owner obeys no more; 0: none
-  LetGo cause = LetGo::none;     ///< why
+  station::DeviceReading reading;
+  std::int64_t tick = 0;                        ///< of the owner
+  std::int64_t time_ns = 0;                     ///< of CLOCK_MONOTONIC, when the owner's tick began
+  std::uint64_t gave_up_on = 0;                 ///< session whose commands the owner obeys no more; 0: none
+  station::LetGo cause = station::LetGo::none;  ///< why
 };
 
 /// Controller to owner.
@@ -39,35 +39,36 @@ struct DeviceSlots {
 /// `good` with a reading that is newer than the last, `degraded` with none, and `lost` for the rest of the session once
 /// the owner was silent for too long (or has another clock), told a number that is not finite, or obeys no more. Then
 /// the reading stays the last good one. All but `limits` is wait-free and calls no system.
-class SharedDevice final : public Device {
+class SharedDevice final : public station::Device {
  public:
   /// On slots that outlive it. `silence` is how old a reading may be, by its time against that of the tick.
-  SharedDevice(DeviceSlots& slots, const DeviceLimits& limits, Seconds silence, bool simulated = false) noexcept;
+  SharedDevice(DeviceSlots& slots, const station::DeviceLimits& limits, Seconds silence,
+               bool simulated = false) noexcept;
 
   /// From now on commands are of this session. Not while a servo thread reads.
   void begin(std::uint64_t session) noexcept;
 
-  [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] station::DeviceLimits limits() const override { return limits_; }
   [[nodiscard]] bool simulated() const noexcept override { return simulated_; }
-  DeviceReading read(const Tick& tick) noexcept override;
-  void write(const DeviceCommand& command) noexcept override;
-  [[nodiscard]] DeviceHealth health() const noexcept override { return health_; }
+  station::DeviceReading read(const station::Tick& tick) noexcept override;
+  void write(const station::DeviceCommand& command) noexcept override;
+  [[nodiscard]] station::DeviceHealth health() const noexcept override { return health_; }
   /// It is lost from now on: for what is found elsewhere.
-  void lose() noexcept { health_ = DeviceHealth::lost; }
+  void lose() noexcept { health_ = station::DeviceHealth::lost; }
   /// Whether the owner was the one that gave up.
   [[nodiscard]] bool given_up_by_owner() const noexcept;
   /// Why it did.
-  [[nodiscard]] LetGo owners_cause() const noexcept { return last_.cause; }
+  [[nodiscard]] station::LetGo owners_cause() const noexcept { return last_.cause; }
 
  private:
   DeviceSlots* slots_;
-  DeviceLimits limits_;
+  station::DeviceLimits limits_;
   std::int64_t silence_ns_;
   bool simulated_;
   std::uint64_t session_ = 0;
-  Tick now_;
+  station::Tick now_;
   SharedReading last_;
-  DeviceHealth health_ = DeviceHealth::degraded;
+  station::DeviceHealth health_ = station::DeviceHealth::degraded;
 };
 
 /// The owner's side, with a drive's watchdog and the device's own limits (`DeviceGuard`). Once a tick, in this order:
@@ -80,26 +81,26 @@ class SharedDevice final : public Device {
 class DeviceServer {
  public:
   /// On slots that outlive it. `silence` is how old a command may be, by its time against that of the tick.
-  DeviceServer(DeviceSlots& slots, Seconds silence, const DeviceLimits& limits = {}) noexcept;
+  DeviceServer(DeviceSlots& slots, Seconds silence, const station::DeviceLimits& limits = {}) noexcept;
 
   /// A session: the commands of one controller in one task. A number that was not used before in these slots. A force
   /// that is still there ends within its rate limit.
   void begin(std::uint64_t session) noexcept;
   /// What the actuators may do from this tick on. Always finite, within the limits; no force before the first command.
-  DeviceCommand command(const Tick& tick) noexcept;
+  station::DeviceCommand command(const station::Tick& tick) noexcept;
   /// `device_tick` is the reading's number, for who looks at it.
-  void publish(const Tick& tick, std::int64_t device_tick, const DeviceReading& reading) noexcept;
+  void publish(const station::Tick& tick, std::int64_t device_tick, const station::DeviceReading& reading) noexcept;
 
   /// Commands of this session have come.
   [[nodiscard]] bool obeyed() const noexcept { return command_.session == session_ && session_ != 0; }
   /// The session lost its force.
-  [[nodiscard]] bool gave_up() const noexcept { return guard_.cause() != LetGo::none; }
-  [[nodiscard]] const DeviceGuard& guard() const noexcept { return guard_; }
+  [[nodiscard]] bool gave_up() const noexcept { return guard_.cause() != station::LetGo::none; }
+  [[nodiscard]] const station::DeviceGuard& guard() const noexcept { return guard_; }
 
  private:
   DeviceSlots* slots_;
   std::int64_t silence_ns_;
-  DeviceGuard guard_;
+  station::DeviceGuard guard_;
   std::uint64_t session_ = 0;
   SharedCommand command_;
   std::int64_t alive_ns_ = 0;  ///< time of the last command with a new tick

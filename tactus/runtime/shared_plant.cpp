@@ -35,8 +35,8 @@ TomlDifference first_difference(const std::string& one, const std::string& other
 }  // namespace
 
 Result<std::unique_ptr<SharedPlant>> SharedPlant::attach(const std::string& name, Seconds silence) {
-  if (!silence_bounds.contain(silence.value)) {
-    Error error = out_of_bounds({}, silence.value, silence_bounds, units::second);
+  if (!station::silence_bounds.contain(silence.value)) {
+    Error error = out_of_bounds({}, silence.value, station::silence_bounds, units::second);
     error.place = "--plant-silence-s";
     return error;
   }
@@ -93,7 +93,7 @@ Check SharedPlant::begin(std::size_t tap) {
 
 void SharedPlant::end() noexcept { segment_.ask(std::nullopt); }
 
-std::optional<SimulatedTruth> SharedPlant::next(const Tick&) noexcept {
+std::optional<SimulatedTruth> SharedPlant::next(const station::Tick&) noexcept {
   if (segment_.is_cut()) {
     master_.lose();
     slave_.lose();
@@ -113,7 +113,7 @@ std::optional<SimulatedTruth> SharedPlant::next(const Tick&) noexcept {
 }
 
 bool SharedPlant::lost() const noexcept {
-  return master_.health() == DeviceHealth::lost || slave_.health() == DeviceHealth::lost;
+  return master_.health() == station::DeviceHealth::lost || slave_.health() == station::DeviceHealth::lost;
 }
 
 Error SharedPlant::why_lost() const {
@@ -131,8 +131,8 @@ Error SharedPlant::why_lost() const {
   for (const SharedDevice* device : {&master_, &slave_}) {
     if (!device->given_up_by_owner()) continue;
     const std::string whose = device == &master_ ? "let go at the master: " : "let go at the slave: ";
-    if (device->owners_cause() != LetGo::silent) {
-      return plant_error(ErrorCode::failed, plant + whose + in_words(device->owners_cause()) +
+    if (device->owners_cause() != station::LetGo::silent) {
+      return plant_error(ErrorCode::failed, plant + whose + station::in_words(device->owners_cause()) +
                                                 ": both sites let go; compare the gates of this run with the limits "
                                                 "of the device");
     }

@@ -36,7 +36,7 @@ class SharedPlant final : public TapPlant {
 
   SharedDevice& master() noexcept override { return master_; }
   SharedDevice& slave() noexcept override { return slave_; }
-  std::optional<SimulatedTruth> next(const Tick& tick) noexcept override;
+  std::optional<SimulatedTruth> next(const station::Tick& tick) noexcept override;
   [[nodiscard]] double tip_position_m() const noexcept override { return tip_position_m_; }
   [[nodiscard]] bool lost() const noexcept override;
   /// In words, for a plant that is lost.

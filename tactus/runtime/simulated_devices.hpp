@@ -1,8 +1,8 @@
 #pragma once
 
 #include <tactus/mechanics/minimum_jerk.hpp>
-#include <tactus/runtime/device.hpp>
 #include <tactus/simulation/site_plants.hpp>
+#include <tactus/station/device.hpp>
 
 #include <cstdint>
 
@@ -12,17 +12,19 @@
 namespace tactus::runtime {
 
 /// The master and the person who holds it and follows a path.
-class SimulatedMaster final : public Device {
+class SimulatedMaster final : public station::Device {
  public:
   SimulatedMaster(const simulation::MasterPlant& plant, const simulation::Clock& clock,
-                  const mechanics::MinimumJerk& path, const DeviceLimits& limits)
+                  const mechanics::MinimumJerk& path, const station::DeviceLimits& limits)
       : plant_(plant), clock_(clock), path_(path), limits_(limits) {}
 
-  [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] station::DeviceLimits limits() const override { return limits_; }
   [[nodiscard]] bool simulated() const noexcept override { return true; }
-  DeviceReading read(const Tick& tick) noexcept override;
-  void write(const DeviceCommand& command) noexcept override { command_ = command.enabled ? command : DeviceCommand{}; }
-  [[nodiscard]] DeviceHealth health() const noexcept override { return DeviceHealth::good; }
+  station::DeviceReading read(const station::Tick& tick) noexcept override;
+  void write(const station::DeviceCommand& command) noexcept override {
+    plant_.write(command.enabled ? command : station::DeviceCommand{});
+  }
+  [[nodiscard]] station::DeviceHealth health() const noexcept override { return station::DeviceHealth::good; }
 
   /// Advances by one tick under the command that holds. Real-time safe.
   void advance() noexcept;
@@ -33,22 +35,24 @@ class SimulatedMaster final : public Device {
   simulation::MasterPlant plant_;
   simulation::Clock clock_;
   mechanics::MinimumJerk path_;
-  DeviceLimits limits_;
-  DeviceCommand command_;
+  station::DeviceLimits limits_;
   std::int64_t ticks_ = 0;
 };
 
 /// The slave before its wall.
-class SimulatedSlave final : public Device {
+class SimulatedSlave final : public station::Device {
  public:
-  SimulatedSlave(const simulation::SlavePlant& plant, const simulation::Clock& clock, const DeviceLimits& limits)
+  SimulatedSlave(const simulation::SlavePlant& plant, const simulation::Clock& clock,
+                 const station::DeviceLimits& limits)
       : plant_(plant), clock_(clock), limits_(limits) {}
 
-  [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] station::DeviceLimits limits() const override { return limits_; }
   [[nodiscard]] bool simulated() const noexcept override { return true; }
-  DeviceReading read(const Tick& tick) noexcept override;
-  void write(const DeviceCommand& command) noexcept override { command_ = command.enabled ? command : DeviceCommand{}; }
-  [[nodiscard]] DeviceHealth health() const noexcept override { return DeviceHealth::good; }
+  station::DeviceReading read(const station::Tick& tick) noexcept override;
+  void write(const station::DeviceCommand& command) noexcept override {
+    plant_.write(command.enabled ? command : station::DeviceCommand{});
+  }
+  [[nodiscard]] station::DeviceHealth health() const noexcept override { return station::DeviceHealth::good; }
 
   /// Advances by one tick under the command that holds. Real-time safe.
   void advance() noexcept;
@@ -59,8 +63,7 @@ class SimulatedSlave final : public Device {
  private:
   simulation::SlavePlant plant_;
   simulation::Clock clock_;
-  DeviceLimits limits_;
-  DeviceCommand command_;
+  station::DeviceLimits limits_;
   std::int64_t ticks_ = 0;
 };
 

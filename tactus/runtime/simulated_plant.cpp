@@ -9,7 +9,7 @@ namespace {
 
 /// What a simulated device keeps to whoever commands it: force as its gate, the rest wider than where the gate acts, so
 /// that of a sound controller nothing is held back. Two of its commands can fall into one tick of the device.
-DeviceLimits limits_of(double amplifier_N, const control::SafetyGate::Params& gate) {
+station::DeviceLimits limits_of(double amplifier_N, const control::SafetyGate::Params& gate) {
   constexpr double beyond = 1.5;
   static_assert(beyond > control::SafetyGate::fault_factor);
   return {.force_N = std::min(amplifier_N, gate.force_limit_N),
@@ -29,7 +29,7 @@ Result<SimulatedPlant> SimulatedPlant::make(const simulation::Tap& tap) {
   const auto slave = simulation::SlavePlant::make(params.slave, params.environment, *clock,
                                                   params.control.position_scale * tap.path.start_m);
   if (!slave) return slave.error();
-  DeviceLimits of_master = limits_of(params.master.amplifier.limit_N, params.control.gate);
+  station::DeviceLimits of_master = limits_of(params.master.amplifier.limit_N, params.control.gate);
   of_master.handle_force_N = std::min(params.master.handle_actuator.limit_N, params.control.handle_gate.force_limit_N);
   of_master.rate_N_per_s = std::max(of_master.rate_N_per_s, 2.0 * params.control.handle_gate.rate_limit_N_per_s);
   return SimulatedPlant(
@@ -37,7 +37,7 @@ Result<SimulatedPlant> SimulatedPlant::make(const simulation::Tap& tap) {
       SimulatedSlave(*slave, *clock, limits_of(params.slave.amplifier.limit_N, params.control.slave_gate)));
 }
 
-std::optional<SimulatedTruth> SimulatedPlant::next(const Tick& tick) noexcept {
+std::optional<SimulatedTruth> SimulatedPlant::next(const station::Tick& tick) noexcept {
   if (ticks() >= tick.number) return std::nullopt;
   master_.advance();
   slave_.advance();

@@ -15,11 +15,11 @@ namespace tactus::runtime {
 class TapPlant {
  public:
   virtual ~TapPlant() = default;
-  virtual Device& master() noexcept = 0;
-  virtual Device& slave() noexcept = 0;
+  virtual station::Device& master() noexcept = 0;
+  virtual station::Device& slave() noexcept = 0;
   /// The next tick of the plant, after those that were given already, that has ended by this tick of the servo; none
   /// where there is none. Real-time safe.
-  virtual std::optional<SimulatedTruth> next(const Tick& tick) noexcept = 0;
+  virtual std::optional<SimulatedTruth> next(const station::Tick& tick) noexcept = 0;
   /// Of the slave, true, after the ticks that were given. Real-time safe.
   [[nodiscard]] virtual double tip_position_m() const noexcept = 0;
   /// The plant cannot be gone on with. Real-time safe.
@@ -35,7 +35,7 @@ class SimulatedPlant final : public TapPlant {
   SimulatedMaster& master() noexcept override { return master_; }
   SimulatedSlave& slave() noexcept override { return slave_; }
   /// Advances by one tick, under the commands that hold, while the plants are behind the tick.
-  std::optional<SimulatedTruth> next(const Tick& tick) noexcept override;
+  std::optional<SimulatedTruth> next(const station::Tick& tick) noexcept override;
   [[nodiscard]] double tip_position_m() const noexcept override { return slave_.plant().tip_position_m(); }
   [[nodiscard]] bool lost() const noexcept override { return false; }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tactus/core/signals.hpp>
-#include <tactus/runtime/local_teleoperator.hpp>
+#include <tactus/station/site_pair.hpp>
 
 #include <cstdint>
 
@@ -82,6 +82,6 @@ struct SitesRecord {
 };
 
 /// The record of a step. Real-time safe.
-SitesRecord recorded(std::int64_t tap, const Tick& tick, const LocalTeleoperator::Output& step) noexcept;
+SitesRecord recorded(std::int64_t tap, const station::Tick& tick, const station::BarePair::Output& step) noexcept;
 
 }  // namespace tactus::runtime

@@ -197,7 +197,7 @@ void FaultRun::Run::say(control::Packet& packet, FaultSite site) {
 }
 
 void FaultRun::Run::step_master() {
-  const auto reading = parts_.master.measure();
+  const auto reading = parts_.master.read({});
   if (master_.fare(injections_, missed_)) {
     // What made the first one makes the second.
     const FaultyConfiguration with(params_.control, Seconds{tick_s_}, plan_, FaultSite::master);
@@ -207,8 +207,8 @@ void FaultRun::Run::step_master() {
   if (master_.killed()) of_master_site_ = {};
   master_.receive(to_master_, tick_, injections_, tick_s_,
                   [&](const control::Packet& packet) { give(packet, parts_.master_site); });
-  control::SupervisedMaster::Input input{.sensors = {.motor_position_m = reading.motor_position_m,
-                                                     .hand_force_N = reading.hand_force_N,
+  control::SupervisedMaster::Input input{.sensors = {.motor_position_m = reading.position_m,
+                                                     .hand_force_N = reading.force_N,
                                                      .arrival = {},
                                                      .grip = reading.grip},
                                          .requests = requests(FaultSite::master),
@@ -231,7 +231,7 @@ void FaultRun::Run::step_master() {
 }
 
 void FaultRun::Run::step_slave() {
-  const auto reading = parts_.slave.measure();
+  const auto reading = parts_.slave.read({});
   if (slave_.fare(injections_, missed_)) {
     const FaultyConfiguration with(params_.control, Seconds{tick_s_}, plan_, FaultSite::slave);
     parts_.slave_site = *control::make_supervised_slave(with.control, slave_.session(), with.tick);
@@ -241,7 +241,7 @@ void FaultRun::Run::step_slave() {
   slave_.receive(to_slave_, tick_, injections_, tick_s_,
                  [&](const control::Packet& packet) { give(packet, parts_.slave_site); });
   control::SupervisedSlave::Input input{
-      .sensors = {.motor_position_m = reading.motor_position_m, .tip_force_N = reading.tip_force_N, .arrival = {}},
+      .sensors = {.motor_position_m = reading.position_m, .tip_force_N = reading.force_N, .arrival = {}},
       .requests = requests(FaultSite::slave),
       .elapsed_ticks = slave_.elapsed_ticks()};
   read(input.sensors.motor_position_m, input.sensors.tip_force_N, FaultSite::slave);
@@ -275,17 +275,17 @@ void FaultRun::Run::hold_handle() {
 
 void FaultRun::Run::advance() {
   const double now_s = moment().now_s;
-  const MasterPlant::Command command{.motor_force_N = of_master_site_.drive_N,
-                                     .handle_force_N = of_master_site_.handle_N};
+  parts_.master.write({.force_N = of_master_site_.drive_N, .handle_force_N = of_master_site_.handle_N});
+  parts_.slave.write({.force_N = of_slave_site_.drive_N});
   hold_handle();
   if (hand_ == FaultyPerson::Hand::is_clamped) {
     const mechanics::Operator::Output pushed = injections_.front().person.pushed(moment());
     parts_.master.begin_tick(
-        command, {.position_m = clamped_at_m_ + pushed.position_m, .velocity_m_per_s = pushed.velocity_m_per_s});
+        {.position_m = clamped_at_m_ + pushed.position_m, .velocity_m_per_s = pushed.velocity_m_per_s});
   } else {
-    parts_.master.begin_tick(command, person_.path_m(now_s), person_.path_m(now_s + tick_s_));
+    parts_.master.begin_tick(person_.path_m(now_s), person_.path_m(now_s + tick_s_));
   }
-  parts_.slave.begin_tick(of_slave_site_.drive_N);
+  parts_.slave.begin_tick();
   for (int i = 0; i < parts_.clock.substeps; ++i) {
     parts_.master.substep(i);
     parts_.slave.substep(i);

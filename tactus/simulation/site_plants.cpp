@@ -21,14 +21,14 @@ Result<MasterPlant> MasterPlant::make(const mechanics::CableDrivenMaster::Params
   return MasterPlant(*master, *holder, person, clock);
 }
 
-MasterPlant::Reading MasterPlant::measure() noexcept {
+station::DeviceReading MasterPlant::read(const station::Tick&) noexcept {
   const double factor = grip_change_.at(static_cast<double>(ticks_) * clock_.tick_s);
   if (factor != grip_factor_) {
     grip_factor_ = factor;
     device_.hold(mechanics::scaled(grip_, factor));
   }
   const mechanics::CableDrivenMaster::Reading reading = device_.measure();
-  return {.motor_position_m = reading.motor_position_m, .hand_force_N = reading.hand_force_N, .grip = grip_factor_};
+  return {.position_m = reading.motor_position_m, .force_N = reading.hand_force_N, .grip = grip_factor_};
 }
 
 Result<SlavePlant> SlavePlant::make(const mechanics::ElectricSlave::Params& device,

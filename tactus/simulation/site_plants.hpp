@@ -4,44 +4,35 @@
 #include <tactus/mechanics/electric_slave.hpp>
 #include <tactus/mechanics/operator.hpp>
 #include <tactus/simulation/clock.hpp>
+#include <tactus/station/device.hpp>
 
 #include <algorithm>
 #include <cstdint>
 #include <utility>
 
-/// What stands at each site of a simulated teleoperator. A tick of a plant: `measure`, then `begin_tick` with the
-/// command that follows, then its substeps in order. A command acts after the computation delay; until then the one
+/// What stands at each site of a simulated teleoperator. A tick of a plant: `read`, then `write` the command that
+/// follows, then `begin_tick` and its substeps in order. A command acts after the computation delay; until then the one
 /// before it does. All of it is real-time safe but `make`.
 namespace tactus::simulation {
 
 /// The master device and the person who holds it.
 class MasterPlant {
  public:
-  struct Reading {
-    double motor_position_m = 0.0;
-    double hand_force_N = 0.0;  ///< positive when the hand pushes the handle toward the environment
-    double grip = 1.0;          ///< how firmly the person holds, over nominal
-  };
-  struct Command {
-    double motor_force_N = 0.0;   ///< positive toward the environment
-    double handle_force_N = 0.0;  ///< of the actuator on the handle, same sign
-  };
-
   /// At rest with every mass at `start_m`. Errors name `master` and `operator`.
   static Result<MasterPlant> make(const mechanics::CableDrivenMaster::Params& device,
                                   const mechanics::Operator::Params& person, const Clock& clock, double start_m);
 
   /// What the sensors read at this tick. The person changes the grip here.
-  Reading measure() noexcept;
+  station::DeviceReading read(const station::Tick&) noexcept;
+  void write(const station::DeviceCommand& command) noexcept { next_ = command; }
   /// The person intends to be at `path_m` now and at `path_at_next_tick_m` then.
-  void begin_tick(const Command& command, double path_m, double path_at_next_tick_m) noexcept {
-    begin_tick(command, person_.step({.path_m = path_m,
-                                      .path_at_next_tick_m = path_at_next_tick_m,
-                                      .handle_position_m = device_.mechanism().tip_position_m()}));
+  void begin_tick(double path_m, double path_at_next_tick_m) noexcept {
+    begin_tick(person_.step({.path_m = path_m,
+                             .path_at_next_tick_m = path_at_next_tick_m,
+                             .handle_position_m = device_.mechanism().tip_position_m()}));
   }
   /// What holds the handle wants it at `aim`, as a clamp does, which corrects nothing.
-  void begin_tick(const Command& command, const mechanics::Operator::Output& aim) noexcept {
-    next_ = command;
+  void begin_tick(const mechanics::Operator::Output& aim) noexcept {
     aim_ = aim;
     ++ticks_;
   }
@@ -58,7 +49,7 @@ class MasterPlant {
   void substep(int index) noexcept {
     if (index == clock_.late_substeps) command_ = next_;
     const double middle_s = (index + 0.5) * clock_.substep_s;
-    const auto moved = device_.step({.commanded_force_N = command_.motor_force_N,
+    const auto moved = device_.step({.commanded_force_N = command_.force_N,
                                      .commanded_handle_force_N = command_.handle_force_N,
                                      .grip_position_m = aim_.position_m + middle_s * aim_.velocity_m_per_s,
                                      .grip_velocity_m_per_s = aim_.velocity_m_per_s});
@@ -80,8 +71,8 @@ class MasterPlant {
   mechanics::Operator::GripChange grip_change_;
   double grip_factor_ = 1.0;
   std::int64_t ticks_ = 0;
-  Command command_;
-  Command next_;
+  station::DeviceCommand command_;
+  station::DeviceCommand next_;
   mechanics::Operator::Output aim_;
   double hand_force_N_ = 0.0;
 };
@@ -89,7 +80,6 @@ class MasterPlant {
 /// The slave device before its wall.
 class SlavePlant {
  public:
-  using Reading = mechanics::ElectricSlave::Reading;
   /// What happened at the tip in a tick.
   struct Contact {
     double sum_N = 0.0;            ///< of the true force over the substeps so far
@@ -104,12 +94,12 @@ class SlavePlant {
                                  const mechanics::Environment::Params& environment, const Clock& clock, double start_m);
 
   /// What the sensors read at this tick.
-  Reading measure() noexcept { return device_.measure(); }
-  /// `command_N` is positive toward the environment.
-  void begin_tick(double command_N) noexcept {
-    next_N_ = command_N;
-    contact_ = {};
+  station::DeviceReading read(const station::Tick&) noexcept {
+    const mechanics::ElectricSlave::Reading reading = device_.measure();
+    return {.position_m = reading.motor_position_m, .force_N = reading.tip_force_N};
   }
+  void write(const station::DeviceCommand& command) noexcept { next_N_ = command.force_N; }
+  void begin_tick() noexcept { contact_ = {}; }
   void substep(int index) noexcept {
     if (index == clock_.late_substeps) command_N_ = next_N_;
     const auto contact = device_.step(command_N_);

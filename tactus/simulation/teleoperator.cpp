@@ -11,26 +11,18 @@ Result<Teleoperator> Teleoperator::make(const Params& params, double start_m) {
   if (!master) return master.error();
   auto slave = SlavePlant::make(params.slave, params.environment, *clock, slave_start_m);
   if (!slave) return slave.error();
-  auto sites = SitePair::make(params.control, params.channel, Seconds{clock->tick_s}, slave_start_m);
+  auto sites = station::BarePair::make(params.control, params.channel, Seconds{clock->tick_s}, slave_start_m);
   if (!sites) return sites.error();
   return Teleoperator(*master, *slave, *std::move(sites), *clock);
 }
 
 Teleoperator::Record Teleoperator::step(double path_m, double path_at_next_tick_m, double share) noexcept {
-  const MasterPlant::Reading master = master_.measure();
-  const SlavePlant::Reading slave = slave_.measure();
-  const SitePair::Output output = sites_.step({.master_position_m = master.motor_position_m,
-                                               .hand_force_N = master.hand_force_N,
-                                               .grip = master.grip,
-                                               .slave_position_m = slave.motor_position_m,
-                                               .tip_force_N = slave.tip_force_N},
-                                              1, share);
-  Record record = recorded(static_cast<double>(ticks_) * clock_.tick_s, master, slave, output);
+  const station::BarePair::Output output = sites_.step(master_, slave_, {.number = ticks_}, share);
+  Record record = recorded(static_cast<double>(ticks_) * clock_.tick_s, output);
   record.tip_position_m = slave_.tip_position_m();
 
-  master_.begin_tick({.motor_force_N = output.master.motor_force_N, .handle_force_N = output.master.handle_force_N},
-                     path_m, path_at_next_tick_m);
-  slave_.begin_tick(output.slave.motor_force_N);
+  master_.begin_tick(path_m, path_at_next_tick_m);
+  slave_.begin_tick();
   // In turns, so that the processor works on both at once.
   for (int i = 0; i < clock_.substeps; ++i) {
     master_.substep(i);
@@ -48,18 +40,18 @@ void Teleoperator::exchange(Teleoperator& made, const Parts& parts) noexcept {
   if (parts.controllers) sites_.exchange_controllers(made.sites_);
 }
 
-Teleoperator::Record Teleoperator::recorded(double time_s, const MasterPlant::Reading& master,
-                                            const SlavePlant::Reading& slave, const SitePair::Output& output) noexcept {
+Teleoperator::Record Teleoperator::recorded(double time_s, const station::BarePair::Output& output) noexcept {
+  const auto& [master, slave] = output;
   Record record;
   record.time_s = time_s;
-  record.master_position_m = master.motor_position_m;
-  record.induced_position_m = output.master.induced_position_m;
-  record.command_m = output.master.message.position_m;
-  record.slave_position_m = slave.motor_position_m;
-  record.displayed_force_N = -output.master.motor_force_N;
-  record.handle_force_N = output.master.handle_force_N;
-  record.hand_force_N = master.hand_force_N;
-  record.told_force_N = output.slave.message.force_N;
+  record.master_position_m = master.reading.position_m;
+  record.induced_position_m = master.output.induced_position_m;
+  record.command_m = master.output.message.position_m;
+  record.slave_position_m = slave.reading.position_m;
+  record.displayed_force_N = -master.output.motor_force_N;
+  record.handle_force_N = master.output.handle_force_N;
+  record.hand_force_N = master.reading.force_N;
+  record.told_force_N = slave.output.message.force_N;
   return record;
 }
 

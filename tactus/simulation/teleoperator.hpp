@@ -3,8 +3,8 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/signals.hpp>
 #include <tactus/simulation/clock.hpp>
-#include <tactus/simulation/site_pair.hpp>
 #include <tactus/simulation/site_plants.hpp>
+#include <tactus/station/site_pair.hpp>
 
 #include <cstdint>
 #include <utility>
@@ -25,7 +25,7 @@ class Teleoperator {
     mechanics::ElectricSlave::Params slave;
     mechanics::Environment::Params environment;
     mechanics::Operator::Params person;
-    LinkParams channel;
+    station::LinkParams channel;
     ServoParams servo;
     PlantClockParams plant;
     control::ControlParams control;
@@ -96,7 +96,7 @@ class Teleoperator {
   static Result<Teleoperator> make(const Params& params, double start_m);
 
   /// Advances by one tick while the person intends to be at `path_m` now and at `path_at_next_tick_m` then. `share` as
-  /// in `SitePair::step`: 0 lets go.
+  /// in `BarePair::step`: 0 lets go.
   Record step(double path_m, double path_at_next_tick_m, double share = 1.0) noexcept;
 
   /// What `exchange` takes over.
@@ -115,8 +115,7 @@ class Teleoperator {
 
   /// The record of a tick as far as it is known before the plants go on; `add_contact` adds what they do,
   /// `tip_position_m` is the caller's to fill in.
-  static Record recorded(double time_s, const MasterPlant::Reading& master, const SlavePlant::Reading& slave,
-                         const SitePair::Output& output) noexcept;
+  static Record recorded(double time_s, const station::BarePair::Output& output) noexcept;
   static void add_contact(Record& record, const SlavePlant::Contact& contact, const Clock& clock) noexcept;
 
   [[nodiscard]] double tick_s() const noexcept { return clock_.tick_s; }
@@ -126,12 +125,12 @@ class Teleoperator {
   [[nodiscard]] bool healthy() const noexcept { return sites_.healthy(); }
 
  private:
-  Teleoperator(const MasterPlant& master, const SlavePlant& slave, SitePair sites, const Clock& clock)
+  Teleoperator(const MasterPlant& master, const SlavePlant& slave, station::BarePair sites, const Clock& clock)
       : master_(master), slave_(slave), sites_(std::move(sites)), clock_(clock) {}
 
   MasterPlant master_;
   SlavePlant slave_;
-  SitePair sites_;
+  station::BarePair sites_;
   Clock clock_;
   std::int64_t ticks_ = 0;
 };

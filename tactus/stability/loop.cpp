@@ -59,7 +59,7 @@ Result<StateSpace> probe_element(int order, const typename Element::Params& para
 
 }  // namespace
 
-Eigen::Index ticks_of(const simulation::Channel::Params& channel, double tick_s) {
+Eigen::Index ticks_of(const station::Channel::Params& channel, double tick_s) {
   return static_cast<Eigen::Index>(std::lround(channel.delay_s / tick_s));
 }
 

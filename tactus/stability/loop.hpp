@@ -58,7 +58,7 @@ Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params,
                                  const Linearisation& linearisation = {});
 
 /// Whole ticks that a message takes, jitter left out.
-Eigen::Index ticks_of(const simulation::Channel::Params& channel, double tick_s);
+Eigen::Index ticks_of(const station::Channel::Params& channel, double tick_s);
 
 /// Daniel and McAree's bound on λ μ: moving mass of the master over that of the slave (Int. J. Robotics Research 17(8),
 /// 1998, as paper A quotes it).

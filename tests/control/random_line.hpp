@@ -28,7 +28,7 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
-/// One way of a datagram line, written apart from `simulation::Channel`: messages in a bag, each with its due tick.
+/// One way of a datagram line, written apart from `station::Channel`: messages in a bag, each with its due tick.
 /// The newest that is due counts; an older one that comes later is dropped.
 class RandomLine {
  public:

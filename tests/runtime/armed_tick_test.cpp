@@ -68,7 +68,7 @@ class OwnedPlant {
  private:
   struct Step {
     PlantServer& server;
-    bool operator()(const Tick& tick) const noexcept {
+    bool operator()(const station::Tick& tick) const noexcept {
       server.step(tick);
       return true;
     }
@@ -112,7 +112,7 @@ Deeds watch(void (*fault)() noexcept, Devices devices = Devices::own) {
     if (!tap) _exit(3);
     RealTimeTap& running = **tap;
     int steps = 0;
-    const auto report = run_servo({.rate_Hz = 5000.0, .priority = 10}, [&](const Tick& tick) noexcept {
+    const auto report = run_servo({.rate_Hz = 5000.0, .priority = 10}, [&](const station::Tick& tick) noexcept {
       if (steps == 0) prepare();
       if (steps == first_armed_step) arm(*result);
       if (steps == faulty_step && fault != nullptr) fault();

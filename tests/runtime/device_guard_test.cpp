@@ -1,6 +1,6 @@
-#include <tactus/runtime/device_guard.hpp>
 #include <tactus/runtime/shared_device.hpp>
 #include <tactus/signal/random.hpp>
+#include <tactus/station/device_guard.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -20,22 +20,22 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t period_ns = 200'000;
 constexpr double period_s = 1e-9 * static_cast<double>(period_ns);
 constexpr Seconds patience{0.004};  ///< 20 ticks
-constexpr DeviceLimits limits{.force_N = 2.0,
-                              .handle_force_N = 0.5,
-                              .rate_N_per_s = 1000.0,  // 0.2 N a tick
-                              .velocity_m_per_s = 1.0,
-                              .position_m = 0.1};
+constexpr station::DeviceLimits limits{.force_N = 2.0,
+                                       .handle_force_N = 0.5,
+                                       .rate_N_per_s = 1000.0,  // 0.2 N a tick
+                                       .velocity_m_per_s = 1.0,
+                                       .position_m = 0.1};
 
-Tick tick(std::int64_t number) {
+station::Tick tick(std::int64_t number) {
   return {.number = number, .deadline_ns = number * period_ns, .began_ns = number * period_ns};
 }
 
 /// What reached the motor, held against the limits by the test itself.
-class Motor final : public Device {
+class Motor final : public station::Device {
  public:
-  [[nodiscard]] DeviceLimits limits() const override { return stated; }
-  DeviceReading read(const Tick&) noexcept override { return reading; }
-  void write(const DeviceCommand& given) noexcept override {
+  [[nodiscard]] station::DeviceLimits limits() const override { return stated; }
+  station::DeviceReading read(const station::Tick&) noexcept override { return reading; }
+  void write(const station::DeviceCommand& given) noexcept override {
     for (const auto& [force_N, before_N, limit_N] :
          {std::tuple{given.force_N, now.force_N, stated.force_N},
           std::tuple{given.handle_force_N, now.handle_force_N, stated.handle_force_N}}) {
@@ -46,33 +46,33 @@ class Motor final : public Device {
     most_N = std::max(most_N, std::fabs(given.force_N));
     now = given;
   }
-  [[nodiscard]] DeviceHealth health() const noexcept override { return DeviceHealth::good; }
+  [[nodiscard]] station::DeviceHealth health() const noexcept override { return station::DeviceHealth::good; }
 
-  DeviceLimits stated = device_guard_test::limits;
-  DeviceReading reading;
-  DeviceCommand now;
+  station::DeviceLimits stated = device_guard_test::limits;
+  station::DeviceReading reading;
+  station::DeviceCommand now;
   bool within = true;
   double most_N = 0.0;
 };
 
 TEST(DeviceGuard, WhatIsWithinTheLimitsPassesToTheBitAlsoWhereItIsExactlyAtThem) {
-  DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, patience);
   (void)guard.pass({}, tick(0));
   double force_N = 0.0;
   for (std::int64_t n = 1; n <= 1000; ++n) {
     force_N += (n / 10) % 2 == 0 ? 0.2 : -0.2;
-    const DeviceCommand wanted{.force_N = force_N, .handle_force_N = -0.25 * force_N};
-    const DeviceCommand given = guard.pass(wanted, tick(n));
+    const station::DeviceCommand wanted{.force_N = force_N, .handle_force_N = -0.25 * force_N};
+    const station::DeviceCommand given = guard.pass(wanted, tick(n));
     ASSERT_EQ(given.force_N, wanted.force_N) << n;
     ASSERT_EQ(given.handle_force_N, wanted.handle_force_N) << n;
     ASSERT_TRUE(given.enabled);
   }
-  EXPECT_EQ(guard.cause(), LetGo::none);
+  EXPECT_EQ(guard.cause(), station::LetGo::none);
   EXPECT_EQ(guard.held_back(), 0);
 }
 
 TEST(DeviceGuard, ASlipIsHeldBackAndForgivenAndWhoInsistsIsLetGoOf) {
-  DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, patience);
   std::int64_t number = 0;
   const auto next = [&] { return tick(++number); };
   (void)guard.pass({}, tick(number));
@@ -80,15 +80,15 @@ TEST(DeviceGuard, ASlipIsHeldBackAndForgivenAndWhoInsistsIsLetGoOf) {
     EXPECT_DOUBLE_EQ(guard.pass({.handle_force_N = 0.6}, next()).handle_force_N, 0.2);
     (void)guard.pass({}, next());
   }
-  EXPECT_EQ(guard.cause(), LetGo::none);
+  EXPECT_EQ(guard.cause(), station::LetGo::none);
   EXPECT_EQ(guard.held_back(), 100);
   int ticks = 0;
-  for (; guard.cause() == LetGo::none && ticks < 100; ++ticks) (void)guard.pass({.force_N = 2.1}, next());
-  EXPECT_EQ(guard.cause(), LetGo::force);
+  for (; guard.cause() == station::LetGo::none && ticks < 100; ++ticks) (void)guard.pass({.force_N = 2.1}, next());
+  EXPECT_EQ(guard.cause(), station::LetGo::force);
   EXPECT_EQ(ticks, 21);
   // From 2 N at 0.2 N a tick, then without power, and nothing brings it back but a new arming.
   for (int left = 1; left < 40; ++left) {
-    const DeviceCommand given = guard.pass({.force_N = 1.0}, next());
+    const station::DeviceCommand given = guard.pass({.force_N = 1.0}, next());
     EXPECT_NEAR(given.force_N, std::max(0.0, 2.0 - 0.2 * left), 1e-6) << left;
     EXPECT_EQ(given.enabled, given.force_N != 0.0);
   }
@@ -97,70 +97,71 @@ TEST(DeviceGuard, ASlipIsHeldBackAndForgivenAndWhoInsistsIsLetGoOf) {
 }
 
 TEST(DeviceGuard, TicksThatWereMissedEarnNoJump) {
-  DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, patience);
   (void)guard.pass({}, tick(0));
-  Tick late = tick(10);
+  station::Tick late = tick(10);
   late.missed = 9;
   EXPECT_DOUBLE_EQ(guard.pass({.force_N = 2.0}, late).force_N, 0.2);
 }
 
 TEST(DeviceGuard, ItMeasuresSpeedItselfAndAnEncodersStepIsNoSpeed) {
   const auto cause_at = [](double velocity_m_per_s, double ticks_jump_m) {
-    DeviceGuard guard(limits, patience);
-    for (std::int64_t n = 0; n < 200 && guard.cause() == LetGo::none; ++n) {
+    station::DeviceGuard guard(limits, patience);
+    for (std::int64_t n = 0; n < 200 && guard.cause() == station::LetGo::none; ++n) {
       const double true_m =
           -0.05 + velocity_m_per_s * period_s * static_cast<double>(n) + (n == 50 ? ticks_jump_m : 0.0);
       guard.observe(1e-4 * std::floor(true_m / 1e-4), tick(n));
     }
     return guard.cause();
   };
-  EXPECT_EQ(cause_at(0.9, 0.0), LetGo::none) << "though a count of 0.1 mm in a tick looks like 0.5 m/s more";
-  EXPECT_EQ(cause_at(1.1, 0.0), LetGo::velocity);
-  EXPECT_EQ(cause_at(0.0, 0.004), LetGo::none);
-  EXPECT_EQ(cause_at(0.0, 0.006), LetGo::velocity) << "a jump of what 5 ms allow";
-  EXPECT_EQ(cause_at(0.0, nan), LetGo::not_finite);
-  DeviceGuard guard(limits, patience);
+  EXPECT_EQ(cause_at(0.9, 0.0), station::LetGo::none) << "though a count of 0.1 mm in a tick looks like 0.5 m/s more";
+  EXPECT_EQ(cause_at(1.1, 0.0), station::LetGo::velocity);
+  EXPECT_EQ(cause_at(0.0, 0.004), station::LetGo::none);
+  EXPECT_EQ(cause_at(0.0, 0.006), station::LetGo::velocity) << "a jump of what 5 ms allow";
+  EXPECT_EQ(cause_at(0.0, nan), station::LetGo::not_finite);
+  station::DeviceGuard guard(limits, patience);
   guard.observe(-0.1, tick(0));
-  EXPECT_EQ(guard.cause(), LetGo::none);
+  EXPECT_EQ(guard.cause(), station::LetGo::none);
   guard.observe(-0.1001, tick(1));
-  EXPECT_EQ(guard.cause(), LetGo::position);
+  EXPECT_EQ(guard.cause(), station::LetGo::position);
 }
 
 /// Controllers that are alive and wrong: what each commands at a tick.
 struct Wrong {
   const char* name;
   std::function<double(std::int64_t tick)> force_N;
-  LetGo cause;
+  station::LetGo cause;
 };
 std::vector<Wrong> wrong_controllers() {
   const auto random = std::make_shared<signal::Random>(5);
-  return {{"no number", [](std::int64_t n) { return n < 50 ? 1.0 : nan; }, LetGo::not_finite},
-          {"infinity", [](std::int64_t) { return std::numeric_limits<double>::infinity(); }, LetGo::not_finite},
-          {"a million newtons", [](std::int64_t) { return 1e6; }, LetGo::force},
-          {"minus a million newtons", [](std::int64_t) { return -1e6; }, LetGo::force},
-          {"the limit to and fro", [](std::int64_t n) { return n % 2 == 0 ? 2.0 : -2.0; }, LetGo::rate},
-          {"anything", [random](std::int64_t) { return 1e3 * (static_cast<double>(random->bits() % 2001) - 1000.0); },
-           LetGo::force}};
+  return {
+      {"no number", [](std::int64_t n) { return n < 50 ? 1.0 : nan; }, station::LetGo::not_finite},
+      {"infinity", [](std::int64_t) { return std::numeric_limits<double>::infinity(); }, station::LetGo::not_finite},
+      {"a million newtons", [](std::int64_t) { return 1e6; }, station::LetGo::force},
+      {"minus a million newtons", [](std::int64_t) { return -1e6; }, station::LetGo::force},
+      {"the limit to and fro", [](std::int64_t n) { return n % 2 == 0 ? 2.0 : -2.0; }, station::LetGo::rate},
+      {"anything", [random](std::int64_t) { return 1e3 * (static_cast<double>(random->bits() % 2001) - 1000.0); },
+       station::LetGo::force}};
 }
 
 TEST(GuardedDevice, WhateverAWrongControllerWritesTheMotorStaysWithinItsLimitsAndIsSwitchedOff) {
   for (const Wrong& wrong : wrong_controllers()) {
     Motor motor;
-    GuardedDevice device(motor, patience);
+    station::GuardedDevice device(motor, patience);
     for (std::int64_t n = 0; n < 200; ++n) {
       (void)device.read(tick(n));
       device.write({.force_N = n == 0 ? 0.0 : wrong.force_N(n)});
     }
     EXPECT_TRUE(motor.within) << wrong.name;
     EXPECT_EQ(device.guard().cause(), wrong.cause) << wrong.name;
-    EXPECT_EQ(device.health(), DeviceHealth::lost) << wrong.name;
+    EXPECT_EQ(device.health(), station::DeviceHealth::lost) << wrong.name;
     EXPECT_FALSE(motor.now.enabled) << wrong.name;
   }
 }
 
 TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayToo) {
   Motor motor;
-  GuardedDevice device(motor, patience);
+  station::GuardedDevice device(motor, patience);
   for (std::int64_t n = 0; n < 300; ++n) {
     (void)device.read(tick(n));
     if (n < 100) device.write({.force_N = std::min(1.0, 0.1 * static_cast<double>(n))});
@@ -169,11 +170,11 @@ TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayT
     }
   }
   EXPECT_TRUE(motor.within);
-  EXPECT_EQ(device.guard().cause(), LetGo::silent);
+  EXPECT_EQ(device.guard().cause(), station::LetGo::silent);
   EXPECT_FALSE(motor.now.enabled);
 
   Motor fast;
-  GuardedDevice around(fast, patience);
+  station::GuardedDevice around(fast, patience);
   for (std::int64_t n = 0; n < 300; ++n) {
     fast.reading.position_m = -0.09 + 2.0 * period_s * static_cast<double>(n);
     (void)around.read(tick(n));
@@ -182,7 +183,7 @@ TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayT
       EXPECT_FALSE(fast.now.enabled);
     }
   }
-  EXPECT_EQ(around.guard().cause(), LetGo::velocity);
+  EXPECT_EQ(around.guard().cause(), station::LetGo::velocity);
 }
 
 /// The owner's side with its motor, and whatever lies in the slots.
@@ -217,7 +218,7 @@ TEST(DeviceServer, WhateverAWrongControllerTellsTheMotorStaysWithinItsLimitsAndT
     EXPECT_TRUE(both.motor.within) << wrong.name;
     EXPECT_FALSE(both.motor.now.enabled) << wrong.name;
     EXPECT_TRUE(both.owner.gave_up()) << wrong.name;
-    EXPECT_EQ(both.controller.health(), DeviceHealth::lost) << wrong.name;
+    EXPECT_EQ(both.controller.health(), station::DeviceHealth::lost) << wrong.name;
     EXPECT_TRUE(both.controller.given_up_by_owner()) << wrong.name;
     EXPECT_EQ(both.controller.owners_cause(), wrong.cause) << wrong.name;
   }
@@ -244,7 +245,7 @@ TEST(DeviceServer, CommandsThatSomethingRepeatsAreSilenceWhateverTimeTheyBear) {
     }
     EXPECT_TRUE(both.motor.within) << stale.name;
     EXPECT_EQ(both.motor.most_N, 1.5) << stale.name;
-    EXPECT_EQ(both.owner.guard().cause(), LetGo::silent) << stale.name;
+    EXPECT_EQ(both.owner.guard().cause(), station::LetGo::silent) << stale.name;
     EXPECT_FALSE(both.motor.now.enabled) << stale.name;
   }
 }
@@ -258,21 +259,21 @@ TEST(DeviceServer, AControllerThatSaysNothingFindsNoPower) {
 
 TEST(DeviceGuard, ADeviceThatIsNotSimulatedStatesItsLimits) {
   Motor motor;
-  EXPECT_FALSE(check_limits(motor));
-  const auto expect_named = [&motor](double DeviceLimits::*member, double value, const char* name) {
+  EXPECT_FALSE(station::check_limits(motor));
+  const auto expect_named = [&motor](double station::DeviceLimits::*member, double value, const char* name) {
     motor.stated = limits;
     motor.stated.*member = value;
-    const Check refused = check_limits(motor);
+    const Check refused = station::check_limits(motor);
     ASSERT_TRUE(refused) << name;
     EXPECT_EQ(refused->parameter, name);
   };
-  expect_named(&DeviceLimits::force_N, 0.0, "force_N");
-  expect_named(&DeviceLimits::rate_N_per_s, 0.0, "rate_N_per_s");
-  expect_named(&DeviceLimits::velocity_m_per_s, nan, "velocity_m_per_s");
-  expect_named(&DeviceLimits::position_m, -1.0, "position_m");
+  expect_named(&station::DeviceLimits::force_N, 0.0, "force_N");
+  expect_named(&station::DeviceLimits::rate_N_per_s, 0.0, "rate_N_per_s");
+  expect_named(&station::DeviceLimits::velocity_m_per_s, nan, "velocity_m_per_s");
+  expect_named(&station::DeviceLimits::position_m, -1.0, "position_m");
   motor.stated = limits;
   motor.stated.handle_force_N = 0.0;
-  EXPECT_FALSE(check_limits(motor)) << "not every device has a second actuator";
+  EXPECT_FALSE(station::check_limits(motor)) << "not every device has a second actuator";
 }
 
 }  // namespace device_guard_test

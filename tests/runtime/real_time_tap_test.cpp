@@ -34,7 +34,7 @@ TappingParams short_taps(double force_gain) {
 }
 
 /// A tick at its deadline, as a clock that is never late gives it.
-Tick tick(std::int64_t number, std::int64_t missed = 0) {
+station::Tick tick(std::int64_t number, std::int64_t missed = 0) {
   const std::int64_t deadline_ns = 200'000 * number;
   return {.number = number, .missed = missed, .deadline_ns = deadline_ns, .began_ns = deadline_ns};
 }
@@ -119,7 +119,7 @@ TEST(RealTimeTap, OnAServoThreadItRunsToItsEndAndIsLoggedToTheLastTick) {
     ASSERT_TRUE(tap);
     RealTimeTap& running = **tap;
     const auto ran = run_servo({.rate_Hz = 5000.0, .priority = 10},
-                               [&running](const Tick& now) noexcept { return running.step(now); });
+                               [&running](const station::Tick& now) noexcept { return running.step(now); });
     ASSERT_TRUE(ran);
     report = *ran;
     trace = running.trace();
@@ -147,104 +147,23 @@ TEST(RealTimeTap, OnAServoThreadItRunsToItsEndAndIsLoggedToTheLastTick) {
   }
 }
 
-/// A device that says what it is told to say.
-class ScriptedDevice final : public Device {
- public:
-  [[nodiscard]] DeviceLimits limits() const override { return limits_; }
-  [[nodiscard]] bool simulated() const noexcept override { return simulated_; }
-  DeviceReading read(const Tick&) noexcept override { return reading; }
-  void write(const DeviceCommand& given) noexcept override { command = given; }
-  [[nodiscard]] DeviceHealth health() const noexcept override { return state; }
-
-  explicit ScriptedDevice(const DeviceLimits& limits, bool simulated = true) : limits_(limits), simulated_(simulated) {}
-  DeviceReading reading;
-  DeviceCommand command;
-  DeviceHealth state = DeviceHealth::good;
-
- private:
-  DeviceLimits limits_;
-  bool simulated_;
-};
-
-/// Every number that is no time, half of its default.
-template <Described T>
-void choose(T& params) {
-  for_each_field<T>([&](const auto& f) {
-    using Value = typename std::remove_cvref_t<decltype(f)>::value_type;
-    if constexpr (Described<Value>) {
-      choose(params.*f.member);
-    } else if constexpr (std::is_same_v<Value, double>) {
-      if (std::string(f.unit.suffix) != units::second.suffix) params.*f.member *= 0.5;
-    }
-  });
-}
-
-TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedIsRefusedUntilSomebodyChoseItsLimits) {
-  constexpr DeviceLimits limits{.force_N = 2.0, .rate_N_per_s = 1000.0, .velocity_m_per_s = 2.0, .position_m = 0.05};
-  DeviceLimits no_rate = limits;
-  no_rate.rate_N_per_s = 0.0;
-  ScriptedDevice simulation({.force_N = 5.0});
-  ScriptedDevice real(limits, false);
-  ScriptedDevice unlimited(no_rate, false);
-  const auto refused_for = [&](const control::ControlParams& control, Device& master, Device& slave) {
-    const auto made = LocalTeleoperator::make(control, {}, Seconds{200e-6}, 0.0, master, slave);
-    return made ? std::string("nothing") : made.error().parameter;
-  };
-  EXPECT_EQ(refused_for({}, simulation, simulation), "nothing");
-  EXPECT_EQ(refused_for({}, real, simulation), "control.gate.force_limit_N");
-  EXPECT_EQ(refused_for({}, simulation, real), "control.slave_gate.force_limit_N");
-  control::ControlParams chosen;
-  choose(chosen.gate);
-  choose(chosen.slave_gate);
-  chosen.supervision.force_sensor.residual_limit_N = 0.5;
-  chosen.supervision.probe.force_N = 0.2;
-  EXPECT_EQ(refused_for(chosen, real, simulation), "nothing");
-  EXPECT_EQ(refused_for(chosen, simulation, real), "nothing");
-  EXPECT_EQ(refused_for(chosen, unlimited, simulation), "master.rate_N_per_s");
-}
-
-TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedStandsBehindItsWall) {
-  ScriptedDevice master({.force_N = 5.0});
-  ScriptedDevice slave({.force_N = 2.0, .rate_N_per_s = 1000.0, .velocity_m_per_s = 2.0, .position_m = 0.05}, false);
-  control::ControlParams chosen;
-  choose(chosen.slave_gate);
-  chosen.supervision.force_sensor.residual_limit_N = 0.5;
-  chosen.supervision.probe.force_N = 0.2;
-  auto loop = LocalTeleoperator::make(chosen, {}, Seconds{200e-6}, 0.0, master, slave);
-  ASSERT_TRUE(loop) << describe(loop.error());
-  slave.reading.position_m = -0.01;
-  double before_N = 0.0;
-  for (std::int64_t number = 0; number < 50; ++number) {
-    loop->step(tick(number));
-    EXPECT_LE(std::fabs(slave.command.force_N - before_N), 0.2 * (1.0 + 1e-9));
-    before_N = slave.command.force_N;
-  }
-  EXPECT_GT(slave.command.force_N, 0.1);
-  EXPECT_TRUE(slave.command.enabled);
-  slave.reading.position_m = -0.051;
-  for (std::int64_t number = 50; number < 100; ++number) loop->step(tick(number));
-  EXPECT_EQ(slave.command.force_N, 0.0);
-  EXPECT_FALSE(slave.command.enabled);
-  EXPECT_FALSE(loop->healthy()) << "its site let go too";
-}
-
 /// Passes everything on and remembers what was commanded.
-class WatchedDevice final : public Device {
+class WatchedDevice final : public station::Device {
  public:
-  explicit WatchedDevice(Device& device) : device_(&device) {}
-  [[nodiscard]] DeviceLimits limits() const override { return device_->limits(); }
+  explicit WatchedDevice(station::Device& device) : device_(&device) {}
+  [[nodiscard]] station::DeviceLimits limits() const override { return device_->limits(); }
   [[nodiscard]] bool simulated() const noexcept override { return device_->simulated(); }
-  DeviceReading read(const Tick& now) noexcept override { return device_->read(now); }
-  void write(const DeviceCommand& given) noexcept override {
+  station::DeviceReading read(const station::Tick& now) noexcept override { return device_->read(now); }
+  void write(const station::DeviceCommand& given) noexcept override {
     commands_N.push_back(given.force_N);
     device_->write(given);
   }
-  [[nodiscard]] DeviceHealth health() const noexcept override { return device_->health(); }
+  [[nodiscard]] station::DeviceHealth health() const noexcept override { return device_->health(); }
 
   std::vector<double> commands_N;
 
  private:
-  Device* device_;
+  station::Device* device_;
 };
 
 class WatchedPlant final : public TapPlant {
@@ -253,7 +172,7 @@ class WatchedPlant final : public TapPlant {
       : plant_(SimulatedPlant::make(tap).value()), master_(plant_.master()), slave_(plant_.slave()) {}
   WatchedDevice& master() noexcept override { return master_; }
   WatchedDevice& slave() noexcept override { return slave_; }
-  std::optional<SimulatedTruth> next(const Tick& now) noexcept override { return plant_.next(now); }
+  std::optional<SimulatedTruth> next(const station::Tick& now) noexcept override { return plant_.next(now); }
   [[nodiscard]] double tip_position_m() const noexcept override { return plant_.tip_position_m(); }
   [[nodiscard]] bool lost() const noexcept override { return false; }
 
@@ -317,38 +236,6 @@ TEST(RealTimeTap, EndedFromOutsideItLetsGoTheSameWay) {
   }
   EXPECT_LT((*tap)->trace().size(), virtual_time.size());
   expect_ramp(plant.slave().commands_N, pressing, tight_step_N);
-}
-
-TEST(LocalTeleoperator, TheGateIsTightenedToWhatTheDeviceCanDo) {
-  ScriptedDevice master({.force_N = 0.25});
-  ScriptedDevice slave({.force_N = 3.0});
-  control::ControlParams control;
-  control.force_limit_N = 5.0;
-  control.force_gain = 1.0;
-  auto loop = LocalTeleoperator::make(control, {}, Seconds{200e-6}, 0.0, master, slave);
-  ASSERT_TRUE(loop);
-  slave.reading.force_N = 4.0;
-  slave.reading.position_m = -1.0;
-  for (std::int64_t number = 0; number < 100; ++number) loop->step(tick(number));
-  EXPECT_DOUBLE_EQ(master.command.force_N, -0.25);
-  EXPECT_DOUBLE_EQ(slave.command.force_N, 3.0);
-  loop->release();
-  EXPECT_EQ(master.command.force_N, 0.0);
-  EXPECT_EQ(slave.command.force_N, 0.0);
-}
-
-TEST(LocalTeleoperator, ASiteWhoseDeviceIsLostLetsGo) {
-  ScriptedDevice master({.force_N = 5.0});
-  ScriptedDevice slave({.force_N = 5.0});
-  auto loop = LocalTeleoperator::make({}, {}, Seconds{200e-6}, 0.0, master, slave);
-  ASSERT_TRUE(loop);
-  slave.reading.position_m = -0.01;
-  for (std::int64_t number = 0; number < 50; ++number) loop->step(tick(number));
-  EXPECT_GT(slave.command.force_N, 0.1);
-  slave.state = DeviceHealth::lost;
-  for (std::int64_t number = 50; number < 2000; ++number) loop->step(tick(number));
-  EXPECT_EQ(slave.command.force_N, 0.0);
-  EXPECT_FALSE(loop->healthy());
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ void compute(std::int64_t wall_ns) noexcept {
 }
 
 TEST(ServoThread, EveryTickBeginsAtOrAfterItsDeadlineAndDeadlinesLieOnOneGrid) {
-  std::vector<Tick> ticks;
+  std::vector<station::Tick> ticks;
   ticks.reserve(200);
-  const auto report = run_servo(at(2000.0), [&](const Tick& tick) noexcept {
+  const auto report = run_servo(at(2000.0), [&](const station::Tick& tick) noexcept {
     ticks.push_back(tick);
     return ticks.size() < 200;
   });
@@ -47,16 +47,16 @@ TEST(ServoThread, EveryTickBeginsAtOrAfterItsDeadlineAndDeadlinesLieOnOneGrid) {
 }
 
 TEST(ServoThread, AfterAStallTheNextDeadlineLiesInTheFutureAndNoStepCatchesUp) {
-  std::vector<Tick> ticks;
+  std::vector<station::Tick> ticks;
   ticks.reserve(100);
-  const auto report = run_servo(at(1000.0), [&](const Tick& tick) noexcept {
+  const auto report = run_servo(at(1000.0), [&](const station::Tick& tick) noexcept {
     ticks.push_back(tick);
     if (ticks.size() == 20) std::this_thread::sleep_for(milliseconds(20));
     return ticks.size() < 60;
   });
   ASSERT_TRUE(report);
-  const Tick& stalled = ticks[19];
-  const Tick& next = ticks[20];
+  const station::Tick& stalled = ticks[19];
+  const station::Tick& next = ticks[20];
   EXPECT_GE(next.missed, 19);
   EXPECT_GE(next.deadline_ns, stalled.began_ns + 20'000'000);
   EXPECT_GE(report->longest_gap, 19);
@@ -70,32 +70,32 @@ TEST(ServoThread, AfterAStallTheNextDeadlineLiesInTheFutureAndNoStepCatchesUp) {
 
 TEST(ServoThread, ALateTickOfAStepThatComputesTooLongIsOurs) {
   int steps = 0;
-  const auto report = run_servo(at(1000.0), [&](const Tick&) noexcept {
+  const auto report = run_servo(at(1000.0), [&](const station::Tick&) noexcept {
     if (++steps % 10 == 0) compute(3'000'000);
     return steps < 100;
   });
   ASSERT_TRUE(report);
   // Others use this machine too, and may take a processor away from some of the ten.
-  EXPECT_GE(report->late_for(LateCause::computing), 5);
+  EXPECT_GE(report->late_for(station::LateCause::computing), 5);
   EXPECT_GE(report->late_ours(), 5);
   EXPECT_GE(report->missed, 10);
 }
 
 TEST(ServoThread, ALateTickOfAStepThatSleepsOrLocksIsOurs) {
   int steps = 0;
-  const auto report = run_servo(at(1000.0), [&](const Tick&) noexcept {
+  const auto report = run_servo(at(1000.0), [&](const station::Tick&) noexcept {
     if (++steps % 10 == 0) std::this_thread::sleep_for(milliseconds(4));
     return steps < 100;
   });
   ASSERT_TRUE(report);
-  EXPECT_GE(report->late_for(LateCause::blocking), 5);
-  EXPECT_EQ(report->late_for(LateCause::computing), 0);
+  EXPECT_GE(report->late_for(station::LateCause::blocking), 5);
+  EXPECT_EQ(report->late_for(station::LateCause::computing), 0);
 }
 
 TEST(ServoThread, TheStepIsToldWhatBecameOfTheTickBefore) {
-  std::vector<Tick> ticks;
+  std::vector<station::Tick> ticks;
   ticks.reserve(10);
-  const auto report = run_servo(at(1000.0), [&](const Tick& tick) noexcept {
+  const auto report = run_servo(at(1000.0), [&](const station::Tick& tick) noexcept {
     ticks.push_back(tick);
     if (ticks.size() == 5) std::this_thread::sleep_for(milliseconds(3));
     return ticks.size() < 10;
@@ -103,12 +103,12 @@ TEST(ServoThread, TheStepIsToldWhatBecameOfTheTickBefore) {
   ASSERT_TRUE(report);
   EXPECT_EQ(ticks[0].previous_duration_ns, 0);
   EXPECT_GE(ticks[5].previous_duration_ns, 3'000'000);
-  EXPECT_NE(ticks[5].previous_cause, LateCause::none);
+  EXPECT_NE(ticks[5].previous_cause, station::LateCause::none);
 }
 
 TEST(ServoThread, StopEndsItFromAnotherThread) {
   std::atomic<int> steps{0};
-  auto count = [&](const Tick&) noexcept {
+  auto count = [&](const station::Tick&) noexcept {
     steps.fetch_add(1);
     return true;
   };
@@ -125,7 +125,7 @@ TEST(ServoThread, StopEndsItFromAnotherThread) {
 TEST(ServoThread, DenormalsAreFlushedOnItAndOnNoOtherThread) {
   volatile double smallest = std::numeric_limits<double>::min();
   double half = -1.0;
-  ASSERT_TRUE(run_servo(at(1000.0), [&](const Tick&) noexcept {
+  ASSERT_TRUE(run_servo(at(1000.0), [&](const station::Tick&) noexcept {
     half = 0.5 * smallest;
     return false;
   }));
@@ -135,7 +135,7 @@ TEST(ServoThread, DenormalsAreFlushedOnItAndOnNoOtherThread) {
 
 TEST(ServoThread, SignalsOfTheProcessGoToOtherThreads) {
   bool blocked = false;
-  ASSERT_TRUE(run_servo(at(1000.0), [&](const Tick&) noexcept {
+  ASSERT_TRUE(run_servo(at(1000.0), [&](const station::Tick&) noexcept {
     sigset_t mask;
     pthread_sigmask(SIG_BLOCK, nullptr, &mask);
     blocked = sigismember(&mask, SIGTERM) == 1 && sigismember(&mask, SIGSEGV) == 0;
@@ -147,7 +147,7 @@ TEST(ServoThread, SignalsOfTheProcessGoToOtherThreads) {
 TEST(ServoThread, WhatIsNotGrantedSaysWhatIsLostAndHowToGetIt) {
   ServoThreadParams params = at(1000.0);
   params.core = 1023;  // no machine of ours has it
-  const auto report = run_servo(params, [](const Tick&) noexcept { return false; });
+  const auto report = run_servo(params, [](const station::Tick&) noexcept { return false; });
   ASSERT_TRUE(report);
   EXPECT_EQ(report->ticks, 1);
   bool found = false;
@@ -164,22 +164,22 @@ TEST(ServoThread, TheLastPartOfTheWaitCanBeSpun) {
   ServoThreadParams params = at(1000.0);
   params.spin_s = 0.0003;
   int steps = 0;
-  const auto report = run_servo(params, [&](const Tick&) noexcept { return ++steps < 100; });
+  const auto report = run_servo(params, [&](const station::Tick&) noexcept { return ++steps < 100; });
   ASSERT_TRUE(report);
-  EXPECT_EQ(report->late_for(LateCause::computing), 0) << "spinning is no work of the step";
+  EXPECT_EQ(report->late_for(station::LateCause::computing), 0) << "spinning is no work of the step";
 }
 
 TEST(ServoThread, SpinningMoreThanHalfATickIsRefusedByName) {
   ServoThreadParams params = at(5000.0);
   params.spin_s = 0.0002;
-  const auto report = run_servo(params, [](const Tick&) noexcept { return false; });
+  const auto report = run_servo(params, [](const station::Tick&) noexcept { return false; });
   ASSERT_FALSE(report);
   EXPECT_EQ(report.error().parameter, "spin_s");
 }
 
 TEST(ServoThread, ParametersOutOfBoundsAreRefusedByName) {
   for (const double rate_Hz : {0.0, -1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
-    const auto report = run_servo(at(rate_Hz), [](const Tick&) noexcept { return false; });
+    const auto report = run_servo(at(rate_Hz), [](const station::Tick&) noexcept { return false; });
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().parameter, "rate_Hz");
   }
@@ -188,25 +188,27 @@ TEST(ServoThread, ParametersOutOfBoundsAreRefusedByName) {
 constexpr std::int64_t period_ns = 200'000;
 
 TEST(LateTicks, ATickThatEndsByTheNextDeadlineIsNotLate) {
-  EXPECT_EQ(classify({.late_ns = 150'000, .duration_ns = 50'000, .own_ns = 50'000}, period_ns), LateCause::none);
+  EXPECT_EQ(classify({.late_ns = 150'000, .duration_ns = 50'000, .own_ns = 50'000}, period_ns),
+            station::LateCause::none);
 }
 
 TEST(LateTicks, AStepThatBeganLateIsTheMachinesAndALongOneIsJudgedByWhatItDid) {
-  EXPECT_EQ(classify({.late_ns = 900'000, .duration_ns = 5'000, .own_ns = 5'000}, period_ns), LateCause::waking);
+  EXPECT_EQ(classify({.late_ns = 900'000, .duration_ns = 5'000, .own_ns = 5'000}, period_ns),
+            station::LateCause::waking);
   const TickEvidence waited{.late_ns = 20'000, .duration_ns = 900'000, .own_ns = 5'000, .voluntary_switches = 1};
-  EXPECT_EQ(classify(waited, period_ns), LateCause::stalled);
+  EXPECT_EQ(classify(waited, period_ns), station::LateCause::stalled);
   TickEvidence tick = waited;
   tick.involuntary_switches = 1;
-  EXPECT_EQ(classify(tick, period_ns), LateCause::preempted);
+  EXPECT_EQ(classify(tick, period_ns), station::LateCause::preempted);
   tick = waited;
   tick.voluntary_switches = 2;
-  EXPECT_EQ(classify(tick, period_ns), LateCause::blocking);
+  EXPECT_EQ(classify(tick, period_ns), station::LateCause::blocking);
   tick = waited;
   tick.own_ns = 800'000;
-  EXPECT_EQ(classify(tick, period_ns), LateCause::computing);
+  EXPECT_EQ(classify(tick, period_ns), station::LateCause::computing);
   tick = waited;
   tick.major_faults = 1;
-  EXPECT_EQ(classify(tick, period_ns), LateCause::paging);
+  EXPECT_EQ(classify(tick, period_ns), station::LateCause::paging);
 }
 
 TEST(LateTicks, OursAndTheMachinesAddUpToAll) {

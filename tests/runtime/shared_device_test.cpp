@@ -107,7 +107,7 @@ TEST(SharedSlots, AProducerThatIsKilledAnywhereLeavesWholeValuesAndAnotherGoesOn
 constexpr std::int64_t period_ns = 200'000;
 constexpr Seconds silence{0.002};  ///< 10 ticks
 
-Tick tick(std::int64_t number) {
+station::Tick tick(std::int64_t number) {
   return {.number = number, .deadline_ns = number * period_ns, .began_ns = number * period_ns};
 }
 
@@ -129,13 +129,13 @@ TEST(SharedDevice, TellsReadingsAndCommandsToTheBit) {
   for (std::int64_t n = 1; n < 100; ++n) {
     const double number = 1.0 / static_cast<double>(n);
     sides.owner.publish(tick(n), n, {.position_m = number, .force_N = -number, .grip = 2.0 * number});
-    const DeviceReading read = sides.controller.read(tick(n));
-    EXPECT_EQ(sides.controller.health(), DeviceHealth::good);
+    const station::DeviceReading read = sides.controller.read(tick(n));
+    EXPECT_EQ(sides.controller.health(), station::DeviceHealth::good);
     EXPECT_EQ(read.position_m, number);
     EXPECT_EQ(read.force_N, -number);
     EXPECT_EQ(read.grip, 2.0 * number);
     sides.controller.write({.force_N = 3.0 * number, .handle_force_N = 4.0 * number});
-    const DeviceCommand command = sides.owner.command(tick(n + 1));
+    const station::DeviceCommand command = sides.owner.command(tick(n + 1));
     EXPECT_EQ(command.force_N, 3.0 * number);
     EXPECT_EQ(command.handle_force_N, 4.0 * number);
   }
@@ -148,48 +148,50 @@ TEST(SharedDevice, AnOwnerThatFallsSilentIsDegradedThenLostForGood) {
   Sides sides;
   sides.owner.publish(tick(100), 0, {.position_m = 0.25});
   (void)sides.controller.read(tick(100));
-  EXPECT_EQ(sides.controller.health(), DeviceHealth::good);
+  EXPECT_EQ(sides.controller.health(), station::DeviceHealth::good);
   for (std::int64_t n = 101; n <= 110; ++n) {
     EXPECT_EQ(sides.controller.read(tick(n)).position_m, 0.25);
-    EXPECT_EQ(sides.controller.health(), DeviceHealth::degraded) << n;
+    EXPECT_EQ(sides.controller.health(), station::DeviceHealth::degraded) << n;
   }
   EXPECT_EQ(sides.controller.read(tick(111)).position_m, 0.25);
-  EXPECT_EQ(sides.controller.health(), DeviceHealth::lost);
+  EXPECT_EQ(sides.controller.health(), station::DeviceHealth::lost);
   sides.owner.publish(tick(112), 1, {.position_m = 0.5});
   (void)sides.controller.read(tick(112));
-  EXPECT_EQ(sides.controller.health(), DeviceHealth::lost) << "what comes back by itself is not trusted";
+  EXPECT_EQ(sides.controller.health(), station::DeviceHealth::lost) << "what comes back by itself is not trusted";
   sides.controller.begin(2);
   EXPECT_EQ(sides.controller.read(tick(112)).position_m, 0.5);
-  EXPECT_EQ(sides.controller.health(), DeviceHealth::good);
+  EXPECT_EQ(sides.controller.health(), station::DeviceHealth::good);
 }
 
 TEST(SharedDevice, AnOwnerThatNeverToldAnythingOrHasAnotherClockIsLost) {
   Sides mute;
   (void)mute.controller.read(tick(1000));
-  EXPECT_EQ(mute.controller.health(), DeviceHealth::lost);
+  EXPECT_EQ(mute.controller.health(), station::DeviceHealth::lost);
   Sides ahead;
   ahead.owner.publish(tick(2000), 0, {});
   (void)ahead.controller.read(tick(1000));
-  EXPECT_EQ(ahead.controller.health(), DeviceHealth::lost);
+  EXPECT_EQ(ahead.controller.health(), station::DeviceHealth::lost);
 }
 
 TEST(SharedDevice, ANumberThatIsNotFiniteIsRefusedOnBothSides) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-  for (const DeviceReading& bad :
-       {DeviceReading{.position_m = nan}, DeviceReading{.force_N = inf}, DeviceReading{.grip = -inf}}) {
+  for (const station::DeviceReading& bad :
+       {station::DeviceReading{.position_m = nan}, station::DeviceReading{.force_N = inf},
+        station::DeviceReading{.grip = -inf}}) {
     Sides sides;
     sides.owner.publish(tick(100), 0, {.position_m = 0.25});
     (void)sides.controller.read(tick(100));
     sides.owner.publish(tick(101), 1, bad);
     EXPECT_EQ(sides.controller.read(tick(101)).position_m, 0.25) << "the last good one";
-    EXPECT_EQ(sides.controller.health(), DeviceHealth::lost);
+    EXPECT_EQ(sides.controller.health(), station::DeviceHealth::lost);
   }
-  for (const DeviceCommand& bad : {DeviceCommand{.force_N = nan}, DeviceCommand{.handle_force_N = inf}}) {
+  for (const station::DeviceCommand& bad :
+       {station::DeviceCommand{.force_N = nan}, station::DeviceCommand{.handle_force_N = inf}}) {
     Sides sides;
     sides.owner.publish(tick(100), 0, {});
     (void)sides.controller.read(tick(100));
     sides.controller.write(bad);
-    const DeviceCommand given = sides.owner.command(tick(101));
+    const station::DeviceCommand given = sides.owner.command(tick(101));
     EXPECT_EQ(given.force_N, 0.0);
     EXPECT_EQ(given.handle_force_N, 0.0);
     EXPECT_TRUE(sides.owner.gave_up());
@@ -209,7 +211,7 @@ TEST(SharedDevice, AMotorWhoseCommandsStayAwayGetsNoForceUntilTheNextSession) {
   // The controller is told, and cannot go on by itself.
   sides.owner.publish(tick(111), 1, {});
   (void)sides.controller.read(tick(111));
-  EXPECT_EQ(sides.controller.health(), DeviceHealth::lost);
+  EXPECT_EQ(sides.controller.health(), station::DeviceHealth::lost);
   EXPECT_TRUE(sides.controller.given_up_by_owner());
   sides.controller.write({.force_N = 1.0});
   EXPECT_EQ(sides.owner.command(tick(112)).force_N, 0.0);
@@ -219,7 +221,7 @@ TEST(SharedDevice, AMotorWhoseCommandsStayAwayGetsNoForceUntilTheNextSession) {
   sides.controller.begin(8);
   sides.owner.publish(tick(113), 0, {});
   (void)sides.controller.read(tick(113));
-  EXPECT_EQ(sides.controller.health(), DeviceHealth::good);
+  EXPECT_EQ(sides.controller.health(), station::DeviceHealth::good);
   sides.controller.write({.force_N = 0.5});
   EXPECT_EQ(sides.owner.command(tick(114)).force_N, 0.5);
 }
@@ -227,7 +229,7 @@ TEST(SharedDevice, AMotorWhoseCommandsStayAwayGetsNoForceUntilTheNextSession) {
 constexpr Seconds long_silence{10.0};
 constexpr double trips = 2000.0;
 
-Tick now() { return {.began_ns = monotonic_ns()}; }
+station::Tick now() { return {.began_ns = monotonic_ns()}; }
 
 /// The owner of a device that stands where it was told, until the last trip.
 void echo(DeviceSlots& slots) {
@@ -244,12 +246,12 @@ void expect_trips(DeviceSlots& slots) {
   SharedDevice controller(slots, {.force_N = 2.0}, long_silence);
   controller.begin(1);
   for (double sent = 1.0; sent <= trips; sent += 1.0) {
-    DeviceReading back = controller.read(now());
+    station::DeviceReading back = controller.read(now());
     controller.write({.force_N = sent});
     while (back.position_m < sent) {
       std::this_thread::yield();
       back = controller.read(now());
-      ASSERT_NE(controller.health(), DeviceHealth::lost);
+      ASSERT_NE(controller.health(), station::DeviceHealth::lost);
       ASSERT_EQ(back.force_N, -back.position_m);
     }
     ASSERT_EQ(back.position_m, sent);

@@ -51,7 +51,7 @@ TappingParams short_taps(double rate_Hz = 5000.0) {
 
 std::string name_of(const char* test) { return std::string("test-") + test + "-" + std::to_string(getpid()); }
 
-Tick tick(std::int64_t number) {
+station::Tick tick(std::int64_t number) {
   const std::int64_t due_ns = 200'000 * number;
   return {.number = number, .deadline_ns = due_ns, .began_ns = due_ns};
 }
@@ -193,7 +193,7 @@ TEST(SharedPlant, ACommandFarBeyondTheDeviceNeverReachesItAndTheControllerHearsW
   ASSERT_FALSE(both.begin(0));
   std::int64_t own = 0;
   for (; own < 200 && !both.plant->lost(); ++own) {
-    Tick now = tick(both.number);
+    station::Tick now = tick(both.number);
     now.number = own;
     (void)both.plant->master().read(now);
     (void)both.plant->slave().read(now);
@@ -205,7 +205,7 @@ TEST(SharedPlant, ACommandFarBeyondTheDeviceNeverReachesItAndTheControllerHearsW
   EXPECT_NE(both.plant->why_lost().message.find("at the master: commands insisted on more force"), std::string::npos)
       << both.plant->why_lost().message;
   EXPECT_EQ(both.server->status().let_go, 1);
-  EXPECT_EQ(both.server->status().cause, LetGo::force);
+  EXPECT_EQ(both.server->status().cause, station::LetGo::force);
   EXPECT_GT(both.server->status().held_back, 40);
 }
 
@@ -258,7 +258,7 @@ pid_t start_plant(const std::string& name, const TappingParams& params, Seconds 
   const auto server = PlantServer::make(name, params, silence);
   if (!server) _exit(2);
   PlantServer& plant = **server;
-  const auto step = [&plant](const Tick& now) noexcept {
+  const auto step = [&plant](const station::Tick& now) noexcept {
     plant.step(now);
     return true;
   };
@@ -305,7 +305,7 @@ TEST(SharedPlant, WhenThePlantIsKilledInMidRunBothSitesLetGoAtTheRateLimitAndThe
     auto made = RealTimeTap::make(ensemble->tap(0), observation_s, *plant, streams);
     ASSERT_TRUE(made);
     RealTimeTap& running = **made;
-    const auto report = run_servo({.rate_Hz = slow_Hz, .priority = 10}, [&](const Tick& now) noexcept {
+    const auto report = run_servo({.rate_Hz = slow_Hz, .priority = 10}, [&](const station::Tick& now) noexcept {
       if (!running.trace().empty() && running.trace().back().contact_force_N > 0.3) kill(child, SIGKILL);
       return running.step(now);
     });
@@ -366,7 +366,7 @@ class Controller {
     if (!made) _exit(3);
     RealTimeTap& running = **made;
     const auto report = run_servo({.rate_Hz = slow_Hz, .priority = 10},
-                                  [&running](const Tick& now) noexcept { return running.step(now); });
+                                  [&running](const station::Tick& now) noexcept { return running.step(now); });
     _exit(report && !plant->lost() && running.result().touched ? 0 : 4);
   }
   Controller(const Controller&) = delete;
@@ -392,7 +392,7 @@ TEST(SharedPlant, WhenTheControllerIsKilledInMidRunThePlantLetsGoAndTheNextOneTa
   const auto server = PlantServer::make(name, params, Seconds{2.0});
   ASSERT_TRUE(server) << describe(server.error());
   PlantServer& plant = **server;
-  const auto step = [&plant](const Tick& now) noexcept {
+  const auto step = [&plant](const station::Tick& now) noexcept {
     plant.step(now);
     return true;
   };

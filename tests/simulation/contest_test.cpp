@@ -167,7 +167,7 @@ TEST(Contest, EveryMethodReachesTheWallAndStaysThereOverALineThatReordersAndLose
     TappingParams params;
     static_cast<Teleoperator::Params&>(params) = all[method];
     params.task.taps = 2;
-    for (Channel::Params* way : {&params.channel.to_slave, &params.channel.to_master}) {
+    for (station::Channel::Params* way : {&params.channel.to_slave, &params.channel.to_master}) {
       way->delay_s = 0.02;
       way->jitter_s = 0.01;
       way->loss_fraction = 0.1;

@@ -56,11 +56,11 @@ const mechanics::MinimumJerk tap{.start_m = -0.008, .end_m = 0.007, .start_time_
 class Couplings : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(Couplings, StayFiniteAndWithinTheForceLimitOverAnyChannelAndFeelTheWall) {
-  const Channel::Params channels[] = {{.delay_s = 0.0},
-                                      {.delay_s = 0.02},
-                                      {.delay_s = 0.005, .jitter_s = 0.01},
-                                      {.delay_s = 0.002, .jitter_s = 0.004, .loss_fraction = 0.3}};
-  for (const Channel::Params& channel : channels) {
+  const station::Channel::Params channels[] = {{.delay_s = 0.0},
+                                               {.delay_s = 0.02},
+                                               {.delay_s = 0.005, .jitter_s = 0.01},
+                                               {.delay_s = 0.002, .jitter_s = 0.004, .loss_fraction = 0.3}};
+  for (const station::Channel::Params& channel : channels) {
     for (const double gain : {1.0, 10.0}) {
       for (const auto mode : {control::CancellationMode::off, control::CancellationMode::on}) {
         Teleoperator::Params params = tapping_params(GetParam());

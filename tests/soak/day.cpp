@@ -169,24 +169,24 @@ void Day::watch(const control::SiteRecord& record, std::size_t site, double hear
 }
 
 void Day::look(const TwoSites::Seen& seen) {
-  const double master_m = seen.at_master.motor_position_m, slave_m = seen.at_slave.motor_position_m;
+  const double master_m = seen.master.reading.position_m, slave_m = seen.slave.reading.position_m;
   if (!sites_.active() || periods_ == 0) {
     // The account is emptied when a site is armed; until the first period is over it catches up with that.
-    if (seen.master.record.given_J == 0.0) accounts_[0].empty();
-    if (seen.slave.record.given_J == 0.0) accounts_[1].empty();
+    if (seen.master.output.record.given_J == 0.0) accounts_[0].empty();
+    if (seen.slave.output.record.given_J == 0.0) accounts_[1].empty();
   }
-  period_.master_gave_J += accounts_[0].see(master_m, seen.master.site.motor_force_N);
-  period_.slave_gave_J += accounts_[1].see(slave_m, seen.slave.site.motor_force_N);
-  period_.peak_master_N = std::max(period_.peak_master_N, std::fabs(seen.master.site.motor_force_N));
-  period_.peak_tip_N = std::max(period_.peak_tip_N, std::fabs(seen.at_slave.tip_force_N));
+  period_.master_gave_J += accounts_[0].see(master_m, seen.master.output.site.motor_force_N);
+  period_.slave_gave_J += accounts_[1].see(slave_m, seen.slave.output.site.motor_force_N);
+  period_.peak_master_N = std::max(period_.peak_master_N, std::fabs(seen.master.output.site.motor_force_N));
+  period_.peak_tip_N = std::max(period_.peak_tip_N, std::fabs(seen.slave.reading.force_N));
   period_.farthest_m = std::max(period_.farthest_m, slave_m);
   period_.nearest_m = std::min(period_.nearest_m, slave_m);
-  applied_[0] += seen.master.record.fresh;
-  applied_[1] += seen.slave.record.fresh;
-  report_.told_energy_J = seen.slave.packet.message.energy_J;
+  applied_[0] += seen.master.output.record.fresh;
+  applied_[1] += seen.slave.output.record.fresh;
+  report_.told_energy_J = seen.slave.output.packet.message.energy_J;
   if (periods_ == 0) return;
-  watch(seen.master.record, 0, seen.master_heard_age_s, origin_.slave_session);
-  watch(seen.slave.record, 1, seen.slave_heard_age_s, origin_.master_session);
+  watch(seen.master.output.record, 0, seen.master_heard_age_s, origin_.slave_session);
+  watch(seen.slave.output.record, 1, seen.slave_heard_age_s, origin_.master_session);
 }
 
 void Day::expect_near(const Period& period, const PeriodBounds& bounds) {

@@ -5,12 +5,14 @@
 #include <tactus/link/inbound.hpp>
 #include <tactus/simulation/site_plants.hpp>
 #include <tactus/simulation/teleoperator.hpp>
+#include <tactus/station/step.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -94,10 +96,8 @@ class End {
 class TwoSites {
  public:
   struct Seen {
-    control::SupervisedMaster::Output master;
-    control::SupervisedSlave::Output slave;
-    simulation::MasterPlant::Reading at_master;
-    simulation::SlavePlant::Reading at_slave;
+    station::Step<control::SupervisedMaster> master;
+    station::Step<control::SupervisedSlave> slave;
     double master_heard_age_s = 0.0;  ///< of the packet that came, 0 for none
     double slave_heard_age_s = 0.0;
   };
@@ -126,43 +126,16 @@ class TwoSites {
     const control::SiteRequests requests{.align = within(0.05), .arm = within(arm_s), .dead_man = now_s >= 0.15};
     const std::int64_t since_ns = tick_ * tick_ns();
 
-    seen_.at_master = master_plant_.measure();
-    seen_.at_slave = slave_plant_.measure();
-    const std::int64_t master_ns = origin_.master_clock_ns + since_ns;
-    seen_.master_heard_age_s = 0.0;
-    if (to_master_) {
-      auto packet = master_end_.receive(*to_master_, master_ns);
-      if (packet) {
-        seen_.master_heard_age_s = packet->age_s;
-        if (origin_.armings > 0 && master_.state() == control::SiteState::align) packet->armings = origin_.armings;
-        master_.take(*packet);
-      }
-    }
-    seen_.master = master_.step({.sensors = {.motor_position_m = seen_.at_master.motor_position_m,
-                                             .hand_force_N = seen_.at_master.hand_force_N,
-                                             .arrival = {},
-                                             .grip = seen_.at_master.grip},
-                                 .requests = requests,
-                                 .elapsed_ticks = elapsed_ticks});
-    const link::DatagramBytes to_slave = master_end_.send(seen_.master.packet, master_.agreement().own(), master_ns);
+    const station::Tick tick{.number = tick_, .missed = elapsed_ticks - 1};
+    Way of_master{*this, master_, master_end_, to_master_, to_slave_, origin_.master_clock_ns + since_ns};
+    seen_.master = station::step(master_, master_plant_, of_master, tick, requests);
+    seen_.master_heard_age_s = of_master.heard_age_s;
+    Way of_slave{*this, slave_, slave_end_, to_slave_, to_master_, origin_.slave_clock_ns + since_ns + tick_ns() / 2};
+    seen_.slave = station::step(slave_, slave_plant_, of_slave, tick, requests);
+    seen_.slave_heard_age_s = of_slave.heard_age_s;
 
-    const std::int64_t slave_ns = origin_.slave_clock_ns + since_ns + tick_ns() / 2;
-    seen_.slave_heard_age_s = 0.0;
-    if (const auto packet = slave_end_.receive(to_slave, slave_ns)) {
-      seen_.slave_heard_age_s = packet->age_s;
-      slave_.take(*packet);
-    }
-    seen_.slave = slave_.step({.sensors = {.motor_position_m = seen_.at_slave.motor_position_m,
-                                           .tip_force_N = seen_.at_slave.tip_force_N,
-                                           .arrival = {}},
-                               .requests = requests,
-                               .elapsed_ticks = elapsed_ticks});
-    to_master_ = slave_end_.send(seen_.slave.packet, slave_.agreement().own(), slave_ns);
-
-    master_plant_.begin_tick(
-        {.motor_force_N = seen_.master.site.motor_force_N, .handle_force_N = seen_.master.site.handle_force_N},
-        path_.at(tick_), path_.at(tick_ + 1));
-    slave_plant_.begin_tick(seen_.slave.site.motor_force_N);
+    master_plant_.begin_tick(path_.at(tick_), path_.at(tick_ + 1));
+    slave_plant_.begin_tick();
     for (int i = 0; i < clock_.substeps; ++i) {
       master_plant_.substep(i);
       slave_plant_.substep(i);
@@ -197,6 +170,33 @@ class TwoSites {
         master_end_(control::SiteRole::master, origin.master_session, origin),
         slave_end_(control::SiteRole::slave, origin.slave_session, origin) {}
 
+  /// The way of a site over its end, with what lies at it and what it leaves for the other.
+  template <class Site>
+  struct Way {
+    const TwoSites& sites;
+    const Site& site;
+    End& end;
+    std::optional<link::DatagramBytes>& inbox;
+    std::optional<link::DatagramBytes>& outbox;
+    std::int64_t now_ns;
+    double heard_age_s = 0.0;
+    template <class Take>
+    void receive(const station::Tick&, Take&& take) {
+      if (!inbox) return;
+      auto packet = end.receive(*inbox, now_ns);
+      if (!packet) return;
+      heard_age_s = packet->age_s;
+      const bool from_slave = std::is_same_v<Site, control::SupervisedMaster>;
+      if (from_slave && sites.origin_.armings > 0 && site.state() == control::SiteState::align) {
+        packet->armings = sites.origin_.armings;
+      }
+      take(*packet);
+    }
+    void send(const control::Packet& packet, const station::Tick&) {
+      outbox = end.send(packet, site.agreement().own(), now_ns);
+    }
+  };
+
   Origin origin_;
   simulation::Clock clock_;
   TapsAndPress path_;
@@ -205,7 +205,7 @@ class TwoSites {
   control::SupervisedMaster master_;
   control::SupervisedSlave slave_;
   End master_end_, slave_end_;
-  std::optional<link::DatagramBytes> to_master_;
+  std::optional<link::DatagramBytes> to_master_, to_slave_;
   Seen seen_;
   std::int64_t tick_ = 0;
 };

@@ -60,14 +60,14 @@ Trace run(const simulation::Teleoperator::Params& params, const Origin& origin) 
   Trace trace;
   while (sites.ticks() < run_ticks) {
     const auto& seen = sites.step();
-    trace.forces_N.push_back(seen.master.site.motor_force_N);
-    trace.forces_N.push_back(seen.slave.site.motor_force_N);
+    trace.forces_N.push_back(seen.master.output.site.motor_force_N);
+    trace.forces_N.push_back(seen.slave.output.site.motor_force_N);
     trace.became_active = trace.became_active || sites.active();
     trace.stayed_active = trace.stayed_active && (!trace.became_active || sites.active());
-    trace.master = static_cast<SiteState>(seen.master.record.state);
-    trace.slave = static_cast<SiteState>(seen.slave.record.state);
-    trace.master_cause = static_cast<SiteCause>(seen.master.record.cause);
-    trace.told_J = seen.slave.packet.message.energy_J;
+    trace.master = static_cast<SiteState>(seen.master.output.record.state);
+    trace.slave = static_cast<SiteState>(seen.slave.output.record.state);
+    trace.master_cause = static_cast<SiteCause>(seen.master.output.record.cause);
+    trace.told_J = seen.slave.output.packet.message.energy_J;
   }
   return trace;
 }
@@ -159,14 +159,14 @@ TEST(Wraps, AStallOfAnyNumberOfTicksStopsBothSitesAndNoForceIsWild) {
     // Twice, so that what sums them up passes its limit too.
     for (int stall = 0; stall < 2; ++stall) {
       const auto& seen = sites.step(elapsed);
-      EXPECT_NE(seen.master.record.state, static_cast<std::int64_t>(SiteState::active));
-      EXPECT_NE(seen.slave.record.state, static_cast<std::int64_t>(SiteState::active));
+      EXPECT_NE(seen.master.output.record.state, static_cast<std::int64_t>(SiteState::active));
+      EXPECT_NE(seen.slave.output.record.state, static_cast<std::int64_t>(SiteState::active));
     }
     while (sites.ticks() < run_ticks) {
       const auto& seen = sites.step();
       ASSERT_FALSE(sites.active());
-      ASSERT_LE(std::fabs(seen.master.site.motor_force_N), params.control.gate.force_limit_N);
-      ASSERT_LE(std::fabs(seen.slave.site.motor_force_N), params.control.slave_gate.force_limit_N);
+      ASSERT_LE(std::fabs(seen.master.output.site.motor_force_N), params.control.gate.force_limit_N);
+      ASSERT_LE(std::fabs(seen.slave.output.site.motor_force_N), params.control.slave_gate.force_limit_N);
     }
   }
 }

@@ -2,13 +2,13 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/core/units.hpp>
-#include <tactus/runtime/device.hpp>
+#include <tactus/station/device.hpp>
 
 #include <array>
 #include <cstdint>
 
 /// The second wall: what a device allows, whoever commands it.
-namespace tactus::runtime {
+namespace tactus::station {
 
 /// Why a device was given no more force.
 enum class LetGo : std::int64_t { none, silent, not_finite, force, rate, velocity, position };
@@ -105,4 +105,4 @@ class GuardedDevice final : public Device {
   bool written_ = false;  ///< ever
 };
 
-}  // namespace tactus::runtime
+}  // namespace tactus::station

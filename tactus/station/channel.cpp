@@ -1,16 +1,18 @@
 #include <tactus/signal/checks.hpp>
-#include <tactus/simulation/channel.hpp>
+#include <tactus/station/channel.hpp>
 
 #include <cmath>
 
-namespace tactus::simulation {
+namespace tactus::station {
 
-Result<Channel> Channel::make(const Params& params, Seconds dt, const control::Message& initial) {
+template <class Payload>
+Result<ChannelOf<Payload>> ChannelOf<Payload>::make(const ChannelParams& params, Seconds dt, const Payload& initial) {
   if (auto error = signal::check(params, dt)) return *std::move(error);
-  return Channel(params, dt, initial);
+  return ChannelOf(params, dt, initial);
 }
 
-Channel::Channel(const Params& params, Seconds dt, const control::Message& initial)
+template <class Payload>
+ChannelOf<Payload>::ChannelOf(const ChannelParams& params, Seconds dt, const Payload& initial)
     : delay_ticks_(static_cast<std::size_t>(std::lround(params.delay_s / dt.value))),
       jitter_ticks_(std::round(params.jitter_s / dt.value)),
       loss_fraction_(params.loss_fraction),
@@ -18,7 +20,8 @@ Channel::Channel(const Params& params, Seconds dt, const control::Message& initi
       newest_{.message = initial},
       slots_(delay_ticks_ + static_cast<std::size_t>(jitter_ticks_) + 1) {}
 
-control::Arrival Channel::step(const control::Message& message) noexcept {
+template <class Payload>
+typename ChannelOf<Payload>::Delivery ChannelOf<Payload>::step(const Payload& message) noexcept {
   ++sent_;
   const bool lost = loss_fraction_ > 0.0 && random_.uniform() < loss_fraction_;
   const double late = jitter_ticks_ > 0.0 ? std::floor(random_.uniform() * (jitter_ticks_ + 1.0)) : 0.0;
@@ -30,7 +33,10 @@ control::Arrival Channel::step(const control::Message& message) noexcept {
   if (fresh) newest_ = arriving;
   arriving.number = 0;
   now_ = now_ + 1 == slots_.size() ? 0 : now_ + 1;
-  return {.message = newest_.message, .fresh = fresh};
+  return {.message = newest_.message, .fresh = fresh, .sent_ticks_ago = sent_ - newest_.number};
 }
 
-}  // namespace tactus::simulation
+template class ChannelOf<control::Message>;
+template class ChannelOf<control::Packet>;
+
+}  // namespace tactus::station

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <tactus/core/parameters.hpp>
-#include <tactus/runtime/servo_thread.hpp>
+#include <tactus/station/tick.hpp>
 
 #include <array>
 
-namespace tactus::runtime {
+namespace tactus::station {
 
 /// What a device can do, and what is never asked of it: `DeviceGuard` keeps it to that, whoever commands. 0: not
 /// stated. Positions and forces as in `tactus/control/site.hpp`: positive toward the environment, translated to the
@@ -59,4 +59,4 @@ class Device {
   [[nodiscard]] virtual DeviceHealth health() const noexcept = 0;
 };
 
-}  // namespace tactus::runtime
+}  // namespace tactus::station

@@ -1,11 +1,11 @@
-#include <tactus/simulation/channel.hpp>
+#include <tactus/station/channel.hpp>
 
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace tactus::simulation {
+namespace tactus::station {
 namespace channel_test {
 
 constexpr Seconds tick{1e-3};
@@ -15,16 +15,17 @@ Channel channel(const Channel::Params& params, const control::Message& initial =
 }
 
 /// What arrives when tick k sends k + 1.
-std::vector<control::Arrival> arrivals(Channel link, int ticks) {
-  std::vector<control::Arrival> all;
+std::vector<Channel::Delivery> arrivals(Channel link, int ticks) {
+  std::vector<Channel::Delivery> all;
   for (int k = 0; k < ticks; ++k) all.push_back(link.step({.position_m = k + 1.0}));
   return all;
 }
 
 TEST(Channel, WithoutDelayAMessageArrivesInTheTickThatSentIt) {
-  for (const auto& [message, fresh] : arrivals(channel({}), 1)) {
+  for (const auto& [message, fresh, ago] : arrivals(channel({}), 1)) {
     EXPECT_EQ(message.position_m, 1.0);
     EXPECT_TRUE(fresh);
+    EXPECT_EQ(ago, 0);
   }
 }
 
@@ -33,6 +34,7 @@ TEST(Channel, ADelayOfNTicksShiftsEveryMessageByNAndTheInitialOneStandsInUntilTh
   for (int k = 0; k < 100; ++k) {
     const auto& arrival = all[static_cast<std::size_t>(k)];
     EXPECT_EQ(arrival.fresh, k >= 7) << k;
+    EXPECT_EQ(arrival.fresh ? arrival.sent_ticks_ago : 7, 7) << k;
     EXPECT_EQ(arrival.message.position_m, k >= 7 ? k - 6.0 : -5.0) << k;
   }
 }
@@ -85,4 +87,4 @@ TEST(Channel, TheSameSeedGivesTheSameLossAndAnotherSeedAnother) {
 }
 
 }  // namespace channel_test
-}  // namespace tactus::simulation
+}  // namespace tactus::station

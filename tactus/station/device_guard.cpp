@@ -1,11 +1,11 @@
-#include <tactus/runtime/device_guard.hpp>
+#include <tactus/station/device_guard.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
-namespace tactus::runtime {
+namespace tactus::station {
 
 namespace {
 
@@ -143,4 +143,4 @@ void GuardedDevice::write(const DeviceCommand& command) noexcept {
   written_ns_ = now_.deadline_ns;
 }
 
-}  // namespace tactus::runtime
+}  // namespace tactus::station

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <tactus/station/device_guard.hpp>
+#include <tactus/station/site_pair.hpp>
+
+#include <array>
+#include <memory>
+#include <utility>
+
+namespace tactus::station {
+
+/// Both sites of a teleoperator on one computer, each with its device: what a servo thread steps.
+///
+/// Where a device can do less than its safety gate lets through, the gate is tightened to that: what a site believes to
+/// be applied then is. A device that is not simulated stands behind a `GuardedDevice`, and is refused where it states
+/// no limits of its own, where a limit of its gates was never chosen, and by sites without supervision.
+template <class Pair>
+class DevicePair {
+ public:
+  using Output = typename Pair::Output;
+  using Wish = typename Pair::Wish;
+
+  /// For devices that outlive it, at rest with the slave at `slave_start_m`. Errors name `control`, `channel`, `master`
+  /// and `slave`, the last two where a limit of a device is no limit.
+  static Result<DevicePair> make(const control::ControlParams& control, const LinkParams& channel, Seconds tick,
+                                 double slave_start_m, Device& master, Device& slave);
+
+  /// One tick. `wish` is what the person presses, at both sites, or, without supervision, the share of the force that
+  /// is let in. Real-time safe as far as the devices are.
+  Output step(const Tick& tick, const Wish& wish) noexcept { return sites_.step(*master_, *slave_, tick, wish); }
+  /// One tick of sites that want no force any more: what a loop does from its end on, tick by tick, until it is
+  /// `at_rest`. The force falls at the gates' rate limits or, under supervision, as in hold. Real-time safe as far as
+  /// the devices are.
+  Output let_go(const Tick& tick) noexcept { return step(tick, leaving()); }
+  /// No site commanded a force at the latest tick.
+  [[nodiscard]] bool at_rest() const noexcept { return sites_.at_rest(); }
+  /// Commands no force at once, whatever it was: for an end that cannot wait. Real-time safe as far as the devices are.
+  void release() noexcept {
+    master_->write({.enabled = false});
+    slave_->write({.enabled = false});
+  }
+  /// False once a safety gate has latched a fault.
+  [[nodiscard]] bool healthy() const noexcept { return sites_.healthy(); }
+  [[nodiscard]] const Pair& sites() const noexcept { return sites_; }
+
+ private:
+  using Walls = std::array<std::unique_ptr<GuardedDevice>, 2>;
+  DevicePair(Pair sites, Walls walls, Device& master, Device& slave)
+      : sites_(std::move(sites)),
+        walls_(std::move(walls)),
+        master_(walls_[0] ? walls_[0].get() : &master),
+        slave_(walls_[1] ? walls_[1].get() : &slave) {}
+  static Wish leaving() noexcept {
+    if constexpr (std::is_same_v<Wish, control::SiteRequests>) {
+      return {.leave = true};
+    } else {
+      return 0.0;
+    }
+  }
+
+  Pair sites_;
+  Walls walls_;  ///< before devices that are not simulated
+  Device* master_;
+  Device* slave_;
+};
+
+/// With a person who arms it and holds a dead-man switch.
+using LocalTeleoperator = DevicePair<SupervisedPair>;
+/// As in the papers, at work from the first tick on. For simulated devices only.
+using BareTeleoperator = DevicePair<BarePair>;
+
+}  // namespace tactus::station

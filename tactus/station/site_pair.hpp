@@ -1,0 +1,120 @@
+#pragma once
+
+#include <tactus/control/architecture.hpp>
+#include <tactus/station/channel.hpp>
+#include <tactus/station/step.hpp>
+
+#include <type_traits>
+#include <utility>
+
+namespace tactus::station {
+
+/// Both sites of a teleoperator on one clock, with the channel between them: the same in virtual and in real time.
+///
+/// The master steps, then the slave. What is sent to the slave with no channel delay arrives in the same tick, what is
+/// sent to the master at the next.
+template <class Master, class Slave>
+class SitePair {
+  static constexpr bool supervised = Supervised<Master>;
+  using Payload = std::conditional_t<supervised, control::Packet, control::Message>;
+  using Way = ChannelOf<Payload>;
+
+ public:
+  struct Output {
+    Step<Master> master;
+    Step<Slave> slave;
+  };
+  /// Of supervised sites what the person presses, at both; of others the share of the controllers' forces.
+  using Wish = typename Master::Wish;
+
+  /// With a slave that rests at `slave_start_m`. Errors name `control` and `channel`.
+  static Result<SitePair> make(const control::ControlParams& control, const LinkParams& channel, Seconds tick,
+                               double slave_start_m);
+
+  /// One tick. Real-time safe as far as the devices are.
+  template <Drivable MasterDevice, Drivable SlaveDevice>
+  Output step(MasterDevice& master, SlaveDevice& slave, const Tick& tick, const Wish& wish) noexcept {
+    typename Way::Delivery at_slave;
+    End of_master{
+        .heard = at_master_, .out = to_slave_, .other_hears = at_slave, .tick_s = tick_s_, .a_tick_later = true};
+    End of_slave{
+        .heard = at_slave, .out = to_master_, .other_hears = at_master_, .tick_s = tick_s_, .a_tick_later = false};
+    Output output;
+    output.master = station::step(master_, master, of_master, tick, wish);
+    output.slave = station::step(slave_, slave, of_slave, tick, wish);
+    return output;
+  }
+
+  /// Goes on with the channels of `made`, which has not been stepped, and gives it the own ones; what is on its way is
+  /// lost. Between ticks. Real-time safe.
+  void exchange_channels(SitePair& made) noexcept requires(!supervised);
+  /// Goes on with the controllers of `made`, brought to rest at the latest tick (`Site::exchange_controller`); the
+  /// gates stay. Between ticks; does not allocate, but takes as long as a thousand ticks.
+  void exchange_controllers(SitePair& made) noexcept requires(!supervised);
+
+  [[nodiscard]] const Master& master() const noexcept { return master_; }
+  [[nodiscard]] const Slave& slave() const noexcept { return slave_; }
+  /// Neither site commands a force.
+  [[nodiscard]] bool at_rest() const noexcept {
+    return !gated(master_).passes_a_force() && !gated(slave_).passes_a_force();
+  }
+  /// False once a safety gate has latched a fault.
+  [[nodiscard]] bool healthy() const noexcept {
+    return gated(master_).fault() == control::GateFault::none && gated(slave_).fault() == control::GateFault::none;
+  }
+
+ private:
+  /// The way of one site: what it hears at this tick, and the channel into which it speaks.
+  struct End {
+    const typename Way::Delivery& heard;
+    Way& out;
+    typename Way::Delivery& other_hears;
+    double tick_s;
+    bool a_tick_later;  ///< what arrived has lain there since the tick before
+    [[nodiscard]] control::Arrival arrival() const noexcept requires(!supervised) {
+      return {.message = heard.message, .fresh = heard.fresh};
+    }
+    void send(const control::Message& message) noexcept requires(!supervised) { other_hears = out.step(message); }
+    template <class Take>
+    requires supervised void receive(const Tick& tick, Take&& take) noexcept {
+      if (!heard.fresh) return;
+      control::Packet packet = heard.message;
+      const std::int64_t lain_ticks = a_tick_later ? tick.missed + 1 : 0;
+      packet.age_s = static_cast<double>(heard.sent_ticks_ago + lain_ticks) * tick_s;
+      take(packet);
+    }
+    void send(const control::Packet& packet, const Tick&) noexcept requires supervised {
+      other_hears = out.step(packet);
+    }
+  };
+
+  template <class Site>
+  static const auto& gated(const Site& site) noexcept {
+    if constexpr (supervised) {
+      return site.site();
+    } else {
+      return site;
+    }
+  }
+
+  SitePair(Master master, Slave slave, Way to_slave, Way to_master, Seconds tick)
+      : master_(std::move(master)),
+        slave_(std::move(slave)),
+        to_slave_(std::move(to_slave)),
+        to_master_(std::move(to_master)),
+        tick_s_(tick.value) {}
+
+  Master master_;
+  Slave slave_;
+  Way to_slave_;
+  Way to_master_;
+  typename Way::Delivery at_master_;  ///< for its next tick
+  double tick_s_;
+};
+
+/// As sites run on a machine: armed by a person, watched, held where anything is wrong.
+using SupervisedPair = SitePair<control::SupervisedMaster, control::SupervisedSlave>;
+/// As the papers have them: a controller and its gate, at work from the first tick on. For simulated devices.
+using BarePair = SitePair<control::MasterSite, control::SlaveSite>;
+
+}  // namespace tactus::station

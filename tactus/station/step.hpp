@@ -1,0 +1,88 @@
+#pragma once
+
+#include <tactus/control/supervised_site.hpp>
+#include <tactus/station/device.hpp>
+
+#include <concepts>
+#include <limits>
+
+namespace tactus::station {
+
+/// What the tick asks of what it drives. A `Device` is such, and so is a plant in virtual time.
+template <class D>
+concept Drivable = requires(D& device, const Tick& tick, const DeviceCommand& command) {
+  { device.read(tick) }
+  noexcept->std::same_as<DeviceReading>;
+  { device.write(command) }
+  noexcept;
+};
+
+/// A site that takes packets and is asked things by a person. One without supervision hears messages, and is told which
+/// share of its controller's force to let in.
+template <class Site>
+concept Supervised = requires(Site& site, const control::Packet& packet) {
+  { site.take(packet) }
+  noexcept;
+};
+
+/// What one tick of a site showed.
+template <class Site>
+struct Step {
+  DeviceReading reading;
+  typename Site::Output output;
+};
+
+inline void put(const DeviceReading& reading, control::MasterInput& sensors) noexcept {
+  sensors.motor_position_m = reading.position_m;
+  sensors.hand_force_N = reading.force_N;
+  sensors.grip = reading.grip;
+}
+inline void put(const DeviceReading& reading, control::SlaveInput& sensors) noexcept {
+  sensors.motor_position_m = reading.position_m;
+  sensors.tip_force_N = reading.force_N;
+}
+inline DeviceCommand command_of(const control::MasterOutput& output, bool enabled = true) noexcept {
+  return {.force_N = output.motor_force_N, .handle_force_N = output.handle_force_N, .enabled = enabled};
+}
+inline DeviceCommand command_of(const control::SlaveOutput& output, bool enabled = true) noexcept {
+  return {.force_N = output.motor_force_N, .handle_force_N = 0.0, .enabled = enabled};
+}
+
+/// What the device reads. Of a device that is lost the position is not a number, so that its site lets go.
+template <Drivable Device>
+DeviceReading trusted_reading(Device& device, const Tick& tick) noexcept {
+  DeviceReading reading = device.read(tick);
+  if constexpr (requires { device.health(); }) {
+    if (device.health() == DeviceHealth::lost) reading.position_m = std::numeric_limits<double>::quiet_NaN();
+  }
+  return reading;
+}
+
+/// The tick of a site where it stands; whatever the clock, all that runs a site runs this:
+/// device → what came on the way → site, its gate last → device → way.
+///
+/// A way of a supervised site has `receive(tick, take)`, which hands each packet that has come to `take`, and
+/// `send(packet, tick)`; one of a site without supervision has `arrival()` and `send(message)`. `wish` is what the
+/// person presses, or the share of the force. Real-time safe as far as device and way are.
+template <class Site, Drivable Device, class Way>
+Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const typename Site::Wish& wish) noexcept {
+  Step<Site> done;
+  done.reading = trusted_reading(device, tick);
+  typename Site::Sensors sensors;
+  put(done.reading, sensors);
+  const std::int64_t elapsed_ticks = tick.missed + 1;
+  if constexpr (Supervised<Site>) {
+    way.receive(tick, [&site](const control::Packet& packet) noexcept { return site.take(packet); });
+    done.output = site.step({.sensors = sensors, .requests = wish, .elapsed_ticks = elapsed_ticks});
+    device.write(command_of(done.output.site, done.output.record.enabled));
+    way.send(done.output.packet, tick);
+  } else {
+    sensors.arrival = way.arrival();
+    done.output = site.step(sensors, wish, elapsed_ticks);
+    device.write(command_of(done.output));
+    way.send(done.output.message);
+  }
+  return done;
+}
+
+}  // namespace tactus::station

@@ -1,0 +1,308 @@
+#include <tactus/control/protective_limits.hpp>
+#include <tactus/station/local_teleoperator.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include <gtest/gtest.h>
+
+namespace tactus::station {
+namespace {
+
+using control::SiteRequests;
+using control::SiteState;
+
+constexpr Seconds period{200e-6};
+
+/// A tick at its deadline, as a clock that is never late gives it.
+Tick tick(std::int64_t number, std::int64_t missed = 0) {
+  const std::int64_t deadline_ns = 200'000 * number;
+  return {.number = number, .missed = missed, .deadline_ns = deadline_ns, .began_ns = deadline_ns};
+}
+
+/// A device that says what it is told to say.
+class ScriptedDevice final : public Device {
+ public:
+  [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] bool simulated() const noexcept override { return true; }
+  DeviceReading read(const Tick&) noexcept override { return reading; }
+  void write(const DeviceCommand& given) noexcept override { command = given; }
+  [[nodiscard]] DeviceHealth health() const noexcept override { return state; }
+
+  explicit ScriptedDevice(const DeviceLimits& limits) : limits_(limits) {}
+  DeviceReading reading;
+  DeviceCommand command;
+  DeviceHealth state = DeviceHealth::good;
+
+ private:
+  DeviceLimits limits_;
+};
+
+/// A carriage of 0.2 kg with a damper of 4 N s/m, and a spring to where a hand is or a wall begins, stepped once a tick
+/// (semi-implicit Euler). It says that it is no simulation.
+class Carriage final : public Device {
+ public:
+  explicit Carriage(const DeviceLimits& limits, bool simulated = false) : limits_(limits), simulated_(simulated) {}
+
+  double hand_N_per_m = 0.0, hand_m = 0.0;  ///< at a master
+  double wall_N_per_m = 0.0, wall_m = 0.0;  ///< at a slave
+  DeviceCommand command{.enabled = false};
+  DeviceHealth state = DeviceHealth::good;
+  double largest_step_N = 0.0;
+
+  [[nodiscard]] DeviceLimits limits() const override { return limits_; }
+  [[nodiscard]] bool simulated() const noexcept override { return simulated_; }
+  DeviceReading read(const Tick&) noexcept override {
+    const double hand_N = hand_N_per_m * (hand_m - position_m_);
+    const double wall_N = position_m_ > wall_m ? wall_N_per_m * (position_m_ - wall_m) : 0.0;
+    const double motor_N = command.enabled ? command.force_N : 0.0;
+    velocity_m_per_s_ += period.value * (motor_N + hand_N - wall_N - 4.0 * velocity_m_per_s_) / 0.2;
+    position_m_ += period.value * velocity_m_per_s_;
+    return {.position_m = position_m_, .force_N = hand_N_per_m > 0.0 ? hand_N : wall_N};
+  }
+  void write(const DeviceCommand& given) noexcept override {
+    const double before_N = command.enabled ? command.force_N : 0.0;
+    command = given;
+    largest_step_N = std::fmax(largest_step_N, std::fabs((given.enabled ? given.force_N : 0.0) - before_N));
+  }
+  [[nodiscard]] DeviceHealth health() const noexcept override { return state; }
+  [[nodiscard]] double position_m() const { return position_m_; }
+  void carry_to(double position_m) { position_m_ = position_m; }
+
+ private:
+  DeviceLimits limits_;
+  bool simulated_;
+  double position_m_ = 0.0, velocity_m_per_s_ = 0.0;
+};
+
+constexpr DeviceLimits limits{.force_N = 4.0, .rate_N_per_s = 1000.0, .velocity_m_per_s = 2.0, .position_m = 0.05};
+
+/// Every number that is no time, half of its default.
+template <Described T>
+void choose(T& params) {
+  for_each_field<T>([&](const auto& f) {
+    using Value = typename std::remove_cvref_t<decltype(f)>::value_type;
+    if constexpr (Described<Value>) {
+      choose(params.*f.member);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      if (std::string(f.unit.suffix) != units::second.suffix) params.*f.member *= 0.5;
+    }
+  });
+}
+
+/// What somebody must have chosen before a device that is not simulated is driven.
+control::ControlParams chosen() {
+  control::ControlParams control;
+  choose(control.gate);
+  choose(control.slave_gate);
+  control.supervision.force_sensor.residual_limit_N = 5.0;
+  control.supervision.probe.force_N = 0.5;
+  control.supervision.probe.least_m = 2e-5;
+  return control;
+}
+
+/// Two carriages, a hand and a wall, and a person who aligns, arms and presses.
+struct Bench {
+  Carriage master{limits}, slave{limits};
+  LocalTeleoperator loop;
+  std::int64_t number = 0;
+
+  explicit Bench(const control::ControlParams& control = chosen(), const LinkParams& channel = {})
+      : loop(LocalTeleoperator::make(control, channel, period, 0.0, master, slave).value()) {
+    master.hand_N_per_m = 60.0;
+    slave.wall_N_per_m = 500.0;
+    slave.wall_m = 0.01;
+  }
+  void run(double duration_s, const SiteRequests& pressed) {
+    for (const std::int64_t end = number + std::lround(duration_s / period.value); number < end; ++number) {
+      loop.step(tick(number), pressed);
+    }
+  }
+  [[nodiscard]] bool both(SiteState state) const {
+    return loop.sites().master().state() == state && loop.sites().slave().state() == state;
+  }
+  void follow() {
+    run(0.05, {});
+    run(0.05, {.align = true});
+    run(0.05, {.arm = true});
+    run(0.6, {.dead_man = true});
+  }
+};
+
+TEST(LocalTeleoperator, NothingMovesUntilAPersonHasArmedItAndHoldsTheSwitch) {
+  Bench bench;
+  bench.master.hand_m = 0.005;
+  bench.run(0.3, {.dead_man = true});
+  EXPECT_TRUE(bench.both(SiteState::configure));
+  EXPECT_EQ(bench.slave.command.force_N, 0.0);
+  EXPECT_FALSE(bench.slave.command.enabled);
+  bench.run(0.05, {.align = true});
+  bench.run(0.05, {.arm = true});
+  bench.run(0.6, {});
+  EXPECT_TRUE(bench.both(SiteState::armed)) << "both motors were tried, and the switch is not pressed";
+  EXPECT_NEAR(bench.slave.position_m(), 0.0, 1e-3);
+  bench.run(0.3, {.dead_man = true});
+  EXPECT_TRUE(bench.both(SiteState::active));
+  bench.master.hand_m = 0.015;
+  bench.run(0.5, {.dead_man = true});
+  EXPECT_GT(bench.slave.position_m(), bench.slave.wall_m) << "the slave follows the hand into the wall";
+  EXPECT_LT(bench.master.command.force_N, -0.1) << "and the wall pushes the hand back";
+  bench.run(0.5, {});
+  EXPECT_TRUE(bench.both(SiteState::armed));
+  EXPECT_EQ(bench.master.command.force_N, 0.0);
+}
+
+TEST(LocalTeleoperator, ThroughADelayedAndLossyChannelItFollowsAndASilentOneHoldsIt) {
+  Bench bench(chosen(), {.to_slave = {.delay_s = 0.01, .jitter_s = 0.004, .loss_fraction = 0.05, .seed = 3},
+                         .to_master = {.delay_s = 0.01, .jitter_s = 0.004, .loss_fraction = 0.05, .seed = 4}});
+  bench.follow();
+  EXPECT_TRUE(bench.both(SiteState::active));
+  Bench cut(chosen(), {.to_slave = {.loss_fraction = 1.0}, .to_master = {}});
+  cut.follow();
+  EXPECT_FALSE(cut.both(SiteState::active));
+  EXPECT_EQ(cut.master.command.force_N, 0.0);
+}
+
+TEST(LocalTeleoperator, PacketsThatAreTooOldAreNotApplied) {
+  control::ControlParams control = chosen();
+  control.supervision.packets.longest_age_s = 0.009;
+  Bench late(control, {.to_slave = {.delay_s = 0.01}, .to_master = {}});
+  late.follow();
+  EXPECT_FALSE(late.both(SiteState::active));
+  Bench early(control, {.to_slave = {.delay_s = 0.008}, .to_master = {}});
+  early.follow();
+  EXPECT_TRUE(early.both(SiteState::active));
+}
+
+TEST(LocalTeleoperator, AMotorWiredBackwardsIsFoundWhenItIsArmed) {
+  class Reversed final : public Device {
+   public:
+    explicit Reversed(Device& device) : device_(&device) {}
+    [[nodiscard]] DeviceLimits limits() const override { return device_->limits(); }
+    DeviceReading read(const Tick& now) noexcept override { return device_->read(now); }
+    void write(const DeviceCommand& given) noexcept override {
+      device_->write({.force_N = -given.force_N, .enabled = given.enabled});
+    }
+    [[nodiscard]] DeviceHealth health() const noexcept override { return device_->health(); }
+
+   private:
+    Device* device_;
+  };
+  Carriage master(limits), carriage(limits);
+  master.hand_N_per_m = 60.0;
+  Reversed slave(carriage);
+  auto loop = LocalTeleoperator::make(chosen(), {}, period, 0.0, master, slave).value();
+  std::int64_t number = 0;
+  const auto run = [&](std::int64_t ticks, const SiteRequests& pressed) {
+    for (const std::int64_t end = number + ticks; number < end; ++number) loop.step(tick(number), pressed);
+  };
+  run(250, {});
+  run(250, {.align = true});
+  run(250, {.arm = true});
+  run(5000, {.dead_man = true});
+  EXPECT_NE(loop.sites().slave().state(), SiteState::active);
+  EXPECT_NE(loop.sites().master().state(), SiteState::active);
+}
+
+TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedIsRefusedUntilSomebodyChoseItsLimits) {
+  DeviceLimits no_rate = limits;
+  no_rate.rate_N_per_s = 0.0;
+  Carriage simulation({.force_N = 5.0}, true), real(limits), unlimited(no_rate);
+  const auto refused_for = [&](const control::ControlParams& control, Device& master, Device& slave) {
+    const auto made = LocalTeleoperator::make(control, {}, period, 0.0, master, slave);
+    return made ? std::string("nothing") : made.error().parameter;
+  };
+  EXPECT_EQ(refused_for({}, simulation, simulation), "nothing");
+  EXPECT_EQ(refused_for({}, real, simulation), "control.gate.force_limit_N");
+  EXPECT_EQ(refused_for({}, simulation, real), "control.slave_gate.force_limit_N");
+  EXPECT_EQ(refused_for(chosen(), real, simulation), "nothing");
+  EXPECT_EQ(refused_for(chosen(), simulation, real), "nothing");
+  EXPECT_EQ(refused_for(chosen(), unlimited, simulation), "master.rate_N_per_s");
+}
+
+TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedStandsBehindItsWall) {
+  Bench bench;
+  bench.follow();
+  ASSERT_TRUE(bench.both(SiteState::active));
+  EXPECT_LE(bench.slave.largest_step_N, 1000.0 * period.value * (1.0 + 1e-9));
+  bench.slave.carry_to(-0.051);
+  bench.run(0.05, {.dead_man = true});
+  EXPECT_EQ(bench.slave.command.force_N, 0.0);
+  EXPECT_FALSE(bench.slave.command.enabled);
+  EXPECT_FALSE(bench.loop.healthy()) << "its site let go too";
+}
+
+TEST(LocalTeleoperator, LettingGoEndsWithoutAForceAndWithoutAStepInIt) {
+  Bench bench;
+  bench.follow();
+  bench.master.hand_m = 0.02;
+  bench.run(0.5, {.dead_man = true});
+  ASSERT_LT(bench.master.command.force_N, -0.1);
+  bench.master.largest_step_N = 0.0;
+  int ticks = 0;
+  while (ticks < 5000 && (ticks == 0 || !bench.loop.at_rest())) {
+    bench.loop.let_go(tick(bench.number++));
+    ++ticks;
+  }
+  EXPECT_LT(ticks, 5000);
+  EXPECT_EQ(bench.master.command.force_N, 0.0);
+  EXPECT_LE(bench.master.largest_step_N, 1000.0 * period.value * (1.0 + 1e-9));
+}
+
+TEST(LocalTeleoperator, ASiteWhoseDeviceIsLostLetsGo) {
+  Bench bench;
+  bench.follow();
+  bench.master.hand_m = 0.02;
+  bench.run(0.3, {.dead_man = true});
+  ASSERT_GT(bench.slave.command.force_N, 0.1);
+  bench.slave.state = DeviceHealth::lost;
+  bench.run(0.4, {.dead_man = true});
+  EXPECT_EQ(bench.slave.command.force_N, 0.0);
+  EXPECT_FALSE(bench.loop.healthy());
+}
+
+TEST(BareTeleoperator, DrivesNoDeviceThatIsNotSimulated) {
+  Carriage simulation({.force_N = 5.0}, true), real(limits);
+  const auto refused = BareTeleoperator::make(chosen(), {}, period, 0.0, simulation, real);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().parameter, "slave");
+  EXPECT_TRUE(BareTeleoperator::make(chosen(), {}, period, 0.0, simulation, simulation));
+}
+
+TEST(BareTeleoperator, TheGateIsTightenedToWhatTheDeviceCanDo) {
+  ScriptedDevice master({.force_N = 0.25});
+  ScriptedDevice slave({.force_N = 3.0});
+  control::ControlParams control;
+  control.force_limit_N = 5.0;
+  control.force_gain = 1.0;
+  auto loop = BareTeleoperator::make(control, {}, period, 0.0, master, slave);
+  ASSERT_TRUE(loop);
+  slave.reading.force_N = 4.0;
+  slave.reading.position_m = -1.0;
+  for (std::int64_t number = 0; number < 100; ++number) loop->step(tick(number), 1.0);
+  EXPECT_DOUBLE_EQ(master.command.force_N, -0.25);
+  EXPECT_DOUBLE_EQ(slave.command.force_N, 3.0);
+  loop->release();
+  EXPECT_EQ(master.command.force_N, 0.0);
+  EXPECT_EQ(slave.command.force_N, 0.0);
+}
+
+TEST(BareTeleoperator, ASiteWhoseDeviceIsLostLetsGo) {
+  ScriptedDevice master({.force_N = 5.0});
+  ScriptedDevice slave({.force_N = 5.0});
+  auto loop = BareTeleoperator::make({}, {}, period, 0.0, master, slave);
+  ASSERT_TRUE(loop);
+  slave.reading.position_m = -0.01;
+  for (std::int64_t number = 0; number < 50; ++number) loop->step(tick(number), 1.0);
+  EXPECT_GT(slave.command.force_N, 0.1);
+  slave.state = DeviceHealth::lost;
+  for (std::int64_t number = 50; number < 2000; ++number) loop->step(tick(number), 1.0);
+  EXPECT_EQ(slave.command.force_N, 0.0);
+  EXPECT_FALSE(loop->healthy());
+}
+
+}  // namespace
+}  // namespace tactus::station
