@@ -1,5 +1,6 @@
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
+#include <tactus/runtime/servo_thread.hpp>
 #include <tactus/runtime/shared_device.hpp>
 #include <tactus/simulation/quantile.hpp>
 
