@@ -8,6 +8,7 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/experiment.hpp>
+#include <tactus/station/device_registry.hpp>
 
 #include <filesystem>
 #include <string>
@@ -59,6 +60,13 @@ Result<link::Endpoint::Settings> link_settings(const SiteOptions& options) {
   return link::Endpoint::Settings{.site = role_of(options), .peer = *peer, .listen = *listen, .key = key};
 }
 
+Result<SiteDevice> device_of(const SiteOptions& options, const simulation::TappingParams& params) {
+  if (options.device.empty()) return simulated_device(params, role_of(options));
+  auto device = station::open_device(options.device, role_of(options), Seconds{1.0 / params.servo.rate_Hz});
+  if (!device) return device.error();
+  return SiteDevice{.device = *std::move(device)};
+}
+
 /// Files first: a terminal that nobody reads keeps nothing from them, and with them what it misses is no loss.
 Check leave_outcome(const simulation::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
                     LineWriter& output, LineWriter& errors) {
@@ -90,6 +98,8 @@ void add_site_options(CLI::App& verb, SiteOptions& options) {
   verb.add_flag("--unencrypted", options.unencrypted, "Plain text, on this host's loopback only")->group(group);
   verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as the slave is heard")->group(group);
   add("--duration-s", options.duration_s, "How long to run; 0 is until interrupted", "S")->capture_default_str();
+  add("--device", options.device, "Drive this device, which the program must bring, not the simulated one", "NAME")
+      ->needs("--site");
 }
 
 Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_params, const simulation::Request& request,
@@ -115,8 +125,10 @@ Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_para
   LineWriter& lines = folder.json() ? errors : output;
   const auto person = Person::listen_to(STDIN_FILENO, run.role, exchange, errors);
   if (!person) return person.error();
-  auto loop =
-      SiteLoop::make(*params, {.link = *link, .duration_s = options.duration_s, .arm_at_once = options.arm}, exchange);
+  auto device = device_of(options, *params);
+  if (!device) return document.locate(device.error());
+  auto loop = SiteLoop::make(*params, {.link = *link, .duration_s = options.duration_s, .arm_at_once = options.arm},
+                             exchange, *std::move(device));
   if (!loop) return document.locate(loop.error());
   const std::string configuration = configuration::to_toml(*params);
   std::optional<SiteLog> log;

@@ -25,6 +25,7 @@ struct SiteOptions {
   bool unencrypted = false;
   bool arm = false;
   double duration_s = 0.0;
+  std::string device;  ///< by its name in the registry; empty for the one that the experiment describes
 };
 
 /// Adds these options to the verb.

@@ -1,5 +1,7 @@
 #include <tactus/cli/site_loop.hpp>
+#include <tactus/control/agreed_parameters.hpp>
 #include <tactus/simulation/model_mismatch.hpp>
+#include <tactus/station/wall.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -10,86 +12,55 @@ namespace tactus::cli {
 
 namespace {
 
-constexpr double rest_s = 0.3;
 constexpr double resuming_s = 1.0;
 
 }  // namespace
 
-RepeatedTaps::RepeatedTaps(const simulation::TappingParams& params) {
-  const simulation::TapSeries& taps = params.task;
-  const double depth_m = 0.5 * (taps.shallowest_m + taps.deepest_m);
-  const double speed_m_per_s = 0.5 * (taps.slowest_m_per_s + taps.fastest_m_per_s);
-  const double wall_m = params.environment.position_m / params.control.position_scale;
-  const double reach_s = mechanics::MinimumJerk::duration_for(2.0 * depth_m, speed_m_per_s);
-  there_ = {.start_m = wall_m - depth_m, .end_m = wall_m + depth_m, .start_time_s = rest_s, .duration_s = reach_s};
-  back_ = {.start_m = 0.0,
-           .end_m = -2.0 * depth_m,
-           .start_time_s = rest_s + reach_s + taps.observation_s,
-           .duration_s = reach_s};
-  period_s_ = back_.start_time_s + reach_s;
-}
-
-double RepeatedTaps::position_m(double time_s) const noexcept {
-  const double time_in_period_s = std::fmod(time_s, period_s_);
-  return there_.position_m(time_in_period_s) + back_.position_m(time_in_period_s);
-}
-
 Result<SiteLoop> SiteLoop::make(const simulation::TappingParams& params, const Settings& settings,
-                                SiteExchange& exchange) {
+                                SiteExchange& exchange, SiteDevice device) {
   if (auto error = validate(params)) return *std::move(error);
-  const auto clock = simulation::Clock::make(params.servo, params.plant);
-  if (!clock) return clock.error();
-  const Seconds tick{clock->tick_s};
+  const Seconds tick{1.0 / params.servo.rate_Hz};
   control::ControlParams control = params.control;
   control.model = simulation::mismatched(control.model, params.task.mismatch);
-  const RepeatedTaps path(params);
-  const double slave_start_m = control.position_scale * path.start_m();
-  const bool is_master = settings.link.site == control::SiteRole::master;
+  const control::SiteRole role = settings.link.site;
+  auto wall = station::wall_before(*device.device, control, role);
+  if (!wall) return wall.error();
   auto endpoint = link::Endpoint::make(settings.link);
   if (!endpoint) return endpoint.error();
-  auto work = [&]() -> Result<Work> {
-    if (is_master) {
-      const auto plant = simulation::MasterPlant::make(params.master, params.person, *clock, path.start_m());
-      if (!plant) return plant.error();
-      auto site = control::make_supervised_master(control, endpoint->session(), tick);
-      if (!site) return under("control", site.error());
-      return Work(Master{.plant = *plant, .site = *std::move(site), .path = path, .clock = *clock});
+  const control::ControlParams own = station::tightened(control, role, device.device->limits());
+  // What the device allows is this site's own affair.
+  const control::Agreement agreement = control::agreement_of(control, tick);
+  auto site = [&]() -> Result<Site> {
+    if (role == control::SiteRole::master) {
+      auto made = control::make_supervised_master(own, endpoint->session(), tick, agreement);
+      if (!made) return under("control", made.error());
+      return Site(*std::move(made));
     }
-    const auto plant = simulation::SlavePlant::make(params.slave, params.environment, *clock, slave_start_m);
-    if (!plant) return plant.error();
-    auto site = control::make_supervised_slave(control, endpoint->session(), tick);
-    if (!site) return under("control", site.error());
-    return Work(Slave{.plant = *plant, .site = *std::move(site), .clock = *clock});
+    auto made = control::make_supervised_slave(own, endpoint->session(), tick, agreement);
+    if (!made) return under("control", made.error());
+    return Site(*std::move(made));
   }();
-  if (!work) return work.error();
-  const auto& gate = is_master ? control.gate : control.slave_gate;
-  return SiteLoop(settings, exchange, *std::move(endpoint), *std::move(work), tick.value, control.supervision,
-                  gate.rate_limit_N_per_s * tick.value);
+  if (!site) return site.error();
+  const auto& gate = role == control::SiteRole::master ? own.gate : own.slave_gate;
+  return SiteLoop(settings, exchange, *std::move(endpoint), *std::move(site), std::move(device), *std::move(wall),
+                  tick.value, control.supervision, gate.rate_limit_N_per_s * tick.value);
 }
 
-SiteLoop::SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpoint endpoint, Work work, double tick_s,
+SiteLoop::SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpoint endpoint, Site site,
+                   SiteDevice device, std::unique_ptr<station::GuardedDevice> wall, double tick_s,
                    const control::SupervisionParams& supervision, double force_step_limit_N)
     : settings_(settings),
       exchange_(&exchange),
       endpoint_(std::move(endpoint)),
-      work_(std::move(work)),
+      site_(std::move(site)),
+      device_(std::move(device)),
+      wall_(std::move(wall)),
+      driven_(wall_ ? wall_.get() : device_.device.get()),
       tick_s_(tick_s),
       longest_age_s_(supervision.packets.longest_age_s),
       listen_before_arming_s_(supervision.watchdog.timeout_s),
       may_arm_at_once_(settings.arm_at_once) {
   totals_.force_step_limit_N = force_step_limit_N;
-}
-
-void SiteLoop::Master::advance() noexcept {
-  const double now_s = path_s;
-  if (site.state() == control::SiteState::active) path_s += clock.tick_s;
-  plant.begin_tick(path.position_m(now_s), path.position_m(path_s));
-  for (int i = 0; i < clock.substeps; ++i) plant.substep(i);
-}
-
-void SiteLoop::Slave::advance() noexcept {
-  plant.begin_tick();
-  for (int i = 0; i < clock.substeps; ++i) plant.substep(i);
 }
 
 /// The way of the site: the link, and the books of what came on it.
@@ -106,8 +77,8 @@ struct SiteLoop::LinkWay {
   }
 };
 
-template <class Site>
-SiteLogRecord SiteLoop::recorded(const station::Tick& tick, const station::Step<Site>& done) const noexcept {
+template <class Supervised>
+SiteLogRecord SiteLoop::recorded(const station::Tick& tick, const station::Step<Supervised>& done) const noexcept {
   SiteLogRecord record{done.output.record};
   record.tick = tick.number;
   record.missed = tick.missed;
@@ -117,7 +88,7 @@ SiteLogRecord SiteLoop::recorded(const station::Tick& tick, const station::Step<
   record.position_m = done.reading.position_m;
   record.read_force_N = done.reading.force_N;
   record.motor_force_N = done.output.site.motor_force_N;
-  if constexpr (std::is_same_v<Site, control::SupervisedMaster>) {
+  if constexpr (std::is_same_v<Supervised, control::SupervisedMaster>) {
     record.grip = done.reading.grip;
     record.handle_force_N = done.output.site.handle_force_N;
     record.induced_position_m = done.output.site.induced_position_m;
@@ -129,8 +100,10 @@ SiteLogRecord SiteLoop::recorded(const station::Tick& tick, const station::Step<
 }
 
 bool SiteLoop::operator()(const station::Tick& tick) noexcept {
-  // The motor is simulated and ends with the program.
-  if (exchange_->end.insisted()) return false;
+  if (exchange_->end.insisted()) {
+    driven_->write({.enabled = false});
+    return false;
+  }
   const std::int64_t now_ns = tick.began_ns;
   if (totals_.ticks == 0) {
     start_ns_ = now_ns;
@@ -139,13 +112,12 @@ bool SiteLoop::operator()(const station::Tick& tick) noexcept {
   const control::SiteState before = state();
   const control::SiteRequests pressed = requests();
   const SiteLogRecord record = std::visit(
-      [&](auto& work) noexcept {
+      [&](auto& site) noexcept {
         LinkWay way{*this};
-        const auto done = station::step(work.site, work.plant, way, tick, pressed);
-        work.advance();
-        return recorded(tick, done);
+        return recorded(tick, station::step(site, *driven_, way, tick, pressed));
       },
-      work_);
+      site_);
+  if (device_.person != nullptr) device_.person->follow(state() == control::SiteState::active);
   judge(before, record);
   measure(record);
   log(tick, record);
@@ -266,7 +238,7 @@ void SiteLoop::end_second() noexcept {
 
 void SiteLoop::tell_misfit(std::uint16_t other_version) noexcept {
   const auto& agreement =
-      std::visit([](const auto& work) -> const control::AgreementCheck& { return work.site.agreement(); }, work_);
+      std::visit([](const auto& site) -> const control::AgreementCheck& { return site.agreement(); }, site_);
   const std::int64_t session = agreement.session();
   // Until all cells have come, or had a second for it.
   const bool known = agreement.complete() || session == listened_session_;

@@ -1,18 +1,19 @@
 #pragma once
 
 #include <tactus/cli/site_buttons.hpp>
+#include <tactus/cli/site_device.hpp>
 #include <tactus/cli/site_exchange.hpp>
 #include <tactus/cli/site_log.hpp>
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/link/endpoint.hpp>
 #include <tactus/runtime/servo_thread.hpp>
-#include <tactus/simulation/site_plants.hpp>
 #include <tactus/simulation/tapping.hpp>
+#include <tactus/station/device_guard.hpp>
 #include <tactus/station/step.hpp>
 
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <variant>
 
 namespace tactus::cli {
@@ -51,21 +52,8 @@ struct SiteTotals {
   std::uint64_t dropped_by_kernel = 0;  ///< datagrams: none of the link by size and first bytes, or no room
 };
 
-/// The way a person taps on and on: there, press, back, rest, with the mean speed and depth of an experiment's taps.
-class RepeatedTaps {
- public:
-  explicit RepeatedTaps(const simulation::TappingParams& params);
-  [[nodiscard]] double position_m(double time_s) const noexcept;
-  [[nodiscard]] double start_m() const noexcept { return there_.start_m; }
-
- private:
-  mechanics::MinimumJerk there_;
-  mechanics::MinimumJerk back_;
-  double period_s_;
-};
-
-/// One site of two: the link, a supervised site and its simulated plant. The step of a servo thread; does not allocate,
-/// lock or block.
+/// One site of two: the link, a supervised site and its device. The step of a servo thread; does not allocate, lock or
+/// block, as far as the device does not.
 class SiteLoop {
  public:
   struct Settings {
@@ -74,9 +62,10 @@ class SiteLoop {
     bool arm_at_once = false;  ///< the master, as soon as it hears the slave for the first time
   };
 
-  /// `exchange` must outlive the loop. Errors: what is wrong with the parameters or the link.
+  /// `exchange` must outlive the loop. A device that is not simulated stands behind a wall, and needs limits that
+  /// somebody chose. Errors: what is wrong with the parameters, the device or the link.
   static Result<SiteLoop> make(const simulation::TappingParams& params, const Settings& settings,
-                               SiteExchange& exchange);
+                               SiteExchange& exchange, SiteDevice device);
 
   /// Every tick from now on goes there too. Before the first tick; what `streams` points to must outlive the last.
   void log_to(const SiteStreams& streams) noexcept { streams_ = streams; }
@@ -92,21 +81,7 @@ class SiteLoop {
 
  private:
   struct LinkWay;
-  struct Master {
-    simulation::MasterPlant plant;
-    control::SupervisedMaster site;
-    RepeatedTaps path;
-    simulation::Clock clock;
-    double path_s = 0.0;  ///< how far along the path the person is; a person waits while the site is not active
-    void advance() noexcept;
-  };
-  struct Slave {
-    simulation::SlavePlant plant;
-    control::SupervisedSlave site;
-    simulation::Clock clock;
-    void advance() noexcept;
-  };
-  using Work = std::variant<Master, Slave>;
+  using Site = std::variant<control::SupervisedMaster, control::SupervisedSlave>;
 
   /// Sums over applied packets.
   struct Arrivals {
@@ -118,11 +93,12 @@ class SiteLoop {
     }
   };
 
-  SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpoint endpoint, Work work, double tick_s,
-           const control::SupervisionParams& supervision, double force_step_limit_N);
+  SiteLoop(const Settings& settings, SiteExchange& exchange, link::Endpoint endpoint, Site site, SiteDevice device,
+           std::unique_ptr<station::GuardedDevice> wall, double tick_s, const control::SupervisionParams& supervision,
+           double force_step_limit_N);
   void count(const control::Packet& packet, control::PacketVerdict verdict) noexcept;
-  template <class Site>
-  [[nodiscard]] SiteLogRecord recorded(const station::Tick& tick, const station::Step<Site>& done) const noexcept;
+  template <class Supervised>
+  [[nodiscard]] SiteLogRecord recorded(const station::Tick& tick, const station::Step<Supervised>& done) const noexcept;
   control::SiteRequests requests() noexcept;
   /// Whether the site is about to end and has no force any more, or took too long to lose it.
   [[nodiscard]] bool ended(const SiteLogRecord& record, std::int64_t elapsed_ticks) noexcept;
@@ -132,7 +108,7 @@ class SiteLoop {
   void end_second() noexcept;
   void tell_misfit(std::uint16_t other_version) noexcept;
   [[nodiscard]] control::SiteState state() const noexcept {
-    return std::visit([](const auto& work) { return work.site.state(); }, work_);
+    return std::visit([](const auto& site) { return site.state(); }, site_);
   }
 
   Settings settings_;
@@ -140,7 +116,10 @@ class SiteLoop {
   SiteStreams streams_;
   link::Endpoint endpoint_;
   SiteButtons buttons_;
-  Work work_;
+  Site site_;
+  SiteDevice device_;
+  std::unique_ptr<station::GuardedDevice> wall_;  ///< before a device that is not simulated
+  station::Device* driven_;                       ///< the wall, or the device itself
   double tick_s_;
   double longest_age_s_;
   double listen_before_arming_s_;

@@ -84,10 +84,14 @@ SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
 }
 
 Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt) {
+  return make_supervised_master(params, session, dt, agreement_of(params, dt));
+}
+
+Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt,
+                                                const Agreement& agreement) {
   auto sites = make_sites(params, dt);
   if (!sites) return sites.error();
-  const auto supervision =
-      Supervision::make(params.supervision, SiteRole::master, session, dt, agreement_of(params, dt));
+  const auto supervision = Supervision::make(params.supervision, SiteRole::master, session, dt, agreement);
   if (!supervision) return under("supervision", supervision.error());
   const auto hand_sensor = ForceSensorCheck::make(params.supervision.hand_sensor, dt);
   if (!hand_sensor) return under("supervision.hand_sensor", hand_sensor.error());
@@ -95,10 +99,14 @@ Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std
 }
 
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt) {
+  return make_supervised_slave(params, session, dt, agreement_of(params, dt));
+}
+
+Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt,
+                                              const Agreement& agreement) {
   auto sites = make_sites(params, dt);
   if (!sites) return sites.error();
-  const auto supervision =
-      Supervision::make(params.supervision, SiteRole::slave, session, dt, agreement_of(params, dt));
+  const auto supervision = Supervision::make(params.supervision, SiteRole::slave, session, dt, agreement);
   if (!supervision) return under("supervision", supervision.error());
   const auto force_sensor = ForceSensorCheck::make(params.supervision.force_sensor, dt);
   if (!force_sensor) return under("supervision.force_sensor", force_sensor.error());

@@ -86,5 +86,10 @@ class SupervisedSlave {
 /// used. Errors: those of `make_sites` and of `Supervision`, under `supervision`.
 Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt);
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt);
+/// The same for a site whose `params` are tighter than what it has in common with the other, which `agreement` says.
+Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt,
+                                                const Agreement& agreement);
+Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt,
+                                              const Agreement& agreement);
 
 }  // namespace tactus::control

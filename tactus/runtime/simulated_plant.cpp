@@ -33,7 +33,7 @@ Result<SimulatedPlant> SimulatedPlant::make(const simulation::Tap& tap) {
   of_master.handle_force_N = std::min(params.master.handle_actuator.limit_N, params.control.handle_gate.force_limit_N);
   of_master.rate_N_per_s = std::max(of_master.rate_N_per_s, 2.0 * params.control.handle_gate.rate_limit_N_per_s);
   return SimulatedPlant(
-      SimulatedMaster(*master, *clock, tap.path, of_master),
+      SimulatedMaster(*master, *clock, FollowsPath(tap.path, clock->tick_s), of_master),
       SimulatedSlave(*slave, *clock, limits_of(params.slave.amplifier.limit_N, params.control.slave_gate)));
 }
 

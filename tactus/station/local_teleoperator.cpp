@@ -1,36 +1,7 @@
-#include <tactus/control/protective_limits.hpp>
 #include <tactus/station/local_teleoperator.hpp>
-
-#include <algorithm>
+#include <tactus/station/wall.hpp>
 
 namespace tactus::station {
-
-namespace {
-
-void tighten(double& limit, double of_device) {
-  if (of_device > 0.0) limit = std::min(limit, of_device);
-}
-
-/// Within what the device allows, so that the gate acts before the device's own wall does.
-void tighten(control::SafetyGate::Params& gate, const DeviceLimits& device) {
-  tighten(gate.force_limit_N, device.force_N);
-  tighten(gate.rate_limit_N_per_s, device.rate_N_per_s);
-  tighten(gate.velocity_limit_m_per_s, device.velocity_m_per_s / control::SafetyGate::fault_factor);
-  tighten(gate.position_limit_m, device.position_m / control::SafetyGate::fault_factor);
-}
-
-/// What must stand before a device that is not simulated; null for one that is.
-Result<std::unique_ptr<GuardedDevice>> wall_before(Device& device, const control::ControlParams& control,
-                                                   control::SiteRole role) {
-  if (auto error = check_limits(device)) {
-    return under(role == control::SiteRole::master ? "master" : "slave", *std::move(error));
-  }
-  if (device.simulated()) return std::unique_ptr<GuardedDevice>();
-  if (auto error = control::refuse_default_limits(control, role)) return under("control", *std::move(error));
-  return std::make_unique<GuardedDevice>(device);
-}
-
-}  // namespace
 
 template <class Pair>
 Result<DevicePair<Pair>> DevicePair<Pair>::make(const control::ControlParams& control, const LinkParams& channel,
@@ -47,12 +18,9 @@ Result<DevicePair<Pair>> DevicePair<Pair>::make(const control::ControlParams& co
                      "drive it by a LocalTeleoperator",
                  .place = {}};
   }
-  control::ControlParams tightened = control;
-  tighten(tightened.gate, master.limits());
-  tighten(tightened.handle_gate.force_limit_N, master.limits().handle_force_N);
-  tighten(tightened.handle_gate.rate_limit_N_per_s, master.limits().rate_N_per_s);
-  tighten(tightened.slave_gate, slave.limits());
-  auto sites = Pair::make(tightened, channel, tick, slave_start_m);
+  const control::ControlParams own = tightened(tightened(control, control::SiteRole::master, master.limits()),
+                                               control::SiteRole::slave, slave.limits());
+  auto sites = Pair::make(own, channel, tick, slave_start_m);
   if (!sites) return sites.error();
   return DevicePair(*std::move(sites), {*std::move(master_wall), *std::move(slave_wall)}, master, slave);
 }

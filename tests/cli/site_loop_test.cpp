@@ -62,7 +62,7 @@ class Sites : public ::testing::Test {
                                            .listen = link::testing::loopback(own),
                                            .key = std::nullopt},
                                   .arm_at_once = arm_at_once && role == SiteRole::master},
-                                 site.exchange);
+                                 site.exchange, simulated_device(params, role).value());
       ASSERT_TRUE(made) << describe(made.error());
       site.loop.emplace(*std::move(made));
       simulation::Request request;

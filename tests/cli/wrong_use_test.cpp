@@ -134,6 +134,12 @@ TEST_F(WrongUse, VaryThatIsNoListOrVariesWhatCannotBe) {
                          {"--vary", "control.force_gain", "twice", "one --vary"});
 }
 
+TEST_F(WrongUse, ADeviceThatTheProgramDoesNotBring) {
+  expect_refused_options({"--device", "carriage"}, 2, {"--device", "--site"});
+  expect_refused_options({"--site", "slave", "--peer", "127.0.0.1:1", "--unencrypted", "--device", "carriage"}, 2,
+                         {"--device", "'carriage' is no device", "register", "examples/own-device"});
+}
+
 TEST_F(WrongUse, ARecordingThatIsMissingOrHasNoSuchColumn) {
   write("impact.csv", "time_s,force_N,speed_m_per_s\n0,0,0\n0.001,1,0\n0.002,0,0\n");
   const auto file = write("display.toml", "[task]\nkind = \"force-display\"\n[profile]\nduration_s = 0.005\n");

@@ -1,5 +1,5 @@
-# Installs what BUILD holds into SCRATCH/prefix, and builds and runs the programs of this folder and the example of
-# docs/how-to/plug-in-your-own.md against it.
+# Installs what BUILD holds into SCRATCH/prefix, and builds and runs the programs of this folder and the examples
+# against it.
 # GENERATOR, COMPILER and BUILD_TYPE are those of BUILD; SOURCE is the source folder of tactus.
 cmake_minimum_required(VERSION 3.25)
 
@@ -64,3 +64,7 @@ execute_process(COMMAND ${my_tactus} run ${experiment} --set control.architectur
 if(NOT status EQUAL 2 OR NOT refusal MATCHES "^my-tactus: .*write one of position-force, .*soft-limit")
   message(FATAL_ERROR "an unknown architecture ended with ${status} and did not list the one of the example:\n${refusal}")
 endif()
+
+# A device of a user's own is driven by supervised sites over the network.
+build_against_the_package(${SOURCE}/examples/own-device ${SCRATCH}/device)
+run(sh ${CMAKE_CURRENT_LIST_DIR}/own_device.sh ${SCRATCH}/device/my-device ${experiment} ${SCRATCH}/device-run)
