@@ -1,8 +1,8 @@
+#include <tactus/simulation/fault_duty.hpp>
 #include <tactus/simulation/fault_rows.hpp>
 #include <tactus/simulation/internal/fault_families.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace tactus::simulation {
 
@@ -32,34 +32,9 @@ std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bou
   return {};
 }
 
-bool detected(const FaultOutcome& outcome) { return outcome.detection_ticks >= 0; }
-
-bool stopped_in_time(const FaultOutcome& outcome, const FaultsParams& params) {
-  const double longest_s = params.control.supervision.watchdog.timeout_s + grace_ticks / params.servo.rate_Hz;
-  return outcome.stopped && outcome.time_to_stop_s <= longest_s;
-}
-
 std::string_view clean(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams&) {
-  return outcome.stopped || detected(outcome) ? "tripped on clean data" : "";
+  return outcome.stopped || outcome.detection_ticks >= 0 ? "tripped on clean data" : "";
 }
-std::string_view cut(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  const double longest_s = params.control.supervision.watchdog.timeout_s + grace_ticks / params.servo.rate_Hz;
-  return plan.length_s <= longest_s || stopped_in_time(outcome, params) ? "" : late;
-}
-std::string_view restart(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams& params) {
-  return stopped_in_time(outcome, params) ? "" : late;
-}
-std::string_view seen_at_once(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams&) {
-  return detected(outcome) && outcome.detection_ticks <= 1 ? "" : unseen;
-}
-std::string_view bias(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  const double limit_N = params.control.supervision.force_sensor.residual_limit_N;
-  return detected(outcome) || std::fabs(plan.size) < 2.0 * limit_N ? "" : unseen;
-}
-std::string_view stall(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  return plan.length_s <= params.control.supervision.longest_stall_s || detected(outcome) ? "" : unseen;
-}
-
 std::vector<FaultRow> first_rows() {
   return {
       {FaultKind::none, "clean", "clean", "nothing", "no trip", clean},
@@ -67,22 +42,21 @@ std::vector<FaultRow> first_rows() {
        "extrapolation, decay, hold; nothing stale applied"},
       {FaultKind::disorder, "disorder", "delay, jitter, order, copies", "up to 30 ms, both ways", "the newest wins"},
       {FaultKind::cut, "cut", "link cut", "10 ms to the longest cut",
-       "hold within the time-out, resume only after arming", cut},
+       "hold within the time-out, resume only after arming", broken_duty},
       {FaultKind::restart, "restart", "site killed and restarted", "dead for 20 ms to 1 s",
-       "hold within the time-out, resume only after arming", restart},
+       "hold within the time-out, resume only after arming", broken_duty},
       {FaultKind::bad_number, "bad-number", "bad number", "NaN, infinity, huge: every input, every state",
        "refused, finite output"},
       {FaultKind::encoder_spike, "encoder-spike", "encoder spike", "one reading, 5 mm to 1 m", "latched in the tick",
-       seen_at_once},
+       broken_duty},
       {FaultKind::encoder_freeze, "encoder-freeze", "encoder frozen", "for 1 s", "latched once the force works"},
-      {FaultKind::encoder_wrap, "encoder-wrap", "encoder wrap", "16 bits of 10 um", "latched in the tick",
-       seen_at_once},
+      {FaultKind::encoder_wrap, "encoder-wrap", "encoder wrap", "16 bits of 10 um", "latched in the tick", broken_duty},
       {FaultKind::force_dropout, "force-dropout", "force sensor drops out", "reads 0 for 1 s",
        "hold once there is contact"},
       {FaultKind::force_bias, "force-bias", "force sensor biased", "by 0.2 to 20 N for 1 s", "hold where it matters",
-       bias},
+       broken_duty},
       {FaultKind::stall, "stall", "site stalled", "1 to 100 ms, the motor holds its force",
-       "no burst; hold after a long one", stall},
+       "no burst; hold after a long one", broken_duty},
       {FaultKind::delayed_wall, "delayed-wall", "wall, delay, light grip",
        "15 to 30 ms each way, little damping by the hand", "damped, then held"},
       {.kind = FaultKind::delayed_wall,

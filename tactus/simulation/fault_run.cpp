@@ -114,6 +114,7 @@ class FaultRun::Run {
   void say(control::Packet& packet, FaultSite site);
   double drive(const Forces& told, FaultSite site);
   void hold_handle();
+  [[nodiscard]] mechanics::Operator::Output clamped() const;
   void step_master();
   void step_slave();
   void advance();
@@ -135,7 +136,8 @@ class FaultRun::Run {
   Forces of_master_site_, of_slave_site_;
   FaultyPerson::Hand hand_ = FaultyPerson::Hand::holds;
   double clamped_at_m_ = 0.0;
-  double misread_N_ = 0.0;  ///< of the tip's force, by a fault
+  mechanics::MinimumJerk returns_;  ///< how far off its path the hand still leads a handle that it took again
+  double misread_N_ = 0.0;          ///< of the tip's force, by a fault
   Lasting misread_slowly_, misdriven_slowly_;
   std::int64_t tick_ = 0;
   std::int64_t ticks_ = 0;
@@ -267,10 +269,24 @@ void FaultRun::Run::hold_handle() {
   for (const FaultInjection& injection : injections_) hand = std::max(hand, injection.person.hand(injection.moment()));
   if (hand == hand_) return;
   hand_ = hand;
-  clamped_at_m_ = parts_.master.mechanism().tip_position_m();
-  parts_.master.hold(hand == Hand::holds     ? params_.person.grip
-                     : hand == Hand::lets_go ? mechanics::nobody_holds
-                                             : clamp);
+  const double now_s = moment().now_s, handle_m = parts_.master.mechanism().tip_position_m();
+  clamped_at_m_ = handle_m;
+  if (hand == Hand::holds) {
+    returns_ = FaultyPerson::returns_from(handle_m - person_.path_m(now_s), now_s);
+    parts_.master.take_again(params_.person.grip);
+  } else {
+    parts_.master.hold(hand == Hand::lets_go ? mechanics::nobody_holds : clamp);
+  }
+}
+
+/// Where the clamp that holds the handle wants it.
+mechanics::Operator::Output FaultRun::Run::clamped() const {
+  for (const FaultInjection& injection : injections_) {
+    if (injection.person.hand(injection.moment()) != FaultyPerson::Hand::is_clamped) continue;
+    const mechanics::Operator::Output pushed = injection.person.pushed(injection.moment());
+    return {.position_m = clamped_at_m_ + pushed.position_m, .velocity_m_per_s = pushed.velocity_m_per_s};
+  }
+  return {.position_m = clamped_at_m_, .velocity_m_per_s = 0.0};
 }
 
 void FaultRun::Run::advance() {
@@ -278,12 +294,12 @@ void FaultRun::Run::advance() {
   const MasterPlant::Command command{.motor_force_N = of_master_site_.drive_N,
                                      .handle_force_N = of_master_site_.handle_N};
   hold_handle();
-  if (hand_ == FaultyPerson::Hand::is_clamped) {
-    const mechanics::Operator::Output pushed = injections_.front().person.pushed(moment());
-    parts_.master.begin_tick(
-        command, {.position_m = clamped_at_m_ + pushed.position_m, .velocity_m_per_s = pushed.velocity_m_per_s});
+  if (hand_ == FaultyPerson::Hand::holds) {
+    const auto meant_m = [this](double time_s) { return person_.path_m(time_s) + returns_.position_m(time_s); };
+    parts_.master.begin_tick(command, meant_m(now_s), meant_m(now_s + tick_s_));
   } else {
-    parts_.master.begin_tick(command, person_.path_m(now_s), person_.path_m(now_s + tick_s_));
+    // A hand that is away corrects nothing.
+    parts_.master.begin_tick(command, clamped());
   }
   parts_.slave.begin_tick(of_slave_site_.drive_N);
   for (int i = 0; i < parts_.clock.substeps; ++i) {
@@ -309,6 +325,7 @@ void FaultRun::Run::judge() {
                                 .left_workspace = left,
                                 .truth = {.drive_N = drive_N,
                                           .motor_m = mechanism.motor_position_m(),
+                                          .motor_m_per_s = mechanism.state().velocity_m_per_s[0],
                                           .tip_m = mechanism.tip_position_m(),
                                           .tip_m_per_s = mechanism.tip_velocity_m_per_s(),
                                           .outside_N = outside_N}};
