@@ -44,6 +44,7 @@ struct Hindrance {
   double late_s = 0.0;    ///< a packet comes so much later
   double slow = 1.0;      ///< times are counted so much longer
   double stands_s = 0.0;  ///< a site is not stepped
+  bool silences = false;  ///< a packet may not come at all
   bool forgets = false;   ///< what a site read before it stood is no measure for what it reads then
 };
 
@@ -63,10 +64,13 @@ Hindrance hindrance(const FaultPlan& plan, const FaultsParams& params) {
       return {.stands_s = plan.size};
     case FaultKind::overload:  // so many ticks in a row are missed once in a million times
       return {.stands_s = std::log(1e-6) / std::log(plan.size) / params.servo.rate_Hz};
+    case FaultKind::cut:
+    case FaultKind::loss_bursts:
+      return {.silences = true};
     case FaultKind::suspend:
-      return {.stands_s = plan.length_s - forgotten_s, .forgets = true};
+      return {.stands_s = plan.length_s - forgotten_s, .silences = true, .forgets = true};
     case FaultKind::restart:
-      return {.forgets = true};
+      return {.silences = true, .forgets = true};
     default:
       return {};
   }
@@ -79,14 +83,20 @@ FaultSite site_of(const FaultPlan& plan) {
 
 bool is_reading(FaultKind kind) { return kind == FaultKind::encoder_spike || kind == FaultKind::encoder_wrap; }
 
+double silence_s(const FaultsParams& params) {
+  return params.control.supervision.watchdog.timeout_s + grace_ticks / params.servo.rate_Hz;
+}
+
 /// Until when, after `plan` began, the site `at` must have done the duty beside `other`; negative where the other
 /// leaves nothing to see.
 double allowed_s(const FaultDuty& duty, const FaultPlan& plan, const FaultPlan& other, FaultSite at,
                  const FaultsParams& params) {
   if (other.start_s + other.length_s < plan.start_s) return duty.within_s;
   Hindrance by = hindrance(other, params);
-  if (!duty.by_silence) by.late_s = 0.0;
-  const bool there = duty.seen == Seen::from_one_to_the_other || other.site == at;
+  const bool handed_on = duty.seen == Seen::from_one_to_the_other, there = handed_on || other.site == at;
+  // What one site tells the other may be late as well, or lost, and then it is silence that the other hears.
+  by.late_s *= !duty.by_packets ? 0.0 : handed_on ? 2.0 : 1.0;
+  if (duty.by_packets && handed_on && by.silences) by.late_s = silence_s(params);
   if (!there) by = {.late_s = by.late_s};
   const bool unread = other.start_s <= plan.start_s && (by.slow > 1.0 || by.stands_s > 0.0);
   if (is_reading(plan.kind) && (by.forgets || (plan.kind == FaultKind::encoder_spike && unread))) return -1.0;
@@ -127,33 +137,33 @@ std::string_view broken_beside(const FaultPlan& plan, const FaultPlan& other, do
 
 FaultDuty duty_of(const FaultPlan& plan, const FaultsParams& params) {
   const control::SupervisionParams& supervision = params.control.supervision;
-  const double grace_s = grace_ticks / params.servo.rate_Hz, silence_s = supervision.watchdog.timeout_s + grace_s;
+  const double grace_s = grace_ticks / params.servo.rate_Hz, silent_s = silence_s(params);
   switch (plan.kind) {
     case FaultKind::cut:
-      if (plan.length_s <= silence_s) return {};
+      if (plan.length_s <= silent_s) return {};
       return {.kind = Kind::stops,
-              .within_s = silence_s,
+              .within_s = silent_s,
               .lasts_s = plan.length_s,
               .seen = Seen::at_each,
-              .by_silence = true};
+              .by_packets = true};
     case FaultKind::restart:
     case FaultKind::both_restarted:
-      return {.kind = Kind::stops, .within_s = silence_s, .seen = Seen::at_each, .by_silence = true};
+      return {.kind = Kind::stops, .within_s = silent_s, .seen = Seen::at_each, .by_packets = true};
     case FaultKind::peer_repeats:
       return {.kind = Kind::stops,
-              .within_s = silence_s,
+              .within_s = silent_s,
               .lasts_s = plan.length_s,
               .seen = Seen::from_one_to_the_other,
-              .by_silence = true};
+              .by_packets = true};
     case FaultKind::suspend:
       return {.kind = Kind::latches,
-              .within_s = silence_s,
+              .within_s = silent_s,
               .lasts_s = plan.length_s - forgotten_s,
               .seen = Seen::at_the_other,
-              .by_silence = true};
+              .by_packets = true};
     case FaultKind::hand_lets_go:
     case FaultKind::emergency_stop:
-      return {.kind = Kind::stops, .within_s = grace_s, .seen = Seen::at_each};
+      return {.kind = Kind::stops, .within_s = grace_s, .seen = Seen::from_one_to_the_other, .by_packets = true};
     case FaultKind::encoder_spike:
     case FaultKind::encoder_wrap:
       return {.kind = Kind::latches, .within_s = 1.0 / params.servo.rate_Hz};
@@ -195,7 +205,9 @@ std::string_view broken_duty_of_two(const FaultPlan& plan, const FaultOutcome& o
   const auto plans = plans_of(plan);
   const std::string_view first = broken_beside(plans[0], plans[1], 0.0, outcome, params);
   if (!first.empty()) return first;
-  return broken_beside(plans[1], plans[0], plans[1].start_s - plans[0].start_s, outcome, params);
+  const double rate_Hz = params.servo.rate_Hz;
+  const auto apart = std::lround(plans[1].start_s * rate_Hz) - std::lround(plans[0].start_s * rate_Hz);
+  return broken_beside(plans[1], plans[0], static_cast<double>(apart) / rate_Hz, outcome, params);
 }
 
 std::string_view broken_duty_while_arming(const FaultPlan& plan, const FaultOutcome& outcome,

@@ -25,7 +25,7 @@ struct FaultDuty {
   double within_s = 0.0;                                     ///< of its begin
   double lasts_s = std::numeric_limits<double>::infinity();  ///< what shows it
   Seen seen = Seen::at_its_own;
-  bool by_silence = false;  ///< what is under way still comes
+  bool by_packets = false;  ///< what comes, or comes no more, tells of it
 };
 
 /// What must come of a fault that comes alone.

@@ -1,4 +1,5 @@
 #include <tactus/control/supervised_site.hpp>
+#include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/simulation/fault_injection.hpp>
 #include <tactus/simulation/fault_judge.hpp>
 #include <tactus/simulation/fault_pairs.hpp>
@@ -59,10 +60,8 @@ class FaultRun::Run {
         tick_s_(parts_.clock.tick_s),
         injections_(injections_of(plan, tick_s_)),
         person_(person),
-        to_slave_(impairment_to(FaultSite::slave, plans_of(plan)),
-                  signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(1), tick_s_),
-        to_master_(impairment_to(FaultSite::master, plans_of(plan)),
-                   signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(2), tick_s_),
+        to_slave_(relay(plan, 1, tick_s_)),
+        to_master_(relay(plan, 2, tick_s_)),
         at_master_(params.control.gate.force_limit_N, params.control.gate.rate_limit_N_per_s, tick_s_),
         at_handle_(params.control.handle_gate.force_limit_N, params.control.handle_gate.rate_limit_N_per_s, tick_s_),
         at_slave_(params.control.slave_gate.force_limit_N, params.control.slave_gate.rate_limit_N_per_s, tick_s_),
@@ -88,10 +87,19 @@ class FaultRun::Run {
   static double oldest_s(const Teleoperator::Params& params, const FaultPlan& plan) {
     return (plan.kind == FaultKind::delay_asymmetric ? 2.0 : 1.0) * params.control.supervision.packets.longest_age_s;
   }
-  [[nodiscard]] double impaired_share(FaultSite to) const {
-    double share = 0.0;
-    for (const FaultInjection& injection : injections_) share = std::max(share, injection.impaired_share(to));
-    return share;
+  /// A way whose packets the network treats as every part of the plan says.
+  static PacketRelay relay(const FaultPlan& plan, std::uint64_t way, double tick_s) {
+    std::vector<ImpairedLink> links;
+    double longest_s = 0.0;
+    signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(way);
+    for (const FaultPlan& part : plans_of(plan)) {
+      links.emplace_back(part.impairment, links.empty() ? random : random.fork(links.size()));
+      longest_s += part.impairment.delay_s + part.impairment.jitter_s;
+    }
+    return {links, longest_s, tick_s};
+  }
+  [[nodiscard]] auto share_to(FaultSite site) const {
+    return [this, site](std::size_t part) { return injections_[part].impaired_share(site); };
   }
   /// A packet on its way to a site, which a control may blind to what differs.
   template <class Site>
@@ -225,7 +233,7 @@ void FaultRun::Run::step_master() {
     of_slave_.applied(output.record, tick_, outcome_);
     say(output.packet, FaultSite::master);
     of_master_.sent(output.packet, tick_);
-    if (!cut()) to_slave_.send(output.packet, tick_, impaired_share(FaultSite::slave));
+    if (!cut()) to_slave_.send(output.packet, tick_, share_to(FaultSite::slave));
   }
   of_master_site_.drive_N = drive(of_master_site_, FaultSite::master);
   at_master_.see(of_master_site_.motor_N, master_.excused(), outcome_);
@@ -256,7 +264,7 @@ void FaultRun::Run::step_slave() {
     say(output.packet, FaultSite::slave);
     of_slave_.sent(output.packet, tick_);
     // It arrives at the next tick at the earliest.
-    if (!cut()) to_master_.send(output.packet, tick_ + 1, impaired_share(FaultSite::master));
+    if (!cut()) to_master_.send(output.packet, tick_ + 1, share_to(FaultSite::master));
   }
   of_slave_site_.drive_N = drive(of_slave_site_, FaultSite::slave);
   at_slave_.see(of_slave_site_.motor_N, slave_.excused(), outcome_);
