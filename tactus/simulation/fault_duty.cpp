@@ -23,7 +23,10 @@ FaultDuty duty_of_overload(double missed, const FaultPlan& plan, const FaultsPar
   const control::OverloadCheck::Params& overload = params.control.supervision.overload;
   if (missed < 1.5 * overload.missed_share) return {};
   const double passes_s = -overload.window_s * std::log(1.0 - overload.missed_share / missed);
-  return {.kind = Kind::latches, .within_s = 1.5 * passes_s, .lasts_s = plan.length_s - forgotten_s};
+  return {.kind = Kind::latches,
+          .within_s = 1.5 * passes_s,
+          .lasts_s = plan.length_s - forgotten_s,
+          .needs_s = 1.5 * passes_s};
 }
 
 /// Where the clock is grossly slow: when `PaceCheck` must have seen it, and a little more.
@@ -36,6 +39,7 @@ FaultDuty duty_of_drift(const FaultPlan& plan, const FaultsParams& params) {
   return {.kind = Kind::latches,
           .within_s = 1.2 * slack_s / untolerated,
           .lasts_s = plan.length_s,
+          .needs_s = 1.2 * slack_s / untolerated,
           .seen = Seen::from_one_to_the_other};
 }
 
@@ -100,7 +104,7 @@ double allowed_s(const FaultDuty& duty, const FaultPlan& plan, const FaultPlan& 
   if (!there) by = {.late_s = by.late_s};
   const bool unread = other.start_s <= plan.start_s && (by.slow > 1.0 || by.stands_s > 0.0);
   if (is_reading(plan.kind) && (by.forgets || (plan.kind == FaultKind::encoder_spike && unread))) return -1.0;
-  if (duty.lasts_s - by.late_s < duty.within_s * by.slow) return -1.0;
+  if (duty.lasts_s - by.late_s < duty.needs_s * by.slow) return -1.0;
   return (duty.within_s + by.late_s) * by.slow + by.stands_s;
 }
 
@@ -123,7 +127,10 @@ std::string_view broken_beside(const FaultPlan& plan, const FaultPlan& other, do
   }
   if (duty.kind == Kind::latches) {
     const double by_s = allowed_s(duty, plan, other, duty.seen == Seen::at_the_other ? across : own, params);
-    return by_s < 0.0 || within(detected_s(outcome, params), since_s + by_s, params) ? "" : unseen;
+    // Who has stopped already has nothing left to stop for.
+    const double ended_s =
+        std::min(detected_s(outcome, params), std::max(outcome.master_followed_s, outcome.slave_followed_s));
+    return by_s < 0.0 || within(ended_s, since_s + by_s, params) ? "" : unseen;
   }
   for (const FaultSite at : {FaultSite::master, FaultSite::slave}) {
     const double by_s = allowed_s(duty, plan, other, at, params);
@@ -144,6 +151,7 @@ FaultDuty duty_of(const FaultPlan& plan, const FaultsParams& params) {
       return {.kind = Kind::stops,
               .within_s = silent_s,
               .lasts_s = plan.length_s,
+              .needs_s = silent_s,
               .seen = Seen::at_each,
               .by_packets = true};
     case FaultKind::restart:
@@ -153,12 +161,14 @@ FaultDuty duty_of(const FaultPlan& plan, const FaultsParams& params) {
       return {.kind = Kind::stops,
               .within_s = silent_s,
               .lasts_s = plan.length_s,
+              .needs_s = silent_s,
               .seen = Seen::from_one_to_the_other,
               .by_packets = true};
     case FaultKind::suspend:
       return {.kind = Kind::latches,
               .within_s = silent_s,
               .lasts_s = plan.length_s - forgotten_s,
+              .needs_s = silent_s,
               .seen = Seen::at_the_other,
               .by_packets = true};
     case FaultKind::hand_lets_go:
@@ -172,7 +182,10 @@ FaultDuty duty_of(const FaultPlan& plan, const FaultsParams& params) {
       return {.kind = Kind::latches, .within_s = plan.length_s};
     case FaultKind::stall:
       if (plan.length_s <= supervision.longest_stall_s) return {};
-      return {.kind = Kind::latches, .within_s = plan.length_s + grace_s};
+      return {.kind = Kind::latches,
+              .within_s = plan.length_s + grace_s,
+              .lasts_s = plan.length_s,
+              .needs_s = supervision.longest_stall_s};
     case FaultKind::overload:
       return duty_of_overload(plan.size, plan, params);
     case FaultKind::stop_and_go:  // it goes for no longer than it stands

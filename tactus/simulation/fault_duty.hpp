@@ -24,6 +24,7 @@ struct FaultDuty {
   Kind kind = Kind::none;
   double within_s = 0.0;                                     ///< of its begin
   double lasts_s = std::numeric_limits<double>::infinity();  ///< what shows it
+  double needs_s = 0.0;  ///< for so long, by the clock of the site that is to see it
   Seen seen = Seen::at_its_own;
   bool by_packets = false;  ///< what comes, or comes no more, tells of it
 };

@@ -65,8 +65,8 @@ class FaultRun::Run {
         at_master_(params.control.gate.force_limit_N, params.control.gate.rate_limit_N_per_s, tick_s_),
         at_handle_(params.control.handle_gate.force_limit_N, params.control.handle_gate.rate_limit_N_per_s, tick_s_),
         at_slave_(params.control.slave_gate.force_limit_N, params.control.slave_gate.rate_limit_N_per_s, tick_s_),
-        of_master_(oldest_s(params, plan), tick_s_),
-        of_slave_(oldest_s(params, plan), tick_s_),
+        of_master_(oldest_s(params, plan, tick_s_), tick_s_),
+        of_slave_(oldest_s(params, plan, tick_s_), tick_s_),
         judge_({person.wall_m(), person.depth_m(), released_share * params.control.gate.force_limit_N, tick_s_},
                {params.environment.position_m, params.control.position_scale * person.depth_m(),
                 released_share * params.control.slave_gate.force_limit_N, tick_s_},
@@ -83,9 +83,15 @@ class FaultRun::Run {
     for (const FaultPlan& part : plans_of(plan)) injections.emplace_back(part, tick_s);
     return injections;
   }
-  /// The oldest that may be applied. Of a way that takes longer than the other half passes for an offset of clocks.
-  static double oldest_s(const Teleoperator::Params& params, const FaultPlan& plan) {
-    return (plan.kind == FaultKind::delay_asymmetric ? 2.0 : 1.0) * params.control.supervision.packets.longest_age_s;
+  /// The oldest that may be applied. Of a way that takes longer than the other half passes for an offset of clocks; and
+  /// a clock that loses ticks does not count how long a packet waits meanwhile.
+  static double oldest_s(const Teleoperator::Params& params, const FaultPlan& plan, double tick_s) {
+    const double factor = plan.kind == FaultKind::delay_asymmetric ? 2.0 : 1.0;
+    double waits_s = 0.0;
+    for (const FaultPlan& part : plans_of(plan)) {
+      if (part.kind == FaultKind::rate_drift) waits_s += tick_s * std::ceil(part.size / (1.0 - part.size));
+    }
+    return factor * params.control.supervision.packets.longest_age_s + waits_s;
   }
   /// A way whose packets the network treats as every part of the plan says.
   static PacketRelay relay(const FaultPlan& plan, std::uint64_t way, double tick_s) {
