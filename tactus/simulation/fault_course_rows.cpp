@@ -4,8 +4,6 @@
 #include <tactus/simulation/faulty_configuration.hpp>
 #include <tactus/simulation/internal/fault_families.hpp>
 
-#include <algorithm>
-
 namespace tactus::simulation::fault_families {
 
 namespace {
@@ -61,13 +59,23 @@ void loose_limits(Teleoperator::Params& params, FaultPlan& plan) {
 }
 /// So that there is a force to keep.
 void holds_firmly(Teleoperator::Params& params) { params.person.grip.stiffness_N_per_m *= 5.0; }
-/// Whether a site must see a part of the plan and stop for it; that the person's hand is gone no limit is asked.
-bool must_be_seen(const FaultPlan& plan, const FaultsParams& params) {
-  const auto parts = plans_of(plan);
-  return std::any_of(parts.begin(), parts.end(), [&params](const FaultPlan& part) {
-    const FaultDuty::Kind duty = duty_of(part, params).kind;
-    return duty == FaultDuty::Kind::latches || duty == FaultDuty::Kind::stops;
-  });
+/// Whether a limit or time-out can see it: a new session, a jump of an encoder and a switch that is let go are seen
+/// however wide the limits are, and end what else is there.
+bool limits_see(const FaultPlan& plan, const FaultsParams& params) {
+  bool seen = false;
+  for (const FaultPlan& part : plans_of(plan)) {
+    switch (part.kind) {
+      case FaultKind::restart:
+      case FaultKind::encoder_spike:
+      case FaultKind::encoder_wrap:
+      case FaultKind::hand_lets_go:
+        return false;
+      default:
+        const FaultDuty::Kind duty = duty_of(part, params).kind;
+        seen = seen || duty == FaultDuty::Kind::latches || duty == FaultDuty::Kind::stops;
+    }
+  }
+  return seen;
 }
 /// A plan's other self, in which the defence is not asked: what that is, its element says.
 void unasked(Teleoperator::Params&, FaultPlan& plan) { plan.size = 1.0; }
@@ -168,14 +176,14 @@ std::vector<FaultRow> course_rows() {
        "every pair of kinds that strike",
        "within the limits; what either asks for, in the time that the other leaves",
        broken_duty_of_two,
-       {"every limit and time-out, where one of both must be seen", loose_limits, must_be_seen}},
+       {"every limit and time-out, where they alone see it", loose_limits, limits_see}},
       {FaultKind::fault_while_arming,
        "fault-while-arming",
        "fault while arming",
        "every kind that strikes",
        "within the limits; nothing follows that would be stopped",
        broken_duty_while_arming,
-       {"every limit and time-out, where it must be seen", loose_limits, must_be_seen}},
+       {"every limit and time-out, where they alone see it", loose_limits, limits_see}},
       {FaultKind::stale_commands,
        "stale-commands",
        "old commands",

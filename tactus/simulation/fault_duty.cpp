@@ -103,6 +103,8 @@ double allowed_s(const FaultDuty& duty, const FaultPlan& plan, const FaultPlan& 
   if (duty.by_packets && handed_on && by.silences) by.late_s = silence_s(params);
   if (!there) by = {.late_s = by.late_s};
   const bool unread = other.start_s <= plan.start_s && (by.slow > 1.0 || by.stands_s > 0.0);
+  // What waits before a site that stands is read when it steps again, and that is when silence begins.
+  if (duty.by_packets && !by.forgets) by.late_s += by.stands_s;
   if (is_reading(plan.kind) && (by.forgets || (plan.kind == FaultKind::encoder_spike && unread))) return -1.0;
   if (duty.lasts_s - by.late_s < duty.needs_s * by.slow) return -1.0;
   return (duty.within_s + by.late_s) * by.slow + by.stands_s;
@@ -221,6 +223,16 @@ std::string_view broken_duty_of_two(const FaultPlan& plan, const FaultOutcome& o
   const double rate_Hz = params.servo.rate_Hz;
   const auto apart = std::lround(plans[1].start_s * rate_Hz) - std::lround(plans[0].start_s * rate_Hz);
   return broken_beside(plans[1], plans[0], static_cast<double>(apart) / rate_Hz, outcome, params);
+}
+
+double release_allowed_s(const FaultPlan& plan, const FaultsParams& params) {
+  double allowed_s = params.task.bounds.release_s;
+  if (plan.kind != FaultKind::two_faults) return allowed_s;
+  for (const FaultPlan& part : plans_of(plan)) {
+    const Hindrance by = hindrance(part, params);
+    allowed_s += (by.slow - 1.0) * params.control.supervision.hold.release_s + by.stands_s;
+  }
+  return allowed_s;
 }
 
 std::string_view broken_duty_while_arming(const FaultPlan& plan, const FaultOutcome& outcome,

@@ -37,6 +37,9 @@ std::string_view broken_duty(const FaultPlan& plan, const FaultOutcome& outcome,
 /// Of two at once: the duty of either, put off by what the other takes from the sites to do it. docs/how-to/faults.md
 /// argues each term.
 std::string_view broken_duty_of_two(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params);
+/// How long after both sites stopped a motor may give a force: of two faults longer than of one, by what a site's clock
+/// or process takes longer for its fade.
+double release_allowed_s(const FaultPlan& plan, const FaultsParams& params);
 /// Of one between arming and following: who has not followed has stopped, and what shows only in use has until then.
 std::string_view broken_duty_while_arming(const FaultPlan& plan, const FaultOutcome& outcome,
                                           const FaultsParams& params);

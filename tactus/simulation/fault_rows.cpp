@@ -20,7 +20,8 @@ std::string_view broken_rule_of_all(const FaultOutcome& outcome) {
   return {};
 }
 
-std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bounds) {
+std::string_view broken_bound(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
+  const HarmBounds& bounds = params.task.bounds;
   const SiteHarm &master = outcome.master, &slave = outcome.slave;
   if (std::max(master.given_J, slave.given_J) > bounds.given_J) return "a motor gave too much energy";
   if (std::max(master.speed_m_per_s, slave.speed_m_per_s) > bounds.speed_m_per_s) return "handle or tool too fast";
@@ -28,7 +29,7 @@ std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bou
   if (master.peak_force_N > bounds.hand_force_N) return "too much force on the hand";
   if (slave.peak_force_N > bounds.tool_force_N) return "too much force at the tool";
   if (std::max(master.pressing_N, slave.pressing_N) > bounds.pressing_N) return "pressed too hard for long";
-  if (outcome.release_s > bounds.release_s) return "not released in time";
+  if (outcome.release_s > release_allowed_s(plan, params)) return "not released in time";
   return {};
 }
 
@@ -99,7 +100,7 @@ std::string_view broken_rule(const FaultRow& row, const FaultPlan& plan, const F
   if (const auto rule = broken_rule_of_all(outcome); !rule.empty()) return rule;
   if (row.resumes && !outcome.active_at_end) return "not active again after clearing and arming";
   if (outcome.given_J > params.task.diverged_above_J) return "diverged";
-  if (const auto bound = broken_bound(outcome, params.task.bounds); !bound.empty()) return bound;
+  if (const auto bound = broken_bound(plan, outcome, params); !bound.empty()) return bound;
   return row.rule ? row.rule(plan, outcome, params) : std::string_view{};
 }
 
