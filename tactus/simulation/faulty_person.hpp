@@ -60,7 +60,7 @@ class FaultyPerson {
 
  private:
   static constexpr double push_s = 0.3;
-  /// How long a reach takes (T. Flash and N. Hogan, J. Neuroscience 5(7), 1985: 0.3 to 0.6 s for 0.1 to 0.3 m).
+  /// How long the way back takes: a reach without haste.
   static constexpr double return_s = 0.4;
   static constexpr double notices_s = 0.3;
 
