@@ -148,7 +148,10 @@ double Supervision::probe(double position_m, bool force_passes) noexcept {
 }
 
 double Supervision::blend(bool in) noexcept {
-  if (state() == SiteState::fault) return share_ = 0.0;
+  // Who lets go of the switch may let go of the handle, and what is left of the force would throw it.
+  const bool nobody_holds =
+      role_ == SiteRole::master && state() == SiteState::armed && supervisor_.cause() == SiteCause::dead_man;
+  if (state() == SiteState::fault || nobody_holds) return share_ = 0.0;
   // After a stall a force goes as far as it should have gone by now, but comes no farther than in one tick.
   const double out_step = (state() == SiteState::hold ? hold_step_ : blend_step_) * static_cast<double>(elapsed_ticks_);
   return share_ = in ? std::min(share_ + blend_step_, 1.0) : std::max(share_ - out_step, 0.0);

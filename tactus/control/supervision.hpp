@@ -174,8 +174,8 @@ class Supervision {
   double probe(double position_m, bool force_passes) noexcept;
   /// Whether the site is armed and its motor not yet tried: the controller's force must go.
   [[nodiscard]] bool probes() const noexcept { return state() == SiteState::armed && !proved_; }
-  /// The share of the controller's force, on its way to 1 or 0; in `fault` 0 at once, for the gate to ramp. Once, after
-  /// `decide`.
+  /// The share of the controller's force, on its way to 1 or 0; in `fault`, and at a master whose dead-man switch was
+  /// let go, 0 at once, for the gate to ramp. Once, after `decide`.
   double blend(bool in) noexcept;
   /// The packet that says `message`. Once a tick.
   Packet packet(const Message& message) noexcept;

@@ -1,9 +1,8 @@
+#include <tactus/simulation/fault_duty.hpp>
 #include <tactus/simulation/fault_pairs.hpp>
 #include <tactus/simulation/fault_person.hpp>
 #include <tactus/simulation/faulty_configuration.hpp>
 #include <tactus/simulation/internal/fault_families.hpp>
-
-#include <cmath>
 
 namespace tactus::simulation::fault_families {
 
@@ -11,47 +10,8 @@ namespace {
 
 constexpr double longest_to_notice_s = 0.1;
 
-double detected_s(const FaultOutcome& outcome, const FaultsParams& params) {
-  return static_cast<double>(outcome.detection_ticks) / params.servo.rate_Hz;
-}
-bool detected_within(const FaultOutcome& outcome, const FaultsParams& params, double longest_s) {
-  return outcome.detection_ticks >= 0 && detected_s(outcome, params) <= longest_s;
-}
-double watchdog_s(const FaultsParams& params) {
-  return params.control.supervision.watchdog.timeout_s + grace_ticks / params.servo.rate_Hz;
-}
-
-/// When a loop that misses the share `missed` for ever passes the limit, and half as long again, for what is drawn at
-/// random scatters. Never where it does not miss enough for that.
-std::string_view holds_when_overloaded(double missed, const FaultOutcome& outcome, const FaultsParams& params) {
-  const control::OverloadCheck::Params& overload = params.control.supervision.overload;
-  if (missed < 1.5 * overload.missed_share) return {};
-  const double passes_s = -overload.window_s * std::log(1.0 - overload.missed_share / missed);
-  return detected_within(outcome, params, 1.5 * passes_s) ? "" : unseen;
-}
-std::string_view overload(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  return holds_when_overloaded(plan.size, outcome, params);
-}
-std::string_view stop_and_go(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams& params) {
-  // It goes for no longer than it stands.
-  return holds_when_overloaded(0.45, outcome, params);
-}
-std::string_view suspend(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams& params) {
-  return detected_within(outcome, params, watchdog_s(params)) ? "" : late;
-}
-/// Where the clock is grossly slow: when `PaceCheck` must have seen it, and a little more.
-std::string_view rate_drift(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  if (plan.size <= tolerable_drift) return outcome.stopped ? "a small drift stopped the sites" : "";
-  const control::SupervisionParams& supervision = params.control.supervision;
-  const double slack_s = supervision.packets.longest_age_s + supervision.watchdog.timeout_s;
-  const double untolerated = plan.size - supervision.pace_share;
-  return untolerated < 0.15 || detected_within(outcome, params, 1.2 * slack_s / untolerated) ? "" : unseen;
-}
 std::string_view configurations_differ(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams&) {
   return outcome.active_in_fault ? "armed although the sites differ" : "";
-}
-std::string_view stops_in_silence(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams& params) {
-  return outcome.stopped && outcome.time_to_stop_s <= watchdog_s(params) ? "" : late;
 }
 std::string_view dead_man_stuck(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams&) {
   return plan.start_s == 0.0 && outcome.active_in_fault ? "followed on a switch that was pressed before" : "";
@@ -62,17 +22,6 @@ std::string_view console_lost(const FaultPlan&, const FaultOutcome& outcome, con
 std::string_view stale_commands(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams& params) {
   const double longest_s = params.control.supervision.blend_s + longest_to_notice_s;
   return outcome.stopped && outcome.master.release_s <= longest_s ? "" : "a motor kept an old command";
-}
-
-/// The first of both must end as it must end alone, the other one notwithstanding.
-std::string_view two_faults(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  const FaultPlan first = plans_of(plan).front();
-  for (const FaultRow& row : fault_rows()) {
-    // What a row's own teleoperator is there to see, this one may not.
-    if (row.kind == first.kind && row.rule != nullptr && row.prepare == nullptr)
-      return row.rule(first, outcome, params);
-  }
-  return {};
 }
 
 void loose_overload(Teleoperator::Params& params, FaultPlan&) {
@@ -110,6 +59,24 @@ void loose_limits(Teleoperator::Params& params, FaultPlan& plan) {
 }
 /// So that there is a force to keep.
 void holds_firmly(Teleoperator::Params& params) { params.person.grip.stiffness_N_per_m *= 5.0; }
+/// Whether a limit or time-out can see it: a new session, a jump of an encoder and a switch that is let go are seen
+/// however wide the limits are, and end what else is there.
+bool limits_see(const FaultPlan& plan, const FaultsParams& params) {
+  bool seen = false;
+  for (const FaultPlan& part : plans_of(plan)) {
+    switch (part.kind) {
+      case FaultKind::restart:
+      case FaultKind::encoder_spike:
+      case FaultKind::encoder_wrap:
+      case FaultKind::hand_lets_go:
+        return false;
+      default:
+        const FaultDuty::Kind duty = duty_of(part, params).kind;
+        seen = seen || duty == FaultDuty::Kind::latches || duty == FaultDuty::Kind::stops;
+    }
+  }
+  return seen;
+}
 /// A plan's other self, in which the defence is not asked: what that is, its element says.
 void unasked(Teleoperator::Params&, FaultPlan& plan) { plan.size = 1.0; }
 
@@ -122,28 +89,28 @@ std::vector<FaultRow> course_rows() {
        "ticks missed",
        "a share of 5 to 90 %, at random, for 1.5 s",
        "hold above the share, soon",
-       overload,
+       broken_duty,
        {"the share of missed ticks", loose_overload}},
       {FaultKind::stop_and_go,
        "stop-and-go",
        "stop and go",
        "stalls of 4 to 19 ms, again and again for 1.5 s",
        "hold, as for missed ticks",
-       stop_and_go,
+       broken_duty,
        {"the share of missed ticks", loose_overload}},
       {FaultKind::suspend,
        "suspend",
        "suspended",
        "the process, or the machine and its clock, for 1 s to the longest cut",
        "the other site holds within the time-out, the drive lets go",
-       suspend,
+       broken_duty,
        {"watchdogs, and the drive's own", loose_watchdogs}},
       {FaultKind::rate_drift,
        "rate-drift",
        "clock too slow",
        "by 1e-6 to 1e-3, or by 25 to 90 %, for 3 s",
        "a small drift stops nothing, a large one ends in hold",
-       rate_drift,
+       broken_duty,
        {"all limits", loose_limits}},
       {FaultKind::configurations_differ,
        "configurations-differ",
@@ -157,7 +124,7 @@ std::vector<FaultRow> course_rows() {
       {FaultKind::delay_asymmetric,
        "delay-asymmetric",
        "one way slow",
-       "30 to 380 ms, the other way none",
+       "30 to 380 ms more within 1 s, the other way none",
        "damped, then held; nothing applied that is older than twice the longest age",
        nullptr,
        {"passivity monitors", loose_monitor}},
@@ -173,7 +140,7 @@ std::vector<FaultRow> course_rows() {
        "the other site repeats itself",
        "the same packet under fresh numbers, for 0.3 to 2 s",
        "hold within the time-out",
-       stops_in_silence,
+       broken_duty,
        {"what a packet says beside its number", unasked}},
       {FaultKind::peer_wrong,
        "peer-wrong",
@@ -187,7 +154,7 @@ std::vector<FaultRow> course_rows() {
        "both sites restarted",
        "dead for 20 ms to 1 s, every button pressed when they come back",
        "nothing follows until it is armed",
-       stops_in_silence,
+       broken_duty,
        {"what is pressed is pressed after the start", unasked}},
       {FaultKind::dead_man_stuck,
        "dead-man-stuck",
@@ -203,10 +170,20 @@ std::vector<FaultRow> course_rows() {
        "no site follows within 100 ms",
        console_lost,
        {"its end is no release", unasked}},
-      {FaultKind::two_faults, "two-faults", "two faults at once", "every pair of kinds that strike",
-       "within the limits, the first as alone", two_faults},
-      {FaultKind::fault_while_arming, "fault-while-arming", "fault while arming", "every kind that strikes",
-       "within the limits"},
+      {FaultKind::two_faults,
+       "two-faults",
+       "two faults at once",
+       "every pair of kinds that strike",
+       "within the limits; what either asks for, in the time that the other leaves",
+       broken_duty_of_two,
+       {"every limit and time-out, where they alone see it", loose_limits, limits_see}},
+      {FaultKind::fault_while_arming,
+       "fault-while-arming",
+       "fault while arming",
+       "every kind that strikes",
+       "within the limits; nothing follows that would be stopped",
+       broken_duty_while_arming,
+       {"every limit and time-out, where they alone see it", loose_limits, limits_see}},
       {FaultKind::stale_commands,
        "stale-commands",
        "old commands",
@@ -238,7 +215,7 @@ void draw_course(FaultPlan& plan, signal::Random& random, double) {
       plan.length_s = 1.0;
       break;
     case FaultKind::delay_asymmetric:
-      plan.length_s = 4.0;
+      plan.length_s = 5.0;
       break;
     case FaultKind::delay_creeping:
       plan.length_s = 3.0;

@@ -1,3 +1,4 @@
+#include <tactus/simulation/fault_duty.hpp>
 #include <tactus/simulation/internal/fault_families.hpp>
 
 #include <algorithm>
@@ -48,11 +49,6 @@ std::string_view wrong_sign(const FaultPlan& plan, const FaultOutcome& outcome, 
 std::string_view cool(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams&) {
   return outcome.winding_warmth <= 1.0 ? "" : "a winding was damaged";
 }
-std::string_view stopped_at_once(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams& params) {
-  const bool in_time = outcome.stopped && outcome.time_to_stop_s <= grace_ticks / params.servo.rate_Hz;
-  return in_time ? std::string_view{} : late;
-}
-
 void tries_motors(Teleoperator::Params& of) {
   of.control.supervision.probe = {.force_N = 0.5, .duration_s = 0.08, .least_m = 1.5e-4, .most_m = 0.005};
 }
@@ -170,7 +166,7 @@ std::vector<FaultRow> device_rows() {
        "hand lets go",
        "for 1 s, and of the dead-man switch in the handle",
        "no site active at once",
-       stopped_at_once,
+       broken_duty,
        {"the switch in the handle: it is on the floor", with_pedal}},
       {FaultKind::handle_clamped, "handle-clamped", "handle clamped", "held fast and pushed 20 to 60 mm on, for 1 s",
        "bounded force", nullptr, limits},
@@ -179,7 +175,7 @@ std::vector<FaultRow> device_rows() {
        "emergency stop",
        "pressed at one site for 0.5 s",
        "no site active at once, no force",
-       stopped_at_once,
+       broken_duty,
        {"the button's wire", without_button}},
       {FaultKind::power_lost, "power-lost", "power lost", "of a motor for 100 to 500 ms",
        "hold; no jump when it comes back", comes_back, signs, feels_as_it_is},

@@ -11,6 +11,7 @@
 #include <tactus/simulation/faulty_person.hpp>
 #include <tactus/simulation/faulty_wiring.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace tactus::simulation {
@@ -59,16 +60,20 @@ class FaultInjection {
   [[nodiscard]] bool cuts() const noexcept {
     return sleeps() || (plan_.kind == FaultKind::cut && moment_.during) || is_prelude(control::SiteState::hold);
   }
-  /// What share of the network's impairment there is now on the way to `site`.
+  /// What share of its impairment of the network there is now on the way to `site`.
   [[nodiscard]] double impaired_share(FaultSite site) const noexcept {
     if (!moment_.during) return 0.0;
-    if (plan_.kind == FaultKind::delay_asymmetric) return plan_.site == site ? 1.0 : 0.0;
+    if (plan_.kind == FaultKind::delay_asymmetric) {
+      // A queue fills. A way that were slow at once would be silence, which the watchdog ends.
+      return plan_.site == site ? std::min(moment_.since_s / slows_down_s, 1.0) : 0.0;
+    }
     return plan_.kind == FaultKind::delay_creeping ? moment_.since_s / plan_.length_s : 1.0;
   }
   /// How wrong `site` is about the age of what comes. Clocks cannot tell a way that takes longer than the other from an
   /// offset between them; once the offset from before is forgotten, half of the difference is taken for one.
   [[nodiscard]] double age_error_s(FaultSite site) const noexcept {
-    const bool errs = plan_.kind == FaultKind::delay_asymmetric && moment_.during && moment_.since_s > clock_memory_s;
+    const bool errs =
+        plan_.kind == FaultKind::delay_asymmetric && moment_.during && moment_.since_s > slows_down_s + clock_memory_s;
     return errs ? (plan_.site == site ? -0.5 : 0.5) * plan_.impairment.delay_s : 0.0;
   }
   /// Whether a site takes what the other tells of its agreement as its own would be: for a control, what compares them
@@ -89,7 +94,7 @@ class FaultInjection {
   }
 
  private:
-  static constexpr double clock_memory_s = 2.0;
+  static constexpr double clock_memory_s = 2.0, slows_down_s = 1.0;
 
   static double start_s(const FaultPlan& plan, const BadNumber& bad) {
     return plan.kind == FaultKind::bad_number ? fault_schedule::bad_number_at_s(bad.state) : plan.start_s;

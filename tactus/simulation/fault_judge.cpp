@@ -16,6 +16,9 @@ void FaultJudge::see_states(const SiteView& master, const SiteView& slave, const
     const SiteView& site = i == 0 ? master : slave;
     const bool active = !site.gone && site.state == SiteState::active;
     none_active = none_active && !active;
+    if (active && before_rearming) {
+      (i == 0 ? outcome.master_followed_s : outcome.slave_followed_s) = static_cast<double>(since_ticks + 1) * tick_s_;
+    }
     const bool latched = site.gone || site.state == SiteState::hold || site.state == SiteState::fault;
     if (latched && outcome.detection_ticks < 0) outcome.detection_ticks = since_ticks;
     all_latched = all_latched && latched;

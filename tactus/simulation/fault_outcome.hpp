@@ -49,6 +49,7 @@ struct FaultOutcome {
   bool active_in_fault = false;            ///< both sites, while it lasted
   bool stopped = false;                    ///< a site left `active` after the fault began
   double time_to_stop_s = 0.0;             ///< from the begin of the fault until no site was active
+  double master_followed_s = 0.0, slave_followed_s = 0.0;  ///< the same of each site by itself; 0 if it never was
   double release_s = 0.0;  ///< from both in a hold or fault until their motors gave less than a small force for good
   std::int64_t detection_ticks = -1;  ///< from the begin of the fault to a latched fault or a hold; -1 is never
   bool left_workspace = false;        ///< a device was a tenth beyond where its gate latches a fault, whatever it read

@@ -55,21 +55,4 @@ std::vector<FaultPlan> plans_of(const FaultPlan& plan) {
   return {plan};
 }
 
-Impairment impairment_to(FaultSite site, const std::vector<FaultPlan>& plans) {
-  Impairment sum;
-  for (const FaultPlan& plan : plans) {
-    if (plan.kind == FaultKind::delay_asymmetric && plan.site != site) continue;
-    const Impairment& one = plan.impairment;
-    sum.delay_s += one.delay_s;
-    sum.jitter_s += one.jitter_s;
-    sum.duplicate_fraction = std::max(sum.duplicate_fraction, one.duplicate_fraction);
-    if (one.burst_begins_fraction > sum.burst_begins_fraction) {
-      sum.burst_begins_fraction = one.burst_begins_fraction;
-      sum.burst_ends_fraction = one.burst_ends_fraction;
-      sum.burst_loss_fraction = one.burst_loss_fraction;
-    }
-  }
-  return sum;
-}
-
 }  // namespace tactus::simulation

@@ -11,7 +11,4 @@ namespace tactus::simulation {
 /// following.
 std::vector<FaultPlan> plans_of(const FaultPlan& plan);
 
-/// How the network treats packets on the way to a site while all of `plans` are there.
-Impairment impairment_to(FaultSite site, const std::vector<FaultPlan>& plans);
-
 }  // namespace tactus::simulation

@@ -1,3 +1,4 @@
+#include <tactus/simulation/fault_moment.hpp>
 #include <tactus/simulation/fault_plan.hpp>
 #include <tactus/simulation/internal/fault_families.hpp>
 

@@ -1,8 +1,8 @@
+#include <tactus/simulation/fault_duty.hpp>
 #include <tactus/simulation/fault_rows.hpp>
 #include <tactus/simulation/internal/fault_families.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace tactus::simulation {
 
@@ -20,7 +20,8 @@ std::string_view broken_rule_of_all(const FaultOutcome& outcome) {
   return {};
 }
 
-std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bounds) {
+std::string_view broken_bound(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
+  const HarmBounds& bounds = params.task.bounds;
   const SiteHarm &master = outcome.master, &slave = outcome.slave;
   if (std::max(master.given_J, slave.given_J) > bounds.given_J) return "a motor gave too much energy";
   if (std::max(master.speed_m_per_s, slave.speed_m_per_s) > bounds.speed_m_per_s) return "handle or tool too fast";
@@ -28,38 +29,13 @@ std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bou
   if (master.peak_force_N > bounds.hand_force_N) return "too much force on the hand";
   if (slave.peak_force_N > bounds.tool_force_N) return "too much force at the tool";
   if (std::max(master.pressing_N, slave.pressing_N) > bounds.pressing_N) return "pressed too hard for long";
-  if (outcome.release_s > bounds.release_s) return "not released in time";
+  if (outcome.release_s > release_allowed_s(plan, params)) return "not released in time";
   return {};
 }
 
-bool detected(const FaultOutcome& outcome) { return outcome.detection_ticks >= 0; }
-
-bool stopped_in_time(const FaultOutcome& outcome, const FaultsParams& params) {
-  const double longest_s = params.control.supervision.watchdog.timeout_s + grace_ticks / params.servo.rate_Hz;
-  return outcome.stopped && outcome.time_to_stop_s <= longest_s;
-}
-
 std::string_view clean(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams&) {
-  return outcome.stopped || detected(outcome) ? "tripped on clean data" : "";
+  return outcome.stopped || outcome.detection_ticks >= 0 ? "tripped on clean data" : "";
 }
-std::string_view cut(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  const double longest_s = params.control.supervision.watchdog.timeout_s + grace_ticks / params.servo.rate_Hz;
-  return plan.length_s <= longest_s || stopped_in_time(outcome, params) ? "" : late;
-}
-std::string_view restart(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams& params) {
-  return stopped_in_time(outcome, params) ? "" : late;
-}
-std::string_view seen_at_once(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams&) {
-  return detected(outcome) && outcome.detection_ticks <= 1 ? "" : unseen;
-}
-std::string_view bias(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  const double limit_N = params.control.supervision.force_sensor.residual_limit_N;
-  return detected(outcome) || std::fabs(plan.size) < 2.0 * limit_N ? "" : unseen;
-}
-std::string_view stall(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  return plan.length_s <= params.control.supervision.longest_stall_s || detected(outcome) ? "" : unseen;
-}
-
 std::vector<FaultRow> first_rows() {
   return {
       {FaultKind::none, "clean", "clean", "nothing", "no trip", clean},
@@ -67,22 +43,21 @@ std::vector<FaultRow> first_rows() {
        "extrapolation, decay, hold; nothing stale applied"},
       {FaultKind::disorder, "disorder", "delay, jitter, order, copies", "up to 30 ms, both ways", "the newest wins"},
       {FaultKind::cut, "cut", "link cut", "10 ms to the longest cut",
-       "hold within the time-out, resume only after arming", cut},
+       "hold within the time-out, resume only after arming", broken_duty},
       {FaultKind::restart, "restart", "site killed and restarted", "dead for 20 ms to 1 s",
-       "hold within the time-out, resume only after arming", restart},
+       "hold within the time-out, resume only after arming", broken_duty},
       {FaultKind::bad_number, "bad-number", "bad number", "NaN, infinity, huge: every input, every state",
        "refused, finite output"},
       {FaultKind::encoder_spike, "encoder-spike", "encoder spike", "one reading, 5 mm to 1 m", "latched in the tick",
-       seen_at_once},
+       broken_duty},
       {FaultKind::encoder_freeze, "encoder-freeze", "encoder frozen", "for 1 s", "latched once the force works"},
-      {FaultKind::encoder_wrap, "encoder-wrap", "encoder wrap", "16 bits of 10 um", "latched in the tick",
-       seen_at_once},
+      {FaultKind::encoder_wrap, "encoder-wrap", "encoder wrap", "16 bits of 10 um", "latched in the tick", broken_duty},
       {FaultKind::force_dropout, "force-dropout", "force sensor drops out", "reads 0 for 1 s",
        "hold once there is contact"},
       {FaultKind::force_bias, "force-bias", "force sensor biased", "by 0.2 to 20 N for 1 s", "hold where it matters",
-       bias},
+       broken_duty},
       {FaultKind::stall, "stall", "site stalled", "1 to 100 ms, the motor holds its force",
-       "no burst; hold after a long one", stall},
+       "no burst; hold after a long one", broken_duty},
       {FaultKind::delayed_wall, "delayed-wall", "wall, delay, light grip",
        "15 to 30 ms each way, little damping by the hand", "damped, then held"},
       {.kind = FaultKind::delayed_wall,
@@ -125,7 +100,7 @@ std::string_view broken_rule(const FaultRow& row, const FaultPlan& plan, const F
   if (const auto rule = broken_rule_of_all(outcome); !rule.empty()) return rule;
   if (row.resumes && !outcome.active_at_end) return "not active again after clearing and arming";
   if (outcome.given_J > params.task.diverged_above_J) return "diverged";
-  if (const auto bound = broken_bound(outcome, params.task.bounds); !bound.empty()) return bound;
+  if (const auto bound = broken_bound(plan, outcome, params); !bound.empty()) return bound;
   return row.rule ? row.rule(plan, outcome, params) : std::string_view{};
 }
 

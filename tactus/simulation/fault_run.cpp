@@ -1,4 +1,5 @@
 #include <tactus/control/supervised_site.hpp>
+#include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/simulation/fault_injection.hpp>
 #include <tactus/simulation/fault_judge.hpp>
 #include <tactus/simulation/fault_pairs.hpp>
@@ -59,15 +60,13 @@ class FaultRun::Run {
         tick_s_(parts_.clock.tick_s),
         injections_(injections_of(plan, tick_s_)),
         person_(person),
-        to_slave_(impairment_to(FaultSite::slave, plans_of(plan)),
-                  signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(1), tick_s_),
-        to_master_(impairment_to(FaultSite::master, plans_of(plan)),
-                   signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(2), tick_s_),
+        to_slave_(relay(plan, 1, tick_s_)),
+        to_master_(relay(plan, 2, tick_s_)),
         at_master_(params.control.gate.force_limit_N, params.control.gate.rate_limit_N_per_s, tick_s_),
         at_handle_(params.control.handle_gate.force_limit_N, params.control.handle_gate.rate_limit_N_per_s, tick_s_),
         at_slave_(params.control.slave_gate.force_limit_N, params.control.slave_gate.rate_limit_N_per_s, tick_s_),
-        of_master_(oldest_s(params, plan), tick_s_),
-        of_slave_(oldest_s(params, plan), tick_s_),
+        of_master_(oldest_s(params, plan, tick_s_), tick_s_),
+        of_slave_(oldest_s(params, plan, tick_s_), tick_s_),
         judge_({person.wall_m(), person.depth_m(), released_share * params.control.gate.force_limit_N, tick_s_},
                {params.environment.position_m, params.control.position_scale * person.depth_m(),
                 released_share * params.control.slave_gate.force_limit_N, tick_s_},
@@ -84,14 +83,29 @@ class FaultRun::Run {
     for (const FaultPlan& part : plans_of(plan)) injections.emplace_back(part, tick_s);
     return injections;
   }
-  /// The oldest that may be applied. Of a way that takes longer than the other half passes for an offset of clocks.
-  static double oldest_s(const Teleoperator::Params& params, const FaultPlan& plan) {
-    return (plan.kind == FaultKind::delay_asymmetric ? 2.0 : 1.0) * params.control.supervision.packets.longest_age_s;
+  /// The oldest that may be applied. Of a way that takes longer than the other half passes for an offset of clocks; and
+  /// a clock that loses ticks does not count how long a packet waits meanwhile.
+  static double oldest_s(const Teleoperator::Params& params, const FaultPlan& plan, double tick_s) {
+    const double factor = plan.kind == FaultKind::delay_asymmetric ? 2.0 : 1.0;
+    double waits_s = 0.0;
+    for (const FaultPlan& part : plans_of(plan)) {
+      if (part.kind == FaultKind::rate_drift) waits_s += tick_s * std::ceil(part.size / (1.0 - part.size));
+    }
+    return factor * params.control.supervision.packets.longest_age_s + waits_s;
   }
-  [[nodiscard]] double impaired_share(FaultSite to) const {
-    double share = 0.0;
-    for (const FaultInjection& injection : injections_) share = std::max(share, injection.impaired_share(to));
-    return share;
+  /// A way whose packets the network treats as every part of the plan says.
+  static PacketRelay relay(const FaultPlan& plan, std::uint64_t way, double tick_s) {
+    std::vector<ImpairedLink> links;
+    double longest_s = 0.0;
+    signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(way);
+    for (const FaultPlan& part : plans_of(plan)) {
+      links.emplace_back(part.impairment, links.empty() ? random : random.fork(links.size()));
+      longest_s += part.impairment.delay_s + part.impairment.jitter_s;
+    }
+    return {links, longest_s, tick_s};
+  }
+  [[nodiscard]] auto share_to(FaultSite site) const {
+    return [this, site](std::size_t part) { return injections_[part].impaired_share(site); };
   }
   /// A packet on its way to a site, which a control may blind to what differs.
   template <class Site>
@@ -114,6 +128,7 @@ class FaultRun::Run {
   void say(control::Packet& packet, FaultSite site);
   double drive(const Forces& told, FaultSite site);
   void hold_handle();
+  [[nodiscard]] mechanics::Operator::Output clamped() const;
   void step_master();
   void step_slave();
   void advance();
@@ -135,7 +150,8 @@ class FaultRun::Run {
   Forces of_master_site_, of_slave_site_;
   FaultyPerson::Hand hand_ = FaultyPerson::Hand::holds;
   double clamped_at_m_ = 0.0;
-  double misread_N_ = 0.0;  ///< of the tip's force, by a fault
+  mechanics::MinimumJerk returns_;  ///< how far off its path the hand still leads a handle that it took again
+  double misread_N_ = 0.0;          ///< of the tip's force, by a fault
   Lasting misread_slowly_, misdriven_slowly_;
   std::int64_t tick_ = 0;
   std::int64_t ticks_ = 0;
@@ -223,7 +239,7 @@ void FaultRun::Run::step_master() {
     of_slave_.applied(output.record, tick_, outcome_);
     say(output.packet, FaultSite::master);
     of_master_.sent(output.packet, tick_);
-    if (!cut()) to_slave_.send(output.packet, tick_, impaired_share(FaultSite::slave));
+    if (!cut()) to_slave_.send(output.packet, tick_, share_to(FaultSite::slave));
   }
   of_master_site_.drive_N = drive(of_master_site_, FaultSite::master);
   at_master_.see(of_master_site_.motor_N, master_.excused(), outcome_);
@@ -254,7 +270,7 @@ void FaultRun::Run::step_slave() {
     say(output.packet, FaultSite::slave);
     of_slave_.sent(output.packet, tick_);
     // It arrives at the next tick at the earliest.
-    if (!cut()) to_master_.send(output.packet, tick_ + 1, impaired_share(FaultSite::master));
+    if (!cut()) to_master_.send(output.packet, tick_ + 1, share_to(FaultSite::master));
   }
   of_slave_site_.drive_N = drive(of_slave_site_, FaultSite::slave);
   at_slave_.see(of_slave_site_.motor_N, slave_.excused(), outcome_);
@@ -267,10 +283,24 @@ void FaultRun::Run::hold_handle() {
   for (const FaultInjection& injection : injections_) hand = std::max(hand, injection.person.hand(injection.moment()));
   if (hand == hand_) return;
   hand_ = hand;
-  clamped_at_m_ = parts_.master.mechanism().tip_position_m();
-  parts_.master.hold(hand == Hand::holds     ? params_.person.grip
-                     : hand == Hand::lets_go ? mechanics::nobody_holds
-                                             : clamp);
+  const double now_s = moment().now_s, handle_m = parts_.master.mechanism().tip_position_m();
+  clamped_at_m_ = handle_m;
+  if (hand == Hand::holds) {
+    returns_ = FaultyPerson::returns_from(handle_m - person_.path_m(now_s), now_s);
+    parts_.master.take_again(params_.person.grip);
+  } else {
+    parts_.master.hold(hand == Hand::lets_go ? mechanics::nobody_holds : clamp);
+  }
+}
+
+/// Where the clamp that holds the handle wants it.
+mechanics::Operator::Output FaultRun::Run::clamped() const {
+  for (const FaultInjection& injection : injections_) {
+    if (injection.person.hand(injection.moment()) != FaultyPerson::Hand::is_clamped) continue;
+    const mechanics::Operator::Output pushed = injection.person.pushed(injection.moment());
+    return {.position_m = clamped_at_m_ + pushed.position_m, .velocity_m_per_s = pushed.velocity_m_per_s};
+  }
+  return {.position_m = clamped_at_m_, .velocity_m_per_s = 0.0};
 }
 
 void FaultRun::Run::advance() {
@@ -278,12 +308,12 @@ void FaultRun::Run::advance() {
   parts_.master.write({.force_N = of_master_site_.drive_N, .handle_force_N = of_master_site_.handle_N});
   parts_.slave.write({.force_N = of_slave_site_.drive_N});
   hold_handle();
-  if (hand_ == FaultyPerson::Hand::is_clamped) {
-    const mechanics::Operator::Output pushed = injections_.front().person.pushed(moment());
-    parts_.master.begin_tick(
-        {.position_m = clamped_at_m_ + pushed.position_m, .velocity_m_per_s = pushed.velocity_m_per_s});
+  if (hand_ == FaultyPerson::Hand::holds) {
+    const auto meant_m = [this](double time_s) { return person_.path_m(time_s) + returns_.position_m(time_s); };
+    parts_.master.begin_tick(meant_m(now_s), meant_m(now_s + tick_s_));
   } else {
-    parts_.master.begin_tick(person_.path_m(now_s), person_.path_m(now_s + tick_s_));
+    // A hand that is away corrects nothing.
+    parts_.master.begin_tick(clamped());
   }
   parts_.slave.begin_tick();
   for (int i = 0; i < parts_.clock.substeps; ++i) {
@@ -309,6 +339,7 @@ void FaultRun::Run::judge() {
                                 .left_workspace = left,
                                 .truth = {.drive_N = drive_N,
                                           .motor_m = mechanism.motor_position_m(),
+                                          .motor_m_per_s = mechanism.state().velocity_m_per_s[0],
                                           .tip_m = mechanism.tip_position_m(),
                                           .tip_m_per_s = mechanism.tip_velocity_m_per_s(),
                                           .outside_N = outside_N}};

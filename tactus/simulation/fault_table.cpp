@@ -45,6 +45,16 @@ std::vector<FaultPlan> draw_plans(const FaultRow& row, const FaultsParams& param
   return plans;
 }
 
+std::vector<FaultPlan> draw_control_plans(const FaultRow& row, const FaultsParams& params) {
+  if (row.control.shows == nullptr) return draw_plans(row, params);
+  std::vector<FaultPlan> plans;
+  for (std::int64_t i = 0; static_cast<std::int64_t>(plans.size()) < params.task.seeds; ++i) {
+    const FaultPlan plan = draw_plan(row.kind, i, params.task.seed, params.task.longest_cut_s);
+    if (row.control.shows(plan, params)) plans.push_back(plan);
+  }
+  return plans;
+}
+
 FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vector<FaultPlan>& plans,
                  const std::vector<FaultOutcome>& outcomes) {
   FaultTally sum{.row = row, .failures = {}, .worst = {}};
@@ -55,7 +65,7 @@ FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vec
     if (const auto rule = broken_rule(row, plans[i], one, params); rule.empty()) {
       ++sum.survived;
     } else {
-      sum.failures.push_back({static_cast<std::int64_t>(i), rule});
+      sum.failures.push_back({plans[i].choice, rule});
     }
     sum.diverged += one.given_J > params.task.diverged_above_J;
     sum.simulated_s += plans[i].start_s + plans[i].length_s;
@@ -108,6 +118,7 @@ Result<FaultTable> run_faults(const FaultsParams& params, const std::function<vo
     blocks.push_back(block);
     if (row.control.switch_off == nullptr) continue;
     block.controls = true;
+    block.plans = draw_control_plans(row, params);
     Teleoperator::Params off = block.params;
     row.control.switch_off(off, nothing);
     if (const auto tried = run_fault(off, nothing); !tried) return tried.error();

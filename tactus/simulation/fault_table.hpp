@@ -38,6 +38,8 @@ struct FaultTally {
 
 /// The plans of a row.
 std::vector<FaultPlan> draw_plans(const FaultRow& row, const FaultsParams& params);
+/// Those of its control: as many, the first that can show what is switched off.
+std::vector<FaultPlan> draw_control_plans(const FaultRow& row, const FaultsParams& params);
 
 /// What came of the runs of a row, one outcome for each plan.
 FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vector<FaultPlan>& plans,

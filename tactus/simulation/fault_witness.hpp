@@ -110,6 +110,7 @@ class EnergyWitness {
 struct SiteTruth {
   double drive_N = 0.0;  ///< what the motor is made to give from now on
   double motor_m = 0.0;
+  double motor_m_per_s = 0.0;
   double tip_m = 0.0;  ///< handle or tool
   double tip_m_per_s = 0.0;
   double outside_N = 0.0;  ///< hand on handle or wall on tool
@@ -142,12 +143,19 @@ class HarmWitness {
     if (started_) harm.drive_step_N = std::max(harm.drive_step_N, std::fabs(truth.drive_N - before_N_));
     started_ = true;
     before_N_ = truth.drive_N;
-    if (std::fabs(truth.drive_N) > released_N_) forced_s_ = now_s;
+    if (std::fabs(truth.drive_N) > released_N_ && !brakes(truth)) forced_s_ = now_s;
   }
-  /// When the motor gave a force last.
+  /// When the motor pushed or pressed last.
   [[nodiscard]] double forced_s() const { return forced_s_; }
 
  private:
+  /// A force against the motion, as that of the damper which a passivity monitor leaves on: it takes energy from who
+  /// moves the device, and ends with the motion. What only presses stands still and is none, what pushes goes along.
+  static bool brakes(const SiteTruth& truth) {
+    return std::fabs(truth.motor_m_per_s) > at_rest_m_per_s && truth.drive_N * truth.motor_m_per_s < 0.0;
+  }
+  static constexpr double at_rest_m_per_s = 0.01;
+
   EnergyWitness energy_;
   double middle_m_;
   double range_m_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/control/site_supervisor.hpp>
+#include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/mechanics/operator.hpp>
 #include <tactus/simulation/fault_moment.hpp>
 #include <tactus/simulation/fault_schedule.hpp>
@@ -19,6 +20,11 @@ class FaultyPerson {
     if (!moment.during) return Hand::holds;
     if (plan_.kind == FaultKind::hand_lets_go || stuck_in_use()) return Hand::lets_go;
     return plan_.kind == FaultKind::handle_clamped ? Hand::is_clamped : Hand::holds;
+  }
+  /// A handle that moved while the hand was away is taken where it is and led back to the path: what is left, at a
+  /// time, of the `away_m` at `now_s`. A hand does not jump there, and a person does not grip as if it had.
+  [[nodiscard]] static constexpr mechanics::MinimumJerk returns_from(double away_m, double now_s) noexcept {
+    return {.start_m = away_m, .end_m = 0.0, .start_time_s = now_s, .duration_s = return_s};
   }
   /// How far a clamp has pushed the handle from where it was, and how fast: by `size`, in the time below.
   [[nodiscard]] mechanics::Operator::Output pushed(const FaultMoment& moment) const noexcept {
@@ -54,6 +60,8 @@ class FaultyPerson {
 
  private:
   static constexpr double push_s = 0.3;
+  /// How long the way back takes: a reach without haste.
+  static constexpr double return_s = 0.4;
   static constexpr double notices_s = 0.3;
 
   /// The dead-man switch sticks while the sites follow, and the person goes away; else from the start of the session.

@@ -3,6 +3,7 @@
 #include <tactus/control/packet.hpp>
 #include <tactus/simulation/fault_plan.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -15,17 +16,27 @@ namespace tactus::simulation {
 /// ticks that it is asked, so packets wait for a site that is not stepped.
 class PacketRelay {
  public:
-  /// A relay that impairs packets while `send` is told to. `tick_s` is the duration of a tick.
-  PacketRelay(const Impairment& impairment, signal::Random random, double tick_s)
-      : link_(impairment, random),
-        tick_s_(tick_s),
-        slots_(static_cast<std::size_t>(std::ceil((impairment.delay_s + impairment.jitter_s) / tick_s)) + 2) {}
+  /// A relay whose packets pass one link after another, each of which impairs them while `send` is told to. `tick_s` is
+  /// the duration of a tick.
+  PacketRelay(const std::vector<ImpairedLink>& links, double longest_way_s, double tick_s)
+      : links_(links), tick_s_(tick_s), slots_(static_cast<std::size_t>(std::ceil(longest_way_s / tick_s)) + 2) {}
 
-  /// Sends a packet at `tick`. `share` of the impairment's delay is there now, 0 for no impairment. Does not allocate.
-  void send(const control::Packet& packet, std::int64_t tick, double share) noexcept {
-    const PacketFate fate = share > 0.0 ? link_.next() : PacketFate{};
+  /// Sends a packet at `tick`. `share(i)` of the delay of link number i is there now, 0 for no impairment. What comes
+  /// twice from one link comes no more often from the next. Does not allocate.
+  template <class Share>
+  void send(const control::Packet& packet, std::int64_t tick, Share&& share) noexcept {
+    PacketFate fate;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const double of_delay = share(i);
+      if (of_delay <= 0.0) continue;
+      const PacketFate next = links_[i].next();
+      fate.copies = std::min(fate.copies * next.copies, 2);
+      for (std::size_t copy = 0; copy < fate.delay_s.size(); ++copy) {
+        fate.delay_s[copy] += of_delay * next.delay_s[copy];
+      }
+    }
     for (int copy = 0; copy < fate.copies; ++copy) {
-      const auto late = static_cast<std::int64_t>(share * fate.delay_s[static_cast<std::size_t>(copy)] / tick_s_);
+      const auto late = static_cast<std::int64_t>(fate.delay_s[static_cast<std::size_t>(copy)] / tick_s_);
       Slot& slot = slots_[static_cast<std::size_t>(tick + late) % slots_.size()];
       // What finds no room is lost, as in a queue of a network.
       if (slot.count < slot.waiting.size()) slot.waiting[slot.count++] = {packet, tick};
@@ -54,7 +65,7 @@ class PacketRelay {
     std::size_t count = 0;
   };
 
-  ImpairedLink link_;
+  std::vector<ImpairedLink> links_;
   double tick_s_;
   std::vector<Slot> slots_;  ///< a ring, as long as the longest way takes
 };

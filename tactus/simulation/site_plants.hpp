@@ -46,6 +46,11 @@ class MasterPlant {
     grip_ = grip;
     device_.hold(mechanics::scaled(grip_, grip_factor_));
   }
+  /// The same after nobody held it, or something else did: what the person corrected before is forgotten.
+  void take_again(const mechanics::LinearSpring::Params& grip) noexcept {
+    person_.reset();
+    hold(grip);
+  }
   void substep(int index) noexcept {
     if (index == clock_.late_substeps) command_ = next_;
     const double middle_s = (index + 0.5) * clock_.substep_s;

@@ -1,9 +1,12 @@
 #include <tactus/control/agreed_parameters.hpp>
+#include <tactus/simulation/fault_duty.hpp>
 #include <tactus/simulation/fault_pairs.hpp>
 #include <tactus/simulation/fault_process.hpp>
 #include <tactus/simulation/fault_table.hpp>
 #include <tactus/simulation/faulty_configuration.hpp>
+#include <tactus/simulation/packet_relay.hpp>
 
+#include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
@@ -82,6 +85,92 @@ TEST(FaultsOfTheCourse, AMachineThatSleepsDoesNotCountTheTicksThatItMissesAndAPr
     }
     EXPECT_EQ(elapsed_ticks, choice == 0 ? 5 : 1);
   }
+}
+
+/// A hand does not pull a handle that moved away back as if it had held it all the while.
+TEST(FaultsOfTheCourse, AHandThatComesBackTakesTheHandleWhereItIsAndNothingThrewItMeanwhile) {
+  const FaultsParams params;
+  const FaultRow row = fault_rows("hand-lets-go").front();
+  for (const auto& [seed, number] :
+       std::vector<std::pair<std::int64_t, std::int64_t>>{{700000, 38}, {700000, 129}, {700000, 174}, {900000, 241}}) {
+    const FaultPlan plan = draw_plan(FaultKind::hand_lets_go, number, seed, 1.0);
+    const FaultOutcome outcome = run_fault(params, plan).value();
+    EXPECT_EQ(broken_rule(row, plan, outcome, params), "") << number;
+    EXPECT_LT(outcome.master.peak_force_N, 5.0) << number;
+    EXPECT_LT(outcome.master.strayed_m, 0.03) << number << ": what was left of the force threw it";
+  }
+}
+
+/// The pair of these kinds that comes first.
+FaultPlan pair_of(FaultKind first, FaultKind second, double least_size = 0.0) {
+  for (std::int64_t choice = 0;; ++choice) {
+    const FaultPlan plan = draw_plan(FaultKind::two_faults, choice, 1, 1.0);
+    const auto parts = plans_of(plan);
+    if (parts[0].kind == first && parts[1].kind == second && parts[1].size >= least_size) return plan;
+  }
+}
+
+TEST(FaultsOfTheCourse, AClampThatIsTheSecondFaultPushesByItsOwnSize) {
+  const FaultPlan plan = pair_of(FaultKind::cut, FaultKind::handle_clamped, 0.045);
+  // The person leads the handle over at most 24 mm.
+  EXPECT_GT(run_fault(FaultsParams(), plan).value().master.strayed_m, plans_of(plan)[1].size - 0.024);
+}
+
+TEST(FaultsOfTheCourse, OfTwoFaultsEachKeepsItsDutyPutOffByWhatTheOtherTakes) {
+  const FaultsParams params;
+  FaultOutcome outcome{.became_active = true, .stopped = true};
+  const auto stops_after = [&](const FaultPlan& plan, double after_s) {
+    outcome.master_followed_s = outcome.slave_followed_s = outcome.time_to_stop_s = after_s;
+    outcome.detection_ticks = std::lround(after_s * params.servo.rate_Hz);
+    return broken_duty_of_two(plan, outcome, params);
+  };
+  // A way that takes longer brings what is under way so much later, and no later than that.
+  FaultPlan plan = pair_of(FaultKind::disorder, FaultKind::restart);
+  const auto parts = plans_of(plan);
+  const double way_s = parts[0].impairment.delay_s + parts[0].impairment.jitter_s;
+  const double restart_s = parts[1].start_s - parts[0].start_s + duty_of(parts[1], params).within_s;
+  if (parts[0].start_s + parts[0].length_s > parts[1].start_s) {
+    EXPECT_EQ(stops_after(plan, restart_s + 0.9 * way_s), "");
+  }
+  EXPECT_NE(stops_after(plan, restart_s + 1.1 * way_s + 0.001), "");
+  // A jump is seen at once, whatever the other is.
+  plan = pair_of(FaultKind::encoder_spike, FaultKind::encoder_wrap);
+  EXPECT_EQ(stops_after(plan, 0.0), "");
+  EXPECT_NE(stops_after(plan, 0.01), "");
+  // Who never followed shows nothing.
+  outcome.became_active = false;
+  EXPECT_NE(stops_after(plan, 0.0), "");
+}
+
+TEST(FaultsOfTheCourse, NoOneFollowsOnAFaultThatCameWhileArming) {
+  const FaultsParams params;
+  FaultPlan plan;
+  for (std::int64_t choice = 0; plan.kind == FaultKind::none; ++choice) {
+    const FaultPlan one = draw_plan(FaultKind::fault_while_arming, choice, 1, 1.0);
+    if (plans_of(one).front().kind == FaultKind::restart) plan = one;
+  }
+  FaultOutcome outcome;
+  EXPECT_EQ(broken_duty_while_arming(plan, outcome, params), "");
+  outcome.slave_followed_s = 0.5;
+  EXPECT_NE(broken_duty_while_arming(plan, outcome, params), "");
+}
+
+/// Of a pair, one way is late only while that fault lasts.
+TEST(FaultsOfTheCourse, EachLinkOfARelayImpairsInItsOwnTime) {
+  const ImpairedLink slow({.delay_s = 0.004}, signal::Random(1)), slower({.delay_s = 0.010}, signal::Random(2));
+  PacketRelay relay({slow, slower}, 0.014, 0.001);
+  const auto arrives_after = [&relay](std::int64_t sent_tick, double of_slow, double of_slower) {
+    relay.send({}, sent_tick, [&](std::size_t i) { return i == 0 ? of_slow : of_slower; });
+    std::int64_t after = -1;
+    for (std::int64_t tick = sent_tick; tick < sent_tick + 16; ++tick) {
+      relay.deliver(tick, [&](const control::Packet&) { after = tick - sent_tick; });
+    }
+    return after;
+  };
+  EXPECT_EQ(arrives_after(0, 0.0, 0.0), 0);
+  EXPECT_EQ(arrives_after(20, 1.0, 0.0), 4);
+  EXPECT_EQ(arrives_after(40, 1.0, 1.0), 14);
+  EXPECT_EQ(arrives_after(60, 0.0, 0.5), 5);
 }
 
 /// A control that survives would say that the row shows nothing.

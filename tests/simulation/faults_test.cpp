@@ -275,6 +275,17 @@ TEST(FaultWitnesses, SeeWhatTheyAreThereFor) {
   double rise_J = 0.0;
   for (const double position_m : {0.0, -0.5, 0.25, 0.0}) rise_J = energy.see(2.0, position_m);
   EXPECT_DOUBLE_EQ(rise_J, 1.5) << "the rise from the lowest";
+
+  HarmWitness harm(0.0, 0.01, 0.25, 1e-3);
+  SiteHarm done;
+  const auto gives = [&](double force_N, double speed_m_per_s, double now_s) {
+    harm.see({.drive_N = force_N, .motor_m_per_s = speed_m_per_s}, now_s, done);
+    return harm.forced_s() == now_s;
+  };
+  EXPECT_TRUE(gives(1.0, 0.0, 1.0)) << "presses";
+  EXPECT_TRUE(gives(-1.0, -0.1, 2.0)) << "pushes";
+  EXPECT_FALSE(gives(-1.0, 0.1, 3.0)) << "brakes";
+  EXPECT_FALSE(gives(0.2, 0.0, 4.0)) << "hardly anything";
 }
 
 }  // namespace faults_test
