@@ -1,6 +1,7 @@
 #pragma once
 
-#include <tactus/control/supervised_site.hpp>
+#include <tactus/control/packet.hpp>
+#include <tactus/station/device.hpp>
 
 #include <array>
 #include <cstdint>
@@ -48,14 +49,10 @@ struct BadNumber {
     return bad;
   }
 
-  void spoil(control::MasterInput& sensors) const {
-    if (input == Input::position) sensors.motor_position_m = value;
-    if (input == Input::force) sensors.hand_force_N = value;
-    if (input == Input::grip) sensors.grip = value;
-  }
-  void spoil(control::SlaveInput& sensors) const {
-    if (input == Input::position) sensors.motor_position_m = value;
-    if (input == Input::force) sensors.tip_force_N = value;
+  void spoil(station::DeviceReading& reading) const {
+    if (input == Input::position) reading.position_m = value;
+    if (input == Input::force) reading.force_N = value;
+    if (input == Input::grip) reading.grip = value;
   }
   void spoil(control::Packet& packet) const {
     if (input == Input::told_position) packet.message.position_m = value;

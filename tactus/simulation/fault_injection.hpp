@@ -82,14 +82,14 @@ class FaultInjection {
     const bool told = plan_.kind == FaultKind::configurations_differ || plan_.kind == FaultKind::peer_repeats;
     return told && plan_.size != 0.0;
   }
-  /// Puts a bad number into what a site reads, where this is its tick; `input` is a packet or a site's sensors.
+  /// Puts a bad number into what a site reads, where this is its tick; `input` is a packet or a reading.
   template <class Input>
   void spoil(FaultSite site, Input& input) const noexcept {
     const bool here = bad_.at_master == (site == FaultSite::master);
     if (plan_.kind != FaultKind::bad_number || !here) return;
     if (moment_.begins) bad_.spoil(input);
-    if constexpr (requires { input.motor_position_m; }) {
-      if (is_prelude(control::SiteState::fault)) input.motor_position_m = std::numeric_limits<double>::quiet_NaN();
+    if constexpr (requires { input.position_m; }) {
+      if (is_prelude(control::SiteState::fault)) input.position_m = std::numeric_limits<double>::quiet_NaN();
     }
   }
 

@@ -46,10 +46,8 @@ class FaultProcess {
     return born_;
   }
 
-  /// Takes what the relay delivers at `tick` and, where the site is stepped, gives all that waits to `take`.
-  template <class Take>
-  void receive(PacketRelay& relay, std::int64_t tick, const std::vector<FaultInjection>& injections, double tick_s,
-               Take&& take) noexcept {
+  /// Takes what the relay delivers at `tick`. Each tick.
+  void collect(PacketRelay& relay, std::int64_t tick, const std::vector<FaultInjection>& injections) noexcept {
     relay.deliver(tick, [&](control::Packet packet) {
       if (killed_) return;
       for (const FaultInjection& injection : injections) {
@@ -59,7 +57,10 @@ class FaultProcess {
       }
       if (waiting_.size() < waiting_.capacity()) waiting_.push_back(packet);
     });
-    if (stands_still()) return;
+  }
+  /// Gives all that waits to `take`. Where the site is stepped.
+  template <class Take>
+  void hand_over(double tick_s, Take&& take) noexcept {
     for (control::Packet& packet : waiting_) {
       // What waited in the queue of a stalled site has aged there.
       packet.age_s += static_cast<double>(elapsed_ticks_ - 1) * tick_s;

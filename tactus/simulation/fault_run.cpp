@@ -4,15 +4,15 @@
 #include <tactus/simulation/fault_judge.hpp>
 #include <tactus/simulation/fault_pairs.hpp>
 #include <tactus/simulation/fault_person.hpp>
-#include <tactus/simulation/fault_process.hpp>
 #include <tactus/simulation/fault_run.hpp>
-#include <tactus/simulation/fault_witness.hpp>
 #include <tactus/simulation/faulty_configuration.hpp>
-#include <tactus/simulation/packet_relay.hpp>
+#include <tactus/simulation/faulty_site.hpp>
 #include <tactus/simulation/site_plants.hpp>
+#include <tactus/station/step.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -38,35 +38,22 @@ class FaultRun::Run {
   [[nodiscard]] const FaultOutcome& outcome() const { return outcome_; }
 
  private:
-  struct Parts {
-    Clock clock;
-    MasterPlant master;
-    SlavePlant slave;
-    control::SupervisedMaster master_site;
-    control::SupervisedSlave slave_site;
-  };
-  /// What a site last commanded, and what its drives make of that.
-  struct Forces {
-    double motor_N = 0.0;
-    double handle_N = 0.0;
-    double drive_N = 0.0;
-    bool enabled = true;  ///< the line that switches the drive on
-  };
+  using Master = FaultySite<MasterPlant, control::SupervisedMaster>;
+  using Slave = FaultySite<SlavePlant, control::SupervisedSlave>;
 
-  Run(const Teleoperator::Params& params, const FaultPlan& plan, const FaultPerson& person, Parts parts)
+  Run(const Teleoperator::Params& params, const FaultPlan& plan, const FaultPerson& person, const Clock& clock,
+      Master master, Slave slave)
       : params_(params),
         plan_(plan),
-        parts_(std::move(parts)),
-        tick_s_(parts_.clock.tick_s),
+        clock_(clock),
+        tick_s_(clock.tick_s),
         injections_(injections_of(plan, tick_s_)),
         person_(person),
-        to_slave_(relay(plan, 1, tick_s_)),
-        to_master_(relay(plan, 2, tick_s_)),
+        master_(std::move(master)),
+        slave_(std::move(slave)),
         at_master_(params.control.gate.force_limit_N, params.control.gate.rate_limit_N_per_s, tick_s_),
         at_handle_(params.control.handle_gate.force_limit_N, params.control.handle_gate.rate_limit_N_per_s, tick_s_),
         at_slave_(params.control.slave_gate.force_limit_N, params.control.slave_gate.rate_limit_N_per_s, tick_s_),
-        of_master_(oldest_s(params, plan, tick_s_), tick_s_),
-        of_slave_(oldest_s(params, plan, tick_s_), tick_s_),
         judge_({person.wall_m(), person.depth_m(), released_share * params.control.gate.force_limit_N, tick_s_},
                {params.environment.position_m, params.control.position_scale * person.depth_m(),
                 released_share * params.control.slave_gate.force_limit_N, tick_s_},
@@ -74,8 +61,8 @@ class FaultRun::Run {
         misread_slowly_(slowly_s, tick_s_),
         misdriven_slowly_(slowly_s, tick_s_) {
     ticks_ = std::lround((end_s() + fault_schedule::end_after_s) / tick_s_);
-    of_master_.expect(ticks_);
-    of_slave_.expect(ticks_);
+    master_.sent.expect(ticks_);
+    slave_.sent.expect(ticks_);
   }
 
   static std::vector<FaultInjection> injections_of(const FaultPlan& plan, double tick_s) {
@@ -107,12 +94,6 @@ class FaultRun::Run {
   [[nodiscard]] auto share_to(FaultSite site) const {
     return [this, site](std::size_t part) { return injections_[part].impaired_share(site); };
   }
-  /// A packet on its way to a site, which a control may blind to what differs.
-  template <class Site>
-  void give(control::Packet packet, Site& site) {
-    if (injections_.front().hides_disagreement()) packet.agreement = site.agreement().own().excerpt(packet.sequence);
-    site.take(packet);
-  }
   [[nodiscard]] const FaultMoment& moment() const { return injections_.front().moment(); }
   [[nodiscard]] double end_s() const {
     double latest_s = 0.0;
@@ -124,30 +105,29 @@ class FaultRun::Run {
   }
 
   control::SiteRequests requests(FaultSite site) const;
-  void read(double& position_m, double& force_N, FaultSite site);
-  void say(control::Packet& packet, FaultSite site);
-  double drive(const Forces& told, FaultSite site);
+  void spoil(station::DeviceReading& reading, FaultSite site);
+  double drive(double told_N, bool enabled, FaultSite site);
   void hold_handle();
   [[nodiscard]] mechanics::Operator::Output clamped() const;
-  void step_master();
-  void step_slave();
+  template <class Here, class There>
+  struct Way;
+  template <class Here, class There>
+  void step_site(Here& here, There& there);
   void advance();
   void judge();
   bool tick(bool missed);
 
   Teleoperator::Params params_;
   FaultPlan plan_;
-  Parts parts_;
+  Clock clock_;
   double tick_s_;
   std::vector<FaultInjection> injections_;  ///< all that goes wrong; the first counts for the judge
   FaultPerson person_;
-  PacketRelay to_slave_, to_master_;
+  Master master_;
+  Slave slave_;
   ForceWitness at_master_, at_handle_, at_slave_;
-  PacketWitness of_master_, of_slave_;  ///< the sender
   FaultJudge judge_;
   FaultOutcome outcome_;
-  FaultProcess master_{FaultSite::master}, slave_{FaultSite::slave};
-  Forces of_master_site_, of_slave_site_;
   FaultyPerson::Hand hand_ = FaultyPerson::Hand::holds;
   double clamped_at_m_ = 0.0;
   mechanics::MinimumJerk returns_;  ///< how far off its path the hand still leads a handle that it took again
@@ -175,7 +155,20 @@ Result<FaultRun::Run> FaultRun::Run::make(const Teleoperator::Params& params, co
   const FaultyConfiguration of_slave(params.control, tick, plan, FaultSite::slave);
   auto slave_site = control::make_supervised_slave(of_slave.control, 1, of_slave.tick);
   if (!slave_site) return under("control", slave_site.error());
-  return Run(params, plan, person, Parts{*clock, *master, *slave, *std::move(master_site), *std::move(slave_site)});
+  const double oldest = oldest_s(params, plan, clock->tick_s);
+  return Run(params, plan, person, *clock,
+             Master{.where = FaultSite::master,
+                    .plant = *master,
+                    .site = *std::move(master_site),
+                    .process = FaultProcess(FaultSite::master),
+                    .inbox = relay(plan, 2, clock->tick_s),
+                    .sent = PacketWitness(oldest, clock->tick_s)},
+             Slave{.where = FaultSite::slave,
+                   .plant = *slave,
+                   .site = *std::move(slave_site),
+                   .process = FaultProcess(FaultSite::slave),
+                   .inbox = relay(plan, 1, clock->tick_s),
+                   .sent = PacketWitness(oldest, clock->tick_s)});
 }
 
 control::SiteRequests FaultRun::Run::requests(FaultSite site) const {
@@ -187,93 +180,78 @@ control::SiteRequests FaultRun::Run::requests(FaultSite site) const {
 }
 
 /// Puts what reaches the site's inputs in place of what is true.
-void FaultRun::Run::read(double& position_m, double& force_N, FaultSite site) {
-  const double true_N = force_N;
+void FaultRun::Run::spoil(station::DeviceReading& reading, FaultSite site) {
+  const double true_N = reading.force_N;
   for (FaultInjection& injection : injections_) {
     const FaultMoment& moment = injection.moment();
-    position_m = injection.at(site).encoder.step(position_m, moment);
-    if (site == FaultSite::slave) force_N = injection.force_sensor.step(force_N, moment);
-    injection.at(site).wiring.step(position_m, force_N, moment);
+    reading.position_m = injection.at(site).encoder.step(reading.position_m, moment);
+    if (site == FaultSite::slave) reading.force_N = injection.force_sensor.step(reading.force_N, moment);
+    injection.at(site).wiring.step(reading.position_m, reading.force_N, moment);
   }
-  if (site == FaultSite::slave) misread_N_ = force_N - true_N;
+  if (site == FaultSite::slave) misread_N_ = reading.force_N - true_N;
+  for (const FaultInjection& injection : injections_) injection.spoil(site, reading);
 }
 
-double FaultRun::Run::drive(const Forces& told, FaultSite site) {
-  double force_N = std::isfinite(told.motor_N) ? told.motor_N : 0.0;
+double FaultRun::Run::drive(double told_N, bool enabled, FaultSite site) {
+  double force_N = std::isfinite(told_N) ? told_N : 0.0;
   for (FaultInjection& injection : injections_) {
     FaultyActuator& actuator = injection.at(site).actuator;
-    force_N = actuator.step(force_N, told.enabled, injection.moment());
+    force_N = actuator.step(force_N, enabled, injection.moment());
     outcome_.winding_warmth = std::max(outcome_.winding_warmth, actuator.warmth());
   }
   return force_N;
 }
 
-void FaultRun::Run::say(control::Packet& packet, FaultSite site) {
-  for (FaultInjection& injection : injections_) injection.at(site).peer.step(packet, injection.moment());
-}
+/// The way of a site: what waits for its process, and whatever the network and a faulty site make of what it says.
+template <class Here, class There>
+struct FaultRun::Run::Way {
+  Run& run;
+  Here& here;
+  There& there;
+  template <class Take>
+  void receive(const station::Tick&, Take&& take) {
+    here.process.hand_over(run.tick_s_, [&](control::Packet packet) {
+      // A control blinds the site to what differs.
+      if (run.injections_.front().hides_disagreement()) {
+        packet.agreement = here.site.agreement().own().excerpt(packet.sequence);
+      }
+      take(packet);
+    });
+  }
+  void send(control::Packet packet, const station::Tick& tick) {
+    for (FaultInjection& injection : run.injections_) {
+      injection.at(here.where).peer.step(packet, injection.moment());
+    }
+    here.sent.sent(packet, tick.number);
+    // To the master it arrives at the next tick at the earliest.
+    const std::int64_t arrives = tick.number + (there.where == FaultSite::master ? 1 : 0);
+    if (!run.cut()) there.inbox.send(packet, arrives, run.share_to(there.where));
+  }
+};
 
-void FaultRun::Run::step_master() {
-  const auto reading = parts_.master.read({});
-  if (master_.fare(injections_, missed_)) {
+template <class Here, class There>
+void FaultRun::Run::step_site(Here& here, There& there) {
+  here.sensed = here.plant.read({});
+  spoil(here.sensed, here.where);
+  if (here.process.fare(injections_, missed_)) {
     // What made the first one makes the second.
-    const FaultyConfiguration with(params_.control, Seconds{tick_s_}, plan_, FaultSite::master);
-    parts_.master_site = *control::make_supervised_master(with.control, master_.session(), with.tick);
-    of_slave_.restart();
+    const FaultyConfiguration with(params_.control, Seconds{tick_s_}, plan_, here.where);
+    if constexpr (std::is_same_v<Here, Master>) {
+      here.site = *control::make_supervised_master(with.control, here.process.session(), with.tick);
+    } else {
+      here.site = *control::make_supervised_slave(with.control, here.process.session(), with.tick);
+    }
+    there.sent.restart();
   }
-  if (master_.killed()) of_master_site_ = {};
-  master_.receive(to_master_, tick_, injections_, tick_s_,
-                  [&](const control::Packet& packet) { give(packet, parts_.master_site); });
-  control::SupervisedMaster::Input input{.sensors = {.motor_position_m = reading.position_m,
-                                                     .hand_force_N = reading.force_N,
-                                                     .arrival = {},
-                                                     .grip = reading.grip},
-                                         .requests = requests(FaultSite::master),
-                                         .elapsed_ticks = master_.elapsed_ticks()};
-  read(input.sensors.motor_position_m, input.sensors.hand_force_N, FaultSite::master);
-  for (const FaultInjection& injection : injections_) injection.spoil(FaultSite::master, input.sensors);
-  if (!master_.stands_still()) {
-    auto output = parts_.master_site.step(input);
-    of_master_site_.motor_N = output.site.motor_force_N;
-    of_master_site_.handle_N = output.site.handle_force_N;
-    of_master_site_.enabled = output.record.enabled;
-    of_slave_.applied(output.record, tick_, outcome_);
-    say(output.packet, FaultSite::master);
-    of_master_.sent(output.packet, tick_);
-    if (!cut()) to_slave_.send(output.packet, tick_, share_to(FaultSite::slave));
+  if (here.process.killed()) here.forces = {};
+  here.process.collect(here.inbox, tick_, injections_);
+  if (!here.process.stands_still()) {
+    Way<Here, There> way{*this, here, there};
+    const station::Tick tick{.number = tick_, .missed = here.process.elapsed_ticks() - 1};
+    const auto done = station::step(here.site, here, way, tick, requests(here.where));
+    there.sent.applied(done.output.record, tick_, outcome_);
   }
-  of_master_site_.drive_N = drive(of_master_site_, FaultSite::master);
-  at_master_.see(of_master_site_.motor_N, master_.excused(), outcome_);
-  at_handle_.see(of_master_site_.handle_N, master_.excused(), outcome_);
-}
-
-void FaultRun::Run::step_slave() {
-  const auto reading = parts_.slave.read({});
-  if (slave_.fare(injections_, missed_)) {
-    const FaultyConfiguration with(params_.control, Seconds{tick_s_}, plan_, FaultSite::slave);
-    parts_.slave_site = *control::make_supervised_slave(with.control, slave_.session(), with.tick);
-    of_master_.restart();
-  }
-  if (slave_.killed()) of_slave_site_ = {};
-  slave_.receive(to_slave_, tick_, injections_, tick_s_,
-                 [&](const control::Packet& packet) { give(packet, parts_.slave_site); });
-  control::SupervisedSlave::Input input{
-      .sensors = {.motor_position_m = reading.position_m, .tip_force_N = reading.force_N, .arrival = {}},
-      .requests = requests(FaultSite::slave),
-      .elapsed_ticks = slave_.elapsed_ticks()};
-  read(input.sensors.motor_position_m, input.sensors.tip_force_N, FaultSite::slave);
-  for (const FaultInjection& injection : injections_) injection.spoil(FaultSite::slave, input.sensors);
-  if (!slave_.stands_still()) {
-    auto output = parts_.slave_site.step(input);
-    of_slave_site_.motor_N = output.site.motor_force_N;
-    of_slave_site_.enabled = output.record.enabled;
-    of_master_.applied(output.record, tick_, outcome_);
-    say(output.packet, FaultSite::slave);
-    of_slave_.sent(output.packet, tick_);
-    // It arrives at the next tick at the earliest.
-    if (!cut()) to_master_.send(output.packet, tick_ + 1, share_to(FaultSite::master));
-  }
-  of_slave_site_.drive_N = drive(of_slave_site_, FaultSite::slave);
-  at_slave_.see(of_slave_site_.motor_N, slave_.excused(), outcome_);
+  here.forces.drive_N = drive(here.forces.motor_N, here.forces.enabled, here.where);
 }
 
 /// Lets go of the handle, clamps it or takes it again.
@@ -283,13 +261,13 @@ void FaultRun::Run::hold_handle() {
   for (const FaultInjection& injection : injections_) hand = std::max(hand, injection.person.hand(injection.moment()));
   if (hand == hand_) return;
   hand_ = hand;
-  const double now_s = moment().now_s, handle_m = parts_.master.mechanism().tip_position_m();
+  const double now_s = moment().now_s, handle_m = master_.plant.mechanism().tip_position_m();
   clamped_at_m_ = handle_m;
   if (hand == Hand::holds) {
     returns_ = FaultyPerson::returns_from(handle_m - person_.path_m(now_s), now_s);
-    parts_.master.take_again(params_.person.grip);
+    master_.plant.take_again(params_.person.grip);
   } else {
-    parts_.master.hold(hand == Hand::lets_go ? mechanics::nobody_holds : clamp);
+    master_.plant.hold(hand == Hand::lets_go ? mechanics::nobody_holds : clamp);
   }
 }
 
@@ -305,27 +283,27 @@ mechanics::Operator::Output FaultRun::Run::clamped() const {
 
 void FaultRun::Run::advance() {
   const double now_s = moment().now_s;
-  parts_.master.write({.force_N = of_master_site_.drive_N, .handle_force_N = of_master_site_.handle_N});
-  parts_.slave.write({.force_N = of_slave_site_.drive_N});
+  master_.plant.write({.force_N = master_.forces.drive_N, .handle_force_N = master_.forces.handle_N});
+  slave_.plant.write({.force_N = slave_.forces.drive_N});
   hold_handle();
   if (hand_ == FaultyPerson::Hand::holds) {
     const auto meant_m = [this](double time_s) { return person_.path_m(time_s) + returns_.position_m(time_s); };
-    parts_.master.begin_tick(meant_m(now_s), meant_m(now_s + tick_s_));
+    master_.plant.begin_tick(meant_m(now_s), meant_m(now_s + tick_s_));
   } else {
     // A hand that is away corrects nothing.
-    parts_.master.begin_tick(clamped());
+    master_.plant.begin_tick(clamped());
   }
-  parts_.slave.begin_tick();
-  for (int i = 0; i < parts_.clock.substeps; ++i) {
-    parts_.master.substep(i);
-    parts_.slave.substep(i);
+  slave_.plant.begin_tick();
+  for (int i = 0; i < clock_.substeps; ++i) {
+    master_.plant.substep(i);
+    slave_.plant.substep(i);
   }
 }
 
 void FaultRun::Run::judge() {
   if (moment().during) {
-    const auto wrong_N = [](const Forces& of) { return of.enabled ? of.drive_N - of.motor_N : 0.0; };
-    const double misdriven_N = wrong_N(of_master_site_) + wrong_N(of_slave_site_);  // at most one is
+    const auto wrong_N = [](const auto& of) { return of.enabled ? of.drive_N - of.motor_N : 0.0; };
+    const double misdriven_N = wrong_N(master_.forces) + wrong_N(slave_.forces);  // at most one is
     outcome_.fault_N = std::max(
         {outcome_.fault_N, std::fabs(misread_slowly_.see(misread_N_)), std::fabs(misdriven_slowly_.see(misdriven_N))});
   }
@@ -345,10 +323,10 @@ void FaultRun::Run::judge() {
                                           .outside_N = outside_N}};
   };
   judge_.see(
-      view(parts_.master_site.state(), master_.killed(), std::max(at_master_.step_N(), at_handle_.step_N()),
-           params_.control.gate, parts_.master.mechanism(), of_master_site_.drive_N, parts_.master.hand_force_N()),
-      view(parts_.slave_site.state(), slave_.killed(), at_slave_.step_N(), params_.control.slave_gate,
-           parts_.slave.mechanism(), of_slave_site_.drive_N, parts_.slave.contact().peak_N),
+      view(master_.site.state(), master_.process.killed(), std::max(at_master_.step_N(), at_handle_.step_N()),
+           params_.control.gate, master_.plant.mechanism(), master_.forces.drive_N, master_.plant.hand_force_N()),
+      view(slave_.site.state(), slave_.process.killed(), at_slave_.step_N(), params_.control.slave_gate,
+           slave_.plant.mechanism(), slave_.forces.drive_N, slave_.plant.contact().peak_N),
       moment(), end_s(), outcome_);
 }
 
@@ -363,8 +341,11 @@ bool FaultRun::Run::tick(bool missed) {
     }
     injection.enter(tick_);
   }
-  step_master();
-  step_slave();
+  step_site(master_, slave_);
+  step_site(slave_, master_);
+  at_master_.see(master_.forces.motor_N, master_.process.excused(), outcome_);
+  at_handle_.see(master_.forces.handle_N, master_.process.excused(), outcome_);
+  at_slave_.see(slave_.forces.motor_N, slave_.process.excused(), outcome_);
   judge();
   advance();
   ++tick_;

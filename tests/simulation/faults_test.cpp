@@ -212,14 +212,12 @@ TEST(Faults, BadNumbersGoThroughEveryInputValueStateAndSiteOnce) {
 TEST(Faults, EveryBadNumberReachesAnInputOfTheSiteThatItIsMeantFor) {
   for (std::int64_t choice = 0; choice < BadNumber::choices; ++choice) {
     const BadNumber bad = BadNumber::of(choice);
-    control::MasterInput at_master;
-    control::SlaveInput at_slave;
+    station::DeviceReading reading;
     control::Packet packet;
     bad.spoil(packet);
-    bad.at_master ? bad.spoil(at_master) : bad.spoil(at_slave);
-    const bool sensors =
-        bad.at_master ? at_master.motor_position_m != 0.0 || at_master.hand_force_N != 0.0 || at_master.grip != 1.0
-                      : at_slave.motor_position_m != 0.0 || at_slave.tip_force_N != 0.0;
+    bad.spoil(reading);
+    // A slave has no use for a grip.
+    const bool sensors = reading.position_m != 0.0 || reading.force_N != 0.0 || (bad.at_master && reading.grip != 1.0);
     const bool told = packet.age_s != 0.0 || packet.message.position_m != 0.0 ||
                       packet.message.velocity_m_per_s != 0.0 || packet.message.force_N != 0.0 ||
                       packet.message.wave != 0.0 || packet.message.energy_J != 0.0;

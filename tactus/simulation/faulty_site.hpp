@@ -1,0 +1,41 @@
+#pragma once
+
+#include <tactus/simulation/fault_process.hpp>
+#include <tactus/simulation/fault_witness.hpp>
+#include <tactus/simulation/packet_relay.hpp>
+#include <tactus/station/device.hpp>
+
+#include <utility>
+
+namespace tactus::simulation {
+
+/// One site of a run with faults: the plant that it drives, the process that it runs in, and what stands between them
+/// and the site, where faults have their place. To the site it is its device.
+template <class PlantOfSite, class SupervisedSite>
+struct FaultySite {
+  /// What a site last commanded, and what its drives make of that.
+  struct Forces {
+    double motor_N = 0.0;
+    double handle_N = 0.0;
+    double drive_N = 0.0;
+    bool enabled = true;  ///< the line that switches the drive on
+  };
+
+  FaultSite where;
+  PlantOfSite plant;
+  SupervisedSite site;
+  FaultProcess process;
+  PacketRelay inbox;   ///< the way from the other site
+  PacketWitness sent;  ///< what this site told, and what the other applied of it
+  Forces forces{};
+  station::DeviceReading sensed{};  ///< at this tick, faults included
+
+  station::DeviceReading read(const station::Tick&) noexcept { return sensed; }
+  void write(const station::DeviceCommand& command) noexcept {
+    forces.motor_N = command.force_N;
+    forces.handle_N = command.handle_force_N;
+    forces.enabled = command.enabled;
+  }
+};
+
+}  // namespace tactus::simulation
