@@ -61,8 +61,8 @@ class FaultRun::Run {
         misread_slowly_(slowly_s, tick_s_),
         misdriven_slowly_(slowly_s, tick_s_) {
     ticks_ = std::lround((end_s() + fault_schedule::end_after_s) / tick_s_);
-    master_.sent.expect(ticks_);
-    slave_.sent.expect(ticks_);
+    master_.sent.expect(master_.restarted.size() + 1, ticks_);
+    slave_.sent.expect(slave_.restarted.size() + 1, ticks_);
   }
 
   static std::vector<FaultInjection> injections_of(const FaultPlan& plan, double tick_s) {
@@ -80,6 +80,8 @@ class FaultRun::Run {
     }
     return factor * params.control.supervision.packets.longest_age_s + waits_s;
   }
+  template <class Site, class Make>
+  static Result<std::pair<Site, std::vector<Site>>> starts(const FaultPlan& plan, const Make& make);
   /// A way whose packets the network treats as every part of the plan says.
   static PacketRelay relay(const FaultPlan& plan, std::uint64_t way, double tick_s) {
     std::vector<ImpairedLink> links;
@@ -138,6 +140,22 @@ class FaultRun::Run {
   bool missed_ = false;  ///< at this tick no site is stepped
 };
 
+/// A site, and one for each time that a fault starts its process again, the first of these last: a run that goes on
+/// allocates nothing. `make` is told the session.
+template <class Site, class Make>
+Result<std::pair<Site, std::vector<Site>>> FaultRun::Run::starts(const FaultPlan& plan, const Make& make) {
+  auto first = make(1);
+  if (!first) return first.error();
+  std::vector<Site> restarted;
+  const auto plans = plans_of(plan);
+  for (auto session = static_cast<std::int64_t>(plans.size()) + 1; session > 1; --session) {
+    auto again = make(session);
+    if (!again) return again.error();
+    restarted.push_back(*std::move(again));
+  }
+  return std::pair(*std::move(first), std::move(restarted));
+}
+
 Result<FaultRun::Run> FaultRun::Run::make(const Teleoperator::Params& params, const FaultPlan& plan) {
   const auto clock = Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
@@ -150,22 +168,28 @@ Result<FaultRun::Run> FaultRun::Run::make(const Teleoperator::Params& params, co
   auto slave = SlavePlant::make(params.slave, params.environment, *clock, params.control.position_scale * start_m);
   if (!slave) return slave.error();
   const FaultyConfiguration of_master(params.control, tick, plan, FaultSite::master);
-  auto master_site = control::make_supervised_master(of_master.control, 1, of_master.tick);
-  if (!master_site) return under("control", master_site.error());
+  auto master_sites = starts<control::SupervisedMaster>(plan, [&](std::int64_t session) {
+    return control::make_supervised_master(of_master.control, session, of_master.tick);
+  });
+  if (!master_sites) return under("control", master_sites.error());
   const FaultyConfiguration of_slave(params.control, tick, plan, FaultSite::slave);
-  auto slave_site = control::make_supervised_slave(of_slave.control, 1, of_slave.tick);
-  if (!slave_site) return under("control", slave_site.error());
+  auto slave_sites = starts<control::SupervisedSlave>(plan, [&](std::int64_t session) {
+    return control::make_supervised_slave(of_slave.control, session, of_slave.tick);
+  });
+  if (!slave_sites) return under("control", slave_sites.error());
   const double oldest = oldest_s(params, plan, clock->tick_s);
   return Run(params, plan, person, *clock,
              Master{.where = FaultSite::master,
                     .plant = *master,
-                    .site = *std::move(master_site),
+                    .site = std::move(master_sites->first),
+                    .restarted = std::move(master_sites->second),
                     .process = FaultProcess(FaultSite::master),
                     .inbox = relay(plan, 2, clock->tick_s),
                     .sent = PacketWitness(oldest, clock->tick_s)},
              Slave{.where = FaultSite::slave,
                    .plant = *slave,
-                   .site = *std::move(slave_site),
+                   .site = std::move(slave_sites->first),
+                   .restarted = std::move(slave_sites->second),
                    .process = FaultProcess(FaultSite::slave),
                    .inbox = relay(plan, 1, clock->tick_s),
                    .sent = PacketWitness(oldest, clock->tick_s)});
@@ -234,13 +258,8 @@ void FaultRun::Run::step_site(Here& here, There& there) {
   here.sensed = here.plant.read({});
   spoil(here.sensed, here.where);
   if (here.process.fare(injections_, missed_)) {
-    // What made the first one makes the second.
-    const FaultyConfiguration with(params_.control, Seconds{tick_s_}, plan_, here.where);
-    if constexpr (std::is_same_v<Here, Master>) {
-      here.site = *control::make_supervised_master(with.control, here.process.session(), with.tick);
-    } else {
-      here.site = *control::make_supervised_slave(with.control, here.process.session(), with.tick);
-    }
+    here.site = std::move(here.restarted.back());
+    here.restarted.pop_back();
     there.sent.restart();
   }
   if (here.process.killed()) here.forces = {};

@@ -20,7 +20,7 @@ class FaultRun {
   ~FaultRun();
 
   /// One tick; false once there is none left. Before it the machine missed so many: devices, person and packets went on
-  /// and neither site was stepped. Does not block; allocates only where a killed site is started again.
+  /// and neither site was stepped. Real-time safe.
   bool step(std::int64_t missed = 0) noexcept;
   [[nodiscard]] const FaultOutcome& outcome() const;
 

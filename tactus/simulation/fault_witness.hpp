@@ -43,18 +43,17 @@ class PacketWitness {
   explicit PacketWitness(double longest_age_s, double tick_s)
       : longest_ticks_(static_cast<std::int64_t>(longest_age_s / tick_s) + 1) {}
 
-  /// Makes room for as many packets of a session, so that only a new session allocates.
-  void expect(std::int64_t packets) {
-    expected_ = static_cast<std::size_t>(packets);
-    starts_.reserve(2);
+  /// Makes room for so many sessions of as many packets; before the first. What follows allocates no more.
+  void expect(std::size_t sessions, std::int64_t packets) {
+    starts_.resize(sessions);
+    for (Session& one : starts_) one.ticks.reserve(static_cast<std::size_t>(packets));
   }
-  void sent(const control::Packet& packet, std::int64_t tick) {
+  void sent(const control::Packet& packet, std::int64_t tick) noexcept {
     if (packet.session != session_) {
       session_ = packet.session;
-      starts_.push_back({packet.session, {}});
-      starts_.back().ticks.reserve(expected_);
+      starts_[begun_++].session = packet.session;
     }
-    starts_.back().ticks.push_back(tick);
+    starts_[begun_ - 1].ticks.push_back(tick);
   }
   void applied(const control::SiteRecord& record, std::int64_t tick, FaultOutcome& outcome) {
     if (!record.fresh) return;
@@ -67,7 +66,7 @@ class PacketWitness {
 
  private:
   struct Session {
-    std::int64_t session;
+    std::int64_t session = 0;
     std::vector<std::int64_t> ticks;  ///< of each sequence number, from 1
   };
   [[nodiscard]] std::int64_t find(std::int64_t session, std::int64_t sequence) const {
@@ -79,8 +78,8 @@ class PacketWitness {
   }
 
   std::int64_t longest_ticks_;
-  std::size_t expected_ = 0;
   std::int64_t session_ = 0;
+  std::size_t begun_ = 0;  ///< sessions
   std::int64_t newest_ = -1;
   std::vector<Session> starts_;
 };

@@ -5,7 +5,7 @@
 #include <tactus/simulation/packet_relay.hpp>
 #include <tactus/station/device.hpp>
 
-#include <utility>
+#include <vector>
 
 namespace tactus::simulation {
 
@@ -24,6 +24,7 @@ struct FaultySite {
   FaultSite where;
   PlantOfSite plant;
   SupervisedSite site;
+  std::vector<SupervisedSite> restarted;  ///< what a process that is started again runs, the next one last
   FaultProcess process;
   PacketRelay inbox;   ///< the way from the other site
   PacketWitness sent;  ///< what this site told, and what the other applied of it
