@@ -95,7 +95,9 @@ double silence_s(const FaultsParams& params) {
 /// leaves nothing to see.
 double allowed_s(const FaultDuty& duty, const FaultPlan& plan, const FaultPlan& other, FaultSite at,
                  const FaultsParams& params) {
-  if (other.start_s + other.length_s < plan.start_s) return duty.within_s;
+  const bool over = other.start_s + other.length_s < plan.start_s;
+  const bool comes_after = plan.start_s + duty.within_s < other.start_s;
+  if (over || comes_after) return duty.within_s;
   Hindrance by = hindrance(other, params);
   const bool handed_on = duty.seen == Seen::from_one_to_the_other, there = handed_on || other.site == at;
   // What one site tells the other may be late as well, or lost, and then it is silence that the other hears.

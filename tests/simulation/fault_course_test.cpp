@@ -101,19 +101,16 @@ TEST(FaultsOfTheCourse, AHandThatComesBackTakesTheHandleWhereItIsAndNothingThrew
   }
 }
 
-/// The pair of these kinds that comes first.
-FaultPlan pair_of(FaultKind first, FaultKind second, double least_size = 0.0) {
-  for (std::int64_t choice = 0;; ++choice) {
+/// A pair of these kinds whose second begins so soon after the first.
+FaultPlan pair_of(FaultKind first, FaultKind second, double within_s) {
+  for (std::int64_t choice = 0; choice < 10000; ++choice) {
     const FaultPlan plan = draw_plan(FaultKind::two_faults, choice, 1, 1.0);
     const auto parts = plans_of(plan);
-    if (parts[0].kind == first && parts[1].kind == second && parts[1].size >= least_size) return plan;
+    if (parts[0].kind == first && parts[1].kind == second && parts[1].start_s < parts[0].start_s + within_s)
+      return plan;
   }
-}
-
-TEST(FaultsOfTheCourse, AClampThatIsTheSecondFaultPushesByItsOwnSize) {
-  const FaultPlan plan = pair_of(FaultKind::cut, FaultKind::handle_clamped, 0.045);
-  // The person leads the handle over at most 24 mm.
-  EXPECT_GT(run_fault(FaultsParams(), plan).value().master.strayed_m, plans_of(plan)[1].size - 0.024);
+  ADD_FAILURE() << "no such pair";
+  return {};
 }
 
 TEST(FaultsOfTheCourse, OfTwoFaultsEachKeepsItsDutyPutOffByWhatTheOtherTakes) {
@@ -125,21 +122,28 @@ TEST(FaultsOfTheCourse, OfTwoFaultsEachKeepsItsDutyPutOffByWhatTheOtherTakes) {
     return broken_duty_of_two(plan, outcome, params);
   };
   // A way that takes longer brings what is under way so much later, and no later than that.
-  FaultPlan plan = pair_of(FaultKind::disorder, FaultKind::restart);
-  const auto parts = plans_of(plan);
-  const double way_s = parts[0].impairment.delay_s + parts[0].impairment.jitter_s;
-  const double restart_s = parts[1].start_s - parts[0].start_s + duty_of(parts[1], params).within_s;
-  if (parts[0].start_s + parts[0].length_s > parts[1].start_s) {
-    EXPECT_EQ(stops_after(plan, restart_s + 0.9 * way_s), "");
+  const FaultPlan delayed = pair_of(FaultKind::restart, FaultKind::disorder, 0.05);
+  const auto parts = plans_of(delayed);
+  const double way_s = parts[1].impairment.delay_s + parts[1].impairment.jitter_s;
+  const double alone_s = duty_of(parts[0], params).within_s;
+  EXPECT_EQ(stops_after(delayed, alone_s + 0.9 * way_s), "");
+  EXPECT_NE(stops_after(delayed, alone_s + way_s + 0.001), "");
+  // What begins only after the first should have stopped the sites puts nothing off.
+  FaultPlan later = delayed;
+  for (std::int64_t choice = 0; plans_of(later)[1].start_s < plans_of(later)[0].start_s + 0.15; ++choice) {
+    const FaultPlan plan = draw_plan(FaultKind::two_faults, choice, 1, 1.0);
+    const auto both = plans_of(plan);
+    if (both[0].kind == FaultKind::restart && both[1].kind == FaultKind::disorder) later = plan;
   }
-  EXPECT_NE(stops_after(plan, restart_s + 1.1 * way_s + 0.001), "");
+  EXPECT_EQ(stops_after(later, alone_s), "");
+  EXPECT_NE(stops_after(later, alone_s + 0.001), "");
   // A jump is seen at once, whatever the other is.
-  plan = pair_of(FaultKind::encoder_spike, FaultKind::encoder_wrap);
-  EXPECT_EQ(stops_after(plan, 0.0), "");
-  EXPECT_NE(stops_after(plan, 0.01), "");
+  const FaultPlan jumps = pair_of(FaultKind::encoder_wrap, FaultKind::encoder_spike, 0.3);
+  EXPECT_EQ(stops_after(jumps, 0.0), "");
+  EXPECT_NE(stops_after(jumps, 0.01), "");
   // Who never followed shows nothing.
   outcome.became_active = false;
-  EXPECT_NE(stops_after(plan, 0.0), "");
+  EXPECT_NE(stops_after(jumps, 0.0), "");
 }
 
 TEST(FaultsOfTheCourse, NoOneFollowsOnAFaultThatCameWhileArming) {
