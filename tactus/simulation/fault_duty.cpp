@@ -61,7 +61,9 @@ Hindrance hindrance(const FaultPlan& plan, const FaultsParams& params) {
       return {.late_s = std::min(way_s, params.control.supervision.packets.longest_age_s)};
     }
     case FaultKind::rate_drift:
-      return {.slow = 1.0 / (1.0 - plan.size)};
+      if (plan.size <= tolerable_drift) return {};
+      // A step falls on a whole tick, up to one later.
+      return {.slow = 1.0 / (1.0 - plan.size), .stands_s = 1.0 / params.servo.rate_Hz};
     case FaultKind::stall:
       return {.stands_s = plan.length_s};
     case FaultKind::stop_and_go:

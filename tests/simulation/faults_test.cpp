@@ -150,7 +150,9 @@ TEST(Faults, ARunThatDoesNotSurviveIsNamedWithTheRuleThatItBroke) {
   tripped.detection_ticks = 40;
   outside.left_workspace = true;
   EXPECT_EQ(broken_rule(row, {.impairment = {}}, good, params), "");
-  const FaultTally sum = tally(row, params, std::vector<FaultPlan>(4), {good, stale, tripped, outside});
+  std::vector<FaultPlan> plans(4);
+  for (std::int64_t i = 0; i < 4; ++i) plans[static_cast<std::size_t>(i)].choice = i;
+  const FaultTally sum = tally(row, params, plans, {good, stale, tripped, outside});
   EXPECT_EQ(sum.survived, 1);
   ASSERT_EQ(sum.failures.size(), 3U);
   EXPECT_EQ(sum.failures[0].number, 1);
