@@ -1,11 +1,13 @@
 #pragma once
 
 #include <tactus/control/safety_gate.hpp>
+#include <tactus/core/signals.hpp>
 
 #include <cmath>
 #include <concepts>
 #include <limits>
 #include <memory>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -14,12 +16,26 @@
 namespace tactus::control {
 
 /// What one site tells the other at a tick. Each architecture fills the members that it uses; the rest stay zero.
+///
+/// Its one description: what is checked, mended and sent over a network follows from it, in this order.
 struct Message {
   double position_m = 0.0;
   double velocity_m_per_s = 0.0;
   double force_N = 0.0;
-  double wave = 0.0;      ///< wave variable, in the square root of a watt
-  double energy_J = 0.0;  ///< sent so far, a running total: a lost message then loses no energy
+  double wave = 0.0;
+  double energy_J = 0.0;
+  static constexpr auto signals() {
+    return std::tuple{
+        observed("position_m", &Message::position_m, units::metre, "", "slave", "toward the environment",
+                 "Where the other site shall be, or where this one is."),
+        observed("velocity_m_per_s", &Message::velocity_m_per_s, units::metre_per_second, "", "slave",
+                 "toward the environment", "Of that position."),
+        observed("force_N", &Message::force_N, units::newton, "", "slave", "the slave is pushed back",
+                 "Tip force, or what the architecture makes of it."),
+        observed("wave", &Message::wave, units::none, "", "", "", "Wave variable, in the square root of a watt."),
+        observed("energy_J", &Message::energy_J, units::joule, "", "", "",
+                 "Sent so far, a running total: a lost message then loses no energy.")};
+  }
 };
 
 /// The newest message of the other site. A site gets one every tick; `fresh` tells whether it arrived since the last.
@@ -60,8 +76,9 @@ struct SlaveOutput {
 
 /// Whether every number that a site reads is one. Real-time safe.
 inline bool is_finite(const Message& message) noexcept {
-  return std::isfinite(message.position_m) && std::isfinite(message.velocity_m_per_s) &&
-         std::isfinite(message.force_N) && std::isfinite(message.wave) && std::isfinite(message.energy_J);
+  bool finite = true;
+  for_each_signal<Message>([&](const auto& each) { finite = finite && std::isfinite(message.*each.member); });
+  return finite;
 }
 inline bool is_finite(const MasterInput& input) noexcept {
   return std::isfinite(input.motor_position_m) && std::isfinite(input.hand_force_N) && std::isfinite(input.grip) &&
@@ -76,11 +93,7 @@ inline void mend(double& value, double last) noexcept {
   if (!std::isfinite(value)) value = last;
 }
 inline void mend(Message& message, const Message& last) noexcept {
-  mend(message.position_m, last.position_m);
-  mend(message.velocity_m_per_s, last.velocity_m_per_s);
-  mend(message.force_N, last.force_N);
-  mend(message.wave, last.wave);
-  mend(message.energy_J, last.energy_J);
+  for_each_signal<Message>([&](const auto& each) { mend(message.*each.member, last.*each.member); });
 }
 inline void mend(MasterInput& input, const MasterInput& last) noexcept {
   mend(input.motor_position_m, last.motor_position_m);

@@ -26,11 +26,7 @@ DatagramBytes encode(const Datagram& datagram) noexcept {
   out.put_signed(datagram.sent_ns);
   out.put_signed(datagram.echo_sent_ns);
   out.put_signed(datagram.echo_hold_ns);
-  out.put_double(packet.message.position_m);
-  out.put_double(packet.message.velocity_m_per_s);
-  out.put_double(packet.message.force_N);
-  out.put_double(packet.message.wave);
-  out.put_double(packet.message.energy_J);
+  for_each_signal<control::Message>([&](const auto& each) { out.put_double(packet.message.*each.member); });
   out.put(packet.agreement.digest);
   out.put(packet.agreement.cell);
   out.put(packet.agreement.value);
@@ -60,11 +56,7 @@ Refusal decode(std::span<const std::byte> bytes, Datagram& datagram) noexcept {
   read.echo_sent_ns = in.get_signed();
   read.echo_hold_ns = in.get_signed();
   if (read.sent_ns < 0 || read.echo_sent_ns < 0 || read.echo_hold_ns < 0) return Refusal::time;
-  packet.message.position_m = in.get_double();
-  packet.message.velocity_m_per_s = in.get_double();
-  packet.message.force_N = in.get_double();
-  packet.message.wave = in.get_double();
-  packet.message.energy_J = in.get_double();
+  for_each_signal<control::Message>([&](const auto& each) { packet.message.*each.member = in.get_double(); });
   packet.agreement.digest = in.get<std::uint64_t>();
   packet.agreement.cell = in.get<std::uint64_t>();
   packet.agreement.value = in.get<std::uint64_t>();

@@ -1,8 +1,12 @@
 #include <tactus/runtime/plant_segment.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -41,10 +45,23 @@ Error system_error(const char* option, const std::string& name, const char* what
                            "): look at /dev/shm, its free space and who may write there");
 }
 
-std::string file_name(const std::string& name) { return "/tactus-plant-" + name; }
+constexpr std::size_t longest = 64;
+
+/// What the system calls a plant. On the stack: a lack of memory must not leave the file behind.
+class FileName {
+ public:
+  /// Of a name that was checked.
+  explicit FileName(const std::string& name) noexcept {
+    name.copy(std::copy(prefix.begin(), prefix.end(), text_.begin()), longest);
+  }
+  [[nodiscard]] const char* c_str() const noexcept { return text_.data(); }
+
+ private:
+  static constexpr std::string_view prefix = "/tactus-plant-";
+  std::array<char, prefix.size() + longest + 1> text_{};
+};
 
 Check check_name(const std::string& name, const char* option) {
-  constexpr std::size_t longest = 64;
   const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
   });
@@ -75,7 +92,7 @@ bool is_taken(int file, off_t place) {
 
 /// Whether the name still leads to this file.
 bool is_named(int file, const std::string& name) {
-  const File again(shm_open(file_name(name).c_str(), O_RDWR | O_CLOEXEC, 0));
+  const File again(shm_open(FileName(name).c_str(), O_RDWR | O_CLOEXEC, 0));
   struct stat own {
   }, there{};
   return again.descriptor >= 0 && fstat(file, &own) == 0 && fstat(again.descriptor, &there) == 0 &&
@@ -95,7 +112,7 @@ Check check_private(int file, const std::string& name, const char* option) {
   if (!S_ISREG(status.st_mode) || (status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     return segment_error(ErrorCode::inconsistent, option,
                          "the plant '" + name + "' is open to other users, as no plant of tactus is: remove /dev/shm" +
-                             file_name(name) + " and start it again");
+                             FileName(name).c_str() + " and start it again");
   }
   return std::nullopt;
 }
@@ -150,11 +167,12 @@ Result<PlantSegment> PlantSegment::create(const std::string& name, const PlantFa
   }
   // Again where another process makes or removes one of that name at the same time.
   constexpr int attempts = 10;
+  std::string kept_name = name;
   for (int attempt = 0; attempt < attempts; ++attempt) {
-    File file(shm_open(file_name(name).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+    File file(shm_open(FileName(name).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
     if (file.descriptor < 0) {
       if (errno != EEXIST) return system_error(option, name, "shm_open");
-      const File old(shm_open(file_name(name).c_str(), O_RDWR | O_CLOEXEC, 0));
+      const File old(shm_open(FileName(name).c_str(), O_RDWR | O_CLOEXEC, 0));
       if (old.descriptor < 0 && errno == ENOENT) continue;
       if (old.descriptor < 0) return open_error(option, name);
       if (auto error = check_private(old.descriptor, name, option)) return *std::move(error);
@@ -164,24 +182,24 @@ Result<PlantSegment> PlantSegment::create(const std::string& name, const PlantFa
                                  "): stop it, or give this one another name");
       }
       // Its owner is dead. Only who holds this lock takes the name away, so it cannot be another's meanwhile.
-      if (is_named(old.descriptor, name)) shm_unlink(file_name(name).c_str());
+      if (is_named(old.descriptor, name)) shm_unlink(FileName(name).c_str());
       continue;
     }
     if (!take(file.descriptor, owner_place) || !is_named(file.descriptor, name)) continue;
     if (const int error = posix_fallocate(file.descriptor, 0, sizeof(PlantLayout)); error != 0) {
       errno = error;
       const Error refused = system_error(option, name, "posix_fallocate");
-      shm_unlink(file_name(name).c_str());
+      shm_unlink(FileName(name).c_str());
       return refused;
     }
     auto memory = map(file.descriptor);
     if (!memory) {
       const Error refused = system_error(option, name, "mmap");
-      shm_unlink(file_name(name).c_str());
+      shm_unlink(FileName(name).c_str());
       return refused;
     }
     tell(layout_in(*memory), facts);
-    return PlantSegment(name, file.release(), *std::move(memory), true);
+    return PlantSegment(std::move(kept_name), file.release(), *std::move(memory), true);
   }
   return segment_error(ErrorCode::failed, option,
                        "plant '" + name +
@@ -192,7 +210,7 @@ Result<PlantSegment> PlantSegment::create(const std::string& name, const PlantFa
 Result<PlantSegment> PlantSegment::attach(const std::string& name) {
   constexpr const char* option = "--plant";
   if (auto error = check_name(name, option)) return *std::move(error);
-  File file(shm_open(file_name(name).c_str(), O_RDWR | O_CLOEXEC, 0));
+  File file(shm_open(FileName(name).c_str(), O_RDWR | O_CLOEXEC, 0));
   if (file.descriptor < 0 && errno == ENOENT) {
     return segment_error(
         ErrorCode::missing, option,
@@ -226,7 +244,7 @@ Result<PlantSegment> PlantSegment::attach(const std::string& name) {
 PlantSegment::~PlantSegment() {
   if (file_ < 0) return;
   if (owner_) {
-    shm_unlink(file_name(name_).c_str());
+    shm_unlink(FileName(name_).c_str());
   } else {
     layout_->controller.store(0);
   }

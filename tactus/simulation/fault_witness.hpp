@@ -43,14 +43,15 @@ class PacketWitness {
   explicit PacketWitness(double longest_age_s, double tick_s)
       : longest_ticks_(static_cast<std::int64_t>(longest_age_s / tick_s) + 1) {}
 
-  /// Makes room for so many sessions of as many packets; before the first. What follows allocates no more.
+  /// Makes room for so many sessions of as many packets; before the first. What follows allocates only beyond them.
   void expect(std::size_t sessions, std::int64_t packets) {
     starts_.resize(sessions);
     for (Session& one : starts_) one.ticks.reserve(static_cast<std::size_t>(packets));
   }
-  void sent(const control::Packet& packet, std::int64_t tick) noexcept {
+  void sent(const control::Packet& packet, std::int64_t tick) {
     if (packet.session != session_) {
       session_ = packet.session;
+      if (begun_ == starts_.size()) starts_.emplace_back();
       starts_[begun_++].session = packet.session;
     }
     starts_[begun_ - 1].ticks.push_back(tick);
