@@ -127,8 +127,11 @@ Check identify(const PredictionOptions& options, const std::string& command) {
       params->estimator, options.blocks);
   if (!data) return document->locate(under("estimator", data.error()));
 
-  const simulation::Request request{
-      .document = *document, .variations = {}, .name = experiment_name(options.experiment), .command = command};
+  // One member after the other: where memory runs out within an initialiser list, GCC 12 destroys what is not there.
+  simulation::Request request;
+  request.document = *document;
+  request.name = experiment_name(options.experiment);
+  request.command = command;
   const TimeConstants found{.closed_form_s = *closed,
                             .limit_s = *limit,
                             .from_data_s = data->time_constant_s,

@@ -92,16 +92,15 @@ Check append_entries(const toml::table& table, const std::string& section, const
                               " that are read: shorten it",
                           place(document, position_of(key.source().begin)));
     }
-    Entry entry{.path = join(section, name),
-                .value = value_of(node),
-                .key_position = position_of(key.source().begin),
-                .value_position = position_of(node.source().begin),
-                .assignment = {},
-                .typed = {},
-                .file = {}};
-    entries.push_back(entry);
+    const std::string path = join(section, name);
+    // One member after the other: where memory runs out within an initialiser list, GCC 12 destroys what is not there.
+    Entry& entry = entries.emplace_back();
+    entry.path = path;
+    entry.value = value_of(node);
+    entry.key_position = position_of(key.source().begin);
+    entry.value_position = position_of(node.source().begin);
     if (const toml::table* below = node.as_table()) {
-      if (Check problem = append_entries(*below, entry.path, document, entries)) return problem;
+      if (Check problem = append_entries(*below, path, document, entries)) return problem;
     }
   }
   return {};

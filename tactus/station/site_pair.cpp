@@ -50,22 +50,9 @@ Result<SitePair<Master, Slave>> SitePair<Master, Slave>::make(const control::Con
   return SitePair(std::move(sites->first), std::move(sites->second), *std::move(to_slave), *std::move(to_master), tick);
 }
 
-template <class Master, class Slave>
-void SitePair<Master, Slave>::exchange_channels(SitePair& made) noexcept requires(!supervised) {
-  made.to_slave_.continue_from(to_slave_);
-  made.to_master_.continue_from(to_master_);
-  std::swap(to_slave_, made.to_slave_);
-  std::swap(to_master_, made.to_master_);
-}
-
-template <class Master, class Slave>
-void SitePair<Master, Slave>::exchange_controllers(SitePair& made) noexcept requires(!supervised) {
-  constexpr int ticks_to_rest = 1000;
-  master_.exchange_controller(made.master_, ticks_to_rest);
-  slave_.exchange_controller(made.slave_, ticks_to_rest);
-}
-
-template class SitePair<control::SupervisedMaster, control::SupervisedSlave>;
-template class SitePair<control::MasterSite, control::SlaveSite>;
+template Result<SupervisedPair> SitePair<control::SupervisedMaster, control::SupervisedSlave>::make(
+    const control::ControlParams&, const LinkParams&, Seconds, double);
+template Result<BarePair> SitePair<control::MasterSite, control::SlaveSite>::make(const control::ControlParams&,
+                                                                                  const LinkParams&, Seconds, double);
 
 }  // namespace tactus::station

@@ -9,6 +9,39 @@
 
 namespace tactus::station {
 
+/// The way of one site of a pair: what it hears at this tick, and the channel into which it speaks.
+template <class Payload>
+struct WayEnd;
+
+template <>
+struct WayEnd<control::Message> {
+  const Channel::Delivery& heard;
+  Channel& out;
+  Channel::Delivery& other_hears;
+  double tick_s;
+  bool a_tick_later;  ///< what arrived has lain there since the tick before
+  [[nodiscard]] control::Arrival arrival() const noexcept { return {.message = heard.message, .fresh = heard.fresh}; }
+  void send(const control::Message& message) noexcept { other_hears = out.step(message); }
+};
+
+template <>
+struct WayEnd<control::Packet> {
+  const PacketChannel::Delivery& heard;
+  PacketChannel& out;
+  PacketChannel::Delivery& other_hears;
+  double tick_s;
+  bool a_tick_later;  ///< what arrived has lain there since the tick before
+  template <class Take>
+  void receive(const Tick& tick, Take&& take) noexcept {
+    if (!heard.fresh) return;
+    control::Packet packet = heard.message;
+    const std::int64_t lain_ticks = a_tick_later ? tick.missed + 1 : 0;
+    packet.age_s = static_cast<double>(heard.sent_ticks_ago + lain_ticks) * tick_s;
+    take(packet);
+  }
+  void send(const control::Packet& packet, const Tick&) noexcept { other_hears = out.step(packet); }
+};
+
 /// Both sites of a teleoperator on one clock, with the channel between them: the same in virtual and in real time.
 ///
 /// The master steps, then the slave. What is sent to the slave with no channel delay arrives in the same tick, what is
@@ -35,9 +68,9 @@ class SitePair {
   template <Drivable MasterDevice, Drivable SlaveDevice>
   Output step(MasterDevice& master, SlaveDevice& slave, const Tick& tick, const Wish& wish) noexcept {
     typename Way::Delivery at_slave;
-    End of_master{
+    WayEnd<Payload> of_master{
         .heard = at_master_, .out = to_slave_, .other_hears = at_slave, .tick_s = tick_s_, .a_tick_later = true};
-    End of_slave{
+    WayEnd<Payload> of_slave{
         .heard = at_slave, .out = to_master_, .other_hears = at_master_, .tick_s = tick_s_, .a_tick_later = false};
     Output output;
     output.master = station::step(master_, master, of_master, tick, wish);
@@ -47,10 +80,19 @@ class SitePair {
 
   /// Goes on with the channels of `made`, which has not been stepped, and gives it the own ones; what is on its way is
   /// lost. Between ticks. Real-time safe.
-  void exchange_channels(SitePair& made) noexcept requires(!supervised);
+  void exchange_channels(SitePair& made) noexcept requires(!supervised) {
+    made.to_slave_.continue_from(to_slave_);
+    made.to_master_.continue_from(to_master_);
+    std::swap(to_slave_, made.to_slave_);
+    std::swap(to_master_, made.to_master_);
+  }
   /// Goes on with the controllers of `made`, brought to rest at the latest tick (`Site::exchange_controller`); the
   /// gates stay. Between ticks; does not allocate, but takes as long as a thousand ticks.
-  void exchange_controllers(SitePair& made) noexcept requires(!supervised);
+  void exchange_controllers(SitePair& made) noexcept requires(!supervised) {
+    constexpr int ticks_to_rest = 1000;
+    master_.exchange_controller(made.master_, ticks_to_rest);
+    slave_.exchange_controller(made.slave_, ticks_to_rest);
+  }
 
   [[nodiscard]] const Master& master() const noexcept { return master_; }
   [[nodiscard]] const Slave& slave() const noexcept { return slave_; }
@@ -64,30 +106,6 @@ class SitePair {
   }
 
  private:
-  /// The way of one site: what it hears at this tick, and the channel into which it speaks.
-  struct End {
-    const typename Way::Delivery& heard;
-    Way& out;
-    typename Way::Delivery& other_hears;
-    double tick_s;
-    bool a_tick_later;  ///< what arrived has lain there since the tick before
-    [[nodiscard]] control::Arrival arrival() const noexcept requires(!supervised) {
-      return {.message = heard.message, .fresh = heard.fresh};
-    }
-    void send(const control::Message& message) noexcept requires(!supervised) { other_hears = out.step(message); }
-    template <class Take>
-    requires supervised void receive(const Tick& tick, Take&& take) noexcept {
-      if (!heard.fresh) return;
-      control::Packet packet = heard.message;
-      const std::int64_t lain_ticks = a_tick_later ? tick.missed + 1 : 0;
-      packet.age_s = static_cast<double>(heard.sent_ticks_ago + lain_ticks) * tick_s;
-      take(packet);
-    }
-    void send(const control::Packet& packet, const Tick&) noexcept requires supervised {
-      other_hears = out.step(packet);
-    }
-  };
-
   template <class Site>
   static const auto& gated(const Site& site) noexcept {
     if constexpr (supervised) {
