@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -102,7 +103,11 @@ simulation::Outcome outcome_of(const PredictionOptions& options, const TimeConst
                                     {"limit_s", found.limit_s},
                                     {"from_data_s", found.from_data_s},
                                     {"error_rms_N", found.error_rms_N}};
-  return {.text = table.to_text() + felt + "\n", .json = json_text(json), .html = page.to_html(), .figures = {}};
+  simulation::Outcome outcome;
+  outcome.text = table.to_text() + felt + "\n";
+  outcome.json = json_text(json);
+  outcome.html = page.to_html();
+  return outcome;
 }
 
 Check identify(const PredictionOptions& options, const std::string& command) {
@@ -129,7 +134,7 @@ Check identify(const PredictionOptions& options, const std::string& command) {
 
   // One member after the other: where memory runs out within an initialiser list, GCC 12 destroys what is not there.
   simulation::Request request;
-  request.document = *document;
+  request.document = *std::move(document);
   request.name = experiment_name(options.experiment);
   request.command = command;
   const TimeConstants found{.closed_form_s = *closed,
