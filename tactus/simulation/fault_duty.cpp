@@ -62,8 +62,8 @@ Hindrance hindrance(const FaultPlan& plan, const FaultsParams& params) {
     }
     case FaultKind::rate_drift:
       if (plan.size <= tolerable_drift) return {};
-      // A step falls on a whole tick, up to one later.
-      return {.slow = 1.0 / (1.0 - plan.size), .stands_s = 1.0 / params.servo.rate_Hz};
+      // The next step may be as far away as one of its ticks lasts, and falls on a whole tick, up to one later.
+      return {.slow = 1.0 / (1.0 - plan.size), .stands_s = (1.0 / (1.0 - plan.size) + 1.0) / params.servo.rate_Hz};
     case FaultKind::stall:
       return {.stands_s = plan.length_s};
     case FaultKind::stop_and_go:
