@@ -2,6 +2,7 @@
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/experiments/presentation.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
@@ -9,7 +10,6 @@
 #include <tactus/ros2/bridge.hpp>
 #include <tactus/ros2/remote_path.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
-#include <tactus/simulation/presentation.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
 #include <algorithm>
@@ -36,9 +36,9 @@ struct Parts {
   double slave_workspace_m;
 };
 
-Result<Parts> make_parts(const simulation::TappingParams& params) {
+Result<Parts> make_parts(const experiments::TappingParams& params) {
   // The whole experiment is checked, as without ROS 2.
-  if (const auto ensemble = simulation::TappingEnsemble::make(params); !ensemble) return ensemble.error();
+  if (const auto ensemble = experiments::TappingEnsemble::make(params); !ensemble) return ensemble.error();
   TapScript script(params);
   auto teleoperator = Teleoperator::make(params, script.position_m(0.0));
   if (!teleoperator) return teleoperator.error();
@@ -103,7 +103,7 @@ struct Session {
   }
 };
 
-std::string json_of(const simulation::Request& request, const Ros2Options& options, const Session& session,
+std::string json_of(const experiments::Request& request, const Ros2Options& options, const Session& session,
                     const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo) {
   return json_text({{"experiment", request.name},
                     {"command", request.command},
@@ -135,16 +135,16 @@ report::Table table_of(const Ros2Options& options, const Session& session, const
   return table;
 }
 
-simulation::Outcome outcome_of(const simulation::Request& request, const Ros2Options& options, const Session& session,
-                               const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo,
-                               const std::string& configuration) {
+experiments::Outcome outcome_of(const experiments::Request& request, const Ros2Options& options, const Session& session,
+                                const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo,
+                                const std::string& configuration) {
   const report::Table table = table_of(options, session, counts);
   const report::Figure figure = runtime::timing_figure(servo);
   report::Page page(request.name + " among ROS 2 nodes");
   page.paragraph("The teleoperator ran in real time and published under the namespace " + options.name_space + ".");
   page.table(table);
   runtime::add_timing(page, servo, figure);
-  simulation::add_provenance(page, request, configuration);
+  experiments::add_provenance(page, request, configuration);
   return {.text = table.to_text() + "\n" + runtime::timing_text(servo),
           .json = json_of(request, options, session, counts, servo),
           .html = page.to_html(),
@@ -164,8 +164,8 @@ ros2::Snapshot snapshot_of(const Teleoperator::Record& record, std::int64_t stam
           .healthy = healthy};
 }
 
-TapScript::TapScript(const simulation::TappingParams& params) {
-  const simulation::TappingTask& task = params.task;
+TapScript::TapScript(const experiments::TappingParams& params) {
+  const experiments::TappingTask& task = params.task;
   const double depth_m = 0.5 * (task.shallowest_m + task.deepest_m);
   const double wall_m = params.environment.position_m / params.control.position_scale;
   for (std::int64_t i = 0; i < task.taps; ++i) {
@@ -188,9 +188,9 @@ double TapScript::position_m(double time_s) const {
   return time_s < tap.back.start_time_s ? tap.reach.position_m(time_s) : tap.back.position_m(time_s);
 }
 
-Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options,
-                                             OutputFolder& output) {
-  const auto params = request.document.read<simulation::TappingParams>();
+Result<experiments::Outcome> run_ros2_session(const experiments::Request& request, const Ros2Options& options,
+                                              OutputFolder& output) {
+  const auto params = request.document.read<experiments::TappingParams>();
   if (!params) return params.error();
   auto parts = make_parts(*params);
   if (!parts) return request.document.locate(parts.error());

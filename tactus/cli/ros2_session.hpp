@@ -2,12 +2,12 @@
 
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/ros2/bridge.hpp>
 #include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/servo_thread.hpp>
-#include <tactus/simulation/experiment.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace tactus::cli {
 /// slowest to the fastest.
 class TapScript {
  public:
-  explicit TapScript(const simulation::TappingParams& params);
+  explicit TapScript(const experiments::TappingParams& params);
   [[nodiscard]] double duration_s() const { return duration_s_; }
   /// Where the hand is meant to be; before and after, where it begins.
   [[nodiscard]] double position_m(double time_s) const;
@@ -50,7 +50,7 @@ struct Ros2Options {
 /// are missed are made up for, so that its time keeps to the real one. A log goes into the folder of `output`, if there
 /// is one. Errors: those of the experiment's file, of the network and of the log; `failed` once a safety gate has
 /// closed or the devices have left their workspace.
-Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options,
-                                             OutputFolder& output);
+Result<experiments::Outcome> run_ros2_session(const experiments::Request& request, const Ros2Options& options,
+                                              OutputFolder& output);
 
 }  // namespace tactus::cli

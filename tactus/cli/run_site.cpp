@@ -6,8 +6,8 @@
 #include <tactus/cli/site_loop.hpp>
 #include <tactus/cli/site_report.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/experiment.hpp>
 #include <tactus/station/device_registry.hpp>
 
 #include <filesystem>
@@ -60,7 +60,7 @@ Result<link::Endpoint::Settings> link_settings(const SiteOptions& options) {
   return link::Endpoint::Settings{.site = role_of(options), .peer = *peer, .listen = *listen, .key = key};
 }
 
-Result<SiteDevice> device_of(const SiteOptions& options, const simulation::TappingParams& params) {
+Result<SiteDevice> device_of(const SiteOptions& options, const experiments::TappingParams& params) {
   if (options.device.empty()) return simulated_device(params, role_of(options));
   auto device = station::open_device(options.device, role_of(options), Seconds{1.0 / params.servo.rate_Hz});
   if (!device) return device.error();
@@ -68,7 +68,7 @@ Result<SiteDevice> device_of(const SiteOptions& options, const simulation::Tappi
 }
 
 /// Files first: a terminal that nobody reads keeps nothing from them, and with them what it misses is no loss.
-Check leave_outcome(const simulation::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
+Check leave_outcome(const experiments::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
                     LineWriter& output, LineWriter& errors) {
   std::string where;
   if (folder.wanted()) {
@@ -102,15 +102,15 @@ void add_site_options(CLI::App& verb, SiteOptions& options) {
       ->needs("--site");
 }
 
-Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_params, const simulation::Request& request,
+Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo_params, const experiments::Request& request,
                OutputFolder& folder, std::uint64_t log_limit_bytes) {
   const configuration::Document& document = request.document;
-  const auto experiment = simulation::choose_experiment(document);
+  const auto experiment = experiments::choose_experiment(document);
   if (!experiment) return experiment.error();
   if ((*experiment)->kind() != "tapping") {
     return refused(ErrorCode::inconsistent, "--site", "only an experiment of the kind tapping runs as two sites");
   }
-  const auto params = document.read<simulation::TappingParams>();
+  const auto params = document.read<experiments::TappingParams>();
   if (!params) return params.error();
   const auto link = link_settings(options);
   if (!link) return link.error();

@@ -2,8 +2,8 @@
 
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/servo_thread.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -35,7 +35,7 @@ void add_site_options(CLI::App& verb, SiteOptions& options);
 /// tables. In the folder of `output`, if there is one, it leaves a report, and every tick in its log. With JSON the
 /// lines go to standard error and one document to standard output. What a person asks for is read from standard input,
 /// a `SiteWord` a line; SIGUSR1 arms. Of `servo`, the rate is the experiment's.
-Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo, const simulation::Request& request,
+Check run_site(const SiteOptions& options, runtime::ServoThreadParams servo, const experiments::Request& request,
                OutputFolder& output, std::uint64_t log_limit_bytes);
 
 }  // namespace tactus::cli

@@ -32,7 +32,7 @@ control::Message SiteLogRecord::told() const noexcept {
           .energy_J = told_energy_J};
 }
 
-Result<SiteLog> SiteLog::create(const std::filesystem::path& folder, const simulation::Request& request,
+Result<SiteLog> SiteLog::create(const std::filesystem::path& folder, const experiments::Request& request,
                                 std::string_view configuration, control::SiteRole role, std::uint64_t most_bytes) {
   if (auto error = report::prepare_directory(folder)) return *std::move(error);
   std::filesystem::path file = folder / "log.mcap";

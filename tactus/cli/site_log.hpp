@@ -1,8 +1,8 @@
 #pragma once
 
 #include <tactus/control/supervision.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/servo_record.hpp>
-#include <tactus/simulation/experiment.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
 #include <cstdint>
@@ -104,7 +104,7 @@ class SiteLog {
  public:
   /// Opens `folder/log.mcap`; the folder is made. The log says what ran: experiment, configuration with its seeds,
   /// version, machine and which site. `most_bytes` and errors as in `LogWriter::create`.
-  static Result<SiteLog> create(const std::filesystem::path& folder, const simulation::Request& request,
+  static Result<SiteLog> create(const std::filesystem::path& folder, const experiments::Request& request,
                                 std::string_view configuration, control::SiteRole role, std::uint64_t most_bytes = 0);
 
   [[nodiscard]] const SiteStreams& streams() const { return streams_; }

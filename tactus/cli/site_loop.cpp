@@ -1,6 +1,6 @@
 #include <tactus/cli/site_loop.hpp>
 #include <tactus/control/agreed_parameters.hpp>
-#include <tactus/simulation/model_mismatch.hpp>
+#include <tactus/experiments/model_mismatch.hpp>
 #include <tactus/station/wall.hpp>
 
 #include <algorithm>
@@ -16,12 +16,12 @@ constexpr double resuming_s = 1.0;
 
 }  // namespace
 
-Result<SiteLoop> SiteLoop::make(const simulation::TappingParams& params, const Settings& settings,
+Result<SiteLoop> SiteLoop::make(const experiments::TappingParams& params, const Settings& settings,
                                 SiteExchange& exchange, SiteDevice device) {
   if (auto error = validate(params)) return *std::move(error);
   const Seconds tick{1.0 / params.servo.rate_Hz};
   control::ControlParams control = params.control;
-  control.model = simulation::mismatched(control.model, params.task.mismatch);
+  control.model = experiments::mismatched(control.model, params.task.mismatch);
   const control::SiteRole role = settings.link.site;
   auto wall = station::wall_before(*device.device, control, role);
   if (!wall) return wall.error();

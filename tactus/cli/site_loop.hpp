@@ -5,9 +5,9 @@
 #include <tactus/cli/site_exchange.hpp>
 #include <tactus/cli/site_log.hpp>
 #include <tactus/control/supervised_site.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/link/endpoint.hpp>
 #include <tactus/runtime/servo_thread.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/station/device_guard.hpp>
 #include <tactus/station/step.hpp>
 
@@ -64,7 +64,7 @@ class SiteLoop {
 
   /// `exchange` must outlive the loop. A device that is not simulated stands behind a wall, and needs limits that
   /// somebody chose. Errors: what is wrong with the parameters, the device or the link.
-  static Result<SiteLoop> make(const simulation::TappingParams& params, const Settings& settings,
+  static Result<SiteLoop> make(const experiments::TappingParams& params, const Settings& settings,
                                SiteExchange& exchange, SiteDevice device);
 
   /// Every tick from now on goes there too. Before the first tick; what `streams` points to must outlive the last.

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <tactus/cli/site_loop.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/servo_thread.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -29,7 +29,7 @@ struct SiteRun {
 };
 
 /// All of a run for every reader: tables, one JSON document, a report with states, link and force second by second.
-simulation::Outcome site_outcome(const SiteRun& run, const simulation::Request& request,
-                                 std::string_view configuration);
+experiments::Outcome site_outcome(const SiteRun& run, const experiments::Request& request,
+                                  std::string_view configuration);
 
 }  // namespace tactus::cli

@@ -1,5 +1,5 @@
 #include <tactus/control/cancellation.hpp>
-#include <tactus/simulation/contact_metrics.hpp>
+#include <tactus/experiments/contact_metrics.hpp>
 #include <tactus/stability/map_point.hpp>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ std::size_t ticks_in(double duration_s, double tick_s) {
 simulation::Teleoperator::Params teleoperator_params(const MapParams& params) {
   simulation::Teleoperator::Params teleoperator = params;
   teleoperator.person.grip = mechanics::scaled(params.person.grip, params.task.grip);
-  teleoperator.control.model = simulation::mismatched(params.control.model, params.task.mismatch);
+  teleoperator.control.model = experiments::mismatched(params.control.model, params.task.mismatch);
   return teleoperator;
 }
 
@@ -161,14 +161,14 @@ Result<LanePoint> make_point(const MapParams& params) {
 PointResult judge(const LaneResult& run, std::span<const double> contact_force_N, double tick_s) {
   PointResult result{.contacts = run.touches, .peak_force_N = run.peak_force_N};
   if (run.touched) {
-    const auto metrics = simulation::judge_contact(contact_force_N, run.first_touch, tick_s);
+    const auto metrics = experiments::judge_contact(contact_force_N, run.first_touch, tick_s);
     result.settling_time_s = metrics.settling_time_s;
     result.residual_rms_N = metrics.residual_rms_N;
-    result.verdict = !metrics.settled                                          ? simulation::Verdict::limit_cycle
-                     : metrics.settling_time_s <= simulation::settled_within_s ? simulation::Verdict::settled
-                                                                               : simulation::Verdict::ringing;
+    result.verdict = !metrics.settled                                           ? experiments::Verdict::limit_cycle
+                     : metrics.settling_time_s <= experiments::settled_within_s ? experiments::Verdict::settled
+                                                                                : experiments::Verdict::ringing;
   }
-  if (run.diverged || !run.touched) result.verdict = simulation::Verdict::diverged;
+  if (run.diverged || !run.touched) result.verdict = experiments::Verdict::diverged;
   return result;
 }
 

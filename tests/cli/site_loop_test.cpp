@@ -65,7 +65,7 @@ class Sites : public ::testing::Test {
                                  site.exchange, simulated_device(params, role).value());
       ASSERT_TRUE(made) << describe(made.error());
       site.loop.emplace(*std::move(made));
-      simulation::Request request;
+      experiments::Request request;
       request.name = "test";
       auto log = SiteLog::create(folder / name_of(role), request, "[task]\nseed = 5\n", role);
       ASSERT_TRUE(log) << describe(log.error());
@@ -117,7 +117,7 @@ class Sites : public ::testing::Test {
   }
 
   const std::filesystem::path folder = scratch_path();
-  simulation::TappingParams params;
+  experiments::TappingParams params;
   Site master, slave;
   std::int64_t now_ns = 1'000'000'000;
   std::map<std::string, std::string> metadata;
