@@ -1,3 +1,4 @@
+#include <tactus/control/architecture.hpp>
 #include <tactus/control/position_force.hpp>
 #include <tactus/signal/checks.hpp>
 
@@ -70,6 +71,24 @@ Result<PositionForceSlave> PositionForceSlave::make(const Params& params, Second
   const auto servo = ServoPd::make(params, dt);
   if (!servo) return servo.error();
   return PositionForceSlave(*servo);
+}
+
+namespace {
+
+Result<Controllers> make_position_force(const ControlParams& params, Seconds dt) {
+  const auto master = PositionForceMaster::make(params, dt);
+  if (!master) return master.error();
+  const auto slave = PositionForceSlave::make(params.slave, dt);
+  if (!slave) return under("slave", slave.error());
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+}  // namespace
+
+Architecture position_force_architecture() {
+  return {.name = "position-force",
+          .summary = "the slave follows the master's position, the master displays the slave's tip force",
+          .make = make_position_force};
 }
 
 }  // namespace tactus::control

@@ -146,4 +146,8 @@ class PositionForceSlave {
   ServoPd servo_;
 };
 
+struct Architecture;
+/// `position-force`, as a file names it.
+Architecture position_force_architecture();
+
 }  // namespace tactus::control
