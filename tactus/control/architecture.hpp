@@ -61,6 +61,13 @@ struct Controllers {
   std::unique_ptr<SlaveController> slave;
 };
 
+/// How far the loop of an architecture is that of position-force, the one that margins and maps are made of.
+enum class Likeness {
+  unknown,     ///< not at all, or nobody has said so: refused there by name
+  about_rest,  ///< for motions and forces that are small enough: margins are its own, maps are refused
+  equal,       ///< everywhere
+};
+
 /// An architecture by its name in a file. `make` fails where its parameters do not fit together; the parameters that
 /// its errors name are those of `ControlParams`.
 struct Architecture {
@@ -71,6 +78,7 @@ struct Architecture {
   OwnKeys keys = {};
   /// Whether anything listens to the slave's tip force, so that it makes a difference where it comes from.
   bool uses_tip_force = true;
+  Likeness like_position_force = Likeness::unknown;
 };
 
 /// Every architecture there is, those of this library first.
