@@ -10,7 +10,7 @@
 namespace tactus::experiments {
 
 report::Axis axis_of(std::string_view key) {
-  const std::string_view name = configuration::key_of(key);
+  const std::string_view name = key_of(key);
   const Unit unit = unit_at_end_of(name);
   std::string words(name.substr(0, name.size() - std::string_view(unit.suffix).size()));
   std::replace(words.begin(), words.end(), '_', ' ');

@@ -1,5 +1,6 @@
 #include <tactus/control/cancellation.hpp>
 #include <tactus/experiments/contact_metrics.hpp>
+#include <tactus/stability/declared.hpp>
 #include <tactus/stability/map_point.hpp>
 
 #include <algorithm>
@@ -23,23 +24,14 @@ double reach_s(const MapTask& task) {
   return mechanics::MinimumJerk::duration_for(2.0 * task.depth_m, task.speed_m_per_s);
 }
 
-/// An error naming the first key that asks for something that the map's loop does not have.
+/// An error naming the first key outside of `[control]` that asks for something that the map's loop does not have.
 Check check_supported(const MapParams& params) {
   struct Demand {
     bool met;
     const char* key;
     const char* remedy;
   };
-  const control::ControlParams& control = params.control;
   const Demand demands[] = {
-      {control.architecture == "position-force", "control.architecture", "write position-force"},
-      {control.cancellation_step == control::CancellationStep::exact, "control.cancellation_step", "write exact"},
-      {control.operator_estimate == control::OperatorEstimate::off, "control.operator_estimate", "write off"},
-      {control.hand_compensation_Hz == 0.0, "control.hand_compensation_Hz", "write 0"},
-      {control.damping.damping_N_s_per_m == 0.0, "control.damping.damping_N_s_per_m", "write 0"},
-      {control.command_filter.kind == control::Shaping::none, "control.command_filter.kind", "write none"},
-      {control.force_filter.kind == control::Shaping::none, "control.force_filter.kind", "write none"},
-      {control.crossover.frequency_Hz == 0.0, "control.crossover.frequency_Hz", "write 0"},
       {params.environment.law == mechanics::ContactLaw::kelvin_voigt, "environment.law", "write kelvin-voigt"},
       {params.slave.force_sensor.noise_rms_N == 0.0, "slave.force_sensor.noise_rms_N", "write 0"},
       {params.channel.to_slave.jitter_s == 0.0, "channel.to_slave.jitter_s", "write 0"},
@@ -94,6 +86,7 @@ Result<LanePlan> make_plan(const MapParams& params) {
 
 Result<LanePoint> make_point(const MapParams& params) {
   if (auto error = validate(params)) return *std::move(error);
+  if (auto error = check_declared(params.control, Analysis::lanes)) return *std::move(error);
   if (auto error = check_supported(params)) return *std::move(error);
   const simulation::Teleoperator::Params rig = teleoperator_params(params);
   const auto clock = simulation::Clock::make(rig.servo, rig.plant);

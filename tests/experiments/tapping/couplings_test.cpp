@@ -1,3 +1,5 @@
+#include <tactus/control/projection.hpp>
+#include <tactus/control/shared_compliant.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 
@@ -129,7 +131,7 @@ TEST(Couplings, APressOverProjectionShowsAllOfTheForceAtRest) {
 TEST(Couplings, APressOverASharedCompliantSlaveMeetsItsStiffnessInRow) {
   simulation::Teleoperator::Params params = ideal_coupling("shared-compliant");
   for (const double stiffness : {100.0, 500.0}) {
-    params.control.compliance.stiffness_N_per_m = stiffness;
+    params.control.own<control::ComplianceParams>().stiffness_N_per_m = stiffness;
     const Balance balance(params);
     const double force_N = pressed_m / (balance.slave + 1.0 / stiffness + gain * balance.master);
     const simulation::Teleoperator::Record end = pressed(params);
@@ -169,10 +171,10 @@ TEST(Couplings, OfAnImpactProjectionShowsTheUnconditionalFractionAndWhatTheHandH
   params.control.force_gain = 1.0;
   const double whole_N_s = impact_shown_N_s(params);
   params.control.architecture = "projection";
-  params.control.projection.unconditional_fraction = 1.0;
+  params.control.own<control::ProjectionParams>().unconditional_fraction = 1.0;
   EXPECT_NEAR(impact_shown_N_s(params) / whole_N_s, 1.0, 1e-12);
   for (const double fraction : {0.05, 0.1, 0.3}) {
-    params.control.projection.unconditional_fraction = fraction;
+    params.control.own<control::ProjectionParams>().unconditional_fraction = fraction;
     const double share = impact_shown_N_s(params) / whole_N_s;
     EXPECT_GT(share, fraction);
     EXPECT_LT(share, fraction + 0.04);

@@ -1,3 +1,4 @@
+#include <tactus/control/four_channel.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 
@@ -57,8 +58,8 @@ TEST(FourChannel, PressingAtRestTheHandPushesMuTimesTheContactForceAndTheSlaveSt
       params.control.force_gain = mu;
       params.control.position_scale = lambda;
       // With the whole of the hand force on the slave the frictionless rig rings (docs/theory/four-channel.md).
-      params.control.four_channel.slave_force_loop_gain = -0.5;
-      params.control.four_channel.hand_force_gain = 0.5;
+      params.control.own<control::FourChannelParams>().slave_force_loop_gain = -0.5;
+      params.control.own<control::FourChannelParams>().hand_force_gain = 0.5;
       const Records records = press(params, until_rest);
       const auto& end = records.back();
       ASSERT_GT(end.contact_force_N, 0.05);

@@ -1,3 +1,4 @@
+#include <tactus/control/time_domain_passivity.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 
 #include <algorithm>
@@ -124,7 +125,7 @@ TEST(TimeDomainPassivity, WithoutDelayIsOnlyAsGoodAsTheLoadThatTheLineSees) {
   // A force sensor at the tip is no passive load of the commanded motion; the servo's force is.
   TappingParams params = delayed("time-domain-passivity", 0.0);
   EXPECT_LT(run(params).metrics.settled_fraction, 0.75);
-  params.control.passivity.reflected_force = control::ReflectedForce::servo;
+  params.control.own<control::PassivityParams>().reflected_force = control::ReflectedForce::servo;
   EXPECT_EQ(run(params).metrics.verdict, Verdict::settled);
 }
 

@@ -8,10 +8,13 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <variant>
 #include <vector>
 
-namespace tactus::configuration {
+/// A parameter struct with its type erased: its keys, for code that is compiled once for all structs. Cold: it
+/// allocates.
+namespace tactus {
 
 /// Marks a binding that is a group of further keys and holds no value of its own.
 struct Section {};
@@ -25,7 +28,7 @@ struct Choice {
   void (*assign)(void* member, std::size_t index);
 };
 
-/// One key of a configuration: what the loader, the schema, the reference page and the errors need to know about it,
+/// One key of a parameter struct: what the loader, the schema, the reference page and the errors need to know about it,
 /// and where its value is stored.
 struct Binding {
   std::string path;  ///< dotted: `slave.friction.force_N`
@@ -44,6 +47,13 @@ std::string_view section_of(std::string_view path);
 /// The part of a dotted path after its last dot.
 std::string_view key_of(std::string_view path);
 
+/// A member of a parameter struct whose keys only a running program knows, such as those of what was plugged in. With
+/// an empty name its field puts them beside those of the other fields.
+template <class T>
+concept OpenGroup = CheckedGroup<T> && requires(T& group, std::string_view section, std::vector<Binding>& bindings) {
+  group.append_to(bindings, section);
+};
+
 namespace detail {
 
 template <NamedEnum E>
@@ -56,18 +66,23 @@ Choice make_choice(E& member) {
   return choice;
 }
 
+}  // namespace detail
+
+/// Adds every key of `params`, in the order of its description, below `section`.
 template <Described T>
 void append_bindings(T& params, std::string_view section, std::vector<Binding>& bindings) {
   for_each_field<T>([&](const auto& f) {
     auto& member = params.*f.member;
     using Value = std::remove_cvref_t<decltype(member)>;
     Binding binding{join(section, f.name), f.unit, f.bounds, f.doc, Section{}};
-    if constexpr (Described<Value>) {
+    if constexpr (OpenGroup<Value>) {
+      member.append_to(bindings, binding.path);
+    } else if constexpr (Described<Value>) {
       bindings.push_back(binding);
       append_bindings(member, binding.path, bindings);
     } else {
       if constexpr (NamedEnum<Value>) {
-        binding.target = make_choice(member);
+        binding.target = detail::make_choice(member);
       } else {
         binding.target = &member;
       }
@@ -75,8 +90,6 @@ void append_bindings(T& params, std::string_view section, std::vector<Binding>& 
     }
   });
 }
-
-}  // namespace detail
 
 /// Every key of `params` in the order of its description, a section before its members.
 ///
@@ -90,8 +103,8 @@ std::vector<Binding> bind(T& params, std::string_view section = {}, const char* 
     const char* doc = end == section.size() ? section_doc : "";
     bindings.push_back({std::string(section.substr(0, end)), units::none, any_finite, doc, Section{}});
   }
-  detail::append_bindings(params, section, bindings);
+  append_bindings(params, section, bindings);
   return bindings;
 }
 
-}  // namespace tactus::configuration
+}  // namespace tactus
