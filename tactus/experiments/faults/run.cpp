@@ -72,11 +72,16 @@ class FaultRun::Run {
   /// a clock that loses ticks does not count how long a packet waits meanwhile.
   static double oldest_s(const simulation::Teleoperator::Params& params, const FaultPlan& plan, double tick_s) {
     const double factor = plan.kind == FaultKind::delay_asymmetric ? 2.0 : 1.0;
-    double waits_s = 0.0;
-    for (const FaultPlan& part : plans_of(plan)) {
-      if (part.kind == FaultKind::rate_drift) waits_s += tick_s * std::ceil(part.size / (1.0 - part.size));
+    double waits_ticks = 0.0;
+    for (const FaultSite site : {FaultSite::master, FaultSite::slave}) {
+      double longest_ticks = 1.0;  // from one step to the next
+      for (const FaultPlan& part : plans_of(plan)) {
+        if (part.kind == FaultKind::rate_drift && part.site == site)
+          longest_ticks *= std::ceil(1.0 / (1.0 - part.size));
+      }
+      waits_ticks += longest_ticks - 1.0;
     }
-    return factor * params.control.supervision.packets.longest_age_s + waits_s;
+    return factor * params.control.supervision.packets.longest_age_s + tick_s * waits_ticks;
   }
   template <class Site, class Make>
   static Result<std::pair<Site, std::vector<Site>>> starts(const FaultPlan& plan, const Make& make);
