@@ -68,3 +68,37 @@ endif()
 # A device of a user's own is driven by supervised sites over the network.
 build_against_the_package(${SOURCE}/examples/own-device ${SCRATCH}/device)
 run(sh ${CMAKE_CURRENT_LIST_DIR}/own_device.sh ${SCRATCH}/device/my-device ${experiment} ${SCRATCH}/device-run)
+
+# An experiment of a user's own is a kind like those of the library: its keys load, vary, are refused by name and stand in
+# schema and reference. A faster servo renders a stiffer wall (J. E. Colgate and G. Schenkel, Journal of Robotic Systems
+# 14(1), 1997: K < 2 (b - B)/T).
+build_against_the_package(${SOURCE}/examples/own-experiment ${SCRATCH}/experiment)
+set(my_experiment ${SCRATCH}/experiment/my-experiment)
+set(wall ${SOURCE}/examples/own-experiment/virtual-wall.toml)
+run(${my_experiment} run ${wall} --json --vary servo.rate_Hz=1000,5000 --set task.observation_s=0.3)
+foreach(index RANGE 1)
+  string(JSON limit_${index} GET "${output}" runs ${index} metrics stiffness_limit_N_per_m)
+endforeach()
+if(NOT limit_1 GREATER limit_0 OR NOT limit_0 GREATER 0)
+  message(FATAL_ERROR "a servo of 5 kHz does not render a stiffer wall than one of 1 kHz:\n${output}")
+endif()
+run(${my_experiment} run ${wall} --out ${SCRATCH}/wall --set task.observation_s=0.3)
+if(NOT EXISTS ${SCRATCH}/wall/report.html OR NOT EXISTS ${SCRATCH}/wall/figure-1.svg)
+  message(FATAL_ERROR "the experiment of one's own leaves no report")
+endif()
+run(${my_experiment} schema virtual-wall)
+string(JSON least GET "${output}" properties task properties press_m minimum)
+run(${my_experiment} schema virtual-wall --reference)
+if(NOT output MATCHES "`softest_N_per_m` . N/m")
+  message(FATAL_ERROR "the reference lacks a key of the experiment:\n${output}")
+endif()
+execute_process(COMMAND ${my_experiment} run ${wall} --vary task.press_m=0.01,3
+                RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE refusal)
+if(NOT status EQUAL 2 OR NOT refusal MATCHES "^my-experiment: --vary task.press_m=3: task.press_m: ")
+  message(FATAL_ERROR "a value out of bounds ended with ${status}:\n${refusal}")
+endif()
+execute_process(COMMAND ${my_experiment} run ${wall} --set task.kind=virtual-wal
+                RESULT_VARIABLE status OUTPUT_QUIET ERROR_VARIABLE refusal)
+if(NOT status EQUAL 2 OR NOT refusal MATCHES "write one of tapping, .*, virtual-wall")
+  message(FATAL_ERROR "an unknown kind ended with ${status} and did not list the one of the example:\n${refusal}")
+endif()
