@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <string>
 #include <string_view>
+#include <utility>
 
 /// Position-force control (paper A, Fig. 3): the slave follows the master's position, the master displays the force
 /// measured at the slave's tip. One class for each site.
@@ -100,18 +101,24 @@ class PositionForceMaster {
   /// `MasterStages`. `site_key` tells their keys by `name`.
   template <template <class> class As, class Make>
   static MasterStages<As> each_stage(const Params& params, const Make& make) {
-    return {.force_filter = make.template operator()<ShapingFilter>("force_filter", params.force_filter),
-            .crossover = make.template operator()<Crossover>("crossover", params.crossover),
-            .hand_compensation = make.template operator()<HandForceCompensation>(
-                "hand_compensation", {.master = params.model, .band_Hz = params.hand_compensation_Hz}),
-            .damping = make.template operator()<LocalDamping>("damping", params.damping),
-            .command_filter = make.template operator()<ShapingFilter>("command_filter", params.command_filter),
-            .cancellation = make.template operator()<GripCancellation>(
-                "cancellation", {.cancellation = {.model = {.master = params.model,
-                                                            .fidelity = params.cancellation_model,
-                                                            .step = params.cancellation_step,
-                                                            .friction = params.cancellation_friction}},
-                                 .estimate = params.operator_estimate})};
+    auto force_filter = make.template operator()<ShapingFilter>("force_filter", params.force_filter);
+    auto crossover = make.template operator()<Crossover>("crossover", params.crossover);
+    auto hand_compensation = make.template operator()<HandForceCompensation>(
+        "hand_compensation", {.master = params.model, .band_Hz = params.hand_compensation_Hz});
+    auto damping = make.template operator()<LocalDamping>("damping", params.damping);
+    auto command_filter = make.template operator()<ShapingFilter>("command_filter", params.command_filter);
+    auto cancellation = make.template operator()<GripCancellation>(
+        "cancellation", {.cancellation = {.model = {.master = params.model,
+                                                    .fidelity = params.cancellation_model,
+                                                    .step = params.cancellation_step,
+                                                    .friction = params.cancellation_friction}},
+                         .estimate = params.operator_estimate});
+    return {.force_filter = std::move(force_filter),
+            .crossover = std::move(crossover),
+            .hand_compensation = std::move(hand_compensation),
+            .damping = std::move(damping),
+            .command_filter = std::move(command_filter),
+            .cancellation = std::move(cancellation)};
   }
   /// The key of `Params` that the key `own` of the stage `name` is: they are flatter here. Cold.
   static std::string site_key(std::string_view name, std::string_view own);
