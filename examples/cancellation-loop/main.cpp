@@ -1,4 +1,4 @@
-#include <tactus/control/cancellation.hpp>
+#include <tactus/control/stages/cancellation.hpp>
 #include <tactus/mechanics/cable_driven_master.hpp>
 #include <tactus/mechanics/operator.hpp>
 

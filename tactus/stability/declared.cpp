@@ -32,9 +32,10 @@ Check check_architecture(const control::ControlParams& control, Analysis analysi
 
 Error detail::undeclared(Analysis analysis, const std::string& key) {
   const char* what = analysis == Analysis::linear ? "is linear" : "runs on lanes";
-  return inconsistent(std::move(key), std::string("has not declared whether it ") + what +
-                                          ": declare it in its class as tactus/control/stage.hpp says, or use `tactus "
-                                          "run`");
+  return inconsistent(std::move(key),
+                      std::string("has not declared whether it ") + what +
+                          ": declare it in its class as tactus/control/stages/stage.hpp says, or use `tactus "
+                          "run`");
 }
 
 Error detail::unfit(Analysis analysis, const std::string& key, const char* remedy) {

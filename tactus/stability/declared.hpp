@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tactus/control/architecture.hpp>
-#include <tactus/control/stage.hpp>
+#include <tactus/control/stages/stage.hpp>
 #include <tactus/core/result.hpp>
 
 #include <functional>
