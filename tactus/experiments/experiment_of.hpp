@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/configuration/binding.hpp>
 #include <tactus/configuration/json_schema.hpp>
+#include <tactus/core/binding.hpp>
 #include <tactus/experiments/experiment.hpp>
 #include <tactus/experiments/presentation.hpp>
 
@@ -21,7 +21,7 @@ template <class P>
 concept ExperimentParams = Described<P> && NamedEnum<decltype(P{}.task.kind)>;
 
 /// The reference page of a kind. Keys that `tapping` has with equal words, bounds and default are left to its page.
-std::string reference_page(std::span<const configuration::Binding> bindings, std::string_view kind);
+std::string reference_page(std::span<const Binding> bindings, std::string_view kind);
 
 /// A kind of experiment whose files are read as `P`: its word, its schema and its reference page.
 template <ExperimentParams P>
@@ -33,7 +33,7 @@ class ExperimentOf : public Experiment {
   }
   [[nodiscard]] std::string reference() const final {
     P defaults{};
-    return reference_page(configuration::bind(defaults), kind());
+    return reference_page(bind(defaults), kind());
   }
 };
 
