@@ -1,5 +1,6 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/onlookers.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/ros2_session.hpp>
@@ -37,8 +38,7 @@ struct RunOptions {
   double plant_silence_s = station::usual_silence.value;
   runtime::ServoThreadParams servo;
   SupervisedOptions supervised;
-  bool ros2 = false;
-  std::string name_space = "tactus";
+  OnlookerOptions onlookers;
 };
 
 Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
@@ -71,10 +71,22 @@ Check run_in_real_time(const RunOptions& options, const simulation::Request& req
     real_time.log = output.log_folder() / "log.mcap";
     real_time.before_log = [&output] { return output.begin(); };
   }
+  auto onlookers = Onlookers::open(options.onlookers, request);
+  if (!onlookers) return onlookers.error();
+  const auto say = [&output](const std::string& line) {
+    if (!line.empty()) (output.json() ? std::cerr : std::cout) << line << std::flush;
+  };
+  if (onlookers->any()) {
+    real_time.look_on = [&](const std::vector<runtime::RealTimeStreams>& all) {
+      for (const runtime::RealTimeStreams& streams : all) onlookers->watch(streams);
+      return onlookers->begin(say);
+    };
+  }
   const auto done = [&] {
     ProgressLine line(request.name);
     return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
   }();
+  say(onlookers->end());
   if (!done) return done.error();
   if (done->interrupted) status = (*interruption)->exit_status();
   if (auto error = write_outcome(output, done->outcome)) return error;
@@ -98,8 +110,11 @@ Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request&
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();
-  const Ros2Options session{
-      .name_space = options.name_space, .servo = options.servo, .end = end, .log_limit_bytes = options.log_limit};
+  const Ros2Options session{.name_space = options.onlookers.name_space,
+                            .live = options.onlookers.live,
+                            .servo = options.servo,
+                            .end = end,
+                            .log_limit_bytes = options.log_limit};
   const auto outcome = run_ros2_session(request, session, output);
   if (!outcome) return outcome.error();
   if (auto error = write_outcome(output, *outcome)) return error;
@@ -111,7 +126,7 @@ Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request&
 Check refuse_what_makes_no_sense(const CLI::App& verb, const RunOptions& options) {
   const bool one_site = !options.supervised.site.empty();
   const bool own_devices = !options.supervised.devices.empty();
-  const bool at_real_clock = options.real_time || options.ros2 || one_site;
+  const bool at_real_clock = options.real_time || options.onlookers.ros2 || one_site;
   struct Rule {
     bool broken;
     std::vector<const char*> options;  ///< of which the first that was given is named
@@ -139,6 +154,10 @@ Check refuse_what_makes_no_sense(const CLI::App& verb, const RunOptions& options
            {"--peer", "--listen", "--key", "--unencrypted"},
            "there is no link where both sites run in one program: add --site master or --site slave"},
       Rule{!at_real_clock,
+           {"--live"},
+           "virtual time is over before anybody looks: add --realtime or --site, or be the operator yourself on the "
+           "page of `tactus serve`"},
+      Rule{!at_real_clock,
            {"--priority", "--core", "--spin-s"},
            "there is no servo thread in virtual time: add --realtime, --ros2 or --site"}};
   for (const Rule& rule : rules) {
@@ -157,13 +176,13 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
   auto output = OutputFolder::open(options.output);
   if (!output) return output.error();
   if (options.supervised.wanted()) {
-    return run_supervised(options.supervised, options.servo, *request, *output, options.log_limit);
+    return run_supervised(options.supervised, options.onlookers, options.servo, *request, *output, options.log_limit);
   }
   const auto experiment = simulation::choose_experiment(request->document);
   if (!experiment) return experiment.error();
 
-  if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
   if (options.real_time) return run_in_real_time(options, *request, *output, status);
+  if (options.onlookers.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
 
   Result<simulation::Outcome> outcome = [&] {
     ProgressLine line(request->name);
@@ -202,14 +221,7 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
       ->needs(plant);
   add_servo_options(*verb, options->servo);
   add_supervised_options(*verb, options->supervised);
-  CLI::Option* const ros2 =
-      verb->add_flag("--ros2", options->ros2,
-                     "Run the taps in real time among ROS 2 nodes: publish under CRTK names, take operator/servo_jp");
-  ros2->excludes("--realtime")->excludes("--site");
-  verb->add_option("--namespace", options->name_space, "Namespace of the ROS 2 topics")
-      ->type_name("NAME")
-      ->capture_default_str()
-      ->needs(ros2);
+  add_onlooker_options(*verb, options->onlookers);
   verb->callback([options, verb, &app, &command, &status] {
     Check error = refuse_what_makes_no_sense(*verb, *options);
     if (!error) error = run(*options, command, status);

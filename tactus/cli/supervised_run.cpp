@@ -172,6 +172,7 @@ struct Surroundings {
   runtime::ServoThreadParams servo;
   runtime::SiteExchange& exchange;
   const Interruption& interruption;
+  Onlookers& onlookers;
   LineWriter& output;
   LineWriter& errors;
 };
@@ -182,9 +183,13 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
   LineWriter& lines = folder.json() ? around.errors : around.output;
   std::optional<runtime::SiteLog> log;
   runtime::SiteStreams streams;
-  if (folder.wanted()) {
+  if (folder.wanted() || around.onlookers.any()) {
     streams = run.here.one ? runtime::SiteStreams::of_one(*run.here.one) : runtime::SiteStreams::of_both();
     loop.leave_in(streams);
+    around.onlookers.watch(streams);
+  }
+  if (auto error = around.onlookers.begin([&lines](const std::string& line) { lines.say(line); })) return error;
+  if (folder.wanted()) {
     if (auto error = folder.begin()) return error;
     auto created = runtime::SiteLog::create(folder.log_folder(), streams, around.about, around.log_limit_bytes);
     if (!created) return created.error();
@@ -211,6 +216,7 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
   run.servo = (*servo)->finish();
   (*servo)->step().finish();
   take_seconds();
+  if (const std::string seen = around.onlookers.end(); !seen.empty()) lines.say(seen);
   add_totals(run, (*servo)->step());
   run.ended_by = around.interruption.signal() != 0 ? around.interruption.name() : "its duration";
   run.lines_dropped = lines.dropped();
@@ -244,8 +250,9 @@ void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
   add("--duration-s", options.duration_s, "How long to run; 0 is until interrupted", "S")->capture_default_str();
 }
 
-Check run_supervised(const SupervisedOptions& options, runtime::ServoThreadParams servo,
-                     const simulation::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes) {
+Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& looking_on,
+                     runtime::ServoThreadParams servo, const simulation::Request& request, OutputFolder& folder,
+                     std::uint64_t log_limit_bytes) {
   const configuration::Document& document = request.document;
   const auto experiment = simulation::choose_experiment(document);
   if (!experiment) return experiment.error();
@@ -269,6 +276,8 @@ Check run_supervised(const SupervisedOptions& options, runtime::ServoThreadParam
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
   const auto person = Person::listen_to(STDIN_FILENO, here.one.value_or(SiteRole::master), exchange, errors);
   if (!person) return person.error();
+  auto onlookers = Onlookers::open(looking_on, request, here.one);
+  if (!onlookers) return onlookers.error();
   auto devices = open_devices(*names, here, *params);
   if (!devices) return document.locate(devices.error());
   servo.rate_Hz = params->servo.rate_Hz;
@@ -281,6 +290,7 @@ Check run_supervised(const SupervisedOptions& options, runtime::ServoThreadParam
                             .servo = servo,
                             .exchange = exchange,
                             .interruption = **interruption,
+                            .onlookers = *onlookers,
                             .output = output,
                             .errors = errors};
   SupervisedRun run;
