@@ -1,5 +1,5 @@
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/real_time_tap.hpp>
-#include <tactus/simulation/tapping.hpp>
 
 #include <filesystem>
 #include <system_error>
@@ -12,7 +12,7 @@ namespace tactus::bench {
 namespace {
 
 /// One tap in real time.
-runtime::ServoReport run_tap(const simulation::TappingEnsemble& ensemble, std::size_t tap,
+runtime::ServoReport run_tap(const experiments::TappingEnsemble& ensemble, std::size_t tap,
                              const runtime::RealTimeStreams& streams) {
   auto made = runtime::RealTimeTap::make(ensemble.tap(tap), 0.35, streams);
   if (!made) return {};
@@ -25,9 +25,9 @@ runtime::ServoReport run_tap(const simulation::TappingEnsemble& ensemble, std::s
 }  // namespace
 
 Findings servo_step(bool quick) {
-  simulation::TappingParams params;
+  experiments::TappingParams params;
   params.task.taps = quick ? 3 : 12;
-  const auto ensemble = simulation::TappingEnsemble::make(params);
+  const auto ensemble = experiments::TappingEnsemble::make(params);
   const auto file = std::filesystem::temp_directory_path() / ("bench_servo_" + std::to_string(getpid()) + ".mcap");
   auto recorder = telemetry::Recorder::create(file);
   if (!ensemble || !recorder) return {};

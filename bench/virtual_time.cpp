@@ -1,5 +1,5 @@
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
-#include <tactus/simulation/tapping.hpp>
 
 #include <array>
 #include <cstddef>
@@ -20,8 +20,8 @@ constexpr std::array<int, 3> loop_steps_us{10, 20, 40};
 
 std::string loop_name(int step_us) { return "closed loop, plant step " + std::to_string(step_us) + " us"; }
 
-simulation::TappingParams hard_tapping(int step_us) {
-  simulation::TappingParams params;
+experiments::TappingParams hard_tapping(int step_us) {
+  experiments::TappingParams params;
   params.plant.longest_step_s = 1e-6 * step_us;
   params.control.force_gain = 15.0;
   return params;
@@ -65,7 +65,7 @@ void add_virtual_time() {
   });
   for (const int step_us : loop_steps_us) add_closed_loop(step_us);
 
-  const auto ensemble = *simulation::TappingEnsemble::make(hard_tapping(10));
+  const auto ensemble = *experiments::TappingEnsemble::make(hard_tapping(10));
   add_case("tap", [ensemble] { benchmark::DoNotOptimize(ensemble.run(0)); });
 }
 
@@ -80,8 +80,8 @@ Findings virtual_time(const Times& times) {
     findings.push_back({loop, loop_name(step_us), period_s / times.at(loop_name(step_us)), "x real time",
                         Finding::Goal::at_least, 5000.0});
   }
-  const auto ensemble = *simulation::TappingEnsemble::make(hard_tapping(10));
-  const double tap_s = ensemble.run(0).first_touch_s + simulation::TappingTask{}.observation_s;
+  const auto ensemble = *experiments::TappingEnsemble::make(hard_tapping(10));
+  const double tap_s = ensemble.run(0).first_touch_s + experiments::TappingTask{}.observation_s;
   findings.push_back(
       {loop, "one tap of the ensemble, set up and judged, plant step 10 us", tap_s / times.at("tap"), "x real time"});
   return findings;

@@ -97,10 +97,10 @@ Result<bool> examine(const DoctorOptions& options, const std::string& command) {
   const auto findings =
       runtime::diagnose(runtime::read_machine_facts(static_cast<int>(options.servo.priority)), *measurement);
   const report::Figure timing = runtime::timing_figure(measurement->report);
-  const simulation::Outcome outcome{.text = text_of(findings),
-                                    .json = json_of(findings, *measurement),
-                                    .html = html_of(findings, timing, measurement->report, command),
-                                    .figures = {timing}};
+  const experiments::Outcome outcome{.text = text_of(findings),
+                                     .json = json_of(findings, *measurement),
+                                     .html = html_of(findings, timing, measurement->report, command),
+                                     .figures = {timing}};
   if (auto error = write_outcome(*output, outcome)) return *std::move(error);
   return runtime::can_keep_time(findings);
 }

@@ -5,8 +5,8 @@
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/experiments/faults/experiment.hpp>
 #include <tactus/runtime/real_time_faults.hpp>
-#include <tactus/simulation/fault_experiment.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -46,10 +46,10 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
   }
   auto output = OutputFolder::open(options.output);
   if (!output) return output.error();
-  const simulation::Request request{.document = *std::move(document),
-                                    .variations = {},
-                                    .name = options.file ? experiment_name(*options.file) : std::string("faults"),
-                                    .command = command};
+  const experiments::Request request{.document = *std::move(document),
+                                     .variations = {},
+                                     .name = options.file ? experiment_name(*options.file) : std::string("faults"),
+                                     .command = command};
   runtime::EndRequest end;
   std::unique_ptr<Interruption> interruption;
   const auto listen = [&]() -> Result<const runtime::EndRequest*> {
@@ -62,7 +62,7 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
     ProgressLine line(request.name);
     const auto progress = [&line](double done) { line.update(done); };
     return options.real_time ? runtime::run_faults_in_real_time(request, options.servo, progress, listen)
-                             : simulation::FaultExperiment().run(request, progress);
+                             : experiments::FaultExperiment().run(request, progress);
   }();
   if (!outcome) return outcome.error();
   if (interruption) status = interruption->exit_status();

@@ -3,13 +3,13 @@
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/experiments/inverse_model_chirp/inverse_model_chirp.hpp>
+#include <tactus/experiments/presentation.hpp>
 #include <tactus/identification/prediction_time.hpp>
 #include <tactus/recording/recording.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/inverse_model_chirp.hpp>
-#include <tactus/simulation/presentation.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -61,9 +62,9 @@ Result<Motion> recorded(const PredictionOptions& options) {
       .command = command->values, .position = std::move(position->values), .sample_time_s = *command->sample_time_s};
 }
 
-Result<Motion> simulated(const PredictionOptions& options, const simulation::InverseModelChirpParams& params) {
+Result<Motion> simulated(const PredictionOptions& options, const experiments::InverseModelChirpParams& params) {
   const double dt_s = 1.0 / params.task.sample_rate_Hz;
-  auto record = simulation::follow(params.slave, simulation::chirp_path(params.task, options.band_Hz),
+  auto record = simulation::follow(params.slave, experiments::chirp_path(params.task, options.band_Hz),
                                    params.task.duration_s, dt_s);
   if (!record) return record.error();
   return Motion{.command = std::move(record->command), .position = std::move(record->position), .sample_time_s = dt_s};
@@ -85,8 +86,8 @@ report::Table table_of(const PredictionOptions& options, const TimeConstants& fo
   return table;
 }
 
-simulation::Outcome outcome_of(const PredictionOptions& options, const TimeConstants& found,
-                               const simulation::Request& request, std::string_view configuration) {
+experiments::Outcome outcome_of(const PredictionOptions& options, const TimeConstants& found,
+                                const experiments::Request& request, std::string_view configuration) {
   const report::Table table = table_of(options, found);
   const std::string felt = "Force felt in this free motion: " + report::number(found.error_rms_N, 3) + " N RMS";
   report::Page page(request.name + ": time constant of the prediction blocks");
@@ -96,13 +97,17 @@ simulation::Outcome outcome_of(const PredictionOptions& options, const TimeConst
       "limit), and from a free motion, in which the estimated force should be zero.");
   page.table(table);
   page.paragraph(felt + ", with the time constant that the motion gives.");
-  simulation::add_provenance(page, request, configuration);
+  experiments::add_provenance(page, request, configuration);
   const nlohmann::ordered_json json{{"blocks", options.blocks},
                                     {"closed_form_s", found.closed_form_s},
                                     {"limit_s", found.limit_s},
                                     {"from_data_s", found.from_data_s},
                                     {"error_rms_N", found.error_rms_N}};
-  return {.text = table.to_text() + felt + "\n", .json = json_text(json), .html = page.to_html(), .figures = {}};
+  experiments::Outcome outcome;
+  outcome.text = table.to_text() + felt + "\n";
+  outcome.json = json_text(json);
+  outcome.html = page.to_html();
+  return outcome;
 }
 
 Check identify(const PredictionOptions& options, const std::string& command) {
@@ -110,9 +115,9 @@ Check identify(const PredictionOptions& options, const std::string& command) {
   if (!output) return output.error();
   auto document = with_set(configuration::Document::load(options.experiment), options.set);
   if (!document) return document.error();
-  const auto params = document->read<simulation::InverseModelChirpParams>();
+  const auto params = document->read<experiments::InverseModelChirpParams>();
   if (!params) return params.error();
-  if (Check error = simulation::check(*params)) return document->locate(*std::move(error));
+  if (Check error = experiments::check(*params)) return document->locate(*std::move(error));
 
   const auto closed = identification::prediction_time_closed_form(
       params->slave.delays_and_lags_s(), params->estimator.derivative_filter_s, options.blocks);
@@ -128,8 +133,8 @@ Check identify(const PredictionOptions& options, const std::string& command) {
   if (!data) return document->locate(under("estimator", data.error()));
 
   // One member after the other: where memory runs out within an initialiser list, GCC 12 destroys what is not there.
-  simulation::Request request;
-  request.document = *document;
+  experiments::Request request;
+  request.document = *std::move(document);
   request.name = experiment_name(options.experiment);
   request.command = command;
   const TimeConstants found{.closed_form_s = *closed,

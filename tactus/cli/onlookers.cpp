@@ -56,7 +56,7 @@ void add_onlooker_options(CLI::App& verb, OnlookerOptions& options) {
       ->group(group);
 }
 
-Result<Onlookers> Onlookers::open(const OnlookerOptions& options, const simulation::Request& request,
+Result<Onlookers> Onlookers::open(const OnlookerOptions& options, const experiments::Request& request,
                                   const std::optional<control::SiteRole>& site) {
   Onlookers made;
   if (options.live) {

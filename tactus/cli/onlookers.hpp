@@ -1,10 +1,10 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/live/run_view.hpp>
 #include <tactus/live/server.hpp>
 #include <tactus/ros2/observer.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <functional>
 #include <memory>
@@ -34,7 +34,7 @@ class Onlookers {
  public:
   /// Opens what is asked for before anything runs; `sites` says whose topics go to ROS 2. Errors: a place that is none;
   /// those of `ros2::Observer::create`.
-  static Result<Onlookers> open(const OnlookerOptions& options, const simulation::Request& request,
+  static Result<Onlookers> open(const OnlookerOptions& options, const experiments::Request& request,
                                 const std::optional<control::SiteRole>& site = {});
 
   /// Shows what goes into these streams from now on: `RealTimeStreams` or `SiteStreams`. Before `begin`.

@@ -7,7 +7,7 @@
 
 namespace tactus::cli {
 
-Check write_results(OutputFolder& output, const simulation::Outcome& outcome) {
+Check write_results(OutputFolder& output, const experiments::Outcome& outcome) {
   for (std::size_t i = 0; i < outcome.figures.size(); ++i) {
     const std::string name = "figure-" + std::to_string(i + 1) + ".svg";
     if (auto error = output.write(name, report::to_svg(outcome.figures[i]))) return error;
@@ -16,7 +16,7 @@ Check write_results(OutputFolder& output, const simulation::Outcome& outcome) {
   return output.write("report.html", outcome.html);
 }
 
-Check write_outcome(OutputFolder& output, const simulation::Outcome& outcome) {
+Check write_outcome(OutputFolder& output, const experiments::Outcome& outcome) {
   if (output.wanted()) {
     if (auto error = write_results(output, outcome)) return error;
   }

@@ -66,12 +66,12 @@ std::string json_of(const std::string& name, const PlantStatus& status, const ru
   return json_text(document);
 }
 
-Result<simulation::TappingParams> params_of(const PlantOptions& options) {
+Result<experiments::TappingParams> params_of(const PlantOptions& options) {
   const auto document = load_experiment(options.experiment);
   if (!document) return document.error();
-  auto params = document->read<simulation::TappingParams>();
+  auto params = document->read<experiments::TappingParams>();
   if (!params) return params.error();
-  if (const auto ensemble = simulation::TappingEnsemble::make(*params); !ensemble) {
+  if (const auto ensemble = experiments::TappingEnsemble::make(*params); !ensemble) {
     return document->locate(ensemble.error());
   }
   return params;

@@ -5,9 +5,9 @@
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/link/socket.hpp>
 #include <tactus/report/table.hpp>
-#include <tactus/simulation/tapping.hpp>
 
 #include <algorithm>
 #include <array>
@@ -151,7 +151,7 @@ void print(const Way::Counters& to_slave, const Way::Counters& to_master, bool j
 Check run(const RelayOptions& options) {
   auto document = with_set(configuration::Document::load(options.file), options.set);
   if (!document) return document.error();
-  const auto params = document->read<simulation::TappingParams>();
+  const auto params = document->read<experiments::TappingParams>();
   if (!params) return params.error();
   auto master = socket_between(options.for_master, options.master);
   if (!master) return master.error();

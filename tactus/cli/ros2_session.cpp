@@ -3,6 +3,7 @@
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/experiments/presentation.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
@@ -10,7 +11,6 @@
 #include <tactus/ros2/bridge.hpp>
 #include <tactus/ros2/hand_session.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
-#include <tactus/simulation/presentation.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
 #include <iostream>
@@ -23,7 +23,7 @@ namespace {
 
 using ros2::HandSession;
 
-std::string json_of(const simulation::Request& request, const Ros2Options& options, const HandSession& session,
+std::string json_of(const experiments::Request& request, const Ros2Options& options, const HandSession& session,
                     const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo) {
   return json_text({{"experiment", request.name},
                     {"command", request.command},
@@ -55,16 +55,16 @@ report::Table table_of(const Ros2Options& options, const HandSession& session, c
   return table;
 }
 
-simulation::Outcome outcome_of(const simulation::Request& request, const Ros2Options& options,
-                               const HandSession& session, const ros2::Bridge::Counts& counts,
-                               const runtime::ServoReport& servo, const std::string& configuration) {
+experiments::Outcome outcome_of(const experiments::Request& request, const Ros2Options& options,
+                                const HandSession& session, const ros2::Bridge::Counts& counts,
+                                const runtime::ServoReport& servo, const std::string& configuration) {
   const report::Table table = table_of(options, session, counts);
   const report::Figure figure = runtime::timing_figure(servo);
   report::Page page(request.name + " among ROS 2 nodes");
   page.paragraph("The teleoperator ran in real time and published under the namespace " + options.name_space + ".");
   page.table(table);
   runtime::add_timing(page, servo, figure);
-  simulation::add_provenance(page, request, configuration);
+  experiments::add_provenance(page, request, configuration);
   return {.text = table.to_text() + "\n" + runtime::timing_text(servo),
           .json = json_of(request, options, session, counts, servo),
           .html = page.to_html(),
@@ -73,9 +73,9 @@ simulation::Outcome outcome_of(const simulation::Request& request, const Ros2Opt
 
 }  // namespace
 
-Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options,
-                                             OutputFolder& output) {
-  const auto params = request.document.read<simulation::TappingParams>();
+Result<experiments::Outcome> run_ros2_session(const experiments::Request& request, const Ros2Options& options,
+                                              OutputFolder& output) {
+  const auto params = request.document.read<experiments::TappingParams>();
   if (!params) return params.error();
   auto session = HandSession::make(*params);
   if (!session) return request.document.locate(session.error());

@@ -2,9 +2,9 @@
 
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/servo_thread.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -25,7 +25,7 @@ struct Ros2Options {
 /// Deadlines that are missed are made up for, so that its time keeps to the real one. A log goes into the folder of
 /// `output`, if there is one. Errors: those of the experiment's file, of the network and of the log; `failed` once a
 /// safety gate has closed or the devices have left their workspace.
-Result<simulation::Outcome> run_ros2_session(const simulation::Request& request, const Ros2Options& options,
-                                             OutputFolder& output);
+Result<experiments::Outcome> run_ros2_session(const experiments::Request& request, const Ros2Options& options,
+                                              OutputFolder& output);
 
 }  // namespace tactus::cli

@@ -9,8 +9,8 @@
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/supervised_run.hpp>
 #include <tactus/cli/verbs.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <array>
 #include <cstdint>
@@ -41,23 +41,23 @@ struct RunOptions {
   OnlookerOptions onlookers;
 };
 
-Result<simulation::Request> make_request(const RunOptions& options, const std::string& command) {
+Result<experiments::Request> make_request(const RunOptions& options, const std::string& command) {
   auto document = load_experiment(options.experiment);
   if (!document) return document.error();
-  std::vector<simulation::Variation> variations;
+  std::vector<experiments::Variation> variations;
   for (const std::string& text : options.vary) {
-    auto variation = simulation::parse_variation(text);
+    auto variation = experiments::parse_variation(text);
     if (!variation) return variation.error();
     variations.push_back(*std::move(variation));
   }
-  return simulation::Request{.document = *std::move(document),
-                             .variations = std::move(variations),
-                             .name = experiment_name(options.experiment.file),
-                             .command = command};
+  return experiments::Request{.document = *std::move(document),
+                              .variations = std::move(variations),
+                              .name = experiment_name(options.experiment.file),
+                              .command = command};
 }
 
 /// `status` is what an interruption makes the exit status.
-Check run_in_real_time(const RunOptions& options, const simulation::Request& request, OutputFolder& output,
+Check run_in_real_time(const RunOptions& options, const experiments::Request& request, OutputFolder& output,
                        int& status) {
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
@@ -98,7 +98,7 @@ Error refuse_ros2(std::string message) {
   return {.code = ErrorCode::inconsistent, .parameter = {}, .message = std::move(message), .place = "--ros2"};
 }
 
-Check run_among_ros2_nodes(const RunOptions& options, const simulation::Request& request, std::string_view kind,
+Check run_among_ros2_nodes(const RunOptions& options, const experiments::Request& request, std::string_view kind,
                            OutputFolder& output) {
   if (kind != "tapping") {
     return refuse_ros2("an experiment of kind " + std::string(kind) +
@@ -178,13 +178,13 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
   if (options.supervised.wanted()) {
     return run_supervised(options.supervised, options.onlookers, options.servo, *request, *output, options.log_limit);
   }
-  const auto experiment = simulation::choose_experiment(request->document);
+  const auto experiment = experiments::choose_experiment(request->document);
   if (!experiment) return experiment.error();
 
   if (options.real_time) return run_in_real_time(options, *request, *output, status);
   if (options.onlookers.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
 
-  Result<simulation::Outcome> outcome = [&] {
+  Result<experiments::Outcome> outcome = [&] {
     ProgressLine line(request->name);
     return (*experiment)->run(*request, [&line](double done) { line.update(done); });
   }();

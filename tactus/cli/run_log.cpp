@@ -27,8 +27,8 @@ std::map<std::string, std::string> log_origin() {
   return {{"version", std::string(version())}, {"machine", machine}};
 }
 
-Check write_run_log(const std::filesystem::path& folder, const simulation::Request& request,
-                    const simulation::Outcome& outcome, std::uint64_t most_bytes) {
+Check write_run_log(const std::filesystem::path& folder, const experiments::Request& request,
+                    const experiments::Outcome& outcome, std::uint64_t most_bytes) {
   using Record = simulation::Teleoperator::Record;
   if (auto error = report::prepare_directory(folder)) return error;
   const std::filesystem::path file = folder / "log.mcap";
@@ -44,7 +44,7 @@ Check write_run_log(const std::filesystem::path& folder, const simulation::Reque
   const bool several = runs > 1;
   for (std::size_t one = 0; one < logged; ++one) {
     const std::size_t i = several ? one * (runs - 1) / (logged - 1) : 0;
-    const simulation::Trace& trace = outcome.traces[i];
+    const experiments::Trace& trace = outcome.traces[i];
     const std::string name = "run_" + std::to_string(i + 1);
     if (!trace.settings.empty()) log->add_metadata(name, {trace.settings.begin(), trace.settings.end()});
     const auto channel = log->add_channel({.topic = several ? "/" + name + "/teleoperator" : "/teleoperator",

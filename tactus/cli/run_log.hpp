@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
-#include <tactus/simulation/experiment.hpp>
+#include <tactus/experiments/experiment.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -17,7 +17,7 @@ std::map<std::string, std::string> log_origin();
 /// the topic `/teleoperator`, several are `/run_1/teleoperator` and so on, by the row of the table; of more than 64,
 /// 64 evenly chosen ones. Times are virtual and nothing of the moment is written, so equal runs leave equal bytes.
 /// `most_bytes` as in `LogWriter::create`.
-Check write_run_log(const std::filesystem::path& folder, const simulation::Request& request,
-                    const simulation::Outcome& outcome, std::uint64_t most_bytes);
+Check write_run_log(const std::filesystem::path& folder, const experiments::Request& request,
+                    const experiments::Outcome& outcome, std::uint64_t most_bytes);
 
 }  // namespace tactus::cli

@@ -68,7 +68,7 @@ Check serve(const ServeOptions& options, const std::string& command) {
   const std::string name = options.experiment.empty() ? "tapping" : experiment_name(options.experiment);
   const auto view = live::LiveView::make(*settings, {.allow_tuning = options.allow_tuning, .experiment = name});
   if (!view) return document->locate(view.error());
-  const std::string configuration = configuration::to_toml(*document->read<simulation::TappingParams>());
+  const std::string configuration = configuration::to_toml(*document->read<experiments::TappingParams>());
 
   // Before all other threads.
   runtime::EndRequest end;
@@ -121,7 +121,7 @@ Check serve(const ServeOptions& options, const std::string& command) {
   const live::Engine& engine = (*view)->engine();
   session.duration_s = std::max(engine.newest(0).time_s, engine.newest(1).time_s);
   session.lost_ticks = (*view)->lost_ticks();
-  const simulation::Request request{.document = *document, .variations = {}, .name = name, .command = command};
+  const experiments::Request request{.document = *document, .variations = {}, .name = name, .command = command};
   if (auto error = write_outcome(
           *output, serve_outcome(session, (*view)->history(), settings->descriptions(), request, configuration))) {
     return error;

@@ -1,13 +1,13 @@
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/serve_report.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/experiments/presentation.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/figure.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/presentation.hpp>
 #include <tactus/simulation/quantile.hpp>
-#include <tactus/simulation/tapping.hpp>
 
 #include <algorithm>
 #include <string>
@@ -156,7 +156,7 @@ report::Figure contacts_figure(const SessionHistory& history) {
                  panel("vibration energy", "mJ", 1e3, &SessionHistory::Contact::vibration_energy_J)},
       .share_x = report::Sharing::in_line};
   figure.panels.front().rules.push_back({.direction = report::Rule::Direction::horizontal,
-                                         .at = 1e3 * simulation::settled_within_s,
+                                         .at = 1e3 * experiments::settled_within_s,
                                          .label = "rings above"});
   return figure;
 }
@@ -194,9 +194,9 @@ std::string json_of(const ServeSession& session, const SessionHistory& history) 
 
 }  // namespace
 
-simulation::Outcome serve_outcome(const ServeSession& session, const SessionHistory& history,
-                                  const std::vector<live::ParameterDescription>& parameters,
-                                  const simulation::Request& request, std::string_view configuration) {
+experiments::Outcome serve_outcome(const ServeSession& session, const SessionHistory& history,
+                                   const std::vector<live::ParameterDescription>& parameters,
+                                   const experiments::Request& request, std::string_view configuration) {
   const report::Table about = session_table(session, history);
   report::Page page(request.name + ": a live session");
   std::string text;
@@ -214,7 +214,7 @@ simulation::Outcome serve_outcome(const ServeSession& session, const SessionHist
     page.paragraph("Nobody touched the wall.");
   }
   page.table(about);
-  simulation::add_provenance(page, request, configuration);
+  experiments::add_provenance(page, request, configuration);
   return {.text = text + about.to_text(),
           .json = json_of(session, history),
           .html = page.to_html(),

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/live/server.hpp>
 #include <tactus/live/session_history.hpp>
 #include <tactus/live/settings.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <cstdint>
 #include <string_view>
@@ -20,8 +20,8 @@ struct ServeSession {
 
 /// All of a session for every reader: what was tried, what became of each contact, who came. `parameters` describes
 /// those of the history.
-simulation::Outcome serve_outcome(const ServeSession& session, const live::SessionHistory& history,
-                                  const std::vector<live::ParameterDescription>& parameters,
-                                  const simulation::Request& request, std::string_view configuration);
+experiments::Outcome serve_outcome(const ServeSession& session, const live::SessionHistory& history,
+                                   const std::vector<live::ParameterDescription>& parameters,
+                                   const experiments::Request& request, std::string_view configuration);
 
 }  // namespace tactus::cli

@@ -100,7 +100,7 @@ Check run(const MapOptions& options, const std::string& command) {
   if (!map) return document->locate(map.error());
   if (request->share.rank > 0) return {};
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const simulation::Request about{
+  const experiments::Request about{
       .document = *std::move(document), .variations = {}, .name = experiment_name(options.file), .command = command};
   return present(*output, *map, stability::report_map(*map, request->base, elapsed_s, about));
 }

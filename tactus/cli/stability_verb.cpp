@@ -28,7 +28,7 @@ Check run(const StabilityOptions& options, const StabilityReport& report, const 
   if (!document) return document.error();
   auto output = OutputFolder::open(options.output);
   if (!output) return output.error();
-  const simulation::Request request{
+  const experiments::Request request{
       .document = *std::move(document), .variations = {}, .name = experiment_name(options.file), .command = command};
   const auto outcome = [&] {
     ProgressLine line(request.name);

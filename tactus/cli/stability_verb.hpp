@@ -12,8 +12,8 @@ class App;
 namespace tactus::cli {
 
 /// What a subcommand of `stability` does with a file and its options.
-using StabilityReport = std::function<Result<simulation::Outcome>(
-    const simulation::Request&, const stability::ReportOptions&, const simulation::Progress&)>;
+using StabilityReport = std::function<Result<experiments::Outcome>(
+    const experiments::Request&, const stability::ReportOptions&, const experiments::Progress&)>;
 
 /// Adds a subcommand of `stability` that reads an experiment file, with the options that all of them share, and prints
 /// what `report` makes of it. `name`, `command` and `status` as in stability.hpp.

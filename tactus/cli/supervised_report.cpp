@@ -1,11 +1,11 @@
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/supervised_report.hpp>
+#include <tactus/experiments/presentation.hpp>
 #include <tactus/report/figure.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
-#include <tactus/simulation/presentation.hpp>
 
 #include <array>
 #include <cstdio>
@@ -346,8 +346,8 @@ std::string json_of(const SupervisedRun& run) {
 
 }  // namespace
 
-simulation::Outcome supervised_outcome(const SupervisedRun& run, const simulation::Request& request,
-                                       std::string_view configuration) {
+experiments::Outcome supervised_outcome(const SupervisedRun& run, const experiments::Request& request,
+                                        std::string_view configuration) {
   const report::Table table = sites_table(run), states = states_table(run);
   const std::vector<report::Figure> figures{seconds_figure(run), runtime::timing_figure(run.servo)};
   report::Page page(request.name + ": " + run.here.name());
@@ -355,7 +355,7 @@ simulation::Outcome supervised_outcome(const SupervisedRun& run, const simulatio
   page.table(states);
   page.figure(figures[0]);
   runtime::add_timing(page, run.servo, figures[1]);
-  simulation::add_provenance(page, request, configuration);
+  experiments::add_provenance(page, request, configuration);
   return {.text = table.to_text() + "\n" + states.to_text() + "\n" + runtime::timing_text(run.servo),
           .json = json_of(run),
           .html = page.to_html(),

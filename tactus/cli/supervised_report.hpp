@@ -1,8 +1,8 @@
 #pragma once
 
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/runtime/site_loop.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -43,7 +43,7 @@ struct SupervisedRun {
 };
 
 /// All of a run for every reader: tables, one JSON document, a report with states, link and force second by second.
-simulation::Outcome supervised_outcome(const SupervisedRun& run, const simulation::Request& request,
-                                       std::string_view configuration);
+experiments::Outcome supervised_outcome(const SupervisedRun& run, const experiments::Request& request,
+                                        std::string_view configuration);
 
 }  // namespace tactus::cli

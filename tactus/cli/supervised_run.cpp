@@ -6,10 +6,10 @@
 #include <tactus/cli/supervised_report.hpp>
 #include <tactus/cli/supervised_run.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/local_loop.hpp>
 #include <tactus/runtime/site_loop.hpp>
-#include <tactus/simulation/experiment.hpp>
 #include <tactus/station/device_registry.hpp>
 
 #include <filesystem>
@@ -24,8 +24,8 @@ namespace tactus::cli {
 namespace {
 
 using control::SiteRole;
+using experiments::TappingParams;
 using runtime::SiteDevice;
-using simulation::TappingParams;
 
 Error refused(ErrorCode code, const char* option, std::string message) {
   return Error{.code = code, .parameter = {}, .message = std::move(message), .place = option};
@@ -122,7 +122,7 @@ Result<Devices> open_devices(const DeviceNames& names, const SitesHere& here, co
 }
 
 /// What a log says of the run: enough to step its sites again.
-runtime::LogMetadata about_run(const simulation::Request& request, const std::string& configuration,
+runtime::LogMetadata about_run(const experiments::Request& request, const std::string& configuration,
                                const SitesHere& here, const Devices& devices) {
   runtime::LogMetadata about{{"tactus", log_origin()}};
   auto& run = about["tactus"];
@@ -139,7 +139,7 @@ runtime::LogMetadata about_run(const simulation::Request& request, const std::st
 }
 
 /// Files first: a terminal that nobody reads keeps nothing from them, and with them what it misses is no loss.
-Check leave_outcome(const simulation::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
+Check leave_outcome(const experiments::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
                     LineWriter& output, LineWriter& errors) {
   std::string where;
   if (folder.wanted()) {
@@ -164,7 +164,7 @@ void add_totals(SupervisedRun& run, const runtime::LocalLoop& loop) {
 
 /// What is there before the loop, and outlives it.
 struct Surroundings {
-  const simulation::Request& request;
+  const experiments::Request& request;
   OutputFolder& folder;
   std::uint64_t log_limit_bytes;
   std::string configuration;
@@ -251,10 +251,10 @@ void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
 }
 
 Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& looking_on,
-                     runtime::ServoThreadParams servo, const simulation::Request& request, OutputFolder& folder,
+                     runtime::ServoThreadParams servo, const experiments::Request& request, OutputFolder& folder,
                      std::uint64_t log_limit_bytes) {
   const configuration::Document& document = request.document;
-  const auto experiment = simulation::choose_experiment(document);
+  const auto experiment = experiments::choose_experiment(document);
   if (!experiment) return experiment.error();
   const SitesHere here{.one = role_of(options.site)};
   if ((*experiment)->kind() != "tapping") {

@@ -3,8 +3,8 @@
 #include <tactus/cli/onlookers.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/servo_thread.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -42,7 +42,7 @@ void add_supervised_options(CLI::App& verb, SupervisedOptions& options);
 /// the lines go to standard error and one document to standard output. What a person asks for is read from standard
 /// input, a `SiteWord` a line; SIGUSR1 arms. Of `servo`, the rate is the experiment's.
 Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& onlookers,
-                     runtime::ServoThreadParams servo, const simulation::Request& request, OutputFolder& output,
+                     runtime::ServoThreadParams servo, const experiments::Request& request, OutputFolder& output,
                      std::uint64_t log_limit_bytes);
 
 }  // namespace tactus::cli

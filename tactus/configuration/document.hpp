@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/configuration/binding.hpp>
 #include <tactus/configuration/entry.hpp>
+#include <tactus/core/binding.hpp>
 #include <tactus/core/parameters.hpp>
 
 #include <filesystem>

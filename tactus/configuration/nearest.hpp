@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/configuration/binding.hpp>
+#include <tactus/core/binding.hpp>
 
 #include <span>
 #include <string_view>

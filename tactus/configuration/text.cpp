@@ -1,5 +1,5 @@
-#include <tactus/configuration/binding.hpp>
 #include <tactus/configuration/text.hpp>
+#include <tactus/core/parameters.hpp>
 
 #include <algorithm>
 
@@ -73,22 +73,6 @@ std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-std::string join(std::string_view section, std::string_view key) {
-  std::string path(section);
-  if (!section.empty() && !key.empty()) path += '.';
-  return path.append(key);
-}
-
-std::string_view section_of(std::string_view path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string_view::npos ? std::string_view{} : path.substr(0, dot);
-}
-
-std::string_view key_of(std::string_view path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string_view::npos ? path : path.substr(dot + 1);
 }
 
 }  // namespace tactus::configuration

@@ -1,6 +1,6 @@
-#include <tactus/configuration/binding.hpp>
 #include <tactus/configuration/text.hpp>
 #include <tactus/configuration/toml_reader.hpp>
+#include <tactus/core/binding.hpp>
 
 #include <algorithm>
 

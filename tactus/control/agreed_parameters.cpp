@@ -1,8 +1,12 @@
 #include <tactus/control/agreed_parameters.hpp>
+#include <tactus/core/binding.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
+#include <string>
+#include <variant>
 
 namespace tactus::control {
 
@@ -11,49 +15,31 @@ namespace {
 /// Of a text so many cells are told; its digest counts whole.
 constexpr std::size_t text_cells = 4;
 
-template <class Value>
-constexpr std::size_t cells_of() {
-  if constexpr (Described<Value>) {
-    std::size_t cells = 0;
-    for_each_field<Value>(
-        [&cells](const auto& f) { cells += cells_of<typename std::remove_cvref_t<decltype(f)>::value_type>(); });
-    return cells;
-  } else {
-    return std::is_same_v<Value, std::string> ? text_cells : 1;
+std::size_t cells_of(const Binding& binding) {
+  if (binding.is_section()) return 0;
+  return std::holds_alternative<std::string*>(binding.target) ? text_cells : 1;
+}
+
+/// What a cell holds of a number, a flag or a word: its bits, or its place among the words.
+std::uint64_t bits_of(const Binding& binding) {
+  if (const auto* number = std::get_if<double*>(&binding.target)) return std::bit_cast<std::uint64_t>(**number);
+  if (const auto* whole = std::get_if<std::int64_t*>(&binding.target)) return static_cast<std::uint64_t>(**whole);
+  if (const auto* flag = std::get_if<bool*>(&binding.target)) return **flag ? 1 : 0;
+  const auto& choice = std::get<Choice>(binding.target);
+  const auto word = std::find(choice.words.begin(), choice.words.end(), choice.word_of(choice.member));
+  return static_cast<std::uint64_t>(word - choice.words.begin());
+}
+
+/// The same as a person writes it. What came over a link may be anything.
+std::string written(const Binding& binding, std::uint64_t bits) {
+  if (std::holds_alternative<double*>(binding.target)) {
+    const std::string number = format_number(std::bit_cast<double>(bits));
+    return binding.unit.symbol[0] == '\0' ? number : number + " " + binding.unit.symbol;
   }
-}
-static_assert(cells_of<AgreedParams>() <= Agreement::most_cells, "every value finds a cell");
-
-/// Calls `visit(key, value, unit)` for each value of `params`, in order.
-template <Described T, class Visit>
-void for_each_value(const T& params, const std::string& group, const Visit& visit) {
-  for_each_field<T>([&](const auto& f) {
-    const auto& value = params.*f.member;
-    if constexpr (Described<std::remove_cvref_t<decltype(value)>>) {
-      for_each_value(value, group + f.name + ".", visit);
-    } else {
-      visit(group + f.name, value, f.unit);
-    }
-  });
-}
-
-std::uint64_t bits_of(double value) { return std::bit_cast<std::uint64_t>(value); }
-template <class Whole>
-std::uint64_t bits_of(Whole value) {
-  return static_cast<std::uint64_t>(value);
-}
-
-std::string written(double, std::uint64_t bits, const Unit& unit) {
-  const std::string number = format_number(std::bit_cast<double>(bits));
-  return unit.symbol[0] == '\0' ? number : number + " " + unit.symbol;
-}
-template <class Whole>
-std::string written(Whole, std::uint64_t bits, const Unit&) {
-  if constexpr (NamedEnum<Whole>) {
-    return name_of(static_cast<Whole>(bits));
-  } else {
-    return std::to_string(static_cast<Whole>(bits));
-  }
+  if (std::holds_alternative<std::int64_t*>(binding.target)) return std::to_string(static_cast<std::int64_t>(bits));
+  if (std::holds_alternative<bool*>(binding.target)) return bits == 0 ? "false" : "true";
+  const auto& words = std::get<Choice>(binding.target).words;
+  return bits < words.size() ? std::string(words[bits]) : "?";
 }
 
 std::string text_at(const auto& cell_at, std::size_t first) {
@@ -78,12 +64,7 @@ AgreedParams agreed(const ControlParams& params, Seconds dt) {
           .gate = params.gate,
           .handle_gate = params.handle_gate,
           .slave_gate = params.slave_gate,
-          .four_channel = params.four_channel,
-          .projection = params.projection,
-          .compliance = params.compliance,
-          .wave = params.wave,
-          .passivity = params.passivity,
-          .tank = params.tank,
+          .groups = params.groups,
           .packets = supervision.packets,
           .silence = supervision.silence,
           .watchdog = supervision.watchdog,
@@ -94,21 +75,24 @@ AgreedParams agreed(const ControlParams& params, Seconds dt) {
 }  // namespace
 
 Agreement agreement_of(const ControlParams& params, Seconds dt) {
+  AgreedParams all = agreed(params, dt);
   Agreement agreement;
-  for_each_value(agreed(params, dt), {}, [&](const std::string& key, const auto& value, const Unit&) {
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, std::string>) {
+  for (const Binding& binding : bind(all)) {
+    if (binding.is_section()) continue;
+    if (const auto* const* text = std::get_if<std::string*>(&binding.target)) {
+      const std::string& value = **text;
       agreement.add_to_digest(value);
       for (std::size_t cell = 0; cell < text_cells; ++cell) {
         std::uint64_t letters = 0;
         for (std::size_t i = 0; i < 8 && 8 * cell + i < value.size(); ++i) {
           letters |= std::uint64_t{static_cast<unsigned char>(value[8 * cell + i])} << (8 * i);
         }
-        agreement.add(key, letters);
+        agreement.add(binding.path, letters);
       }
     } else {
-      agreement.add(key, bits_of(value));
+      agreement.add(binding.path, bits_of(binding));
     }
-  });
+  }
   return agreement;
 }
 
@@ -117,19 +101,19 @@ std::optional<Disagreement> first_disagreement(const AgreementCheck& check) {
   const std::size_t differing = check.first_difference() - 1;
   const auto own_at = [&check](std::size_t cell) { return check.own()[cell]; };
   const auto other_at = [&check](std::size_t cell) { return check.other(cell); };
-  std::optional<Disagreement> found;
+  AgreedParams any;
   std::size_t cell = 0;
-  for_each_value(AgreedParams(), {}, [&](const std::string& key, const auto& value, const Unit& unit) {
-    using Value = std::remove_cvref_t<decltype(value)>;
-    const bool here = differing >= cell && differing < cell + cells_of<Value>();
-    if constexpr (std::is_same_v<Value, std::string>) {
-      if (here) found = {key, text_at(own_at, cell), text_at(other_at, cell)};
-    } else {
-      if (here) found = {key, written(value, own_at(cell), unit), written(value, other_at(cell), unit)};
+  for (const Binding& binding : bind(any)) {
+    const std::size_t cells = cells_of(binding);
+    if (differing >= cell && differing < cell + cells) {
+      if (std::holds_alternative<std::string*>(binding.target)) {
+        return Disagreement{binding.path, text_at(own_at, cell), text_at(other_at, cell)};
+      }
+      return Disagreement{binding.path, written(binding, own_at(cell)), written(binding, other_at(cell))};
     }
-    cell += cells_of<Value>();
-  });
-  return found;
+    cell += cells;
+  }
+  return std::nullopt;
 }
 
 }  // namespace tactus::control

@@ -2,6 +2,7 @@
 
 #include <tactus/control/agreement.hpp>
 #include <tactus/control/architecture.hpp>
+#include <tactus/control/own_params.hpp>
 #include <tactus/core/parameters.hpp>
 
 #include <optional>
@@ -11,8 +12,9 @@ namespace tactus::control {
 
 /// The parameters that both sites must have in common before they arm, each under the key of an experiment file. They
 /// are those with which both sites compute, and those on which a person at one site relies at the other: limits and
-/// time-outs. What is not here either concerns one site alone, as the master's model and filters and where the slave's
-/// force comes from, or the host that it runs on, as the longest stall.
+/// time-outs. The groups of all architectures count, so both sites must have the same ones registered. What is not here
+/// either concerns one site alone, as the master's model and filters and where the slave's force comes from, or the
+/// host that it runs on, as the longest stall.
 struct AgreedParams {
   std::string architecture;
   double rate_Hz = 0.0;
@@ -23,12 +25,7 @@ struct AgreedParams {
   SafetyGate::Params gate;
   ForceGate::Params handle_gate;
   SafetyGate::Params slave_gate;
-  FourChannelParams four_channel;
-  ProjectionParams projection;
-  ComplianceParams compliance;
-  WaveParams wave;
-  PassivityParams passivity;
-  EnergyTank::Params tank;
+  OwnParams groups;
   PacketJudge::Params packets;
   MessageFollower::Params silence;
   Watchdog::Params watchdog;
@@ -46,12 +43,7 @@ struct AgreedParams {
         field("control.gate", &P::gate, "What the master's motor does at most."),
         field("control.handle_gate", &P::handle_gate, "What the actuator on the handle does at most."),
         field("control.slave_gate", &P::slave_gate, "What the slave's motor does at most."),
-        field("control.four_channel", &P::four_channel, "Channels between the sites."),
-        field("control.projection", &P::projection, "What the hand gets of a force at once."),
-        field("control.compliance", &P::compliance, "How far the slave yields."),
-        field("control.wave", &P::wave, "Both ends of the line of waves."),
-        field("control.passivity", &P::passivity, "Both ends of an account of energy."),
-        field("control.tank", &P::tank, "Both tanks."),
+        field("control", &P::groups, "All that architectures have of their own."),
         field("control.supervision.packets", &P::packets, "What a site believes of the other."),
         field("control.supervision.silence", &P::silence, "What a site does in silence."),
         field("control.supervision.watchdog", &P::watchdog, "When it holds."),

@@ -1,5 +1,12 @@
 #include <tactus/control/architecture.hpp>
+#include <tactus/control/energy_tank.hpp>
+#include <tactus/control/four_channel.hpp>
+#include <tactus/control/position_force.hpp>
 #include <tactus/control/position_position.hpp>
+#include <tactus/control/projection.hpp>
+#include <tactus/control/shared_compliant.hpp>
+#include <tactus/control/time_domain_passivity.hpp>
+#include <tactus/control/wave_variables.hpp>
 #include <tactus/core/spelling.hpp>
 
 #include <algorithm>
@@ -9,111 +16,11 @@ namespace tactus::control {
 
 namespace {
 
-Result<Controllers> make_position_force(const ControlParams& params, Seconds dt) {
-  const auto master = PositionForceMaster::make(params, dt);
-  if (!master) return master.error();
-  const auto slave = PositionForceSlave::make(params.slave, dt);
-  if (!slave) return under("slave", slave.error());
-  return Controllers{master_controller(*master), slave_controller(*slave)};
-}
-
-/// The error, its parameter taken out of `group`: what is a group of a site is no group of `ControlParams`.
-Error out_of(std::string_view group, Error error) {
-  if (error.parameter.starts_with(group)) error.parameter.erase(0, group.size());
-  return error;
-}
-
-Result<Controllers> make_position_position(const ControlParams& params, Seconds dt) {
-  const auto slave = PositionPositionSlave::make(params.slave, dt);
-  if (!slave) return under("slave", slave.error());
-  const auto master = PositionPositionMaster::make({.position_force = params, .coupling = params.slave}, dt);
-  if (!master) return out_of("position_force.", master.error());
-  return Controllers{master_controller(*master), slave_controller(*slave)};
-}
-
-Result<Controllers> make_projection(const ControlParams& params, Seconds dt) {
-  const auto master = ProjectionMaster::make({.position_force = params, .projection = params.projection}, dt);
-  if (!master) return out_of("position_force.", master.error());
-  const auto slave = PositionForceSlave::make(params.slave, dt);
-  if (!slave) return under("slave", slave.error());
-  return Controllers{master_controller(*master), slave_controller(*slave)};
-}
-
-Result<Controllers> make_shared_compliant(const ControlParams& params, Seconds dt) {
-  const auto master = PositionForceMaster::make(params, dt);
-  if (!master) return master.error();
-  const auto slave = SharedCompliantSlave::make({.slave = params.slave, .compliance = params.compliance}, dt);
-  if (!slave) return slave.error();
-  return Controllers{master_controller(*master), slave_controller(*slave)};
-}
-
-Result<Controllers> make_four_channel(const ControlParams& params, Seconds dt) {
-  const auto master = FourChannelMaster::make({.position_scale = params.position_scale,
-                                               .force_gain = params.force_gain,
-                                               .force_limit_N = params.force_limit_N,
-                                               .four_channel = params.four_channel},
-                                              dt);
-  if (!master) return master.error();
-  const auto slave = FourChannelSlave::make(
-      {.force_gain = params.force_gain, .slave = params.slave, .four_channel = params.four_channel}, dt);
-  if (!slave) return slave.error();
-  return Controllers{master_controller(*master), slave_controller(*slave)};
-}
-
-Result<Controllers> make_four_channel_cancellation(const ControlParams& params, Seconds dt) {
-  PositionForceMaster::Params plain = params;
-  plain.cancellation = CancellationMode::off;
-  const auto master = PositionForceMaster::make(plain, dt);
-  if (!master) return master.error();
-  const auto slave = CancellingSlave::make({.master = params, .slave = params.slave}, dt);
-  if (!slave) return slave.error();
-  return Controllers{master_controller(*master), slave_controller(*slave)};
-}
-
-Result<Controllers> make_wave_variables(const ControlParams& params, Seconds dt) {
-  const auto master = WaveMaster::make({.position_scale = params.position_scale,
-                                        .force_gain = params.force_gain,
-                                        .force_limit_N = params.force_limit_N,
-                                        .wave = params.wave},
-                                       dt);
-  if (!master) return master.error();
-  const auto slave = WaveSlave::make({.slave = params.slave, .wave = params.wave}, dt);
-  if (!slave) return slave.error();
-  return Controllers{master_controller(*master), slave_controller(*slave)};
-}
-
-Result<Controllers> make_time_domain_passivity(const ControlParams& params, Seconds dt) {
-  const auto master = PassivityMaster::make({.display = params, .passivity = params.passivity}, dt);
-  if (!master) return out_of("display.", master.error());
-  const auto slave = PassivitySlave::make({.slave = params.slave, .passivity = params.passivity}, dt);
-  if (!slave) return slave.error();
-  return Controllers{master_controller(*master), slave_controller(*slave)};
-}
-
-Result<Controllers> make_energy_tank(const ControlParams& params, Seconds dt) {
-  const auto master = TankMaster::make({.display = params, .tank = params.tank}, dt);
-  if (!master) return out_of("display.", master.error());
-  const auto slave = TankSlave::make({.slave = params.slave, .tank = params.tank}, dt);
-  if (!slave) return slave.error();
-  return Controllers{master_controller(*master), slave_controller(*slave)};
-}
-
 std::vector<Architecture>& registry() {
   static std::vector<Architecture> all{
-      {"position-force", "the slave follows the master's position, the master displays the slave's tip force",
-       make_position_force},
-      {"position-position", "each device is pulled toward the other; no force sensor", make_position_position, false},
-      {"projection", "position-force that displays at once only what the hand holds", make_projection},
-      {"shared-compliant", "position-force whose slave yields to the tip force by itself", make_shared_compliant},
-      {"four-channel", "both sites tell the other position and force (Lawrence), with local force loops",
-       make_four_channel},
-      {"four-channel-cancellation",
-       "position-force with cancellation as the slave's local force loop (paper A, appendix)",
-       make_four_channel_cancellation},
-      {"wave-variables", "the sites exchange wave variables: passive for every delay", make_wave_variables, false},
-      {"time-domain-passivity", "position-force between two passivity observers and controllers",
-       make_time_domain_passivity},
-      {"energy-tank", "position-force, its forces paid from a tank of energy at each site", make_energy_tank},
+      position_force_architecture(),   position_position_architecture(),     projection_architecture(),
+      shared_compliant_architecture(), four_channel_architecture(),          four_channel_cancellation_architecture(),
+      wave_variables_architecture(),   time_domain_passivity_architecture(), energy_tank_architecture(),
   };
   return all;
 }
@@ -130,6 +37,34 @@ Error unknown_architecture(const std::string& name) {
   message += name + "' is no architecture: write one of " + list;
   if (!meant.empty()) message += "; did you mean '" + std::string(meant) + "'?";
   return {.code = ErrorCode::out_of_bounds, .parameter = "architecture", .message = message, .place = {}};
+}
+
+/// Whether the group of `architecture` can have its name in a file.
+Check check_group(const Architecture& architecture) {
+  const OwnKeys& keys = architecture.keys;
+  const std::string_view group = keys.group;
+  const auto refused = [&](const std::string& why) {
+    std::string message = "the group '";
+    message.append(group).append("' of the architecture ").append(architecture.name).append(" ").append(why);
+    return Error{.code = ErrorCode::inconsistent, .parameter = {}, .message = message, .place = {}};
+  };
+  const bool bare = !group.empty() && std::all_of(group.begin(), group.end(), [](char letter) {
+    return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9') || letter == '_';
+  });
+  if (!bare) return refused("has no name that a file can hold: write small letters, digits and underscores");
+  bool common = false;
+  for_each_field<ControlParams>([&](const auto& f) { common = common || group == f.name; });
+  if (common) return refused("bears the name of a key that every architecture has: give it another one");
+  for (const Architecture& other : registry()) {
+    if (other.keys.make == nullptr || other.name == architecture.name) continue;
+    const bool same_name = group == other.keys.group, same_type = *keys.type == *other.keys.type;
+    if (same_name == same_type) continue;
+    const std::string owner = std::string("that ").append(other.name);
+    if (same_name) return refused(std::string("bears the name of the one ") + owner + " has: give it another one");
+    return refused(std::string("has the type of '") + other.keys.group + "', " + owner +
+                   " has: give it that name or a type of its own");
+  }
+  return {};
 }
 
 /// Puts the estimator that `params` ask for, if any, in place of the slave's force sensor.
@@ -153,7 +88,28 @@ Check estimate_slave_force(const ControlParams& params, const Architecture& arch
 
 std::span<const Architecture> architectures() { return registry(); }
 
-void register_architecture(const Architecture& architecture) {
+const Architecture* find_architecture(std::string_view name) {
+  const auto& all = registry();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::vector<OwnKeys> registered_keys() {
+  std::vector<OwnKeys> all;
+  for (const Architecture& architecture : registry()) {
+    const OwnKeys& keys = architecture.keys;
+    if (keys.make == nullptr) continue;
+    const bool shared =
+        std::any_of(all.begin(), all.end(), [&](const OwnKeys& other) { return *other.type == *keys.type; });
+    if (!shared) all.push_back(keys);
+  }
+  return all;
+}
+
+Check register_architecture(const Architecture& architecture) {
+  if (architecture.keys.make != nullptr) {
+    if (auto error = check_group(architecture)) return error;
+  }
   auto& all = registry();
   const auto same =
       std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.name == architecture.name; });
@@ -162,14 +118,13 @@ void register_architecture(const Architecture& architecture) {
   } else {
     all.push_back(architecture);
   }
+  return {};
 }
 
 Result<Sites> make_sites(const ControlParams& params, Seconds dt) {
   if (auto error = validate(params)) return *std::move(error);
-  const auto& all = registry();
-  const auto chosen =
-      std::find_if(all.begin(), all.end(), [&](const auto& other) { return other.name == params.architecture; });
-  if (chosen == all.end()) return unknown_architecture(params.architecture);
+  const Architecture* chosen = find_architecture(params.architecture);
+  if (chosen == nullptr) return unknown_architecture(params.architecture);
   auto controllers = chosen->make(params, dt);
   if (!controllers) return controllers.error();
   if (auto error = estimate_slave_force(params, *chosen, dt, *controllers)) return *std::move(error);

@@ -1,17 +1,13 @@
 #pragma once
 
-#include <tactus/control/energy_tank.hpp>
-#include <tactus/control/four_channel.hpp>
+#include <tactus/control/own_params.hpp>
 #include <tactus/control/position_force.hpp>
-#include <tactus/control/projection.hpp>
-#include <tactus/control/shared_compliant.hpp>
 #include <tactus/control/site.hpp>
 #include <tactus/control/slave_force.hpp>
 #include <tactus/control/supervision.hpp>
-#include <tactus/control/time_domain_passivity.hpp>
-#include <tactus/control/wave_variables.hpp>
 #include <tactus/core/parameters.hpp>
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,8 +15,8 @@
 /// Architectures: how two sites share the work of making a person feel what the slave touches.
 namespace tactus::control {
 
-/// The section `[control]` of a file: which architecture, what all of them have in common, and a group for each part
-/// that needs more.
+/// The section `[control]` of a file: which architecture, what all of them have in common, and a group for each one
+/// that brings keys of its own.
 struct ControlParams : PositionForceMaster::Params {
   std::string architecture = "position-force";
   ServoPd::Params slave;
@@ -28,12 +24,7 @@ struct ControlParams : PositionForceMaster::Params {
   SafetyGate::Params gate;
   ForceGate::Params handle_gate;
   SafetyGate::Params slave_gate;
-  FourChannelParams four_channel;
-  ProjectionParams projection;
-  ComplianceParams compliance;
-  WaveParams wave;
-  PassivityParams passivity;
-  EnergyTank::Params tank;
+  OwnParams groups;
   SupervisionParams supervision;
   static constexpr auto fields() {
     return std::tuple_cat(
@@ -41,24 +32,26 @@ struct ControlParams : PositionForceMaster::Params {
             field("architecture", &ControlParams::architecture,
                   "How the sites work together; the architecture's page tells which of the keys below it uses.")},
         PositionForceMaster::Params::fields(),
-        std::tuple{
-            field("slave", &ControlParams::slave, "The slave's position controller."),
-            field("slave_force", &ControlParams::slave_force, "Where the slave's tip force comes from."),
-            field("gate", &ControlParams::gate, "Last limits before the master's motor."),
-            field("handle_gate", &ControlParams::handle_gate,
-                  "Last limits before the actuator on the master's handle."),
-            field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
-            field("four_channel", &ControlParams::four_channel, "Architecture four-channel: gains of its channels."),
-            field("projection", &ControlParams::projection,
-                  "Architecture projection: what of the force is reflected at once."),
-            field("compliance", &ControlParams::compliance,
-                  "Architecture shared-compliant: how the slave's command yields to the tip force."),
-            field("wave", &ControlParams::wave, "Architecture wave-variables."),
-            field("passivity", &ControlParams::passivity, "Architecture time-domain-passivity."),
-            field("tank", &ControlParams::tank, "Architecture energy-tank."),
-            field("supervision", &ControlParams::supervision,
-                  "States, watchdogs and what a site believes of the other; used where sites are supervised: by "
-                  "`tactus faults` and `tactus run --site`.")});
+        std::tuple{field("slave", &ControlParams::slave, "The slave's position controller."),
+                   field("slave_force", &ControlParams::slave_force, "Where the slave's tip force comes from."),
+                   field("gate", &ControlParams::gate, "Last limits before the master's motor."),
+                   field("handle_gate", &ControlParams::handle_gate,
+                         "Last limits before the actuator on the master's handle."),
+                   field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
+                   field("", &ControlParams::groups, "The groups of the architectures."),
+                   field("supervision", &ControlParams::supervision,
+                         "States, watchdogs and what a site believes of the other; used where sites are supervised: by "
+                         "`tactus faults` and `tactus run --site`.")});
+  }
+
+  /// The parameters that an architecture has of its own, by their type: its defaults where nobody has set them.
+  template <Described T>
+  [[nodiscard]] const T& own() const {
+    return groups.of<T>();
+  }
+  template <Described T>
+  [[nodiscard]] T& own() {
+    return groups.of<T>();
   }
 };
 
@@ -68,22 +61,38 @@ struct Controllers {
   std::unique_ptr<SlaveController> slave;
 };
 
+/// How far the loop of an architecture is that of position-force, the one that margins and maps are made of.
+enum class Likeness {
+  unknown,     ///< not at all, or nobody has said so: refused there by name
+  about_rest,  ///< for motions and forces that are small enough: margins are its own, maps are refused
+  equal,       ///< everywhere
+};
+
 /// An architecture by its name in a file. `make` fails where its parameters do not fit together; the parameters that
 /// its errors name are those of `ControlParams`.
 struct Architecture {
   std::string_view name;
   std::string_view summary;
   Result<Controllers> (*make)(const ControlParams& params, Seconds dt);
+  /// The keys that it alone has; `make` finds them as `params.own<T>()`.
+  OwnKeys keys = {};
   /// Whether anything listens to the slave's tip force, so that it makes a difference where it comes from.
   bool uses_tip_force = true;
+  Likeness like_position_force = Likeness::unknown;
 };
 
 /// Every architecture there is, those of this library first.
 std::span<const Architecture> architectures();
 
-/// Adds an architecture. Call it before experiments are read, from one thread; `name` and `summary` must outlive the
-/// program's use of it. A second one of the same name takes the place of the first.
-void register_architecture(const Architecture& architecture);
+/// The one of this name, or null.
+const Architecture* find_architecture(std::string_view name);
+
+/// Adds an architecture. Call it before experiments are read, from one thread; its texts must outlive the program's use
+/// of it. A second one of the same name takes the place of the first, and of its group.
+///
+/// Errors: `inconsistent` for a group whose name is a key of `[control]` already. Two architectures may share a group:
+/// the same name with the same type.
+[[nodiscard]] Check register_architecture(const Architecture& architecture);
 
 /// Both sites, gates included.
 struct Sites {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/stage.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/checks.hpp>
@@ -38,6 +39,12 @@ class Crossover {
     double below_N = 0.0;
     double above_N = 0.0;
   };
+
+  static constexpr int linear_states = 2;
+  static constexpr std::optional<Unfit> not_on_lanes(const Params& params) {
+    if (params.frequency_Hz == 0.0) return {};
+    return Unfit{"frequency_Hz", "write 0"};
+  }
 
   static Result<Crossover> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);

@@ -1,3 +1,4 @@
+#include <tactus/control/architecture.hpp>
 #include <tactus/control/energy_tank.hpp>
 #include <tactus/signal/checks.hpp>
 
@@ -104,6 +105,25 @@ TankSlave::Output TankSlave::respond(const Input& input) noexcept {
 void TankSlave::reset() noexcept {
   site_.reset();
   tank_.reset();
+}
+
+namespace {
+
+Result<Controllers> make_energy_tank(const ControlParams& params, Seconds dt) {
+  const auto master = TankMaster::make({.display = params, .tank = params.own<EnergyTank::Params>()}, dt);
+  if (!master) return out_of("display", master.error());
+  const auto slave = TankSlave::make({.slave = params.slave, .tank = params.own<EnergyTank::Params>()}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+}  // namespace
+
+Architecture energy_tank_architecture() {
+  return {.name = "energy-tank",
+          .summary = "position-force, its forces paid from a tank of energy at each site",
+          .make = make_energy_tank,
+          .keys = own_keys<EnergyTank::Params>("tank", "Architecture energy-tank.")};
 }
 
 }  // namespace tactus::control

@@ -1,3 +1,4 @@
+#include <tactus/control/architecture.hpp>
 #include <tactus/control/four_channel.hpp>
 #include <tactus/signal/checks.hpp>
 
@@ -112,6 +113,46 @@ CancellingSlave::Output CancellingSlave::respond(const Input& input) noexcept {
   sent_force_N_ = input.tip_force_N;
   return {.motor_force_N = servo_.step(cancelled.message.position_m - input.motor_position_m),
           .message = {.force_N = input.tip_force_N}};
+}
+
+namespace {
+
+Result<Controllers> make_four_channel(const ControlParams& params, Seconds dt) {
+  const auto master = FourChannelMaster::make({.position_scale = params.position_scale,
+                                               .force_gain = params.force_gain,
+                                               .force_limit_N = params.force_limit_N,
+                                               .four_channel = params.own<FourChannelParams>()},
+                                              dt);
+  if (!master) return master.error();
+  const auto slave = FourChannelSlave::make(
+      {.force_gain = params.force_gain, .slave = params.slave, .four_channel = params.own<FourChannelParams>()}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+Result<Controllers> make_four_channel_cancellation(const ControlParams& params, Seconds dt) {
+  PositionForceMaster::Params plain = params;
+  plain.cancellation = CancellationMode::off;
+  const auto master = PositionForceMaster::make(plain, dt);
+  if (!master) return master.error();
+  const auto slave = CancellingSlave::make({.master = params, .slave = params.slave}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+}  // namespace
+
+Architecture four_channel_architecture() {
+  return {.name = "four-channel",
+          .summary = "both sites tell the other position and force (Lawrence), with local force loops",
+          .make = make_four_channel,
+          .keys = own_keys<FourChannelParams>("four_channel", "Architecture four-channel: gains of its channels.")};
+}
+
+Architecture four_channel_cancellation_architecture() {
+  return {.name = "four-channel-cancellation",
+          .summary = "position-force with cancellation as the slave's local force loop (paper A, appendix)",
+          .make = make_four_channel_cancellation};
 }
 
 }  // namespace tactus::control

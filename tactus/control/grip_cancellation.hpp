@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/control/cancellation.hpp>
+#include <tactus/control/stage.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
@@ -65,6 +66,19 @@ class GripCancellation {
 
   /// The grips that the bank knows, over nominal. A sensor's below or above counts as the nearest.
   static constexpr std::array<double, 5> grips{0.25, 0.5, 1.0, 2.0, 4.0};
+
+  /// A sensor of the grip that does not change leaves the weights of the bank as they are.
+  static constexpr std::optional<Unfit> not_linear(const Params& params) {
+    if (params.estimate != OperatorEstimate::online) return {};
+    return Unfit{"estimate",
+                 "an estimate that adapts to the loop is not linear: choose off, and try hands with operator.grip"};
+  }
+  static constexpr std::optional<Unfit> not_on_lanes(const Params& params) {
+    if (params.cancellation.model.step != CancellationStep::exact)
+      return Unfit{"cancellation.model.step", "write exact"};
+    if (params.estimate != OperatorEstimate::off) return Unfit{"estimate", "write off"};
+    return {};
+  }
 
   static Result<GripCancellation> make(const Params& params, Seconds dt);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/control/induced_motion_model.hpp>
+#include <tactus/control/stage.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/sections.hpp>
@@ -44,6 +45,12 @@ class HandForceCompensation {
   using Input = double;
   /// The force in N for the motor.
   using Output = double;
+
+  static constexpr int linear_states = 2;
+  static constexpr std::optional<Unfit> not_on_lanes(const Params& params) {
+    if (params.band_Hz == 0.0) return {};
+    return Unfit{"band_Hz", "write 0"};
+  }
 
   /// Errors: a value out of bounds; a band at or above half the sample rate; `inconsistent` where the model has no mode
   /// to undo.

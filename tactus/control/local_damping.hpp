@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/stage.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/checks.hpp>
@@ -34,6 +35,12 @@ class LocalDamping {
   using Input = double;
   /// Force on the motor, in N, of the other sign than its velocity.
   using Output = double;
+
+  static constexpr int linear_states = 1;
+  static constexpr std::optional<Unfit> not_on_lanes(const Params& params) {
+    if (params.damping_N_s_per_m == 0.0) return {};
+    return Unfit{"damping_N_s_per_m", "write 0"};
+  }
 
   static Result<LocalDamping> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);

@@ -10,6 +10,10 @@
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 
+#include <algorithm>
+#include <string>
+#include <string_view>
+
 /// Position-force control (paper A, Fig. 3): the slave follows the master's position, the master displays the force
 /// measured at the slave's tip. One class for each site.
 namespace tactus::control {
@@ -19,6 +23,18 @@ enum class CancellationMode { off, on };
 constexpr auto enumerators(CancellationMode) {
   return std::array{Enumerator{CancellationMode::off, "off"}, Enumerator{CancellationMode::on, "on"}};
 }
+
+/// The stages of the master site, each as `As` has it: itself, or what stands for it where the loop is judged without
+/// being run.
+template <template <class> class As>
+struct MasterStages {
+  As<ShapingFilter> force_filter;
+  As<Crossover> crossover;
+  As<HandForceCompensation> hand_compensation;
+  As<LocalDamping> damping;
+  As<ShapingFilter> command_filter;
+  As<GripCancellation> cancellation;
+};
 
 /// The master site.
 ///
@@ -80,8 +96,56 @@ class PositionForceMaster {
 
   static Result<PositionForceMaster> make(const Params& params, Seconds dt);
 
+  /// Each stage as `make.operator()<Stage>(name, own)` has it, with its own parameters `own`, in the order of
+  /// `MasterStages`. `site_key` tells their keys by `name`.
+  template <template <class> class As, class Make>
+  static MasterStages<As> each_stage(const Params& params, const Make& make) {
+    return {.force_filter = make.template operator()<ShapingFilter>("force_filter", params.force_filter),
+            .crossover = make.template operator()<Crossover>("crossover", params.crossover),
+            .hand_compensation = make.template operator()<HandForceCompensation>(
+                "hand_compensation", {.master = params.model, .band_Hz = params.hand_compensation_Hz}),
+            .damping = make.template operator()<LocalDamping>("damping", params.damping),
+            .command_filter = make.template operator()<ShapingFilter>("command_filter", params.command_filter),
+            .cancellation = make.template operator()<GripCancellation>(
+                "cancellation", {.cancellation = {.model = {.master = params.model,
+                                                            .fidelity = params.cancellation_model,
+                                                            .step = params.cancellation_step,
+                                                            .friction = params.cancellation_friction}},
+                                 .estimate = params.operator_estimate})};
+  }
+  /// The key of `Params` that the key `own` of the stage `name` is: they are flatter here. Cold.
+  static std::string site_key(std::string_view name, std::string_view own);
+
+  /// What is the site's own.
+  struct Gains {
+    double position_scale = 1.0;
+    double force_gain = 1.0;
+    double force_limit_N = 1.0;
+    bool cancels = true;
+  };
+  /// The one description of the chain: this tick's output by these stages, or by what stands for them.
+  template <class Stages>
+  static Output chain(Stages& stages, const Gains& gains, const Input& input) {
+    const double limit_N = gains.force_limit_N;
+    const auto [below_N, above_N] =
+        stages.crossover.step(stages.force_filter.step(gains.force_gain * input.arrival.message.force_N));
+    const double wanted_N =
+        stages.hand_compensation.on() ? stages.hand_compensation.step(std::clamp(below_N, -limit_N, limit_N)) : below_N;
+    const double damping_N = stages.damping.step(input.motor_position_m);
+    // A NaN passes through clamp, so it reaches the gate, which catches and latches it.
+    const double displayed_N = std::clamp(wanted_N - damping_N, -limit_N, limit_N);
+    const double handle_N = std::clamp(above_N, -limit_N, limit_N);
+    const double intended_m = stages.cancellation.intended(input.motor_position_m, input.grip);
+    const double command_m = stages.command_filter.step(gains.cancels ? intended_m : input.motor_position_m);
+    return {.motor_force_N = -displayed_N,
+            .handle_force_N = -handle_N,
+            .message = {.position_m = gains.position_scale * command_m},
+            .induced_position_m = stages.cancellation.induced_position_m(),
+            .intended_position_m = intended_m};
+  }
+
   /// Forces and command for this tick. Real-time safe.
-  Output respond(const Input& input) noexcept;
+  Output respond(const Input& input) noexcept { return chain(stages_, gains_, input); }
   /// Drives the model with the force that is really displayed until the next tick. Real-time safe.
   void applied(double motor_force_N) noexcept { stages_.cancellation.advance(motor_force_N); }
   /// Both at once, for use without a gate.
@@ -100,26 +164,18 @@ class PositionForceMaster {
   }
 
  private:
-  struct Stages {
-    GripCancellation cancellation;
-    LocalDamping damping;
-    ShapingFilter command_filter;
-    ShapingFilter force_filter;
-    Crossover crossover;
-    HandForceCompensation hand_compensation;
-  };
+  template <class Stage>
+  using Itself = Stage;
+  using Stages = MasterStages<Itself>;
 
   PositionForceMaster(const Params& params, const Stages& stages)
-      : position_scale_(params.position_scale),
-        force_gain_(params.force_gain),
-        force_limit_N_(params.force_limit_N),
-        mode_(params.cancellation),
+      : gains_{.position_scale = params.position_scale,
+               .force_gain = params.force_gain,
+               .force_limit_N = params.force_limit_N,
+               .cancels = params.cancellation == CancellationMode::on},
         stages_(stages) {}
 
-  double position_scale_;
-  double force_gain_;
-  double force_limit_N_;
-  CancellationMode mode_;
+  Gains gains_;
   Stages stages_;
 };
 
@@ -145,5 +201,9 @@ class PositionForceSlave {
   explicit PositionForceSlave(const ServoPd& servo) : servo_(servo) {}
   ServoPd servo_;
 };
+
+struct Architecture;
+/// `position-force`, as a file names it.
+Architecture position_force_architecture();
 
 }  // namespace tactus::control

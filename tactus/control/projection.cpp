@@ -1,3 +1,4 @@
+#include <tactus/control/architecture.hpp>
 #include <tactus/control/projection.hpp>
 #include <tactus/signal/checks.hpp>
 
@@ -25,6 +26,27 @@ Result<ProjectionMaster> ProjectionMaster::make(const Params& params, Seconds dt
     return error;
   }
   return ProjectionMaster(params.projection, *display, *hand);
+}
+
+namespace {
+
+Result<Controllers> make_projection(const ControlParams& params, Seconds dt) {
+  const auto master =
+      ProjectionMaster::make({.position_force = params, .projection = params.own<ProjectionParams>()}, dt);
+  if (!master) return out_of("position_force", master.error());
+  const auto slave = PositionForceSlave::make(params.slave, dt);
+  if (!slave) return under("slave", slave.error());
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+}  // namespace
+
+Architecture projection_architecture() {
+  return {.name = "projection",
+          .summary = "position-force that displays at once only what the hand holds",
+          .make = make_projection,
+          .keys = own_keys<ProjectionParams>("projection",
+                                             "Architecture projection: what of the force is reflected at once.")};
 }
 
 }  // namespace tactus::control

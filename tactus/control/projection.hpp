@@ -97,4 +97,8 @@ class ProjectionMaster {
   HandForceObserver hand_;
 };
 
+struct Architecture;
+/// `projection`, as a file names it.
+Architecture projection_architecture();
+
 }  // namespace tactus::control

@@ -50,6 +50,7 @@ double SafetyGate::pass(double command_N) noexcept {
   if (!finite) latch(GateFault::not_finite);
   limit_ = ActiveLimit::none;
   double wanted_N = fault() == GateFault::none && !let_go_ ? command_N : 0.0;
+  if (brakes_ && fault() == GateFault::none) wanted_N = brake_.step(velocity_m_per_s_);
   const bool damps =
       !let_go_ && damping_N_s_per_m_ > 0.0 && (fault() == GateFault::none || fault() == GateFault::energy);
   if (fault() == GateFault::none) {
@@ -82,11 +83,12 @@ void SafetyGate::rearm() noexcept {
   encoder_.reset();
   energy_.reset();
   reversal_.reset();
+  brake_.reset();
   derivative_.reset();
   believed_m_ = 0.0;
   velocity_m_per_s_ = 0.0;
   damping_N_s_per_m_ = 0.0;
-  let_go_ = false;
+  let_go_ = brakes_ = false;
   fault_ = GateFault::none;
   limit_ = ActiveLimit::none;
 }

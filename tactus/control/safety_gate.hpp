@@ -4,6 +4,7 @@
 #include <tactus/control/force_gate.hpp>
 #include <tactus/control/passivity_monitor.hpp>
 #include <tactus/control/reversal_check.hpp>
+#include <tactus/control/stopping_brake.hpp>
 #include <tactus/control/thermal_limit.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
@@ -82,9 +83,11 @@ class SafetyGate {
     if (!reversal) return under("reversal", reversal.error());
     const auto thermal = ThermalLimit::make(params.thermal, dt);
     if (!thermal) return under("thermal", thermal.error());
+    const auto brake = StoppingBrake::make({.damping_N_s_per_m = params.energy.damping_N_s_per_m}, dt);
+    if (!brake) return under("energy", brake.error());
     const auto velocity = signal::FilteredDerivative::make({.cutoff_Hz = velocity_cutoff_Hz}, dt);
     if (!velocity) return velocity.error();
-    return SafetyGate(params, *force, *encoder, *energy, *reversal, *thermal, *velocity);
+    return SafetyGate(params, *force, *encoder, *energy, *reversal, *brake, *thermal, *velocity);
   }
 
   /// Looks at a reading, before the controller does: the position in m to believe, which is the last good one where
@@ -115,7 +118,13 @@ class SafetyGate {
   /// Latches `not_finite`, for what is found elsewhere.
   void refuse() noexcept { latch(GateFault::not_finite); }
   /// No force from now on, damping neither, until the gate is re-armed; no fault.
-  void let_go() noexcept { let_go_ = true; }
+  void let_go() noexcept {
+    let_go_ = true;
+    brakes_ = false;
+  }
+  /// No force from now on but that of `StoppingBrake`, with the damping of `energy`, and where a fault is latched not
+  /// that either, until the gate is re-armed; no fault.
+  void brake() noexcept { let_go_ = brakes_ = true; }
 
   [[nodiscard]] GateFault fault() const noexcept { return fault_ != GateFault::none ? fault_ : force_.fault(); }
   [[nodiscard]] ActiveLimit limit() const noexcept { return limit_; }
@@ -130,7 +139,8 @@ class SafetyGate {
 
  private:
   SafetyGate(const Params& params, const ForceGate& force, const EncoderCheck& encoder, const PassivityMonitor& energy,
-             const ReversalCheck& reversal, const ThermalLimit& thermal, const signal::FilteredDerivative& velocity)
+             const ReversalCheck& reversal, const StoppingBrake& brake, const ThermalLimit& thermal,
+             const signal::FilteredDerivative& velocity)
       : velocity_limit_m_per_s_(params.velocity_limit_m_per_s),
         position_limit_m_(params.position_limit_m),
         force_limit_N_(params.force_limit_N),
@@ -138,6 +148,7 @@ class SafetyGate {
         encoder_(encoder),
         energy_(energy),
         reversal_(reversal),
+        brake_(brake),
         thermal_(thermal),
         derivative_(velocity) {}
 
@@ -153,6 +164,7 @@ class SafetyGate {
   EncoderCheck encoder_;
   PassivityMonitor energy_;
   ReversalCheck reversal_;
+  StoppingBrake brake_;
   ThermalLimit thermal_;
   signal::FilteredDerivative derivative_;
   double believed_m_ = 0.0;
@@ -160,6 +172,7 @@ class SafetyGate {
   double damping_N_s_per_m_ = 0.0;
   double allowed_N_ = force_limit_N_;  ///< by the warmth of the motor
   bool let_go_ = false;
+  bool brakes_ = false;
   GateFault fault_ = GateFault::none;
   ActiveLimit limit_ = ActiveLimit::none;
 };

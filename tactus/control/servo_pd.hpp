@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/stage.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
@@ -24,6 +25,9 @@ class ServoPd {
   /// Wanted less measured position, in m.
   using Input = double;
   using Output = double;
+
+  static constexpr int linear_states = 1;
+  static constexpr std::optional<Unfit> not_on_lanes(const Params&) { return {}; }
 
   static Result<ServoPd> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/stage.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/checks.hpp>
@@ -46,6 +47,12 @@ class ShapingFilter {
   };
   using Input = double;
   using Output = double;
+
+  static constexpr int linear_states = 2;
+  static constexpr std::optional<Unfit> not_on_lanes(const Params& params) {
+    if (params.kind == Shaping::none) return {};
+    return Unfit{"kind", "write none"};
+  }
 
   static Result<ShapingFilter> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);

@@ -281,6 +281,8 @@ class Site {
   /// The forces go to zero at the rate limit and stay there until `rearm`, but for that of a second actuator, which
   /// follows its share. Real-time safe.
   void let_go() noexcept { gates_.motor().let_go(); }
+  /// The same, but the motor first brings the device to a stand where it can (`StoppingBrake`). Real-time safe.
+  void brake() noexcept { gates_.motor().brake(); }
   /// Whether a force passes to any actuator.
   [[nodiscard]] bool passes_a_force() const noexcept { return gates_.pass_a_force(); }
   /// The gate of the motor, to look at.

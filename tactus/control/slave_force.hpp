@@ -5,6 +5,7 @@
 #include <tactus/control/kalman_force_estimator.hpp>
 #include <tactus/control/momentum_observer.hpp>
 #include <tactus/control/site.hpp>
+#include <tactus/control/stage.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 
@@ -63,6 +64,16 @@ class SlaveForce {
     double tip_force_N = 0.0;  ///< of the sensor
   };
   using Output = double;
+
+  static constexpr std::optional<Unfit> not_linear(const Params& params) {
+    if (params.source == SlaveForceSource::sensor) return {};
+    return Unfit{"source",
+                 "linear analysis has no model of the estimators, whose friction is not linear: choose sensor"};
+  }
+  static constexpr std::optional<Unfit> not_on_lanes(const Params& params) {
+    if (params.source == SlaveForceSource::sensor) return {};
+    return Unfit{"source", "write sensor"};
+  }
 
   /// Errors: a value out of bounds in any group; what the chosen estimator's `make` refuses, under its group.
   static Result<SlaveForce> make(const Params& params, Seconds dt);

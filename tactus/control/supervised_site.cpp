@@ -69,7 +69,12 @@ SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
     const bool was_released = supervision_.before() == SiteState::hold;
     if (state == SiteState::align || was_released) supervision_.stand(input.sensors.motor_position_m);
   }
-  if (supervision_.lets_go()) site_.let_go();
+  // Nobody holds a tool, so it would coast.
+  if (supervision_.contradicted()) {
+    site_.brake();
+  } else if (supervision_.lets_go()) {
+    site_.let_go();
+  }
   if (supervision_.probes()) supervision_.stand(input.sensors.motor_position_m);
   SlaveInput sensors = input.sensors;
   sensors.arrival = supervision_.arrival(0.0);

@@ -132,8 +132,8 @@ struct SiteRecord {
         observed("applied_sequence", &SiteRecord::applied_sequence, units::none, "", "", "", "Its sequence."),
         observed("refused", &SiteRecord::refused, units::none, "", "", "", "Packets so far that were not applied."),
         observed("enabled", &SiteRecord::enabled, units::none, "", "", "",
-                 "The drive may have power: not in configure, and in fault, or where motor and force sensor contradict "
-                 "one another, only until the force is zero."),
+                 "The drive may have power: not in configure, and in fault, or in a hold that lets the motor go, only "
+                 "until the force is zero."),
         observed("fresh", &SiteRecord::fresh, units::none, "", "", "", "A packet was applied at this tick."),
         observed("silence_s", &SiteRecord::silence_s, units::second, "", "", "", "Since a packet was applied."),
         observed("share", &SiteRecord::share, units::none, "", "", "", "Of the controller's force that is let in."),
@@ -183,12 +183,13 @@ class Supervision {
   void stand(double position_m) noexcept { follower_.settle(position_m); }
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
-  /// Whether the motor must get no force any more: in `fault`, and in a `hold` because motor and force sensor
-  /// contradict one another, when the motor may be what is wrong.
+  /// Whether the motor must get no force any more: in `fault`, and in a `hold` because the site misses its ticks, when
+  /// it cannot close a loop, or because motor and force sensor contradict one another, when either may be wrong.
   [[nodiscard]] bool lets_go() const noexcept {
-    const bool contradicts = state() == SiteState::hold && supervisor_.cause() == SiteCause::force_sensor;
-    return state() == SiteState::fault || contradicts;
+    return state() == SiteState::fault || holds_for(SiteCause::overloaded) || contradicted();
   }
+  /// Whether that is because motor and force sensor contradict one another.
+  [[nodiscard]] bool contradicted() const noexcept { return holds_for(SiteCause::force_sensor); }
   [[nodiscard]] SiteState before() const noexcept { return before_; }
   /// What the other site has in common with this one.
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }
@@ -200,6 +201,9 @@ class Supervision {
   [[nodiscard]] SiteRecord record() const noexcept;
 
  private:
+  [[nodiscard]] bool holds_for(SiteCause cause) const noexcept {
+    return state() == SiteState::hold && supervisor_.cause() == cause;
+  }
   [[nodiscard]] bool is_renumbered(const Packet& packet) noexcept;
   [[nodiscard]] bool unanswered() noexcept;
   [[nodiscard]] bool arms_from_rest() const noexcept;

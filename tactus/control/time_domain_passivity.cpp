@@ -1,3 +1,4 @@
+#include <tactus/control/architecture.hpp>
 #include <tactus/control/time_domain_passivity.hpp>
 #include <tactus/signal/checks.hpp>
 
@@ -111,6 +112,25 @@ void PassivitySlave::reset() noexcept {
   command_before_m_ = 0.0;
   wanted_m_ = 0.0;
   applied_N_ = 0.0;
+}
+
+namespace {
+
+Result<Controllers> make_time_domain_passivity(const ControlParams& params, Seconds dt) {
+  const auto master = PassivityMaster::make({.display = params, .passivity = params.own<PassivityParams>()}, dt);
+  if (!master) return out_of("display", master.error());
+  const auto slave = PassivitySlave::make({.slave = params.slave, .passivity = params.own<PassivityParams>()}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+}  // namespace
+
+Architecture time_domain_passivity_architecture() {
+  return {.name = "time-domain-passivity",
+          .summary = "position-force between two passivity observers and controllers",
+          .make = make_time_domain_passivity,
+          .keys = own_keys<PassivityParams>("passivity", "Architecture time-domain-passivity.")};
 }
 
 }  // namespace tactus::control

@@ -1,3 +1,4 @@
+#include <tactus/control/architecture.hpp>
 #include <tactus/control/wave_variables.hpp>
 #include <tactus/signal/checks.hpp>
 
@@ -140,6 +141,30 @@ void WaveSlave::reset() noexcept {
   wanted_m_ = 0.0;
   sent_m_ = 0.0;
   sent_J_ = 0.0;
+}
+
+namespace {
+
+Result<Controllers> make_wave_variables(const ControlParams& params, Seconds dt) {
+  const auto master = WaveMaster::make({.position_scale = params.position_scale,
+                                        .force_gain = params.force_gain,
+                                        .force_limit_N = params.force_limit_N,
+                                        .wave = params.own<WaveParams>()},
+                                       dt);
+  if (!master) return master.error();
+  const auto slave = WaveSlave::make({.slave = params.slave, .wave = params.own<WaveParams>()}, dt);
+  if (!slave) return slave.error();
+  return Controllers{master_controller(*master), slave_controller(*slave)};
+}
+
+}  // namespace
+
+Architecture wave_variables_architecture() {
+  return {.name = "wave-variables",
+          .summary = "the sites exchange wave variables: passive for every delay",
+          .make = make_wave_variables,
+          .keys = own_keys<WaveParams>("wave", "Architecture wave-variables."),
+          .uses_tip_force = false};
 }
 
 }  // namespace tactus::control

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -121,6 +122,12 @@ std::string describe_bounds(const Bounds& bounds, const Unit& unit);
 /// The error for a value outside its bounds: value, bounds and unit in one sentence.
 Error out_of_bounds(std::string_view parameter, double value, const Bounds& bounds, const Unit& unit);
 
+/// A group of fields that only a running program knows, as `OpenGroup` in binding.hpp describes: it checks itself.
+template <class T>
+concept CheckedGroup = requires(const T& group) {
+  { group.check() } -> std::same_as<Check>;
+};
+
 /// Checks every number of `params`, nested groups included. Returns the first that lies outside its bounds.
 template <Described T>
 Check validate(const T& params) {
@@ -132,6 +139,8 @@ Check validate(const T& params) {
     if constexpr (Described<Value>) {
       found = validate(value);
       if (found) found = under(f.name, *std::move(found));
+    } else if constexpr (CheckedGroup<Value>) {
+      found = value.check();
     } else if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::int64_t>) {
       const auto number = static_cast<double>(value);
       if (!f.bounds.contain(number)) found = out_of_bounds(f.name, number, f.bounds, f.unit);

@@ -15,6 +15,12 @@ Error under(std::string_view prefix, Error error) {
   return error;
 }
 
+Error out_of(std::string_view prefix, Error error) {
+  const bool within = error.parameter.starts_with(prefix) && error.parameter.substr(prefix.size()).starts_with('.');
+  if (within) error.parameter.erase(0, prefix.size() + 1);
+  return error;
+}
+
 int exit_status(const Error& error) {
   return error.code == ErrorCode::failed || error.code == ErrorCode::unwritable ? 1 : 2;
 }

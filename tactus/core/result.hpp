@@ -36,6 +36,8 @@ std::string describe(const Error& error);
 
 /// The same error, its parameter path put under `prefix` (`friction` under `slave` becomes `slave.friction`).
 Error under(std::string_view prefix, Error error);
+/// The other way round, where it is under `prefix`: `slave.friction` becomes `friction`. Else as it is.
+Error out_of(std::string_view prefix, Error error);
 
 /// 2 when the request was wrong, 1 when the job failed.
 int exit_status(const Error& error);

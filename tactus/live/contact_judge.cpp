@@ -1,7 +1,7 @@
 #include <tactus/core/parameters.hpp>
+#include <tactus/experiments/contact_metrics.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/live/contact_judge.hpp>
-#include <tactus/simulation/contact_metrics.hpp>
-#include <tactus/simulation/tapping.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ constexpr double too_gentle_N = 0.01;
 
 Result<ContactJudge> ContactJudge::make(Seconds dt) {
   const auto high_pass = signal::SecondOrderFilter::make(
-      {.kind = signal::FilterKind::high_pass, .frequency_Hz = simulation::transient_cutoff_Hz}, dt);
+      {.kind = signal::FilterKind::high_pass, .frequency_Hz = experiments::transient_cutoff_Hz}, dt);
   if (!high_pass) return high_pass.error();
   return ContactJudge(*high_pass, dt);
 }
@@ -46,18 +46,18 @@ void ContactJudge::step(double contact_force_N, bool touched) {
   }
   if (verdict_ != LiveVerdict::free) {
     peak_N_ = std::max(peak_N_, level_N_);
-    const bool loud = level_N_ > std::max(simulation::settled_share * peak_N_, too_gentle_N);
+    const bool loud = level_N_ > std::max(experiments::settled_share * peak_N_, too_gentle_N);
     if (loud && verdict_ == LiveVerdict::settled && in_contact_) {
       onset_ = tick_;
       verdict_ = LiveVerdict::contact;
     }
     if (loud) loud_until_ = tick_ + 1;
-    const bool quiet = after(loud_until_, simulation::quiet_time_s);
+    const bool quiet = after(loud_until_, experiments::quiet_time_s);
     const bool calm_again = verdict_ == LiveVerdict::rings && in_contact_ && after(loud_until_, calm_again_s);
     if ((verdict_ == LiveVerdict::contact && quiet) || calm_again) {
       verdict_ = LiveVerdict::settled;
     } else if (verdict_ == LiveVerdict::contact &&
-               after(onset_, simulation::settled_within_s + simulation::quiet_time_s)) {
+               after(onset_, experiments::settled_within_s + experiments::quiet_time_s)) {
       verdict_ = LiveVerdict::rings;
     }
     if (after(touched_last_, verdict_stays_s)) verdict_ = LiveVerdict::free;

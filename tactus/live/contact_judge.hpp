@@ -12,7 +12,7 @@ namespace tactus::live {
 /// What a loop is doing at its wall.
 enum class LiveVerdict { free, contact, settled, rings };
 
-/// Judges contacts while they happen, by the measure of the tapping experiment (`simulation::judge_contact`): the
+/// Judges contacts while they happen, by the measure of the tapping experiment (`experiments::judge_contact`): the
 /// contact force above 15 Hz, from the first touch on, must fall below a tenth of its peak and stay there.
 ///
 /// A touch after 0.25 s without one begins a contact. `settled` once the force has been that small for 50 ms and fell

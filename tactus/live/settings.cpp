@@ -1,6 +1,6 @@
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/experiments/contest/contest.hpp>
 #include <tactus/live/settings.hpp>
-#include <tactus/simulation/contest.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -21,7 +21,7 @@ std::string method_key(std::size_t loop) { return std::string(loop_names[loop]) 
 
 /// The competitors of the contest as words of one kind: `cancellation-local-damping`; the one that does nothing against
 /// instability is `none`.
-std::string word_of(const simulation::ContestMethod& method) {
+std::string word_of(const experiments::ContestMethod& method) {
   if (method.name == "position-force") return "none";
   std::string word;
   for (const char c : method.name) {
@@ -51,7 +51,7 @@ bool are_equal(const T& one, const T& other) {
 }  // namespace
 
 Result<Settings> Settings::make(const configuration::Document& document) {
-  const auto params = document.read<simulation::TappingParams>();
+  const auto params = document.read<experiments::TappingParams>();
   if (!params) return params.error();
 
   Settings settings(document);
@@ -76,7 +76,7 @@ Result<Settings> Settings::make(const configuration::Document& document) {
   number(delay, "Delay each way", units::second, 0.0, 0.2, params->channel.to_slave.delay_s);
   number(grip, "Grip", units::none, 0.25, 4.0, 1.0, true);
   std::vector<std::string> methods;
-  for (const simulation::ContestMethod& method : simulation::contest_methods()) methods.push_back(word_of(method));
+  for (const experiments::ContestMethod& method : experiments::contest_methods()) methods.push_back(word_of(method));
   constexpr std::array labels{"Method", "Compared with"};
   constexpr std::array first_methods{"cancellation", "none"};
   for (std::size_t i = 0; i < loops; ++i) {
@@ -139,7 +139,7 @@ Result<simulation::Teleoperator::Params> Settings::of_loop(std::size_t loop) con
   };
   const auto number = [this](const char* name) { return format_number(std::get<double>(value(name))); };
   const std::string& word = std::get<std::string>(value(method_key(loop)));
-  for (const simulation::ContestMethod& method : simulation::contest_methods()) {
+  for (const experiments::ContestMethod& method : experiments::contest_methods()) {
     if (word_of(method) != word) continue;
     for (const std::string_view setting : method.settings) {
       if (auto error = document.set(setting)) return *std::move(error);
@@ -151,7 +151,7 @@ Result<simulation::Teleoperator::Params> Settings::of_loop(std::size_t loop) con
         std::pair{std::string("channel.to_master.delay_s"), number(delay)}}) {
     if (auto error = set(key, text)) return *std::move(error);
   }
-  auto params = document.read<simulation::TappingParams>();
+  auto params = document.read<experiments::TappingParams>();
   if (!params) return params.error();
   params->person.grip = mechanics::scaled(params->person.grip, std::get<double>(value(grip)));
   params->environment.position_m = wall_m * params->control.position_scale;

@@ -3,9 +3,9 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/live/application.hpp>
 #include <tactus/live/engine.hpp>
-#include <tactus/simulation/tapping.hpp>
 
 #include <array>
 #include <string>

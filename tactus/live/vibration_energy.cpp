@@ -1,11 +1,11 @@
+#include <tactus/experiments/contact_metrics.hpp>
 #include <tactus/live/vibration_energy.hpp>
-#include <tactus/simulation/contact_metrics.hpp>
 
 namespace tactus::live {
 
 Result<VibrationEnergy> VibrationEnergy::make(Seconds dt) {
   const auto high_pass = signal::SecondOrderFilter::make(
-      {.kind = signal::FilterKind::high_pass, .frequency_Hz = simulation::transient_cutoff_Hz}, dt);
+      {.kind = signal::FilterKind::high_pass, .frequency_Hz = experiments::transient_cutoff_Hz}, dt);
   if (!high_pass) return high_pass.error();
   return VibrationEnergy(*high_pass);
 }

@@ -15,8 +15,8 @@ constexpr double workspace_m = 1.0;
 
 }  // namespace
 
-TapScript::TapScript(const simulation::TappingParams& params) {
-  const simulation::TappingTask& task = params.task;
+TapScript::TapScript(const experiments::TappingParams& params) {
+  const experiments::TappingTask& task = params.task;
   const double depth_m = 0.5 * (task.shallowest_m + task.deepest_m);
   const double wall_m = params.environment.position_m / params.control.position_scale;
   for (std::int64_t i = 0; i < task.taps; ++i) {
@@ -39,9 +39,9 @@ double TapScript::position_m(double time_s) const {
   return time_s < tap.back.start_time_s ? tap.reach.position_m(time_s) : tap.back.position_m(time_s);
 }
 
-Result<HandSession> HandSession::make(const simulation::TappingParams& params) {
+Result<HandSession> HandSession::make(const experiments::TappingParams& params) {
   // The whole experiment is checked, as without ROS 2.
-  if (const auto ensemble = simulation::TappingEnsemble::make(params); !ensemble) return ensemble.error();
+  if (const auto ensemble = experiments::TappingEnsemble::make(params); !ensemble) return ensemble.error();
   TapScript script(params);
   auto teleoperator = simulation::Teleoperator::make(params, script.position_m(0.0));
   if (!teleoperator) return teleoperator.error();

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/ros2/bridge.hpp>
 #include <tactus/ros2/remote_path.hpp>
 #include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/real_time_tap.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace tactus::ros2 {
 /// slowest to the fastest.
 class TapScript {
  public:
-  explicit TapScript(const simulation::TappingParams& params);
+  explicit TapScript(const experiments::TappingParams& params);
   [[nodiscard]] double duration_s() const { return duration_s_; }
   /// Where the hand is meant to be; before and after, where it begins.
   [[nodiscard]] double position_m(double time_s) const;
@@ -39,7 +39,7 @@ class TapScript {
 class HandSession {
  public:
   /// Errors: those of the experiment.
-  static Result<HandSession> make(const simulation::TappingParams& params);
+  static Result<HandSession> make(const experiments::TappingParams& params);
 
   /// Whom it tells and hears, where its ticks go, and who may end it; all of it outlives it. Before the first tick.
   void begin(Bridge& bridge, const runtime::RealTimeStreams& streams, const runtime::EndRequest& end);

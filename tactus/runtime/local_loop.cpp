@@ -8,7 +8,7 @@ namespace tactus::runtime {
 using control::SiteRole;
 using control::SiteState;
 
-Result<LocalLoop> LocalLoop::make(const simulation::TappingParams& params, const Settings& settings,
+Result<LocalLoop> LocalLoop::make(const experiments::TappingParams& params, const Settings& settings,
                                   SiteExchange& exchange, SiteDevice master, SiteDevice slave) {
   if (auto error = validate(params)) return *std::move(error);
   const double tick_s = 1.0 / params.servo.rate_Hz;

@@ -2,14 +2,14 @@
 
 namespace tactus::runtime {
 
-Result<std::unique_ptr<PlantServer>> PlantServer::make(const std::string& name, const simulation::TappingParams& params,
-                                                       Seconds silence) {
+Result<std::unique_ptr<PlantServer>> PlantServer::make(const std::string& name,
+                                                       const experiments::TappingParams& params, Seconds silence) {
   if (!station::silence_bounds.contain(silence.value)) {
     Error error = out_of_bounds({}, silence.value, station::silence_bounds, units::second);
     error.place = "--silence-s";
     return error;
   }
-  auto ensemble = simulation::TappingEnsemble::make(params);
+  auto ensemble = experiments::TappingEnsemble::make(params);
   if (!ensemble) return ensemble.error();
   auto first = SimulatedPlant::make(ensemble->tap(0));
   if (!first) return first.error();
@@ -22,7 +22,7 @@ Result<std::unique_ptr<PlantServer>> PlantServer::make(const std::string& name, 
   return std::unique_ptr<PlantServer>(new PlantServer(*std::move(ensemble), *first, *std::move(segment), silence));
 }
 
-PlantServer::PlantServer(simulation::TappingEnsemble ensemble, const SimulatedPlant& first, PlantSegment segment,
+PlantServer::PlantServer(experiments::TappingEnsemble ensemble, const SimulatedPlant& first, PlantSegment segment,
                          Seconds silence)
     : ensemble_(std::move(ensemble)),
       plants_{first, first},

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/plant_segment.hpp>
 #include <tactus/runtime/shared_device.hpp>
 #include <tactus/runtime/simulated_plant.hpp>
-#include <tactus/simulation/tapping.hpp>
 
 #include <array>
 #include <atomic>
@@ -38,7 +38,7 @@ class PlantServer {
  public:
   /// `silence` is how long commands may stay away. Errors: those of the experiment and of `PlantSegment::create`;
   /// `out_of_bounds` for `silence`.
-  static Result<std::unique_ptr<PlantServer>> make(const std::string& name, const simulation::TappingParams& params,
+  static Result<std::unique_ptr<PlantServer>> make(const std::string& name, const experiments::TappingParams& params,
                                                    Seconds silence);
   PlantServer(const PlantServer&) = delete;
   PlantServer& operator=(const PlantServer&) = delete;
@@ -51,11 +51,12 @@ class PlantServer {
   [[nodiscard]] PlantStatus status() const;
 
  private:
-  PlantServer(simulation::TappingEnsemble ensemble, const SimulatedPlant& first, PlantSegment segment, Seconds silence);
+  PlantServer(experiments::TappingEnsemble ensemble, const SimulatedPlant& first, PlantSegment segment,
+              Seconds silence);
   void begin(const PlantRequest& request) noexcept;
   void read() noexcept;
 
-  simulation::TappingEnsemble ensemble_;
+  experiments::TappingEnsemble ensemble_;
   std::array<SimulatedPlant, 2> plants_;  ///< one runs, the other is made
   PlantSegment segment_;
   Seconds silence_;

@@ -1,6 +1,6 @@
+#include <tactus/experiments/faults/experiment.hpp>
 #include <tactus/runtime/real_time_faults.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
-#include <tactus/simulation/fault_experiment.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -15,10 +15,10 @@ namespace tactus::runtime {
 
 namespace {
 
-using simulation::FaultOutcome;
+using experiments::FaultOutcome;
+using experiments::FaultRun;
+using experiments::FaultsParams;
 using simulation::FaultPlan;
-using simulation::FaultRun;
-using simulation::FaultsParams;
 
 constexpr std::size_t side_by_side = 6;
 constexpr double longest_cut_s = 1.0;
@@ -26,7 +26,7 @@ constexpr double longest_cut_s = 1.0;
 /// Runs in batches, each from the first to the last tick of the longest of its runs. The outcomes keep their order; the
 /// last are missing where the end was asked for.
 Result<std::vector<FaultOutcome>> play(std::vector<FaultRun>& runs, const ServoThreadParams& servo,
-                                       const EndRequest& end, ServoReport& all, const simulation::Progress& progress) {
+                                       const EndRequest& end, ServoReport& all, const experiments::Progress& progress) {
   std::size_t over = 0;
   for (std::size_t first = 0; first < runs.size(); first += side_by_side) {
     const std::span<FaultRun> batch(runs.data() + first, std::min(side_by_side, runs.size() - first));
@@ -48,26 +48,27 @@ Result<std::vector<FaultOutcome>> play(std::vector<FaultRun>& runs, const ServoT
 
 }  // namespace
 
-Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& request, const ServoThreadParams& servo,
-                                                    const simulation::Progress& progress,
-                                                    const std::function<Result<const EndRequest*>()>& listen) {
-  if (auto error = simulation::refuse_variations(request)) return *std::move(error);
+Result<experiments::Outcome> run_faults_in_real_time(const experiments::Request& request,
+                                                     const ServoThreadParams& servo,
+                                                     const experiments::Progress& progress,
+                                                     const std::function<Result<const EndRequest*>()>& listen) {
+  if (auto error = experiments::refuse_variations(request)) return *std::move(error);
   const auto params = request.document.read<FaultsParams>();
   if (!params) return params.error();
   ServoThreadParams clock = servo;
   clock.rate_Hz = params->servo.rate_Hz;
   if (auto error = check_servo_thread(clock)) return *std::move(error);
-  const auto table = simulation::run_faults(*params, [&progress](double done) { progress(0.5 * done); });
+  const auto table = experiments::run_faults(*params, [&progress](double done) { progress(0.5 * done); });
   if (!table) return request.document.locate(table.error());
 
-  simulation::FaultsInRealTime real{.params = *params, .tallies = {}, .timing = {}, .timing_json = {}};
+  experiments::FaultsInRealTime real{.params = *params, .tallies = {}, .timing = {}, .timing_json = {}};
   real.params.task.seeds = params->task.real_time_seeds;
   real.params.task.longest_cut_s = std::min(longest_cut_s, params->task.longest_cut_s);
-  const auto rows = simulation::fault_rows(params->task.only);
+  const auto rows = experiments::fault_rows(params->task.only);
   std::vector<FaultRun> runs;
   for (const auto& row : rows) {
-    const auto of = simulation::params_of(row, real.params);
-    for (const FaultPlan& plan : simulation::draw_plans(row, real.params)) {
+    const auto of = experiments::params_of(row, real.params);
+    for (const FaultPlan& plan : experiments::draw_plans(row, real.params)) {
       auto run = FaultRun::make(of, plan);
       if (!run) return request.document.locate(run.error());
       runs.push_back(*std::move(run));
@@ -84,7 +85,7 @@ Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& r
     const auto first = outcomes->begin() + static_cast<std::ptrdiff_t>(std::min(row * seeds, outcomes->size()));
     const auto last = outcomes->begin() + static_cast<std::ptrdiff_t>(std::min((row + 1) * seeds, outcomes->size()));
     real.tallies.push_back(
-        simulation::tally(rows[row], real.params, simulation::draw_plans(rows[row], real.params), {first, last}));
+        experiments::tally(rows[row], real.params, experiments::draw_plans(rows[row], real.params), {first, last}));
   }
   real.timing = {timing_table(kept), late_ticks_table(kept)};
   real.timing_json = servo_json(kept);
@@ -94,7 +95,7 @@ Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& r
     told.add_row({std::to_string(outcomes->size()), std::to_string(runs.size())});
     real.timing.insert(real.timing.begin(), told);
   }
-  auto outcome = simulation::present_faults(request, *params, *table, real);
+  auto outcome = experiments::present_faults(request, *params, *table, real);
   if (interrupted) {
     auto document = nlohmann::ordered_json::parse(outcome.json);
     document["real_time"]["interrupted"] = {{"runs", outcomes->size()}, {"of", runs.size()}};

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/servo_thread.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <functional>
 
@@ -18,8 +18,9 @@ namespace tactus::runtime {
 /// were over by then are told, and that there should be more.
 ///
 /// Errors: those of the experiment `faults`, of the servo thread and of `listen`.
-Result<simulation::Outcome> run_faults_in_real_time(const simulation::Request& request, const ServoThreadParams& servo,
-                                                    const simulation::Progress& progress,
-                                                    const std::function<Result<const EndRequest*>()>& listen);
+Result<experiments::Outcome> run_faults_in_real_time(const experiments::Request& request,
+                                                     const ServoThreadParams& servo,
+                                                     const experiments::Progress& progress,
+                                                     const std::function<Result<const EndRequest*>()>& listen);
 
 }  // namespace tactus::runtime

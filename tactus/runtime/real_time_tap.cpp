@@ -7,7 +7,7 @@ namespace tactus::runtime {
 
 using simulation::Teleoperator;
 
-Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const simulation::Tap& tap, double observation_s,
+Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const experiments::Tap& tap, double observation_s,
                                                        const RealTimeStreams& streams) {
   auto plant = SimulatedPlant::make(tap);
   if (!plant) return plant.error();
@@ -17,7 +17,7 @@ Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const simulation::Tap& ta
   return made;
 }
 
-Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const simulation::Tap& tap, double observation_s,
+Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const experiments::Tap& tap, double observation_s,
                                                        TapPlant& plant, const RealTimeStreams& streams) {
   const Teleoperator::Params& params = tap.params;
   const auto clock = simulation::Clock::make(params.servo, params.plant);
@@ -29,7 +29,7 @@ Result<std::unique_ptr<RealTimeTap>> RealTimeTap::make(const simulation::Tap& ta
   return std::unique_ptr<RealTimeTap>(new RealTimeTap(tap, observation_s, streams, *clock, plant, *std::move(loop)));
 }
 
-RealTimeTap::RealTimeTap(const simulation::Tap& tap, double observation_s, const RealTimeStreams& streams,
+RealTimeTap::RealTimeTap(const experiments::Tap& tap, double observation_s, const RealTimeStreams& streams,
                          const simulation::Clock& clock, TapPlant& plant, station::BareTeleoperator loop)
     : clock_(clock), plant_(&plant), loop_(std::move(loop)), observer_(tap, observation_s), streams_(streams) {
   // Filled and emptied, so that every page of it is there.

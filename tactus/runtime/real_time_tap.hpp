@@ -1,10 +1,10 @@
 #pragma once
 
+#include <tactus/experiments/tapping/tap_observer.hpp>
 #include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/servo_record.hpp>
 #include <tactus/runtime/simulated_plant.hpp>
 #include <tactus/runtime/sites_record.hpp>
-#include <tactus/simulation/tap_observer.hpp>
 #include <tactus/station/local_teleoperator.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
@@ -45,11 +45,11 @@ struct RealTimeStreams {
 class RealTimeTap {
  public:
   /// With devices of its own. Errors: those of plants and sites.
-  static Result<std::unique_ptr<RealTimeTap>> make(const simulation::Tap& tap, double observation_s,
+  static Result<std::unique_ptr<RealTimeTap>> make(const experiments::Tap& tap, double observation_s,
                                                    const RealTimeStreams& streams = {});
   /// Through a plant that outlives it and stands at the start of the tap. Where the plant is lost, the sites let go at
   /// the rate limit and the tap is over. Errors: those of the sites.
-  static Result<std::unique_ptr<RealTimeTap>> make(const simulation::Tap& tap, double observation_s, TapPlant& plant,
+  static Result<std::unique_ptr<RealTimeTap>> make(const experiments::Tap& tap, double observation_s, TapPlant& plant,
                                                    const RealTimeStreams& streams = {});
   RealTimeTap(const RealTimeTap&) = delete;
   RealTimeTap& operator=(const RealTimeTap&) = delete;
@@ -61,12 +61,12 @@ class RealTimeTap {
   /// No force at once, as the last thing. Of the thread that steps. Real-time safe.
   void release() noexcept { loop_.release(); }
 
-  [[nodiscard]] simulation::TapResult result() const { return observer_.result(); }
+  [[nodiscard]] experiments::TapResult result() const { return observer_.result(); }
   /// Every tick.
   [[nodiscard]] const std::vector<simulation::Teleoperator::Record>& trace() const { return trace_; }
 
  private:
-  RealTimeTap(const simulation::Tap& tap, double observation_s, const RealTimeStreams& streams,
+  RealTimeTap(const experiments::Tap& tap, double observation_s, const RealTimeStreams& streams,
               const simulation::Clock& clock, TapPlant& plant, station::BareTeleoperator loop);
   /// Ends the open record with what the plant did, and hands it on; false once the tap is over.
   bool complete(const SimulatedTruth& truth) noexcept;
@@ -77,7 +77,7 @@ class RealTimeTap {
   std::unique_ptr<SimulatedPlant> own_;
   TapPlant* plant_;
   station::BareTeleoperator loop_;
-  simulation::TapObserver observer_;
+  experiments::TapObserver observer_;
   RealTimeStreams streams_;
   simulation::Teleoperator::Record record_;
   std::vector<simulation::Teleoperator::Record> trace_;

@@ -1,10 +1,10 @@
+#include <tactus/experiments/presentation.hpp>
+#include <tactus/experiments/tapping/presentation.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 #include <tactus/runtime/shared_plant.hpp>
-#include <tactus/simulation/presentation.hpp>
-#include <tactus/simulation/tapping.hpp>
-#include <tactus/simulation/tapping_presentation.hpp>
 #include <tactus/telemetry/log_writer.hpp>
 
 #include <cstddef>
@@ -17,10 +17,10 @@ namespace tactus::runtime {
 
 namespace {
 
-using simulation::TappingEnsemble;
-using simulation::TappingParams;
-using simulation::TappingRun;
-using simulation::TapResult;
+using experiments::TappingEnsemble;
+using experiments::TappingParams;
+using experiments::TappingRun;
+using experiments::TapResult;
 
 struct Prepared {
   TappingParams params;
@@ -28,10 +28,10 @@ struct Prepared {
   double observation_s;
   ServoThreadParams servo;
 };
-using Cases = simulation::Cases<Prepared>;
+using Cases = experiments::Cases<Prepared>;
 
-Check refuse_other_kinds(const simulation::Request& request) {
-  const auto experiment = simulation::choose_experiment(request.document);
+Check refuse_other_kinds(const experiments::Request& request) {
+  const auto experiment = experiments::choose_experiment(request.document);
   if (!experiment) return experiment.error();
   if ((*experiment)->kind() == "tapping") return std::nullopt;
   return Error{.code = ErrorCode::inconsistent,
@@ -98,7 +98,7 @@ class Outlets {
   std::vector<RealTimeStreams> all_;
 };
 
-Result<telemetry::Recorder> open_log(const simulation::Request& request, const RealTimeOptions& options,
+Result<telemetry::Recorder> open_log(const experiments::Request& request, const RealTimeOptions& options,
                                      const Cases& cases, const Outlets& outlets) {
   if (options.before_log) {
     if (auto error = options.before_log()) return *std::move(error);
@@ -112,7 +112,7 @@ Result<telemetry::Recorder> open_log(const simulation::Request& request, const R
   about["clock"] = "real";
   recorder->add_metadata("tactus", about);
   for (std::size_t i = 0; i < cases.all.size(); ++i) {
-    const simulation::Settings& settings = cases.all[i].settings;
+    const experiments::Settings& settings = cases.all[i].settings;
     if (!settings.empty()) recorder->add_metadata(Outlets::run_name(i), {settings.begin(), settings.end()});
     outlets.all()[i].for_each([&recorder](const std::string& topic, const char* type_name, const auto& stream) {
       recorder->add(topic, type_name, stream);
@@ -149,7 +149,7 @@ Result<ServoReport> run_tap(RealTimeTap& tap, const ServoThreadParams& servo, co
 }
 
 /// With `plant` null, through devices of its own.
-Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, SharedPlant* plant, RealTimeStreams streams,
+Result<RealTimeRun> run_taps(const experiments::Case<Prepared>& one, SharedPlant* plant, RealTimeStreams streams,
                              const EndRequest& end, const std::function<void()>& tap_done) {
   const auto& [settings, prepared] = one;
   RealTimeRun done;
@@ -157,7 +157,7 @@ Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, SharedPlant*
   std::vector<std::vector<simulation::Teleoperator::Record>> traces;
   for (std::size_t tap = 0; tap < prepared.ensemble.size() && !end.asked(); ++tap) {
     streams.tap = static_cast<std::int64_t>(tap);
-    const simulation::Tap& drawn = prepared.ensemble.tap(tap);
+    const experiments::Tap& drawn = prepared.ensemble.tap(tap);
     if (plant != nullptr) {
       if (auto error = plant->begin(tap)) return *std::move(error);
     }
@@ -179,9 +179,9 @@ Result<RealTimeRun> run_taps(const simulation::Case<Prepared>& one, SharedPlant*
   }
   if (results.empty()) return done;
   const std::vector<TapResult> kept(results.begin(), results.begin() + static_cast<std::ptrdiff_t>(traces.size()));
-  const std::size_t shown = simulation::median_tap(kept);
+  const std::size_t shown = experiments::median_tap(kept);
   done.run = TappingRun{.settings = settings,
-                        .metrics = simulation::summarise(results),
+                        .metrics = experiments::summarise(results),
                         .observation_s = prepared.observation_s,
                         .first_touch_s = results[shown].first_touch_s,
                         .trace = std::move(traces[shown])};
@@ -198,10 +198,10 @@ struct Interrupted {
   }
 };
 
-std::string json_of(const simulation::Request& request, const std::optional<PlantChoice>& plant,
+std::string json_of(const experiments::Request& request, const std::optional<PlantChoice>& plant,
                     const std::vector<TappingRun>& runs, const std::vector<ServoReport>& servos,
                     const std::optional<Interrupted>& interrupted) {
-  auto document = nlohmann::ordered_json::parse(simulation::tapping_json(request, runs));
+  auto document = nlohmann::ordered_json::parse(experiments::tapping_json(request, runs));
   document["clock"] = "real";
   if (plant) document["plant"] = plant->name;
   if (interrupted) document["interrupted"] = {{"taps", interrupted->taps}, {"of", interrupted->of}};
@@ -224,10 +224,10 @@ std::string losses_of(const ServoReport& report) {
 
 }  // namespace
 
-Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, const RealTimeOptions& options,
-                                         const simulation::Progress& progress) {
+Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, const RealTimeOptions& options,
+                                         const experiments::Progress& progress) {
   if (auto error = refuse_other_kinds(request)) return *std::move(error);
-  const auto cases = simulation::prepare_cases<TappingParams, Prepared>(
+  const auto cases = experiments::prepare_cases<TappingParams, Prepared>(
       request, [&options](const TappingParams& params) -> Result<Prepared> {
         ServoThreadParams servo = options.servo;
         servo.rate_Hz = params.servo.rate_Hz;
@@ -284,13 +284,13 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
   std::optional<Interrupted> interrupted;
   if (taps_done < taps) interrupted = Interrupted{.taps = taps_done, .of = taps};
 
-  const report::Table table = simulation::tapping_table(runs);
+  const report::Table table = experiments::tapping_table(runs);
   const report::Table timing = timing_table(all);
   const report::Table late = late_ticks_table(all);
   std::vector<report::Figure> figures;
-  if (!runs.empty()) figures = simulation::tapping_figures(runs);
+  if (!runs.empty()) figures = experiments::tapping_figures(runs);
   figures.push_back(timing_figure(all));
-  report::Page page = simulation::tapping_page(request, table, figures);
+  report::Page page = experiments::tapping_page(request, table, figures);
   if (interrupted) page.paragraph(interrupted->text());
   page.heading("How time was kept");
   page.paragraph(
@@ -299,7 +299,7 @@ Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, con
   page.table(timing);
   page.table(late);
   page.table(rights_table(all));
-  simulation::add_provenance(page, request, cases->first_configuration);
+  experiments::add_provenance(page, request, cases->first_configuration);
   std::string text = table.to_text() + "\n" + (interrupted ? interrupted->text() + "\n\n" : "") + timing.to_text() +
                      "\n" + late.to_text() + losses_of(all);
   return RealTimeOutcome{.outcome = {.text = std::move(text),

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/end_request.hpp>
 #include <tactus/runtime/real_time_tap.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/runtime/shared_device.hpp>
-#include <tactus/simulation/experiment.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -38,7 +38,7 @@ struct RealTimeOptions {
 
 /// What came out, and what became of the log.
 struct RealTimeOutcome {
-  simulation::Outcome outcome;
+  experiments::Outcome outcome;
   Check log;                 ///< why it is not whole, where it is not
   bool interrupted = false;  ///< its end was asked for before all taps had run
 };
@@ -55,7 +55,7 @@ inline constexpr std::size_t most_real_time_runs = 64;
 ///
 /// Errors: another kind of experiment, more taps or runs than the limits, those of the experiment, of the log and of
 /// the plant. A log that fails on the way stops nothing; a plant that is lost ends the run, and the log has all of it.
-Result<RealTimeOutcome> run_in_real_time(const simulation::Request& request, const RealTimeOptions& options,
-                                         const simulation::Progress& progress);
+Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, const RealTimeOptions& options,
+                                         const experiments::Progress& progress);
 
 }  // namespace tactus::runtime

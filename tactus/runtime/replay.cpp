@@ -1,9 +1,9 @@
 #include <tactus/configuration/document.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/internal/replay_rows.hpp>
 #include <tactus/runtime/replay.hpp>
 #include <tactus/runtime/rights.hpp>
 #include <tactus/runtime/sites_record.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/station/local_teleoperator.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
@@ -17,8 +17,8 @@ namespace tactus::runtime {
 
 namespace {
 
-using simulation::TappingEnsemble;
-using simulation::TappingParams;
+using experiments::TappingEnsemble;
+using experiments::TappingParams;
 using telemetry::LogTable;
 
 constexpr std::string_view sites_topic = "/sites";
@@ -29,7 +29,7 @@ struct RecordedTap {
   RecordedDevice slave;
   std::unique_ptr<station::BareTeleoperator> loop;
 
-  static Result<std::unique_ptr<RecordedTap>> make(const simulation::Tap& tap) {
+  static Result<std::unique_ptr<RecordedTap>> make(const experiments::Tap& tap) {
     const auto& params = tap.params;
     auto made = std::make_unique<RecordedTap>(
         RecordedTap{RecordedDevice({.force_N = params.master.amplifier.limit_N,

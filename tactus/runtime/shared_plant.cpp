@@ -53,7 +53,7 @@ SharedPlant::SharedPlant(PlantSegment segment, Seconds silence)
 
 SharedPlant::~SharedPlant() { end(); }
 
-Check SharedPlant::check(const simulation::TappingParams& params) const {
+Check SharedPlant::check(const experiments::TappingParams& params) const {
   const PlantFacts facts = segment_.facts();
   const std::string wanted = plant_configuration(params);
   if (wanted != facts.configuration) {

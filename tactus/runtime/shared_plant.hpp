@@ -26,7 +26,7 @@ class SharedPlant final : public TapPlant {
 
   /// That the plant is the one that the experiment describes, and has its taps. Errors: `inconsistent`, with the first
   /// key that differs.
-  [[nodiscard]] Check check(const simulation::TappingParams& params) const;
+  [[nodiscard]] Check check(const experiments::TappingParams& params) const;
 
   /// Asks for the start of a tap and waits for the answer. The plant stands there until the first command. Not while a
   /// servo thread reads. Errors: `failed` where none comes.

@@ -20,7 +20,7 @@ station::DeviceLimits limits_of(double amplifier_N, const control::SafetyGate::P
 
 }  // namespace
 
-Result<SimulatedPlant> SimulatedPlant::make(const simulation::Tap& tap) {
+Result<SimulatedPlant> SimulatedPlant::make(const experiments::Tap& tap) {
   const simulation::Teleoperator::Params& params = tap.params;
   const auto clock = simulation::Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
@@ -55,15 +55,15 @@ SimulatedTruth SimulatedPlant::truth() const noexcept {
           .touched_after_s = contact.touched_after_s};
 }
 
-std::string plant_configuration(const simulation::TappingParams& params) {
-  simulation::TappingParams plant = params;
+std::string plant_configuration(const experiments::TappingParams& params) {
+  experiments::TappingParams plant = params;
   plant.control = {};
   plant.control.position_scale = params.control.position_scale;
   plant.control.gate = params.control.gate;
   plant.control.handle_gate = params.control.handle_gate;
   plant.control.slave_gate = params.control.slave_gate;
   plant.channel = {};
-  const simulation::TapSeries usual;
+  const experiments::TapSeries usual;
   plant.task.taps = usual.taps;
   plant.task.observation_s = usual.observation_s;
   plant.task.model_error = usual.model_error;

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <tactus/core/parameters.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/plant_segment.hpp>
 #include <tactus/runtime/simulated_devices.hpp>
-#include <tactus/simulation/tapping.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -30,7 +30,7 @@ class TapPlant {
 class SimulatedPlant final : public TapPlant {
  public:
   /// At rest at the start of the tap. Errors: those of clock and plants.
-  static Result<SimulatedPlant> make(const simulation::Tap& tap);
+  static Result<SimulatedPlant> make(const experiments::Tap& tap);
 
   SimulatedMaster& master() noexcept override { return master_; }
   SimulatedSlave& slave() noexcept override { return slave_; }
@@ -54,6 +54,6 @@ class SimulatedPlant final : public TapPlant {
 /// All of an experiment that makes its plants what they are, as TOML: two experiments with equal text have equal plants
 /// in every tap. The safety gates are part of it, for the devices keep to limits that follow from them. Controllers,
 /// channel, number of taps and observation are not.
-std::string plant_configuration(const simulation::TappingParams& params);
+std::string plant_configuration(const experiments::TappingParams& params);
 
 }  // namespace tactus::runtime

@@ -11,8 +11,8 @@ constexpr double rest_s = 0.3;
 
 }  // namespace
 
-RepeatedTaps::RepeatedTaps(const simulation::TappingParams& params) {
-  const simulation::TapSeries& taps = params.task;
+RepeatedTaps::RepeatedTaps(const experiments::TappingParams& params) {
+  const experiments::TapSeries& taps = params.task;
   const double depth_m = 0.5 * (taps.shallowest_m + taps.deepest_m);
   const double speed_m_per_s = 0.5 * (taps.slowest_m_per_s + taps.fastest_m_per_s);
   const double wall_m = params.environment.position_m / params.control.position_scale;
@@ -30,7 +30,7 @@ double RepeatedTaps::position_m(double time_s) const noexcept {
   return there_.position_m(time_in_period_s) + back_.position_m(time_in_period_s);
 }
 
-Result<SiteDevice> simulated_device(const simulation::TappingParams& params, control::SiteRole role) {
+Result<SiteDevice> simulated_device(const experiments::TappingParams& params, control::SiteRole role) {
   if (auto error = validate(params)) return *std::move(error);
   const auto clock = simulation::Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <tactus/control/site_supervisor.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/runtime/simulated_devices.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/station/device.hpp>
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace tactus::runtime {
 /// The way a person taps on and on: there, press, back, rest, with the mean speed and depth of an experiment's taps.
 class RepeatedTaps {
  public:
-  explicit RepeatedTaps(const simulation::TappingParams& params);
+  explicit RepeatedTaps(const experiments::TappingParams& params);
   [[nodiscard]] double position_m(double time_s) const noexcept;
   [[nodiscard]] double start_m() const noexcept { return there_.start_m; }
 
@@ -50,6 +50,6 @@ struct SiteDevice {
 };
 
 /// The device of a site as an experiment describes it, at rest where the taps begin. Errors: those of clock and plant.
-Result<SiteDevice> simulated_device(const simulation::TappingParams& params, control::SiteRole role);
+Result<SiteDevice> simulated_device(const experiments::TappingParams& params, control::SiteRole role);
 
 }  // namespace tactus::runtime

@@ -1,6 +1,6 @@
 #include <tactus/control/agreed_parameters.hpp>
+#include <tactus/experiments/model_mismatch.hpp>
 #include <tactus/runtime/site_parts.hpp>
-#include <tactus/simulation/model_mismatch.hpp>
 #include <tactus/station/wall.hpp>
 
 #include <charconv>
@@ -21,13 +21,13 @@ constexpr std::pair<const char*, double DeviceLimits::*> limit_names[]{
 
 }  // namespace
 
-control::ControlParams control_of(const simulation::TappingParams& params) {
+control::ControlParams control_of(const experiments::TappingParams& params) {
   control::ControlParams control = params.control;
-  control.model = simulation::mismatched(control.model, params.task.mismatch);
+  control.model = experiments::mismatched(control.model, params.task.mismatch);
   return control;
 }
 
-Result<SupervisedSite> make_supervised_site(const simulation::TappingParams& params, control::SiteRole role,
+Result<SupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
                                             const DeviceLimits& limits, std::int64_t session) {
   const Seconds tick{1.0 / params.servo.rate_Hz};
   const control::ControlParams control = control_of(params);
@@ -43,7 +43,8 @@ Result<SupervisedSite> make_supervised_site(const simulation::TappingParams& par
   return SupervisedSite(*std::move(made));
 }
 
-double force_step_limit_N(const simulation::TappingParams& params, control::SiteRole role, const DeviceLimits& limits) {
+double force_step_limit_N(const experiments::TappingParams& params, control::SiteRole role,
+                          const DeviceLimits& limits) {
   const control::ControlParams own = station::tightened(params.control, role, limits);
   const auto& gate = role == control::SiteRole::master ? own.gate : own.slave_gate;
   return gate.rate_limit_N_per_s * (1.0 / params.servo.rate_Hz);

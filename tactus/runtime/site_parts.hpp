@@ -2,7 +2,7 @@
 
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/core/result.hpp>
-#include <tactus/simulation/tapping.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/station/device.hpp>
 
 #include <map>
@@ -15,15 +15,15 @@ namespace tactus::runtime {
 using SupervisedSite = std::variant<control::SupervisedMaster, control::SupervisedSlave>;
 
 /// What the controllers of an experiment work by, the mismatch of its task included.
-control::ControlParams control_of(const simulation::TappingParams& params);
+control::ControlParams control_of(const experiments::TappingParams& params);
 
 /// One site of the experiment before a device with these limits; `session` as in `control::make_supervised_master`.
 /// What the device allows is this site's own affair and no part of its agreement with the other. Errors name `control`.
-Result<SupervisedSite> make_supervised_site(const simulation::TappingParams& params, control::SiteRole role,
+Result<SupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
                                             const station::DeviceLimits& limits, std::int64_t session);
 
 /// The force step that the gate of a site allows in a tick, in N.
-double force_step_limit_N(const simulation::TappingParams& params, control::SiteRole role,
+double force_step_limit_N(const experiments::TappingParams& params, control::SiteRole role,
                           const station::DeviceLimits& limits);
 
 /// Limits of a device as a log carries them, and back; what is no number there is 0.

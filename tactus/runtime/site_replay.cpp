@@ -60,7 +60,7 @@ class RecordedPackets {
   std::size_t begin_ = 0, end_ = 0;
 };
 
-Check replay_one(const LogContent& content, const LogTable& table, const simulation::TappingParams& params,
+Check replay_one(const LogContent& content, const LogTable& table, const experiments::TappingParams& params,
                  SiteRole role, Replay& replay) {
   if (auto error = check_table<SiteLogRecord>(table)) return error;
   const LogTable* const packets = find_table(content, "/packets");
@@ -100,7 +100,7 @@ Check replay_one(const LogContent& content, const LogTable& table, const simulat
 }
 
 Check replay_both(const LogContent& content, const std::array<const LogTable*, 2>& tables,
-                  const simulation::TappingParams& params, Replay& replay) {
+                  const experiments::TappingParams& params, Replay& replay) {
   for (const LogTable* table : tables) {
     if (auto error = check_table<SiteLogRecord>(*table)) return error;
   }
@@ -133,7 +133,7 @@ Check replay_both(const LogContent& content, const std::array<const LogTable*, 2
 
 }  // namespace
 
-Result<bool> replay_sites(const LogContent& content, const simulation::TappingParams& params, Replay& replay) {
+Result<bool> replay_sites(const LogContent& content, const experiments::TappingParams& params, Replay& replay) {
   const LogTable* const one = find_table(content, "/site");
   const std::array both{find_table(content, "/master/site"), find_table(content, "/slave/site")};
   if (one == nullptr && (both[0] == nullptr || both[1] == nullptr)) return false;

@@ -197,8 +197,4 @@ struct FaultPlan {
   }
 };
 
-/// The plan number `index` of a kind: equal arguments, equal plan. Lengths are drawn evenly in their logarithm, a cut's
-/// from 10 ms to `longest_cut_s`, a suspension's from 1 s, a stall's from 1 to 100 ms.
-FaultPlan draw_plan(FaultKind kind, std::int64_t index, std::int64_t seed, double longest_cut_s);
-
 }  // namespace tactus::simulation

@@ -59,14 +59,14 @@ bool disturbance_decays(const simulation::Teleoperator::Params& params, double d
   return late < early;
 }
 
-simulation::GainLimit bisect_linear_limit(simulation::Teleoperator::Params params, double lowest, double highest) {
+experiments::GainLimit bisect_linear_limit(simulation::Teleoperator::Params params, double lowest, double highest) {
   const auto decays = [&params](double gain) {
     params.control.force_gain = gain;
     return disturbance_decays(params);
   };
-  simulation::GainLimit limit = simulation::find_gain_limit(lowest, highest, decays);
+  experiments::GainLimit limit = experiments::find_gain_limit(lowest, highest, decays);
   if (limit.beyond_search || limit.gain == 0.0) return limit;
-  double stable = limit.gain, unstable = limit.gain * simulation::gain_resolution;
+  double stable = limit.gain, unstable = limit.gain * experiments::gain_resolution;
   while (unstable > 1.001 * stable) {
     const double middle = std::sqrt(stable * unstable);
     (decays(middle) ? stable : unstable) = middle;

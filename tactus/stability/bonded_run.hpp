@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/simulation/gain_limit.hpp>
+#include <tactus/experiments/gain_limit.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 
 /// The gain limit in time: the simulated teleoperator itself, run at one gain after the other.
@@ -19,6 +19,6 @@ bool disturbance_decays(const simulation::Teleoperator::Params& params, double d
 
 /// The gain limit of a linear rig by bisection of `disturbance_decays`, between `lowest` and `highest`, to 0.1 %.
 /// 0 where not even the lowest is stable; `beyond_search` where the highest still is.
-simulation::GainLimit bisect_linear_limit(simulation::Teleoperator::Params params, double lowest, double highest);
+experiments::GainLimit bisect_linear_limit(simulation::Teleoperator::Params params, double lowest, double highest);
 
 }  // namespace tactus::stability

@@ -1,5 +1,5 @@
 #include <tactus/configuration/toml_writer.hpp>
-#include <tactus/simulation/contest.hpp>
+#include <tactus/experiments/contest/contest.hpp>
 #include <tactus/simulation/parallel.hpp>
 #include <tactus/stability/angle.hpp>
 #include <tactus/stability/bonded_run.hpp>
@@ -14,7 +14,7 @@ namespace tactus::stability {
 
 namespace {
 
-using simulation::TappingParams;
+using experiments::TappingParams;
 
 constexpr Eigen::Index most_states = 400;
 
@@ -99,10 +99,10 @@ TappingParams linear_taps(const TappingParams& file) {
   return params;
 }
 
-simulation::GainLimit tapped(TappingParams params) {
-  return simulation::find_gain_limit(lowest_tried_gain, highest_tapped_gain, [&params](double gain) {
+experiments::GainLimit tapped(TappingParams params) {
+  return experiments::find_gain_limit(lowest_tried_gain, highest_tapped_gain, [&params](double gain) {
     params.control.force_gain = gain;
-    return simulation::taps_settle(params);
+    return experiments::taps_settle(params);
   });
 }
 
@@ -118,19 +118,19 @@ bool rings_out(const Loop& loop, double gain, double allowed_s) {
   return true;
 }
 
-simulation::GainLimit as_searched(double gain) {
+experiments::GainLimit as_searched(double gain) {
   return {.gain = std::min(gain, highest_linear_gain), .beyond_search = gain > highest_linear_gain};
 }
 
 }  // namespace
 
 Result<std::vector<LimitRung>> limit_ladder(const TappingParams& params, const Linearisation& linearisation,
-                                            const simulation::Progress& progress) {
+                                            const experiments::Progress& progress) {
   const auto loop = make_loop(params, linearisation);
   if (!loop) return loop.error();
   const TappingParams ideal = linear_taps(params);
   for (const TappingParams& taps : {params, ideal}) {
-    if (const auto ensemble = simulation::TappingEnsemble::make(taps); !ensemble) return ensemble.error();
+    if (const auto ensemble = experiments::TappingEnsemble::make(taps); !ensemble) return ensemble.error();
   }
   const simulation::Teleoperator::Params bonded = linear_version(params, linearisation.preload_N);
   if (const auto teleoperator = simulation::Teleoperator::make(bonded, 0.0); !teleoperator) return teleoperator.error();
@@ -153,16 +153,16 @@ Result<std::vector<LimitRung>> limit_ladder(const TappingParams& params, const L
                      .adds = "a model that does not fit",
                      .limit = as_searched(wrong->smallest_limit)});
     simulation::Teleoperator::Params misjudged = params;
-    misjudged.control.model = simulation::mismatched(params.control.model, wrong->worst);
+    misjudged.control.model = experiments::mismatched(params.control.model, wrong->worst);
     judged = *make_loop(misjudged, linearisation);
   }
   if (judged.master.states() + judged.slave.states() + judged.delay_ticks <= most_states) {
     const double allowed_s =
-        simulation::settled_within_s + 2.0 * (params.channel.to_slave.delay_s + params.channel.to_master.delay_s);
+        experiments::settled_within_s + 2.0 * (params.channel.to_slave.delay_s + params.channel.to_master.delay_s);
     rungs.push_back({.key = "judged",
                      .words = "linear loop, judged as taps are",
                      .adds = "ringing must end in time",
-                     .limit = simulation::find_gain_limit(lowest_tried_gain, highest_linear_gain, [&](double gain) {
+                     .limit = experiments::find_gain_limit(lowest_tried_gain, highest_linear_gain, [&](double gain) {
                        return rings_out(judged, gain, allowed_s);
                      })});
   }

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <tactus/simulation/experiment.hpp>
-#include <tactus/simulation/gain_limit.hpp>
-#include <tactus/simulation/tapping.hpp>
+#include <tactus/experiments/experiment.hpp>
+#include <tactus/experiments/gain_limit.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/stability/linearisation.hpp>
 
 #include <functional>
@@ -23,9 +23,9 @@ struct LimitRung {
   std::string key;    ///< for programs
   std::string words;  ///< of what this is the limit
   std::string adds;   ///< what comes in; empty for the first
-  simulation::GainLimit limit;
+  experiments::GainLimit limit;
   /// Of the taps of the file with this one thing taken out again; none where that is not a thing to take out.
-  std::optional<simulation::GainLimit> without = {};
+  std::optional<experiments::GainLimit> without = {};
 };
 
 /// The rungs, in order:
@@ -41,7 +41,7 @@ struct LimitRung {
 ///
 /// A ratio between two rungs depends on the order; `without` does not, and tells what a thing does among all others.
 /// Errors: those of `make_loop` and of `TappingEnsemble::make`. Not real-time safe; some ten seconds, on all cores.
-Result<std::vector<LimitRung>> limit_ladder(const simulation::TappingParams& params, const Linearisation& linearisation,
-                                            const simulation::Progress& progress);
+Result<std::vector<LimitRung>> limit_ladder(const experiments::TappingParams& params,
+                                            const Linearisation& linearisation, const experiments::Progress& progress);
 
 }  // namespace tactus::stability

@@ -1,5 +1,5 @@
+#include <tactus/experiments/presentation.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/presentation.hpp>
 #include <tactus/stability/angle.hpp>
 #include <tactus/stability/limit_ladder.hpp>
 #include <tactus/stability/limit_report.hpp>
@@ -14,9 +14,11 @@ namespace tactus::stability {
 
 namespace {
 
-std::string shown(const simulation::GainLimit& limit) { return simulation::gain_limit_text(limit, lowest_tried_gain); }
+std::string shown(const experiments::GainLimit& limit) {
+  return experiments::gain_limit_text(limit, lowest_tried_gain);
+}
 
-std::string ratio(const simulation::GainLimit& limit, const simulation::GainLimit& over) {
+std::string ratio(const experiments::GainLimit& limit, const experiments::GainLimit& over) {
   if (limit.gain == 0.0 || over.gain == 0.0 || (limit.beyond_search && over.beyond_search)) return "";
   const char* bound = limit.beyond_search ? "≥ " : over.beyond_search ? "≤ " : "";
   return bound + report::number(limit.gain / over.gain, 3);
@@ -74,7 +76,7 @@ struct FrictionCurve {
   std::vector<double> speed_m_per_s, limit;
 };
 
-Result<FrictionCurve> friction_curve(const simulation::TappingParams& params, Linearisation linearisation) {
+Result<FrictionCurve> friction_curve(const experiments::TappingParams& params, Linearisation linearisation) {
   FrictionCurve curve;
   for (double speed = 1e-3; speed < 1.0; speed *= 1.25) {
     linearisation.friction_speed_m_per_s = speed;
@@ -86,7 +88,7 @@ Result<FrictionCurve> friction_curve(const simulation::TappingParams& params, Li
   return curve;
 }
 
-report::Figure friction_figure(const FrictionCurve& curve, double frictionless, const simulation::GainLimit& taps) {
+report::Figure friction_figure(const FrictionCurve& curve, double frictionless, const experiments::GainLimit& taps) {
   const auto logarithmic = report::Axis::Scale::logarithmic;
   report::Figure figure{
       .title = "Friction as a describing function",
@@ -124,15 +126,15 @@ const LimitRung* farthest(const std::vector<LimitRung>& rungs) {
   return found;
 }
 
-nlohmann::ordered_json json_of(const simulation::GainLimit& limit) {
+nlohmann::ordered_json json_of(const experiments::GainLimit& limit) {
   return {{"force_gain", limit.gain}, {"beyond_search", limit.beyond_search}};
 }
 
 }  // namespace
 
-Result<simulation::Outcome> report_limit(const simulation::Request& request, const ReportOptions& options,
-                                         const simulation::Progress& progress) {
-  const auto params = request.document.read<simulation::TappingParams>();
+Result<experiments::Outcome> report_limit(const experiments::Request& request, const ReportOptions& options,
+                                          const experiments::Progress& progress) {
+  const auto params = request.document.read<experiments::TappingParams>();
   if (!params) return params.error();
   const auto loop = make_loop(*params, options.linearisation);
   if (!loop) return request.document.locate(loop.error());
@@ -171,11 +173,11 @@ Result<simulation::Outcome> report_limit(const simulation::Request& request, con
   page.paragraph(reason);
   page.table(taken_out);
   for (const report::Figure& figure : figures) page.figure(figure);
-  simulation::add_provenance(page, request, configuration::to_toml(*params));
-  return simulation::Outcome{.text = table.to_text() + reason + taken_out.to_text(),
-                             .json = document.dump(2) + "\n",
-                             .html = page.to_html(),
-                             .figures = std::move(figures)};
+  experiments::add_provenance(page, request, configuration::to_toml(*params));
+  return experiments::Outcome{.text = table.to_text() + reason + taken_out.to_text(),
+                              .json = document.dump(2) + "\n",
+                              .html = page.to_html(),
+                              .figures = std::move(figures)};
 }
 
 }  // namespace tactus::stability

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/simulation/experiment.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/stability/margins_report.hpp>
 
 namespace tactus::stability {
@@ -8,7 +8,7 @@ namespace tactus::stability {
 /// The gain limit from the linear loop to the taps of the file, one thing after the other: `limit_ladder` as tables and
 /// a picture, beside the linear limit with friction as a describing function over its velocity amplitude. Errors: those
 /// of `report_margins` and of `limit_ladder`.
-Result<simulation::Outcome> report_limit(const simulation::Request& request, const ReportOptions& options,
-                                         const simulation::Progress& progress);
+Result<experiments::Outcome> report_limit(const experiments::Request& request, const ReportOptions& options,
+                                          const experiments::Progress& progress);
 
 }  // namespace tactus::stability

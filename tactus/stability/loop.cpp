@@ -1,48 +1,73 @@
+#include <tactus/stability/declared.hpp>
 #include <tactus/stability/linear_element.hpp>
 #include <tactus/stability/loop.hpp>
 
 #include <cmath>
-#include <optional>
+#include <limits>
+#include <type_traits>
 #include <utility>
 
 namespace tactus::stability {
 
 namespace {
 
-Error unsupported(std::string parameter, const char* message) {
-  return {.code = ErrorCode::inconsistent, .parameter = std::move(parameter), .message = message, .place = {}};
-}
+/// The tick of a whole system that is being worked out.
+struct Instant {
+  const Eigen::VectorXd* state = nullptr;
+  Eigen::VectorXd* next = nullptr;
+};
 
-Check check_supported(const control::ControlParams& control) {
-  if (control.architecture != "position-force") {
-    return unsupported(
-        "control.architecture",
-        "the loop of induced motion is that of position-force: choose it, or judge others by tactus run");
-  }
-  if (control.slave_force.source != control::SlaveForceSource::sensor) {
-    return unsupported("control.slave_force.source",
-                       "linear analysis has no model of the estimators, whose friction is not linear: choose sensor");
-  }
-  if (control.operator_estimate == control::OperatorEstimate::online) {
-    return unsupported(
-        "control.operator_estimate",
-        "an estimate that adapts to the loop is not linear: choose off, and try hands with operator.grip");
-  }
-  return std::nullopt;
-}
+/// A system of one input and one output that is stepped within the tick of the whole.
+class Part {
+ public:
+  Part(StateSpace system, Eigen::Index at, const Instant& now) : system_(std::move(system)), at_(at), now_(&now) {}
 
-/// A system of one input and one output that is stepped within another tick.
-struct Part {
-  const StateSpace& system;
-  Eigen::Index at;  ///< of its first state among those of the whole
-
-  [[nodiscard]] double output(const Eigen::VectorXd& state, double input) const {
-    return (system.c * state.segment(at, system.states()))(0) + system.d(0, 0) * input;
+  [[nodiscard]] Eigen::Index states() const { return system_.states(); }
+  [[nodiscard]] double output(double input) const {
+    return (system_.c * now_->state->segment(at_, states()))(0) + system_.d(0, 0) * input;
   }
-  void advance(const Eigen::VectorXd& state, double input, Eigen::VectorXd& next) const {
-    auto mine = next.segment(at, system.states());
-    mine.noalias() = system.a * state.segment(at, system.states());
-    mine += system.b.col(0) * input;
+  void advance(double input) const {
+    auto mine = now_->next->segment(at_, states());
+    mine.noalias() = system_.a * now_->state->segment(at_, states());
+    mine += system_.b.col(0) * input;
+  }
+  [[nodiscard]] double step(double input) const {
+    const double stepped = output(input);
+    advance(input);
+    return stepped;
+  }
+
+ private:
+  StateSpace system_;
+  Eigen::Index at_;  ///< of its first state among those of the whole
+  const Instant* now_;
+};
+
+/// What stands for a stage in the chain of its site.
+template <class Stage>
+struct Linear {
+  Part part;
+  [[nodiscard]] bool on() const { return part.states() > 0; }
+  [[nodiscard]] double step(double input) const { return part.step(input); }
+};
+
+template <>
+struct Linear<control::Crossover> {
+  Part part;
+  [[nodiscard]] control::Crossover::Output step(double input) const {
+    const double below = part.step(input);
+    return {.below_N = below, .above_N = input - below};
+  }
+};
+
+template <>
+struct Linear<control::GripCancellation> {
+  Part part;
+  bool cancels;
+  [[nodiscard]] double induced_position_m() const { return cancels ? part.output(0.0) : 0.0; }
+  [[nodiscard]] double intended(double measured_m, double) const { return measured_m - induced_position_m(); }
+  void advance(double motor_N) const {
+    if (cancels) part.advance(motor_N);
   }
 };
 
@@ -51,10 +76,10 @@ double output_of(double output) { return output; }
 double output_of(const control::Crossover::Output& parts) { return parts.below_N; }
 
 template <class Element>
-Result<StateSpace> probe_element(int order, const typename Element::Params& params, Seconds dt) {
+Result<StateSpace> probe_element(const typename Element::Params& params, Seconds dt) {
   auto element = Element::make(params, dt);
   if (!element) return element.error();
-  return probe(order, [&element](double input) { return output_of(element->step(input)); });
+  return probe(Element::linear_states, [&element](double input) { return output_of(element->step(input)); });
 }
 
 }  // namespace
@@ -67,58 +92,54 @@ Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params,
   // What cannot be simulated is not analysed either, so that both refuse alike.
   if (const auto teleoperator = simulation::Teleoperator::make(params, 0.0); !teleoperator) return teleoperator.error();
   const control::ControlParams& control = params.control;
-  if (auto error = check_supported(control)) return *std::move(error);
+  if (auto error = check_declared(control, Analysis::linear)) return *std::move(error);
   const Seconds tick{simulation::Clock::make(params.servo, params.plant)->tick_s};
+  const bool cancels = control.cancellation == control::CancellationMode::on;
 
-  const auto model = probe_model({.master = control.model,
-                                  .fidelity = control.cancellation_model,
-                                  .step = control.cancellation_step,
-                                  .friction = control.cancellation_friction},
-                                 tick, linearisation);
-  if (!model) return model.error();
-  const auto force_filter = probe_element<control::ShapingFilter>(2, control.force_filter, tick);
-  if (!force_filter) return force_filter.error();
-  const auto command_filter = probe_element<control::ShapingFilter>(2, control.command_filter, tick);
-  if (!command_filter) return command_filter.error();
-  const auto crossover = probe_element<control::Crossover>(2, control.crossover, tick);
-  if (!crossover) return crossover.error();
-  const auto compensation = probe_element<control::HandForceCompensation>(
-      2, {.master = control.model, .band_Hz = control.hand_compensation_Hz}, tick);
-  if (!compensation) return compensation.error();
-  const auto damping = probe_element<control::LocalDamping>(1, control.damping, tick);
-  if (!damping) return damping.error();
-  auto servo = probe_element<control::ServoPd>(1, control.slave, tick);
+  Instant now;
+  Eigen::Index states = 0;
+  Check failed;
+  LinearSites sites;
+  const auto linear = [&]<class Stage>(const char*, const typename Stage::Params& own) -> Linear<Stage> {
+    constexpr bool model = std::is_same_v<Stage, control::GripCancellation>;
+    auto system = [&] {
+      if constexpr (model) return probe_model(own.cancellation.model, tick, linearisation);
+      if constexpr (!model) return probe_element<Stage>(own, tick);
+    }();
+    if (!system && !failed) failed = system.error();
+    const Part part(system ? *std::move(system) : StateSpace{}, states, now);
+    if constexpr (model) {
+      if (system) sites.modelled = *system;
+      if (cancels) states += part.states();
+      return {.part = part, .cancels = cancels};
+    } else {
+      states += part.states();
+      return {.part = part};
+    }
+  };
+  const auto stages = control::PositionForceMaster::each_stage<Linear>(control, linear);
+  if (failed) return *std::move(failed);
+  auto servo = probe_element<control::ServoPd>(control.slave, tick);
   if (!servo) return servo.error();
 
-  const bool cancels = control.cancellation == control::CancellationMode::on;
-  const Part force{*force_filter, 0};
-  const Part below{*crossover, force.at + force.system.states()};
-  const Part compensated{*compensation, below.at + below.system.states()};
-  const Part rate{*damping, compensated.at + compensated.system.states()};
-  const Part command{*command_filter, rate.at + rate.system.states()};
-  const Part belief{*model, command.at + command.system.states()};
-  const Eigen::Index states = belief.at + (cancels ? belief.system.states() : 0);
-  LinearSites sites;
+  // The force arrives times μ, and nothing saturates.
+  const control::PositionForceMaster::Gains gains{.position_scale = control.position_scale,
+                                                  .force_gain = 1.0,
+                                                  .force_limit_N = std::numeric_limits<double>::infinity(),
+                                                  .cancels = cancels};
   sites.master =
       assemble(states, site_inputs, site_outputs, [&](const auto& state, const auto& input, auto& next, auto& output) {
-        // Damping's force counts as displayed, so it drives the model too.
-        const double wanted_N = force.output(state, input[arrived_force_in]);
-        const double below_N = below.output(state, wanted_N);
-        const double motor_N = rate.output(state, input[measured_in]) - compensated.output(state, below_N);
-        const double induced_m = cancels ? belief.output(state, 0.0) : 0.0;
-        const double intended_m = input[measured_in] - induced_m;
-        output[motor_force_out] = motor_N;
-        output[message_out] = control.position_scale * command.output(state, intended_m);
-        output[handle_force_out] = below_N - wanted_N;
-        force.advance(state, input[arrived_force_in], next);
-        below.advance(state, wanted_N, next);
-        compensated.advance(state, below_N, next);
-        rate.advance(state, input[measured_in], next);
-        command.advance(state, intended_m, next);
-        if (cancels) belief.advance(state, motor_N, next);
+        now = {.state = &state, .next = &next};
+        const auto said = control::PositionForceMaster::chain(
+            stages, gains,
+            {.motor_position_m = input[measured_in], .arrival = {.message = {.force_N = input[arrived_force_in]}}});
+        stages.cancellation.advance(said.motor_force_N);
+        // A force of none is +0 whichever its sign in the chain.
+        output[motor_force_out] = said.motor_force_N + 0.0;
+        output[message_out] = said.message.position_m;
+        output[handle_force_out] = said.handle_force_N + 0.0;
       });
   sites.slave = *std::move(servo);
-  sites.modelled = *model;
   return sites;
 }
 
@@ -155,16 +176,18 @@ Result<Loop> make_loop(const simulation::Teleoperator::Params& params, const Lin
         master_plant.a * plant + master_plant.b * Eigen::Vector2d{said[motor_force_out], said[handle_force_out]};
     next.tail(sited) = sites->master.a * site + sites->master.b * seen;
   });
-  const Part feedback{sites->slave, slave_plant.states()};
-  loop.slave = assemble(slave_plant.states() + feedback.system.states(), 1, 1,
+  Instant now;
+  const Part feedback(sites->slave, slave_plant.states(), now);
+  loop.slave = assemble(slave_plant.states() + feedback.states(), 1, 1,
                         [&](const auto& state, const auto& input, auto& next, auto& output) {
+                          now = {.state = &state, .next = &next};
                           const Eigen::VectorXd plant = state.head(slave_plant.states());
                           const Eigen::VectorXd measured = slave_plant.c * plant;
                           const double error_m = input[0] - measured[motor_out];
                           output[0] = measured[sensor_out];
                           next.head(slave_plant.states()) =
-                              slave_plant.a * plant + slave_plant.b.col(0) * feedback.output(state, error_m);
-                          feedback.advance(state, error_m, next);
+                              slave_plant.a * plant + slave_plant.b.col(0) * feedback.output(error_m);
+                          feedback.advance(error_m);
                         });
   loop.induced = one_channel(master_plant, 0, 0);
   loop.modelled = sites->modelled;

@@ -282,7 +282,7 @@ std::vector<double> settled_limit(const MapResult& map, std::size_t along) {
       double limit = std::numeric_limits<double>::quiet_NaN();
       for (std::size_t i = 0; i < values.size(); ++i) {
         const auto verdict = map.points[slow + i * stride + fast].verdict;
-        if (verdict != simulation::Verdict::settled && verdict != simulation::Verdict::ringing) break;
+        if (verdict != experiments::Verdict::settled && verdict != experiments::Verdict::ringing) break;
         limit = values[i];
       }
       limits.push_back(limit);

@@ -77,9 +77,9 @@ Result<MapAxis> parse_axis(std::string_view text) {
   std::string_view values = text.substr(equals + 1);
 
   MapParams params;
-  const auto bindings = configuration::bind(params);
-  const auto binding = std::find_if(bindings.begin(), bindings.end(),
-                                    [&](const configuration::Binding& b) { return b.path == axis.key; });
+  const auto bindings = bind(params);
+  const auto binding =
+      std::find_if(bindings.begin(), bindings.end(), [&](const Binding& b) { return b.path == axis.key; });
   if (binding == bindings.end()) {
     return Error{ErrorCode::unknown_key, axis.key, "a map has no such key: `tactus run` names what there is",
                  option(text)};
@@ -90,7 +90,7 @@ Result<MapAxis> parse_axis(std::string_view text) {
                  "value",
                  option(text)};
   }
-  if (const auto* choice = std::get_if<configuration::Choice>(&binding->target)) {
+  if (const auto* choice = std::get_if<Choice>(&binding->target)) {
     for (const std::string_view word : split(values, ',')) {
       const auto known = std::find(choice->words.begin(), choice->words.end(), word);
       if (known == choice->words.end()) {
@@ -132,9 +132,9 @@ Result<MapAxis> parse_axis(std::string_view text) {
 }
 
 PointParams::PointParams(const MapParams& base, const std::vector<MapAxis>& axes) : params_(base), axes_(axes) {
-  const auto all = configuration::bind(params_);
+  const auto all = bind(params_);
   for (const MapAxis& axis : axes) {
-    for (const configuration::Binding& binding : all) {
+    for (const Binding& binding : all) {
       if (binding.path == axis.key) bindings_.push_back(binding);
     }
   }
@@ -145,7 +145,7 @@ const MapParams& PointParams::at(std::size_t point) {
     const double value = axes_[i].values[point % axes_[i].values.size()];
     point /= axes_[i].values.size();
     if (auto* const* number = std::get_if<double*>(&bindings_[i].target)) **number = value;
-    if (const auto* choice = std::get_if<configuration::Choice>(&bindings_[i].target)) {
+    if (const auto* choice = std::get_if<Choice>(&bindings_[i].target)) {
       choice->assign(choice->member, static_cast<std::size_t>(value));
     }
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/configuration/binding.hpp>
+#include <tactus/core/binding.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/stability/map_point.hpp>
 
@@ -41,7 +41,7 @@ class PointParams {
  private:
   MapParams params_;
   const std::vector<MapAxis>& axes_;
-  std::vector<configuration::Binding> bindings_;  ///< one for each axis
+  std::vector<Binding> bindings_;  ///< one for each axis
 };
 
 }  // namespace tactus::stability

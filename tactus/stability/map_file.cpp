@@ -98,7 +98,7 @@ std::size_t read_blocks(std::string_view bytes, std::vector<MapStore::Block>& bl
     if (bytes.size() < body + sizeof(std::uint32_t)) return done;
     for (std::uint64_t i = 0; i < count; ++i) {
       PointResult point;
-      point.verdict = static_cast<simulation::Verdict>(static_cast<int>(take<double>(rest)));
+      point.verdict = static_cast<experiments::Verdict>(static_cast<int>(take<double>(rest)));
       point.settling_time_s = take<double>(rest);
       point.contacts = take<double>(rest);
       point.peak_force_N = take<double>(rest);

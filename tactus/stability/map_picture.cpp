@@ -1,5 +1,5 @@
+#include <tactus/experiments/presentation.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/presentation.hpp>
 #include <tactus/stability/map_picture.hpp>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ report::HeatMap::Axis drawn(const MapAxis& axis) {
 std::string percent_settled(const MapResult& map, const MapPlane& plane) {
   const auto from = map.points.begin() + static_cast<std::ptrdiff_t>(plane.first);
   const auto settled = std::count_if(from, from + static_cast<std::ptrdiff_t>(plane.points),
-                                     [](const PointResult& p) { return p.verdict == simulation::Verdict::settled; });
+                                     [](const PointResult& p) { return p.verdict == experiments::Verdict::settled; });
   return report::number(100.0 * static_cast<double>(settled) / static_cast<double>(plane.points), 3) + " % settled";
 }
 
@@ -113,7 +113,7 @@ MapPicture limits_of(const MapResult& map) {
 }  // namespace
 
 std::string label_of(const MapAxis& axis) {
-  std::string own = simulation::axis_of(axis.key).label;
+  std::string own = experiments::axis_of(axis.key).label;
   const std::size_t dot = axis.key.rfind('.');
   if (dot == std::string::npos) return own;
   std::string group = axis.key.substr(0, dot);

@@ -1,5 +1,6 @@
 #include <tactus/control/cancellation.hpp>
-#include <tactus/simulation/contact_metrics.hpp>
+#include <tactus/experiments/contact_metrics.hpp>
+#include <tactus/stability/declared.hpp>
 #include <tactus/stability/map_point.hpp>
 
 #include <algorithm>
@@ -23,23 +24,14 @@ double reach_s(const MapTask& task) {
   return mechanics::MinimumJerk::duration_for(2.0 * task.depth_m, task.speed_m_per_s);
 }
 
-/// An error naming the first key that asks for something that the map's loop does not have.
+/// An error naming the first key outside of `[control]` that asks for something that the map's loop does not have.
 Check check_supported(const MapParams& params) {
   struct Demand {
     bool met;
     const char* key;
     const char* remedy;
   };
-  const control::ControlParams& control = params.control;
   const Demand demands[] = {
-      {control.architecture == "position-force", "control.architecture", "write position-force"},
-      {control.cancellation_step == control::CancellationStep::exact, "control.cancellation_step", "write exact"},
-      {control.operator_estimate == control::OperatorEstimate::off, "control.operator_estimate", "write off"},
-      {control.hand_compensation_Hz == 0.0, "control.hand_compensation_Hz", "write 0"},
-      {control.damping.damping_N_s_per_m == 0.0, "control.damping.damping_N_s_per_m", "write 0"},
-      {control.command_filter.kind == control::Shaping::none, "control.command_filter.kind", "write none"},
-      {control.force_filter.kind == control::Shaping::none, "control.force_filter.kind", "write none"},
-      {control.crossover.frequency_Hz == 0.0, "control.crossover.frequency_Hz", "write 0"},
       {params.environment.law == mechanics::ContactLaw::kelvin_voigt, "environment.law", "write kelvin-voigt"},
       {params.slave.force_sensor.noise_rms_N == 0.0, "slave.force_sensor.noise_rms_N", "write 0"},
       {params.channel.to_slave.jitter_s == 0.0, "channel.to_slave.jitter_s", "write 0"},
@@ -72,7 +64,7 @@ std::size_t ticks_in(double duration_s, double tick_s) {
 simulation::Teleoperator::Params teleoperator_params(const MapParams& params) {
   simulation::Teleoperator::Params teleoperator = params;
   teleoperator.person.grip = mechanics::scaled(params.person.grip, params.task.grip);
-  teleoperator.control.model = simulation::mismatched(params.control.model, params.task.mismatch);
+  teleoperator.control.model = experiments::mismatched(params.control.model, params.task.mismatch);
   return teleoperator;
 }
 
@@ -94,6 +86,7 @@ Result<LanePlan> make_plan(const MapParams& params) {
 
 Result<LanePoint> make_point(const MapParams& params) {
   if (auto error = validate(params)) return *std::move(error);
+  if (auto error = check_declared(params.control, Analysis::lanes)) return *std::move(error);
   if (auto error = check_supported(params)) return *std::move(error);
   const simulation::Teleoperator::Params rig = teleoperator_params(params);
   const auto clock = simulation::Clock::make(rig.servo, rig.plant);
@@ -161,14 +154,14 @@ Result<LanePoint> make_point(const MapParams& params) {
 PointResult judge(const LaneResult& run, std::span<const double> contact_force_N, double tick_s) {
   PointResult result{.contacts = run.touches, .peak_force_N = run.peak_force_N};
   if (run.touched) {
-    const auto metrics = simulation::judge_contact(contact_force_N, run.first_touch, tick_s);
+    const auto metrics = experiments::judge_contact(contact_force_N, run.first_touch, tick_s);
     result.settling_time_s = metrics.settling_time_s;
     result.residual_rms_N = metrics.residual_rms_N;
-    result.verdict = !metrics.settled                                          ? simulation::Verdict::limit_cycle
-                     : metrics.settling_time_s <= simulation::settled_within_s ? simulation::Verdict::settled
-                                                                               : simulation::Verdict::ringing;
+    result.verdict = !metrics.settled                                           ? experiments::Verdict::limit_cycle
+                     : metrics.settling_time_s <= experiments::settled_within_s ? experiments::Verdict::settled
+                                                                                : experiments::Verdict::ringing;
   }
-  if (run.diverged || !run.touched) result.verdict = simulation::Verdict::diverged;
+  if (run.diverged || !run.touched) result.verdict = experiments::Verdict::diverged;
   return result;
 }
 

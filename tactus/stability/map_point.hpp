@@ -2,8 +2,8 @@
 
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
-#include <tactus/simulation/model_mismatch.hpp>
-#include <tactus/simulation/tapping.hpp>
+#include <tactus/experiments/model_mismatch.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 #include <tactus/stability/lane_run.hpp>
 
@@ -22,7 +22,7 @@ struct MapTask {
   double depth_m = 0.007;
   double observation_s = 1.0;
   double grip = 1.0;
-  simulation::ModelMismatch mismatch;
+  experiments::ModelMismatch mismatch;
   static constexpr auto fields() {
     return std::tuple{
         field("kind", &MapTask::kind, "What this file is for."),
@@ -59,16 +59,16 @@ Result<LanePoint> make_point(const MapParams& params);
 
 /// How one contact went.
 struct PointResult {
-  simulation::Verdict verdict = simulation::Verdict::settled;
+  experiments::Verdict verdict = experiments::Verdict::settled;
   double settling_time_s = 0.0;  ///< the whole observation where it did not settle
   double contacts = 0.0;
   double peak_force_N = 0.0;
   double residual_rms_N = 0.0;
 };
 
-/// Judges a run from its contact force at each tick. `settled`: within `simulation::settled_within_s`; `ringing`:
+/// Judges a run from its contact force at each tick. `settled`: within `experiments::settled_within_s`; `ringing`:
 /// later; `limit-cycle`: not at all; `diverged`: it left the workspace, or never touched. The measure is that of the
-/// tapping experiment (`simulation::judge_contact`).
+/// tapping experiment (`experiments::judge_contact`).
 PointResult judge(const LaneResult& run, std::span<const double> contact_force_N, double tick_s);
 
 }  // namespace tactus::stability

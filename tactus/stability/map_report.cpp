@@ -1,8 +1,8 @@
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/experiments/presentation.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/presentation.hpp>
 #include <tactus/stability/map_picture.hpp>
 #include <tactus/stability/map_report.hpp>
 
@@ -83,7 +83,7 @@ std::string json_of(const MapResult& map, const std::vector<MapPlane>& planes, c
     const auto counts = count(map, plane);
     nlohmann::ordered_json entry{{"plane", plane.title.empty() ? "all" : plane.title}};
     for (std::size_t verdict = 0; verdict < verdicts; ++verdict) {
-      entry[std::string(name_of(static_cast<simulation::Verdict>(verdict)))] = counts[verdict];
+      entry[std::string(name_of(static_cast<experiments::Verdict>(verdict)))] = counts[verdict];
     }
     json["planes"].push_back(std::move(entry));
   }
@@ -110,7 +110,7 @@ std::string effort_of(const MapResult& map, double elapsed_s) {
 }  // namespace
 
 MapReport report_map(const MapResult& map, const MapParams& base, double elapsed_s,
-                     const simulation::Request& request) {
+                     const experiments::Request& request) {
   const auto planes = planes_of(map);
   const auto limits = settled_limit(map, limited_axis(map));
   const report::Table table = table_of(map, planes, limits);
@@ -127,7 +127,7 @@ MapReport report_map(const MapResult& map, const MapParams& base, double elapsed
   page.paragraph(
       "One tap near the boundary is decided by accident, so a boundary has speckle. Beside this page: map.csv "
       "with one line a run, map.h5 with the same as arrays over the axes.");
-  simulation::add_provenance(page, request, configuration::to_toml(base));
+  experiments::add_provenance(page, request, configuration::to_toml(base));
   return {.text = effort + "\n" + table.to_text(),
           .json = json_of(map, planes, limits, elapsed_s, request.command),
           .html = page.to_html(),

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/simulation/experiment.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/stability/map.hpp>
 
 #include <optional>
@@ -17,6 +17,7 @@ struct MapReport {
 };
 
 /// `elapsed_s`: what the map took in this process. `request` names the experiment and the command.
-MapReport report_map(const MapResult& map, const MapParams& base, double elapsed_s, const simulation::Request& request);
+MapReport report_map(const MapResult& map, const MapParams& base, double elapsed_s,
+                     const experiments::Request& request);
 
 }  // namespace tactus::stability

@@ -1,6 +1,6 @@
+#include <tactus/experiments/presentation.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/presentation.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/stability/angle.hpp>
 #include <tactus/stability/margins.hpp>
 #include <tactus/stability/margins_report.hpp>
@@ -53,7 +53,7 @@ std::vector<std::complex<double>> slowest_poles(const Loop& loop) {
   return found;
 }
 
-Result<Analysis> analyse(const simulation::TappingParams& params, const ReportOptions& options) {
+Result<Analysis> analyse(const experiments::TappingParams& params, const ReportOptions& options) {
   auto made = make_loop(params, options.linearisation);
   if (!made) return made.error();
   const auto uncertain = uncertain_limit(params, options.linearisation, options.uncertainty);
@@ -171,7 +171,7 @@ std::vector<report::Figure> figures_of(const Analysis& analysis) {
   return {bode, nyquist, nichols};
 }
 
-std::string json_of(const simulation::Request& request, const ReportOptions& options, const Analysis& analysis) {
+std::string json_of(const experiments::Request& request, const ReportOptions& options, const Analysis& analysis) {
   nlohmann::ordered_json document{{"experiment", request.name}, {"uncertainty", options.uncertainty}};
   const auto number = [](double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -187,8 +187,8 @@ std::string json_of(const simulation::Request& request, const ReportOptions& opt
 
 }  // namespace
 
-Result<simulation::Outcome> report_margins(const simulation::Request& request, const ReportOptions& options) {
-  const auto params = request.document.read<simulation::TappingParams>();
+Result<experiments::Outcome> report_margins(const experiments::Request& request, const ReportOptions& options) {
+  const auto params = request.document.read<experiments::TappingParams>();
   if (!params) return params.error();
   const auto analysis = analyse(*params, options);
   if (!analysis) return request.document.locate(analysis.error());
@@ -202,15 +202,15 @@ Result<simulation::Outcome> report_margins(const simulation::Request& request, c
   page.table(table);
   page.table(slowest);
   for (const report::Figure& figure : figures) page.figure(figure);
-  simulation::add_provenance(page, request, configuration::to_toml(*params));
+  experiments::add_provenance(page, request, configuration::to_toml(*params));
   std::string text = table.to_text();
   text += analysis->slowest.empty()
               ? "Poles: too many for a list; unstable ones are counted by the argument principle\n"
               : slowest.to_text();
-  return simulation::Outcome{.text = std::move(text),
-                             .json = json_of(request, options, *analysis),
-                             .html = page.to_html(),
-                             .figures = std::move(figures)};
+  return experiments::Outcome{.text = std::move(text),
+                              .json = json_of(request, options, *analysis),
+                              .html = page.to_html(),
+                              .figures = std::move(figures)};
 }
 
 }  // namespace tactus::stability

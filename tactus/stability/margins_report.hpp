@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/simulation/experiment.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/stability/linearisation.hpp>
 
 /// What the verbs of `tactus stability` print, from an experiment file of the kind `tapping`.
@@ -14,6 +14,6 @@ struct ReportOptions {
 
 /// Margins, poles and gain limit of the linear loop, with Bode, Nyquist and Nichols figures. Errors: those of reading
 /// the file and of `make_loop`, with the place of the value that caused them. No variations are looked at.
-Result<simulation::Outcome> report_margins(const simulation::Request& request, const ReportOptions& options);
+Result<experiments::Outcome> report_margins(const experiments::Request& request, const ReportOptions& options);
 
 }  // namespace tactus::stability

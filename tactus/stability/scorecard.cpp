@@ -69,7 +69,7 @@ void judge_force_way(const simulation::Teleoperator::Params& params, const Linea
 
 std::vector<Sensitivity> sensitivities(const simulation::Teleoperator::Params& params,
                                        const Linearisation& linearisation, const Loop& nominal, double limit,
-                                       const simulation::Progress& progress) {
+                                       const experiments::Progress& progress) {
   constexpr double raised = 1.1, least_change = 1e-3;
   simulation::Teleoperator::Params changed = params;
   std::size_t numbers = 0, done = 0;
@@ -98,7 +98,7 @@ std::vector<Sensitivity> sensitivities(const simulation::Teleoperator::Params& p
 }  // namespace
 
 Result<Scorecard> score(const simulation::Teleoperator::Params& params, const Linearisation& linearisation,
-                        const simulation::Progress& progress) {
+                        const experiments::Progress& progress) {
   const auto loop = make_loop(params, linearisation);
   if (!loop) return loop.error();
   simulation::Teleoperator::Params plain = params;

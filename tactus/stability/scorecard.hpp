@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/simulation/experiment.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/stability/margins.hpp>
 #include <tactus/stability/two_port.hpp>
 
@@ -36,6 +36,6 @@ struct Scorecard {
 
 /// Errors: those of `make_loop`. Not real-time safe; some seconds, and `progress` tells how far.
 Result<Scorecard> score(const simulation::Teleoperator::Params& params, const Linearisation& linearisation,
-                        const simulation::Progress& progress);
+                        const experiments::Progress& progress);
 
 }  // namespace tactus::stability

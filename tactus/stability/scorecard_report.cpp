@@ -1,6 +1,6 @@
+#include <tactus/experiments/presentation.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/presentation.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/stability/angle.hpp>
 #include <tactus/stability/scorecard.hpp>
 #include <tactus/stability/scorecard_report.hpp>
@@ -83,9 +83,9 @@ std::string limited_by(const Scorecard& card) {
 
 }  // namespace
 
-Result<simulation::Outcome> report_scorecard(const simulation::Request& request, const ReportOptions& options,
-                                             const simulation::Progress& progress) {
-  const auto params = request.document.read<simulation::TappingParams>();
+Result<experiments::Outcome> report_scorecard(const experiments::Request& request, const ReportOptions& options,
+                                              const experiments::Progress& progress) {
+  const auto params = request.document.read<experiments::TappingParams>();
   if (!params) return params.error();
   const auto card = score(*params, options.linearisation, progress);
   if (!card) return request.document.locate(card.error());
@@ -125,11 +125,11 @@ Result<simulation::Outcome> report_scorecard(const simulation::Request& request,
   page.paragraph(limited);
   page.table(changes);
   page.figure(figure);
-  simulation::add_provenance(page, request, configuration::to_toml(*params));
-  return simulation::Outcome{.text = table.to_text() + limited + changes.to_text(),
-                             .json = document.dump(2) + "\n",
-                             .html = page.to_html(),
-                             .figures = {figure}};
+  experiments::add_provenance(page, request, configuration::to_toml(*params));
+  return experiments::Outcome{.text = table.to_text() + limited + changes.to_text(),
+                              .json = document.dump(2) + "\n",
+                              .html = page.to_html(),
+                              .figures = {figure}};
 }
 
 }  // namespace tactus::stability

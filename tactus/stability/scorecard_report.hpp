@@ -6,7 +6,7 @@ namespace tactus::stability {
 
 /// The scorecard of the master in the file, its two-port over frequency in a figure, and the closed-form bounds on a
 /// virtual wall. Errors: those of `report_margins`.
-Result<simulation::Outcome> report_scorecard(const simulation::Request& request, const ReportOptions& options,
-                                             const simulation::Progress& progress);
+Result<experiments::Outcome> report_scorecard(const experiments::Request& request, const ReportOptions& options,
+                                              const experiments::Progress& progress);
 
 }  // namespace tactus::stability

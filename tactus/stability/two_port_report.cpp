@@ -1,6 +1,6 @@
+#include <tactus/experiments/presentation.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/simulation/presentation.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/stability/angle.hpp>
 #include <tactus/stability/two_port_report.hpp>
 #include <tactus/stability/two_port_sweep.hpp>
@@ -106,7 +106,7 @@ report::Figure hybrid_figure(const TwoPortSweep& sweep) {
   return figure;
 }
 
-std::string json_of(const simulation::Request& request, const TwoPortSweep& sweep) {
+std::string json_of(const experiments::Request& request, const TwoPortSweep& sweep) {
   using Json = nlohmann::ordered_json;
   const auto to_Hz = sweep.transparent_to_Hz();
   Json document{{"experiment", request.name},
@@ -135,8 +135,8 @@ std::string json_of(const simulation::Request& request, const TwoPortSweep& swee
 
 }  // namespace
 
-Result<simulation::Outcome> report_two_port(const simulation::Request& request, const ReportOptions& options) {
-  const auto params = request.document.read<simulation::TappingParams>();
+Result<experiments::Outcome> report_two_port(const experiments::Request& request, const ReportOptions& options) {
+  const auto params = request.document.read<experiments::TappingParams>();
   if (!params) return params.error();
   const auto sweep = sweep_two_port(*params, options.linearisation);
   if (!sweep) return request.document.locate(sweep.error());
@@ -150,11 +150,11 @@ Result<simulation::Outcome> report_two_port(const simulation::Request& request, 
   page.table(summary);
   page.table(table);
   for (const report::Figure& figure : figures) page.figure(figure);
-  simulation::add_provenance(page, request, configuration::to_toml(*params));
-  return simulation::Outcome{.text = summary.to_text() + table.to_text(),
-                             .json = json_of(request, *sweep),
-                             .html = page.to_html(),
-                             .figures = std::move(figures)};
+  experiments::add_provenance(page, request, configuration::to_toml(*params));
+  return experiments::Outcome{.text = summary.to_text() + table.to_text(),
+                              .json = json_of(request, *sweep),
+                              .html = page.to_html(),
+                              .figures = std::move(figures)};
 }
 
 }  // namespace tactus::stability

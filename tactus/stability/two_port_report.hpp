@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/simulation/experiment.hpp>
+#include <tactus/experiments/experiment.hpp>
 #include <tactus/stability/margins_report.hpp>
 
 namespace tactus::stability {
@@ -8,6 +8,6 @@ namespace tactus::stability {
 /// The two-port between hand and tip: hybrid matrix, Llewellyn's index, passivity, transmitted impedance and
 /// transparency, as a table at some frequencies, and over all of them as pictures and in the JSON document. Errors:
 /// those of `report_margins`.
-Result<simulation::Outcome> report_two_port(const simulation::Request& request, const ReportOptions& options);
+Result<experiments::Outcome> report_two_port(const experiments::Request& request, const ReportOptions& options);
 
 }  // namespace tactus::stability

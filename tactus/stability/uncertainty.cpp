@@ -20,10 +20,10 @@ Result<UncertainLimit> uncertain_limit(const simulation::Teleoperator::Params& p
   for (const double mass : factors) {
     for (const double linkage : factors) {
       for (const double damping : factors) {
-        const simulation::ModelMismatch mismatch{
+        const experiments::ModelMismatch mismatch{
             .mass = mass, .linkage_stiffness = linkage, .operator_damping = damping};
         simulation::Teleoperator::Params misjudged = params;
-        misjudged.control.model = simulation::mismatched(params.control.model, mismatch);
+        misjudged.control.model = experiments::mismatched(params.control.model, mismatch);
         misjudged.control.force_gain = 1.0;
         const auto loop = make_loop(misjudged, linearisation);
         if (!loop) return loop.error();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/simulation/model_mismatch.hpp>
+#include <tactus/experiments/model_mismatch.hpp>
 #include <tactus/stability/margins.hpp>
 
 /// What a wrong model of master and hand costs.
@@ -12,8 +12,8 @@ struct UncertainLimit {
   /// Below it L stays within the unit circle for all models, 1 / max |L / μ|: no phase is trusted (small gain).
   double small_gain = 0.0;
   double small_gain_frequency_rad_per_s = 0.0;
-  double smallest_limit = 0.0;      ///< of the gain limits of all models
-  simulation::ModelMismatch worst;  ///< the model that has it
+  double smallest_limit = 0.0;       ///< of the gain limits of all models
+  experiments::ModelMismatch worst;  ///< the model that has it
 };
 
 /// For `share` from 0 to 0.9. With cancellation off there is one model: none. Errors: those of `make_loop`.

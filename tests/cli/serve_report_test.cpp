@@ -17,10 +17,10 @@ TEST(ServeReport, TellsWhatWasTriedAndThatOneLoopRangWhereTheOtherSettled) {
     view->engine().step();
     if (i % 100 == 99) view->collect([](std::size_t) { return false; }, [](auto, auto, const auto&) {});
   }
-  const simulation::Request request{.document = configuration::Document::parse("", "sample.toml").value(),
-                                    .variations = {},
-                                    .name = "sample",
-                                    .command = "tactus serve"};
+  const experiments::Request request{.document = configuration::Document::parse("", "sample.toml").value(),
+                                     .variations = {},
+                                     .name = "sample",
+                                     .command = "tactus serve"};
   const auto outcome = serve_outcome({.duration_s = 0.6, .server = {.accepted = 3}}, view->history(),
                                      live::sample_settings().descriptions(), request, "[task]");
   const auto document = nlohmann::json::parse(outcome.json);

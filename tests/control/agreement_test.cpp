@@ -1,5 +1,6 @@
 #include <tactus/control/agreed_parameters.hpp>
 #include <tactus/control/supervised_site.hpp>
+#include <tactus/control/time_domain_passivity.hpp>
 
 #include <cstdint>
 #include <functional>
@@ -72,7 +73,7 @@ TEST(Agreement, SitesThatWorkByOtherParametersAreNotArmedAndNameTheKeyAndBothVal
       {[](ControlParams& c) { c.force_limit_N = 0.75; }, "control.force_limit_N", "0.75 N", "1 N"},
       {[](ControlParams& c) { c.slave_gate.force_limit_N = 20.0; }, "control.slave_gate.force_limit_N", "20 N", "10 N"},
       {[](ControlParams& c) { c.gate.energy.credit_J *= 2.0; }, "control.gate.energy.credit_J", {}, {}},
-      {[](ControlParams& c) { c.passivity.reflected_force = ReflectedForce::servo; },
+      {[](ControlParams& c) { c.own<PassivityParams>().reflected_force = ReflectedForce::servo; },
        "control.passivity.reflected_force", "servo", "tip"},
       {[](ControlParams& c) { c.supervision.watchdog.timeout_s = 0.3; }, "control.supervision.watchdog.timeout_s",
        "0.3 s", "0.1 s"},
@@ -99,6 +100,50 @@ TEST(Agreement, SitesThatWorkByOtherParametersAreNotArmedAndNameTheKeyAndBothVal
       EXPECT_EQ(found->own, difference.ours);
       EXPECT_EQ(found->other, difference.theirs);
     }
+  }
+}
+
+TEST(Agreement, EveryValueFindsACell) { EXPECT_LT(agreement_of({}, tick).size(), Agreement::most_cells); }
+
+/// Keys of an architecture that was plugged in: one of each kind.
+struct PluggedParams {
+  double stiffness_N_per_m = 100.0;
+  std::int64_t stages = 2;
+  bool soft = false;
+  ReflectedForce force = ReflectedForce::tip;
+  static constexpr auto fields() {
+    return std::tuple{
+        field("stiffness_N_per_m", &PluggedParams::stiffness_N_per_m, units::newton_per_metre, positive, "Stiffness."),
+        field("stages", &PluggedParams::stages, between(1.0, 5.0), "Stages."),
+        field("soft", &PluggedParams::soft, "Softly."), field("force", &PluggedParams::force, "Which force.")};
+  }
+};
+
+TEST(Agreement, SitesThatDifferInAKeyOfAnArchitectureThatWasPluggedInNameIt) {
+  Architecture plugged = *find_architecture("position-force");
+  plugged.name = "plugged";
+  plugged.keys = own_keys<PluggedParams>("plugged", "Architecture plugged.");
+  ASSERT_FALSE(register_architecture(plugged));
+  using Params = PluggedParams;
+  const std::vector<Difference> differences{
+      {[](ControlParams& c) { c.own<Params>().stiffness_N_per_m = 90.0; }, "control.plugged.stiffness_N_per_m",
+       "90 N/m", "100 N/m"},
+      {[](ControlParams& c) { c.own<Params>().stages = 3; }, "control.plugged.stages", "3", "2"},
+      {[](ControlParams& c) { c.own<Params>().soft = true; }, "control.plugged.soft", "true", "false"},
+      {[](ControlParams& c) { c.own<Params>().force = ReflectedForce::servo; }, "control.plugged.force", "servo",
+       "tip"},
+  };
+  for (const Difference& difference : differences) {
+    ControlParams plain, changed;
+    difference.change(changed);
+    TwoSites sites(changed, plain);
+    sites.arm();
+    EXPECT_TRUE(sites.none_armed()) << difference.key;
+    const auto found = first_disagreement(sites.master.agreement());
+    ASSERT_TRUE(found) << difference.key;
+    EXPECT_EQ(found->key, difference.key);
+    EXPECT_EQ(found->own, difference.ours);
+    EXPECT_EQ(found->other, difference.theirs);
   }
 }
 

@@ -1,6 +1,10 @@
 #include <tactus/control/architecture.hpp>
+#include <tactus/control/projection.hpp>
+#include <tactus/control/shared_compliant.hpp>
 
+#include <cstdint>
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -30,13 +34,119 @@ Result<Controllers> make_scripted(const ControlParams& params, Seconds) {
 }
 
 TEST(Architecture, OneRegistrationLineMakesAnArchitectureThatAFileCanName) {
-  register_architecture({"scripted", "answers with a constant force", make_scripted});
+  ASSERT_FALSE(register_architecture({"scripted", "answers with a constant force", make_scripted}));
   ControlParams params;
   params.architecture = "scripted";
   params.force_gain = 0.25;
   auto sites = make_sites(params, tick);
   ASSERT_TRUE(sites.ok());
   EXPECT_DOUBLE_EQ(sites->master.step({}).motor_force_N, 0.25);
+}
+
+/// Keys that no architecture of the library has.
+struct ScriptParams {
+  double force_N = 0.5;
+  std::int64_t lines = 3;
+  static constexpr auto fields() {
+    return std::tuple{field("force_N", &ScriptParams::force_N, units::newton, between(0.0, 2.0), "What it answers."),
+                      field("lines", &ScriptParams::lines, between(1.0, 9.0), "How many lines it has.")};
+  }
+};
+
+Result<Controllers> make_by_script(const ControlParams& params, Seconds) {
+  return Controllers{master_controller(Scripted{.force_N = params.own<ScriptParams>().force_N}),
+                     slave_controller(Silent{})};
+}
+
+Architecture by_script(const char* name = "by-script", const char* group = "script") {
+  return {.name = name,
+          .summary = "answers with the force of its script",
+          .make = make_by_script,
+          .keys = own_keys<ScriptParams>(group, "Architecture by-script: its script.")};
+}
+
+std::string keys_of(ControlParams params) {
+  std::string all;
+  for (const Binding& binding : bind(params)) all += binding.path + "\n";
+  return all;
+}
+
+TEST(Architecture, BringsKeysOfItsOwnThatStandBesideThoseOfTheOthers) {
+  const ControlParams before;
+  EXPECT_EQ(keys_of(before).find("script"), std::string::npos);
+  ASSERT_FALSE(register_architecture(by_script()));
+  for (const ControlParams& params : {before, ControlParams{}}) {
+    EXPECT_NE(keys_of(params).find("\ntank.velocity.cutoff_Hz\nscript\nscript.force_N\nscript.lines\nsupervision\n"),
+              std::string::npos)
+        << keys_of(params);
+  }
+}
+
+TEST(Architecture, IsMadeWithTheValuesOfItsOwnKeysAndWithTheirDefaults) {
+  ASSERT_FALSE(register_architecture(by_script()));
+  ControlParams params;
+  params.architecture = "by-script";
+  EXPECT_DOUBLE_EQ(make_sites(params, tick)->master.step({}).motor_force_N, 0.5);
+  const ControlParams before = params;
+  for (const Binding& binding : bind(params)) {
+    if (binding.path == "script.force_N") *std::get<double*>(binding.target) = 0.125;
+  }
+  const ControlParams copy = params;
+  params.own<ScriptParams>().force_N = 1.75;
+  EXPECT_DOUBLE_EQ(make_sites(before, tick)->master.step({}).motor_force_N, 0.5);
+  EXPECT_DOUBLE_EQ(make_sites(copy, tick)->master.step({}).motor_force_N, 0.125);
+  EXPECT_DOUBLE_EQ(copy.own<ScriptParams>().force_N, 0.125);
+  EXPECT_EQ(copy.own<ScriptParams>().lines, 3);
+}
+
+TEST(Architecture, ItsOwnKeysAreHeldToTheirBoundsWhicheverArchitectureIsChosen) {
+  ASSERT_FALSE(register_architecture(by_script()));
+  for (const char* architecture : {"by-script", "position-force"}) {
+    ControlParams params;
+    params.architecture = architecture;
+    params.own<ScriptParams>().force_N = 2.5;
+    EXPECT_EQ(make_sites(params, tick).error().parameter, "script.force_N");
+    params.own<ScriptParams>() = {.lines = 10};
+    EXPECT_EQ(make_sites(params, tick).error().parameter, "script.lines");
+  }
+}
+
+TEST(Architecture, AnotherOneOfTheSameNameTakesThePlaceOfItAndOfItsGroup) {
+  ASSERT_FALSE(register_architecture(by_script()));
+  ASSERT_FALSE(register_architecture({"by-script", "answers with a constant force", make_scripted}));
+  EXPECT_EQ(keys_of({}).find("script"), std::string::npos);
+}
+
+TEST(Architecture, TwoMayShareAGroup) {
+  ASSERT_FALSE(register_architecture(by_script()));
+  const std::string with_one = keys_of({});
+  ASSERT_FALSE(register_architecture(by_script("by-script-too")));
+  EXPECT_EQ(keys_of({}), with_one);
+  ASSERT_FALSE(register_architecture({"by-script-too", "answers with a constant force", make_scripted}));
+}
+
+TEST(Architecture, AGroupWhoseNameOrTypeIsTakenIsRefused) {
+  const auto refusal = [](const Architecture& architecture) {
+    const Check refused = register_architecture(architecture);
+    return refused ? refused->message : std::string("was registered");
+  };
+  EXPECT_EQ(
+      refusal(by_script("never-registered", "gate")),
+      "the group 'gate' of the architecture never-registered bears the name of a key that every architecture has: give "
+      "it another one");
+  EXPECT_EQ(
+      refusal(by_script("never-registered", "tank")),
+      "the group 'tank' of the architecture never-registered bears the name of the one that energy-tank has: give it "
+      "another one");
+  for (const char* group : {"", "my script", "my.script", "Script"}) {
+    EXPECT_NE(refusal(by_script("never-registered", group)).find("has no name that a file can hold"),
+              std::string::npos);
+  }
+  EXPECT_EQ(find_architecture("never-registered"), nullptr);
+  EXPECT_EQ(refusal(by_script()), "was registered");
+  EXPECT_EQ(refusal(by_script("other", "other")),
+            "the group 'other' of the architecture other has the type of 'script', that by-script has: give it that "
+            "name or a type of its own");
 }
 
 TEST(Site, NoControllerGetsPastItsGate) {
@@ -80,9 +190,11 @@ TEST(Architecture, TheCouplingsNameTheKeyOfTheFileThatCannotBe) {
                           }),
               "cancellation_step");
   }
-  EXPECT_EQ(refused_key("projection", [](auto& p) { p.projection.hand_force_cutoff_Hz = 2400.0; }),
-            "projection.hand_force_cutoff_Hz");
-  EXPECT_EQ(refused_key("shared-compliant", [](auto& p) { p.compliance.cutoff_Hz = 2600.0; }), "compliance.cutoff_Hz");
+  EXPECT_EQ(
+      refused_key("projection", [](auto& p) { p.template own<ProjectionParams>().hand_force_cutoff_Hz = 2400.0; }),
+      "projection.hand_force_cutoff_Hz");
+  EXPECT_EQ(refused_key("shared-compliant", [](auto& p) { p.template own<ComplianceParams>().cutoff_Hz = 2600.0; }),
+            "compliance.cutoff_Hz");
 }
 
 TEST(Site, AMeasurementOrMessageThatIsNoNumberLetsGoAndStaysSoUntilReset) {

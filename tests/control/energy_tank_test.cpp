@@ -171,10 +171,10 @@ TEST(EnergyTank, ALevelThatIsNotANumberReachesTheGate) {
 TEST(EnergyTank, ErrorsNameTheKeyOfTheFile) {
   ControlParams params;
   params.architecture = "energy-tank";
-  params.tank.capacity_J = 1e-3;
+  params.own<EnergyTank::Params>().capacity_J = 1e-3;
   EXPECT_EQ(describe(make_sites(params, Seconds{tick_s}).error()),
             "tank.capacity_J: 0.001 J is less than desired_level_J, 0.002 J: raise one or lower the other");
-  params.tank = {};
+  params.own<EnergyTank::Params>() = {};
   params.model.cable.damping_N_s_per_m = 0.0;
   params.cancellation_step = CancellationStep::euler;
   EXPECT_EQ(make_sites(params, Seconds{tick_s}).error().parameter, "cancellation_step");

@@ -1,4 +1,5 @@
 #include <tactus/control/architecture.hpp>
+#include <tactus/control/four_channel.hpp>
 
 #include <algorithm>
 #include <array>

@@ -296,14 +296,14 @@ TEST(FourChannel, AForceGainOfZeroIsRefusedUnlessNoHandForceGoesToTheSlave) {
   const auto refused = make_sites(params, Seconds{tick_s});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().parameter, "force_gain");
-  params.four_channel.hand_force_gain = 0.0;
+  params.own<FourChannelParams>().hand_force_gain = 0.0;
   EXPECT_TRUE(make_sites(params, Seconds{tick_s}).ok());
 }
 
 TEST(FourChannel, AParameterOutOfBoundsIsNamedAsTheFileNamesIt) {
   ControlParams params;
   params.architecture = "four-channel";
-  params.four_channel.acceleration.cutoff_Hz = 3000.0;
+  params.own<FourChannelParams>().acceleration.cutoff_Hz = 3000.0;
   const auto refused = make_sites(params, Seconds{tick_s});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().parameter, "four_channel.acceleration.cutoff_Hz");
@@ -312,7 +312,7 @@ TEST(FourChannel, AParameterOutOfBoundsIsNamedAsTheFileNamesIt) {
 TEST(FourChannel, AHandForceThatIsNoNumberClosesTheMastersGateAndNothingBrokenIsSent) {
   ControlParams params;
   params.architecture = "four-channel";
-  params.four_channel.master_force_loop_gain = 0.5;
+  params.own<FourChannelParams>().master_force_loop_gain = 0.5;
   auto sites = make_sites(params, Seconds{tick_s}).value();
   MasterInput broken;
   broken.hand_force_N = std::numeric_limits<double>::quiet_NaN();

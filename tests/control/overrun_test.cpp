@@ -143,6 +143,7 @@ TEST(Overrun, AfterAStallAToldPositionGoesOnWithoutAStepAndItsVelocityIsNotOvere
 struct Pair {
   SupervisedMaster master = make_supervised_master({}, 11, tick).value();
   SupervisedSlave slave = make_supervised_slave({}, 21, tick).value();
+  SlaveInput at_slave;
   SiteRequests buttons;
   SupervisedSlave::Output slave_out;
 
@@ -152,7 +153,7 @@ struct Pair {
       told = master.step({.sensors = {}, .requests = buttons}).packet;
       slave.take(told);
     }
-    slave_out = slave.step({.sensors = {}, .requests = buttons, .elapsed_ticks = slave_ticks});
+    slave_out = slave.step({.sensors = at_slave, .requests = buttons, .elapsed_ticks = slave_ticks});
     master.take(slave_out.packet);
   }
   void start() {
@@ -180,6 +181,11 @@ TEST(Overload, ASlaveThatMissesMostOrEverySecondOfItsTicksHoldsWithinASecondAndW
     EXPECT_EQ(pair.slave.state(), SiteState::hold) << "stepped every " << every;
     EXPECT_EQ(pair.cause(), "overloaded");
     EXPECT_LT(ticks * tick_s, 0.3);
+    // Its servo would still push, at a rate at which it was never stable: the site lets go instead.
+    pair.at_slave.motor_position_m -= 0.001;
+    for (int i = 0; i < 50; ++i) pair.step(every);
+    EXPECT_EQ(pair.slave_out.site.motor_force_N, 0.0);
+    EXPECT_FALSE(pair.slave_out.record.enabled);
     pair.buttons.dead_man = false;
     pair.buttons.arm = true;
     for (int i = 0; i < 100; ++i) pair.step(every);

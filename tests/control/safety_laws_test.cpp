@@ -143,8 +143,8 @@ struct Subject<control::SiteSupervisor> {
 using SafetyElements =
     ::testing::Types<control::ForceGate, control::EncoderCheck, control::ForceSensorCheck, control::PassivityMonitor,
                      control::Watchdog, control::OverloadCheck, control::PaceCheck, control::ReversalCheck,
-                     control::ThermalLimit, control::SignProbe, control::SafetyGate, control::PacketJudge,
-                     control::MessageFollower, control::SiteSupervisor>;
+                     control::ThermalLimit, control::SignProbe, control::StoppingBrake, control::SafetyGate,
+                     control::PacketJudge, control::MessageFollower, control::SiteSupervisor>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Safety, ElementLaws, SafetyElements);
 
 }  // namespace tactus::laws

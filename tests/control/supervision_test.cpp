@@ -244,9 +244,22 @@ TEST(Supervision, AForceSensorThatCannotBeRightAndAStallEndInHold) {
   Pair pair;
   pair.start();
   pair.at_slave.tip_force_N = 60.0;
-  pair.step(200);
+  for (int i = 0; i < 200 && pair.slave.state() != SiteState::hold; ++i) {
+    pair.at_slave.motor_position_m += 0.2 * tick_s;
+    pair.step();
+  }
   EXPECT_EQ(pair.slave.state(), SiteState::hold);
   EXPECT_EQ(static_cast<SiteCause>(pair.slave_out.record.cause), SiteCause::force_sensor);
+  // Nobody holds the tool: it is braked, and the drive keeps its power until it stands.
+  for (int i = 0; i < 20; ++i) {
+    pair.at_slave.motor_position_m += 0.2 * tick_s;
+    pair.step();
+  }
+  EXPECT_LT(pair.slave_out.site.motor_force_N, -0.1);
+  EXPECT_TRUE(pair.slave_out.record.enabled);
+  pair.step(100);
+  EXPECT_EQ(pair.slave_out.site.motor_force_N, 0.0);
+  EXPECT_FALSE(pair.slave_out.record.enabled);
   Pair other;
   other.start();
   other.slave.step({.sensors = other.at_slave, .requests = other.buttons, .elapsed_ticks = 200});

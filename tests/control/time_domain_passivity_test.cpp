@@ -235,7 +235,7 @@ TEST(TimeDomainPassivity, ErrorsNameTheKeyOfTheFile) {
   params.force_gain = 0.0;
   EXPECT_EQ(make_sites(params, Seconds{tick_s}).error().parameter, "force_gain");
   params.force_gain = 1.0;
-  params.passivity.velocity.cutoff_Hz = 4000.0;
+  params.own<PassivityParams>().velocity.cutoff_Hz = 4000.0;
   EXPECT_EQ(make_sites(params, Seconds{tick_s}).error().parameter, "passivity.velocity.cutoff_Hz");
 }
 

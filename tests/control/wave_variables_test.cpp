@@ -232,9 +232,9 @@ TEST(WaveVariables, AMessageThatIsNotANumberReachesTheGate) {
 TEST(WaveVariables, ErrorsNameTheKeyOfTheFile) {
   ControlParams params;
   params.architecture = "wave-variables";
-  params.wave.cutoff_Hz = 3000.0;
+  params.own<WaveParams>().cutoff_Hz = 3000.0;
   EXPECT_EQ(make_sites(params, Seconds{tick_s}).error().parameter, "wave.cutoff_Hz");
-  params.wave = {};
+  params.own<WaveParams>() = {};
   params.force_gain = 0.0;
   EXPECT_EQ(make_sites(params, Seconds{tick_s}).error().parameter, "force_gain");
 }

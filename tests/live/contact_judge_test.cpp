@@ -1,6 +1,6 @@
+#include <tactus/experiments/contact_metrics.hpp>
 #include <tactus/live/contact_judge.hpp>
 #include <tactus/signal/random.hpp>
-#include <tactus/simulation/contact_metrics.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -33,7 +33,7 @@ TEST(ContactJudge, AgreesWithTheTappingExperimentOnWhetherAndWhenAContactSettles
   int settled = 0;
   for (const double fades_in_s : {0.004, 0.01, 0.02, 0.03, 0.036, 0.042, 0.06, 0.1, 0.5, 1e9}) {
     const std::vector<double> force_N = contact(begin, begin + window, fades_in_s);
-    const auto whole = simulation::judge_contact(force_N, begin, tick_s);
+    const auto whole = experiments::judge_contact(force_N, begin, tick_s);
     ContactJudge judge = ContactJudge::make(Seconds{tick_s}).value();
     LiveVerdict verdict = LiveVerdict::free;
     for (std::size_t i = 0; i < force_N.size(); ++i) {

@@ -1,5 +1,5 @@
+#include <tactus/experiments/contact_metrics.hpp>
 #include <tactus/live/contact_judge.hpp>
-#include <tactus/simulation/contact_metrics.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -74,7 +74,7 @@ TEST(Engine, AtGainTenATapRingsWithoutCancellationAndSettlesWithIt) {
       force_N.push_back(tick.record.contact_force_N);
     }
     ASSERT_TRUE(begin.has_value());
-    const auto metrics = simulation::judge_contact(force_N, *begin, view->engine().tick_s());
+    const auto metrics = experiments::judge_contact(force_N, *begin, view->engine().tick_s());
     EXPECT_EQ(metrics.settled && metrics.settling_time_s < 0.1, loop == 0) << metrics.settling_time_s;
     EXPECT_EQ(judge.verdict(), loop == 0 ? LiveVerdict::settled : LiveVerdict::rings) << judge.cause();
   }

@@ -157,8 +157,8 @@ TEST(LiveView, RemembersEachContactWithWhatWasSetAndForgetsSettingsThatSawNone) 
   EXPECT_EQ(crisp.verdict, LiveVerdict::settled);
   EXPECT_EQ(ringing.verdict, LiveVerdict::rings);
   EXPECT_EQ(later.verdict, LiveVerdict::settled) << "a gain of 0.5 is calm without cancellation too";
-  EXPECT_GT(ringing.settling_time_s, simulation::settled_within_s);
-  EXPECT_LT(crisp.settling_time_s, simulation::settled_within_s);
+  EXPECT_GT(ringing.settling_time_s, experiments::settled_within_s);
+  EXPECT_LT(crisp.settling_time_s, experiments::settled_within_s);
   EXPECT_GT(ringing.vibration_energy_J, 5.0 * crisp.vibration_energy_J);
   EXPECT_GT(crisp.peak_force_N, 0.05);
   EXPECT_NEAR(crisp.time_s, ringing.time_s, 0.01) << "the same hand";

@@ -1,7 +1,7 @@
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/plant_server.hpp>
 #include <tactus/runtime/real_time_tap.hpp>
 #include <tactus/runtime/shared_plant.hpp>
-#include <tactus/simulation/tapping.hpp>
 
 #include <atomic>
 #include <chrono>
@@ -48,7 +48,7 @@ void prepare() noexcept {
 /// A plant that another thread owns, as another process would, and this one drives.
 class OwnedPlant {
  public:
-  explicit OwnedPlant(const simulation::TappingParams& params)
+  explicit OwnedPlant(const experiments::TappingParams& params)
       : server_(*PlantServer::make(name(), params, patient)), servo_(*Servo::start({.priority = 10}, Step{*server_})) {
     driven_ = *SharedPlant::attach(name(), patient);
   }
@@ -94,10 +94,10 @@ Deeds watch(void (*fault)() noexcept, Devices devices = Devices::own) {
   const pid_t child = fork();
   if (child == 0) {
     alarm(60);
-    simulation::TappingParams params;
+    experiments::TappingParams params;
     params.task.taps = 1;
     params.control.force_gain = 10.0;
-    const auto ensemble = simulation::TappingEnsemble::make(params);
+    const auto ensemble = experiments::TappingEnsemble::make(params);
     auto recorder = telemetry::Recorder::create(file);
     if (!ensemble || !recorder) _exit(2);
     const RealTimeStreams streams{.teleoperator = &recorder->add<simulation::Teleoperator::Record>(

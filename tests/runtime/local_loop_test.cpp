@@ -73,7 +73,7 @@ class LocalSites : public ::testing::Test {
   }
 
   const std::filesystem::path folder = scratch_path();
-  simulation::TappingParams params;
+  experiments::TappingParams params;
   SiteExchange exchange;
   std::optional<SiteLog> log;
   std::optional<LocalLoop> loop;

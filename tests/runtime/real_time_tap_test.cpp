@@ -1,5 +1,5 @@
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/real_time_tap.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 namespace tactus::runtime {
 namespace {
 
-using simulation::TappingEnsemble;
-using simulation::TappingParams;
+using experiments::TappingEnsemble;
+using experiments::TappingParams;
 using Record = simulation::Teleoperator::Record;
 
 /// The tapping experiment of the repository in short: a firm tap on a stiff wall, with noise, tremor and cancellation.
@@ -168,7 +168,7 @@ class WatchedDevice final : public station::Device {
 
 class WatchedPlant final : public TapPlant {
  public:
-  explicit WatchedPlant(const simulation::Tap& tap)
+  explicit WatchedPlant(const experiments::Tap& tap)
       : plant_(SimulatedPlant::make(tap).value()), master_(plant_.master()), slave_(plant_.slave()) {}
   WatchedDevice& master() noexcept override { return master_; }
   WatchedDevice& slave() noexcept override { return slave_; }

@@ -1,9 +1,9 @@
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/plant_server.hpp>
 #include <tactus/runtime/real_time_tap.hpp>
 #include <tactus/runtime/replay.hpp>
 #include <tactus/runtime/shared_plant.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
 #include <algorithm>
@@ -29,8 +29,8 @@ namespace tactus::runtime {
 namespace shared_plant_test {
 
 using namespace std::chrono_literals;
-using simulation::TappingEnsemble;
-using simulation::TappingParams;
+using experiments::TappingEnsemble;
+using experiments::TappingParams;
 using Record = simulation::Teleoperator::Record;
 
 constexpr double observation_s = 0.15;

@@ -124,7 +124,7 @@ class Sites : public ::testing::Test {
   }
 
   const std::filesystem::path folder = scratch_path();
-  simulation::TappingParams params;
+  experiments::TappingParams params;
   Site master, slave;
   std::int64_t now_ns = 1'000'000'000;
   std::map<std::string, std::string> metadata;

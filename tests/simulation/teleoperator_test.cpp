@@ -1,4 +1,4 @@
-#include <tactus/simulation/tapping.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <array>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "tests/simulation/default_experiment.hpp"
+#include "tests/default_experiment.hpp"
 #include <gtest/gtest.h>
 
 namespace tactus::simulation {
@@ -18,7 +18,7 @@ namespace teleoperator_test {
 using Records = std::vector<Teleoperator::Record>;
 using Path = std::function<double(double)>;
 
-Teleoperator::Params tapping_params() { return experiment_file<TappingParams>("tapping"); }
+Teleoperator::Params tapping_params() { return experiment_file<experiments::TappingParams>("tapping"); }
 
 /// The same without anything random or periodic: tremor, slow correction, noise.
 Teleoperator::Params quiet_params() {

@@ -1,7 +1,7 @@
 // virtual_day [HOURS [ARCHITECTURE]]: two supervised sites at 5 kHz for 24 h of virtual time, or so many, over the
 // link's codec, without a fault: a person taps and presses all the time. Every hour and at the end the run must be what
 // it was in the first. Prints what came out; status 1 where anything differs.
-#include <tactus/simulation/fault_table.hpp>
+#include <tactus/experiments/faults/table.hpp>
 
 #include <chrono>
 #include <cstdio>
@@ -16,7 +16,7 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "use: virtual_day [HOURS [ARCHITECTURE]]\n");
     return 2;
   }
-  simulation::FaultsParams params;
+  experiments::FaultsParams params;
   // A fifth of the substeps that the experiments take: what is looked at is the sites, not the plants.
   params.plant.longest_step_s = 1e-4;
   if (count > 2) params.control.architecture = arguments[2];

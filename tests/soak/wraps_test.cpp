@@ -1,7 +1,7 @@
 // Every counter of a pair of sites, a second before it would wrap or reach its limit.
+#include <tactus/experiments/faults/table.hpp>
 #include <tactus/link/packet_filter.hpp>
 #include <tactus/link/secure_channel.hpp>
-#include <tactus/simulation/fault_table.hpp>
 
 #include <algorithm>
 #include <array>
@@ -30,8 +30,8 @@ constexpr std::int64_t run_ns = 2'000'000'000, half_ns = run_ns / 2;
 constexpr std::int64_t run_ticks = 10'000, half_ticks = run_ticks / 2;
 constexpr std::array<std::int64_t, 3> powers{std::int64_t{1} << 31, std::int64_t{1} << 32, std::int64_t{1} << 53};
 
-simulation::FaultsParams params_with(const std::string& architecture) {
-  simulation::FaultsParams params;
+experiments::FaultsParams params_with(const std::string& architecture) {
+  experiments::FaultsParams params;
   params.plant.longest_step_s = 1e-4;
   params.control.architecture = architecture;
   return params;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/simulation/model_mismatch.hpp>
+#include <tactus/experiments/model_mismatch.hpp>
 #include <tactus/stability/bonded_run.hpp>
 
 /// The rig of the experiment file without anything that is not linear.
@@ -14,5 +14,5 @@ inline tactus::simulation::Teleoperator::Params linear_rig() {
 
 /// Another mass of master and hand in the controller's model.
 inline void misjudge_mass(tactus::simulation::Teleoperator::Params& params, double factor) {
-  params.control.model = tactus::simulation::mismatched(params.control.model, {.mass = factor});
+  params.control.model = tactus::experiments::mismatched(params.control.model, {.mass = factor});
 }

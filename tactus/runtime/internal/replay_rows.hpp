@@ -1,7 +1,7 @@
 #pragma once
 
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/replay.hpp>
-#include <tactus/simulation/tapping.hpp>
 #include <tactus/station/device.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
@@ -101,7 +101,7 @@ inline const telemetry::LogTable* find_table(const telemetry::LogContent& conten
 }
 
 /// Replays the log of one site, or of both under supervision; false where it is no such log.
-Result<bool> replay_sites(const telemetry::LogContent& content, const simulation::TappingParams& params,
+Result<bool> replay_sites(const telemetry::LogContent& content, const experiments::TappingParams& params,
                           Replay& replay);
 
 }  // namespace tactus::runtime

@@ -1,0 +1,42 @@
+#include <tactus/experiments/contact_metrics.hpp>
+#include <tactus/signal/second_order_filter.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace tactus::experiments {
+
+namespace {
+constexpr double residual_window_s = 0.1;
+}  // namespace
+
+ContactMetrics judge_contact(std::span<const double> contact_force_N, std::size_t first_touch, double tick_s) {
+  auto high_pass = signal::SecondOrderFilter::make(
+      {.kind = signal::FilterKind::high_pass, .frequency_Hz = transient_cutoff_Hz}, Seconds{tick_s});
+  std::vector<double> transient;
+  transient.reserve(contact_force_N.size());
+  for (const double force : contact_force_N) transient.push_back(std::fabs(high_pass->step(force)));
+
+  const auto window = std::span(transient).subspan(first_touch);
+  const double threshold = settled_share * *std::max_element(window.begin(), window.end());
+  std::size_t settled_after = 0;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    if (window[i] > threshold) settled_after = i + 1;
+  }
+
+  ContactMetrics metrics;
+  const double window_s = static_cast<double>(window.size()) * tick_s;
+  metrics.settling_time_s = static_cast<double>(settled_after) * tick_s;
+  metrics.settled = metrics.settling_time_s <= window_s - quiet_time_s;
+  if (!metrics.settled) metrics.settling_time_s = window_s;
+
+  const auto residual_ticks =
+      std::min(window.size(), static_cast<std::size_t>(std::lround(residual_window_s / tick_s)));
+  double sum = 0.0;
+  for (const double value : window.last(residual_ticks)) sum += value * value;
+  metrics.residual_rms_N = std::sqrt(sum / static_cast<double>(residual_ticks));
+  return metrics;
+}
+
+}  // namespace tactus::experiments

@@ -1,0 +1,198 @@
+#include <tactus/configuration/json_schema.hpp>
+#include <tactus/configuration/reference.hpp>
+#include <tactus/experiments/force_estimators/experiment.hpp>
+#include <tactus/experiments/force_estimators/force_estimators.hpp>
+#include <tactus/experiments/presentation.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus::experiments {
+
+namespace {
+
+constexpr std::string_view force_estimators_title = "Contact force without a sensor: estimators on the same data";
+
+/// Round-off of a signal that stands still is no noise.
+std::string in_millinewton(double force_N, int digits) {
+  return force_N < 1e-12 ? "0" : report::number(1e3 * force_N, digits);
+}
+
+/// One combination of the varied parameters with its result.
+struct EstimatorsRun {
+  Settings settings;
+  ForceEstimatorsParams params;
+  ForceEstimatorsResult result;
+};
+
+report::Table table_of(const std::vector<EstimatorsRun>& runs) {
+  std::vector<report::Column> columns = settings_columns(runs.front().settings);
+  columns.insert(columns.end(), {{"estimator", "", report::Column::Align::left},
+                                 {"error in contact", "mN RMS"},
+                                 {"lead", "ms"},
+                                 {"false force in free motion", "mN RMS"},
+                                 {"noise at rest", "mN RMS"}});
+  report::Table table(columns, std::string(force_estimators_title));
+  for (const EstimatorsRun& run : runs) {
+    for (const EstimatorScore& score : run.result.scores) {
+      std::vector<std::string> cells = settings_cells(run.settings);
+      cells.insert(cells.end(),
+                   {score.name, in_millinewton(score.contact_error_N, 3), report::number(1e3 * score.lead_s, 2),
+                    in_millinewton(score.free_residual_N, 3), in_millinewton(score.rest_noise_N, 2)});
+      table.add_row(cells);
+    }
+  }
+  return table;
+}
+
+/// A term as a product: d_0 is the newest difference of positions, u_1 the model's output one lag ago.
+std::string words_of(const control::NarxTerm& term) {
+  using Variables = control::NarxVariables;
+  std::string words;
+  for (const std::int64_t variable : {term.variable_1, term.variable_2, term.variable_3}) {
+    const auto i = static_cast<std::size_t>(variable);
+    if (i == 0) continue;
+    if (!words.empty()) words += " ";
+    if (i < Variables::first_output) {
+      words += "d_" + std::to_string(i - Variables::first_difference);
+    } else {
+      words += "u_" + std::to_string(i - Variables::first_output + 1);
+    }
+  }
+  return words.empty() ? "1" : words;
+}
+
+report::Table narx_table_of(const identification::NarxFit& fit) {
+  report::Table table({{"term", "", report::Column::Align::left},
+                       {"error reduction", "%"},
+                       {"coefficient", "mN"},
+                       {"standard error", "mN"}},
+                      "NARX model: " + std::to_string(fit.terms.size()) + " of " + std::to_string(fit.candidates) +
+                          " terms, on " + std::to_string(fit.rows) + " rows of another motion");
+  for (const identification::RankedNarxTerm& term : fit.terms) {
+    table.add_row({words_of(term.term), report::number(100.0 * term.error_reduction, 3),
+                   report::number(1e3 * term.term.coefficient_N, 3), report::number(1e3 * term.standard_error_N, 2)});
+  }
+  return table;
+}
+
+nlohmann::ordered_json narx_json(const identification::NarxFit& fit) {
+  nlohmann::ordered_json terms = nlohmann::ordered_json::array();
+  for (const identification::RankedNarxTerm& term : fit.terms) {
+    terms.push_back({{"term", words_of(term.term)},
+                     {"error_reduction", term.error_reduction},
+                     {"coefficient_N", term.term.coefficient_N},
+                     {"standard_error_N", term.standard_error_N}});
+  }
+  return {{"candidates", fit.candidates},           {"rows", fit.rows},
+          {"command_rms_N", fit.command_rms_N},     {"residual_rms_N", fit.residual_rms_N},
+          {"simulated_rms_N", fit.simulated_rms_N}, {"terms", terms}};
+}
+
+/// The true force and what each estimator makes of it, in free motion and in contact.
+report::Figure figure_of(const EstimatorsRun& run) {
+  const ForceEstimatorsPlan plan = plan_of(run.params.task);
+  report::Figure figure{.title = "Estimated and true force",
+                        .caption = "Free motion, where every estimate should be 0, and the press onto the wall. " +
+                                   settings_caption(run.settings),
+                        .columns = 2,
+                        .panels = {},
+                        .share_y = report::Sharing::in_line};
+  const auto line = [&](std::string name, int colour, const std::vector<double>& force_N, double from_s,
+                        double until_s) {
+    report::Line result{.name = std::move(name), .x = {}, .y = {}, .colour = colour};
+    for (std::size_t tick = 0; tick < force_N.size(); ++tick) {
+      const double time_s = static_cast<double>(tick) * run.result.run.tick_s;
+      if (time_s < from_s || time_s > until_s) continue;
+      result.x.push_back(time_s);
+      result.y.push_back(force_N[tick]);
+    }
+    return result;
+  };
+  for (std::size_t i = 1; i < run.result.scores.size(); ++i) {
+    const EstimatorScore& score = run.result.scores[i];
+    for (const auto& [from_s, until_s] : {std::pair{plan.rest_s, plan.free_until_s}, {plan.press_s, plan.end_s}}) {
+      figure.panels.push_back({.title = score.name,
+                               .x = {.label = "time", .unit = "s"},
+                               .y = {.label = "force", .unit = "N"},
+                               .lines = {line("true", 7, run.result.run.true_N, from_s, until_s),
+                                         line("estimated", 0, score.estimate_N, from_s, until_s)},
+                               .rules = {}});
+    }
+  }
+  return figure;
+}
+
+std::string json_of(const Request& request, const std::vector<EstimatorsRun>& runs) {
+  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
+  for (const EstimatorsRun& run : runs) {
+    nlohmann::ordered_json estimators = nlohmann::ordered_json::array();
+    for (const EstimatorScore& score : run.result.scores) {
+      estimators.push_back({{"name", score.name},
+                            {"contact_error_N", score.contact_error_N},
+                            {"lead_s", score.lead_s},
+                            {"free_motion_residual_N", score.free_residual_N},
+                            {"rest_noise_N", score.rest_noise_N}});
+    }
+    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))},
+                                {"estimators", estimators},
+                                {"narx", narx_json(run.result.narx)}});
+  }
+  return document.dump(2) + "\n";
+}
+
+}  // namespace
+
+std::string ForceEstimatorsExperiment::schema() const {
+  return configuration::json_schema<ForceEstimatorsParams>("tactus experiment: force-estimators");
+}
+
+std::string ForceEstimatorsExperiment::reference() const {
+  return configuration::reference_beside<ForceEstimatorsParams, TappingParams>("Experiment `force-estimators`",
+                                                                               "tapping");
+}
+
+Result<Outcome> ForceEstimatorsExperiment::run(const Request& request, const Progress& progress) const {
+  const auto cases = prepare_cases<ForceEstimatorsParams, ForceEstimatorsParams>(
+      request, [](const ForceEstimatorsParams& params) -> Result<ForceEstimatorsParams> {
+        if (auto error = check(params)) return *std::move(error);
+        return params;
+      });
+  if (!cases) return cases.error();
+  std::vector<EstimatorsRun> runs;
+  for (const auto& [settings, params] : cases->all) {
+    auto result = compare_force_estimators(params);
+    if (!result) return result.error();
+    runs.push_back({settings, params, *std::move(result)});
+    progress(static_cast<double>(runs.size()) / static_cast<double>(cases->all.size()));
+  }
+  const report::Table table = table_of(runs);
+  const report::Table narx_table = narx_table_of(runs.front().result.narx);
+  report::Figure figure = figure_of(runs.front());
+  report::Page page(request.name + ": " + std::string(force_estimators_title));
+  page.paragraph(
+      "A slave rests, goes to and fro before a wall, presses onto it and leaves. Every estimator sees the same "
+      "commands "
+      "and the same encoder; none but the first sees the force sensor. Force is that of the wall on the slave.");
+  page.table(table);
+  page.definitions(
+      {{"error in contact", "To the true force behind a zero-phase low-pass of 200 Hz, from the press to the release."},
+       {"lead", "By how much the estimate is ahead of the true force where the two correlate most."},
+       {"false force in free motion", "What is estimated while nothing is touched."},
+       {"noise at rest", "About the mean, before anything moves."}});
+  page.table(narx_table);
+  page.definitions({{"term",
+                     "Product of d_i, the difference of positions i and i + 1 lags old, and u_i, "
+                     "the model's own output i lags ago; each over its scale."},
+                    {"error reduction", "Share of the squared force that the term explained when it was chosen."}});
+  page.figure(figure);
+  add_provenance(page, request, cases->first_configuration);
+  return Outcome{.text = table.to_text() + "\n" + narx_table.to_text(),
+                 .json = json_of(request, runs),
+                 .html = page.to_html(),
+                 .figures = {std::move(figure)}};
+}
+
+}  // namespace tactus::experiments

@@ -1,0 +1,167 @@
+#include <tactus/configuration/json_schema.hpp>
+#include <tactus/configuration/reference.hpp>
+#include <tactus/experiments/hydraulic_chirp/experiment.hpp>
+#include <tactus/experiments/hydraulic_chirp/hydraulic_chirp.hpp>
+#include <tactus/experiments/presentation.hpp>
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus::experiments {
+
+namespace {
+
+constexpr std::string_view hydraulic_chirp_title = "Valve current in free motion, measured and from an inverse model";
+
+struct HydraulicChirpRun {
+  Settings settings;
+  HydraulicChirpParams params;
+  HydraulicChirpResult result;
+
+  [[nodiscard]] double percent(double current_mA) const {
+    return 100.0 * current_mA / params.slave.valve.rated_current_mA;
+  }
+};
+
+report::Table table_of(const std::vector<HydraulicChirpRun>& runs) {
+  std::vector<report::Column> columns = settings_columns(runs.front().settings);
+  columns.insert(columns.end(), {{"inverse model", "", report::Column::Align::left},
+                                 {"Tp", "ms"},
+                                 {"error", "mA MAE"},
+                                 {"of full current", "%"},
+                                 {"below 2 Hz", "mA MAE"},
+                                 {"of full current", "%"}});
+  report::Table table(columns, std::string(hydraulic_chirp_title));
+  for (const HydraulicChirpRun& run : runs) {
+    for (const CurrentScore& score : run.result.scores) {
+      std::vector<std::string> cells = settings_cells(run.settings);
+      cells.insert(
+          cells.end(),
+          {score.name, score.blocks > 0 ? report::number(1e3 * score.time_constant_s, 3) : std::string("-"),
+           report::number(score.mae_mA, 3), report::number(run.percent(score.mae_mA), 2),
+           report::number(score.mae_below_2_Hz_mA, 3), report::number(run.percent(score.mae_below_2_Hz_mA), 2)});
+      table.add_row(cells);
+    }
+  }
+  return table;
+}
+
+/// The current over the whole chirp, the error, and a closer look at the last tenth.
+report::Figure figure_of(const HydraulicChirpRun& run) {
+  report::Figure figure{.title = "Valve current along the chirp",
+                        .caption =
+                            "Above: the error of the inverse model's current. Below: the currents at the end of "
+                            "the chirp. Compare Fig. 7 of Saków et al. " +
+                            settings_caption(run.settings),
+                        .columns = 1,
+                        .panels = {}};
+  const report::Axis time{.label = "time", .unit = "s"};
+  report::Panel errors{.title = {}, .x = time, .y = {.label = "error", .unit = "mA"}, .lines = {}, .rules = {}};
+  report::Panel close{.title = {}, .x = time, .y = {.label = "current", .unit = "mA"}, .lines = {}, .rules = {}};
+  const auto& samples = run.result.run;
+  const double close_from_s = 0.95 * samples.back().time_s;
+  report::Line measured{.name = "measured", .x = {}, .y = {}, .colour = 7};
+  for (const auto& sample : samples) {
+    if (sample.time_s < close_from_s) continue;
+    measured.x.push_back(sample.time_s);
+    measured.y.push_back(sample.current_mA);
+  }
+  close.lines.push_back(std::move(measured));
+  int colour = 0;
+  for (const CurrentScore& score : run.result.scores) {
+    if (score.blocks != 0 && score.name != "2 blocks") continue;  // the rest is in the table
+    report::Line error{.name = score.name, .x = {}, .y = {}, .colour = colour};
+    report::Line current = error;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      error.x.push_back(samples[i].time_s);
+      error.y.push_back(score.estimate_mA[i] - samples[i].current_mA);
+      if (samples[i].time_s < close_from_s) continue;
+      current.x.push_back(samples[i].time_s);
+      current.y.push_back(score.estimate_mA[i]);
+    }
+    errors.lines.push_back(std::move(error));
+    close.lines.push_back(std::move(current));
+    ++colour;
+  }
+  figure.panels = {std::move(errors), std::move(close)};
+  return figure;
+}
+
+std::string json_of(const Request& request, const std::vector<HydraulicChirpRun>& runs) {
+  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
+  for (const HydraulicChirpRun& run : runs) {
+    auto variants = nlohmann::ordered_json::array();
+    for (const CurrentScore& score : run.result.scores) {
+      variants.push_back({{"estimator", score.name},
+                          {"blocks", score.blocks},
+                          {"time_constant_s", score.time_constant_s},
+                          {"mae_mA", score.mae_mA},
+                          {"percent_of_rated_current", run.percent(score.mae_mA)},
+                          {"mae_below_2_Hz_mA", score.mae_below_2_Hz_mA},
+                          {"percent_of_rated_current_below_2_Hz", run.percent(score.mae_below_2_Hz_mA)}});
+    }
+    const auto& friction = run.result.fitted.model.friction;
+    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))},
+                                {"metrics",
+                                 {{"model",
+                                   {{"damping_N", friction.force_N},
+                                    {"linear", friction.linear},
+                                    {"quadratic", friction.quadratic},
+                                    {"offset_N", friction.offset_N},
+                                    {"apparent_mass_kg", run.result.fitted.apparent_mass_kg},
+                                    {"fit_residual_rms_mA", run.result.fitted.residual_rms_mA}}},
+                                  {"variants", variants}}}});
+  }
+  return document.dump(2) + "\n";
+}
+
+}  // namespace
+
+std::string HydraulicChirpExperiment::schema() const {
+  return configuration::json_schema<HydraulicChirpParams>("tactus experiment: hydraulic-chirp");
+}
+
+std::string HydraulicChirpExperiment::reference() const {
+  return configuration::reference_markdown<HydraulicChirpParams>("Experiment `hydraulic-chirp`");
+}
+
+Result<Outcome> HydraulicChirpExperiment::run(const Request& request, const Progress& progress) const {
+  const auto cases = prepare_cases<HydraulicChirpParams, HydraulicChirpParams>(
+      request, [](const HydraulicChirpParams& params) -> Result<HydraulicChirpParams> {
+        if (Check error = check(params)) return *std::move(error);
+        return params;
+      });
+  if (!cases) return cases.error();
+  std::vector<HydraulicChirpRun> runs;
+  for (const auto& [settings, params] : cases->all) {
+    auto result = run_hydraulic_chirp(params);
+    if (!result) return blame_variation(request.document.locate(result.error()), settings);
+    runs.push_back({.settings = settings, .params = params, .result = *std::move(result)});
+    progress(static_cast<double>(runs.size()) / static_cast<double>(cases->all.size()));
+  }
+  const report::Table table = table_of(runs);
+  std::vector<report::Figure> figures;
+  for (const HydraulicChirpRun& run : runs) figures.push_back(figure_of(run));
+
+  report::Page page(request.name + ": " + std::string(hydraulic_chirp_title));
+  page.paragraph(
+      "A servo-hydraulic slave follows a chirp and touches nothing. An inverse model, identified on another motion, "
+      "says "
+      "from the measured position which current that took; what it says amiss would be felt as force.");
+  page.table(table);
+  page.definitions(
+      {{"error", "Mean absolute difference of the measured and the estimated current along the chirp."},
+       {"below 2 Hz", "The same while the chirp is below 2 Hz."},
+       {"Tp",
+        "Time constant of each block, the one that leaves least of the motion on which the model was identified."},
+       {"apparent mass",
+        "What the fit of the current on acceleration comes to. It holds the lags of valve and sensors, "
+        "which the mass as weighed does not."}});
+  for (const report::Figure& figure : figures) page.figure(figure);
+  add_provenance(page, request, cases->first_configuration);
+  return Outcome{
+      .text = table.to_text(), .json = json_of(request, runs), .html = page.to_html(), .figures = std::move(figures)};
+}
+
+}  // namespace tactus::experiments

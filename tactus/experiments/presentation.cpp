@@ -1,0 +1,78 @@
+#include <tactus/core/version.hpp>
+#include <tactus/experiments/presentation.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus::experiments {
+
+report::Axis axis_of(std::string_view key) {
+  const std::string_view name = key_of(key);
+  const Unit unit = unit_at_end_of(name);
+  std::string words(name.substr(0, name.size() - std::string_view(unit.suffix).size()));
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return {.label = words, .unit = unit.symbol};
+}
+
+std::vector<report::Column> settings_columns(const Settings& settings) {
+  std::vector<report::Column> columns;
+  for (const auto& [key, value] : settings) {
+    const report::Axis axis = axis_of(key);
+    columns.push_back({axis.label, axis.unit, report::Column::Align::left});
+  }
+  return columns;
+}
+
+std::vector<std::string> settings_cells(const Settings& settings) {
+  std::vector<std::string> cells;
+  for (const auto& [key, value] : settings) cells.push_back(value);
+  return cells;
+}
+
+std::optional<double> as_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string settings_json(const Settings& settings) {
+  auto object = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : settings) {
+    const auto parsed = nlohmann::ordered_json::parse(value, nullptr, false);
+    object[key] = parsed.is_number() || parsed.is_boolean() ? parsed : nlohmann::ordered_json(value);
+  }
+  return object.dump();
+}
+
+std::string settings_caption(const Settings& settings) {
+  std::string caption;
+  for (const auto& [key, value] : settings) {
+    const report::Axis axis = axis_of(key);
+    if (!caption.empty()) caption += ", ";
+    caption += axis.label + " " + value;
+    if (!axis.unit.empty()) caption += " " + axis.unit;
+  }
+  return caption;
+}
+
+std::string gain_limit_text(const GainLimit& limit, double lowest_gain) {
+  if (limit.gain == 0.0) return "< " + report::number(lowest_gain, 3);
+  return (limit.beyond_search ? "≥ " : "") + report::number(limit.gain, 3);
+}
+
+void add_provenance(report::Page& page, const Request& request, std::string_view configuration) {
+  page.heading("How to repeat this");
+  page.code(request.command, "Command");
+  page.paragraph(request.variations.empty()
+                     ? "The whole configuration of the run, defaults included:"
+                     : "The whole configuration of the first row, defaults included; the other rows differ from it in "
+                       "the varied keys alone:");
+  page.code(configuration, "Configuration");
+  page.footer("tactus " + std::string(version()), request.command);
+}
+
+}  // namespace tactus::experiments

@@ -1,0 +1,80 @@
+#include <tactus/experiments/presentation.hpp>
+#include <tactus/experiments/tapping/presentation.hpp>
+
+#include <nlohmann/json.hpp>
+
+namespace tactus::experiments {
+
+namespace {
+constexpr std::string_view tapping_title = "Tapping a wall through the teleoperator";
+}  // namespace
+
+report::Table tapping_table(const std::vector<TappingRun>& runs) {
+  std::vector<report::Column> columns = settings_columns(runs.empty() ? Settings{} : runs.front().settings);
+  columns.insert(columns.end(), {{"taps"},
+                                 {"settled", "%"},
+                                 {"settling, median", "ms"},
+                                 {"settling, p90", "ms"},
+                                 {"contacts"},
+                                 {"peak force", "N"},
+                                 {"residual", "mN RMS"},
+                                 {"verdict", "", report::Column::Align::left}});
+  report::Table table(columns, std::string(tapping_title));
+  for (const TappingRun& run : runs) {
+    const TappingMetrics& m = run.metrics;
+    // A quantile that falls on a tap that never settled is only a lower bound.
+    const auto settling = [&](double seconds) {
+      return (seconds >= run.observation_s ? "> " : "") + report::number(1e3 * seconds, 3);
+    };
+    std::vector<std::string> cells = settings_cells(run.settings);
+    cells.insert(cells.end(),
+                 {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
+                  settling(m.settling_time_median_s), settling(m.settling_time_p90_s), format_number(m.contacts_median),
+                  report::number(m.peak_force_N, 3), report::number(1e3 * m.residual_rms_N, 3), name_of(m.verdict)});
+    table.add_row(cells);
+  }
+  return table;
+}
+
+std::string tapping_json(const Request& request, const std::vector<TappingRun>& runs) {
+  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
+  for (const TappingRun& run : runs) {
+    const TappingMetrics& m = run.metrics;
+    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))},
+                                {"metrics",
+                                 {{"taps", m.taps},
+                                  {"settled_fraction", m.settled_fraction},
+                                  {"settling_time_median_s", m.settling_time_median_s},
+                                  {"settling_time_p90_s", m.settling_time_p90_s},
+                                  {"contacts_median", m.contacts_median},
+                                  {"peak_force_N", m.peak_force_N},
+                                  {"residual_rms_N", m.residual_rms_N},
+                                  {"verdict", name_of(m.verdict)}}}});
+  }
+  return document.dump(2) + "\n";
+}
+
+report::Page tapping_page(const Request& request, const report::Table& table,
+                          const std::vector<report::Figure>& figures) {
+  report::Page page(request.name + ": " + std::string(tapping_title));
+  page.paragraph(
+      "A person reaches through the teleoperator onto a wall and presses. The force measured at the slave's tip, times "
+      "the force gain, is displayed to the hand, saturated. Each row of the table is an ensemble of taps that differ "
+      "in speed, depth, tremor and model error; each picture shows one of them, the one with the median settling "
+      "time.");
+  page.table(table);
+  page.definitions(
+      {{"settling",
+        "From first touch until the contact force above 15 Hz stays below a tenth of its peak. A tap that "
+        "does not get there enters the quantiles with the whole observation window, marked >."},
+       {"contacts", "How often the tip met the wall within the observation window, median."},
+       {"peak force", "Largest contact force of a tap, median."},
+       {"residual", "RMS of the contact force above 15 Hz over the last 100 ms, median."},
+       {"verdict",
+        "settled: at least 95 % of the taps settled, the median within 100 ms. limit-cycle: fewer than half "
+        "settled. diverged: a safety gate latched or a device left its workspace. ringing: all else."}});
+  for (const report::Figure& figure : figures) page.figure(figure);
+  return page;
+}
+
+}  // namespace tactus::experiments

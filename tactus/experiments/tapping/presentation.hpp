@@ -1,0 +1,23 @@
+#pragma once
+
+#include <tactus/experiments/tapping/figures.hpp>
+#include <tactus/report/page.hpp>
+#include <tactus/report/table.hpp>
+
+#include <string>
+#include <vector>
+
+/// Taps for every reader, whatever clock they ran on.
+namespace tactus::experiments {
+
+/// A row for each run; there may be none.
+report::Table tapping_table(const std::vector<TappingRun>& runs);
+
+/// `{"experiment": ..., "runs": [{"set": ..., "metrics": ...}]}`
+std::string tapping_json(const Request& request, const std::vector<TappingRun>& runs);
+
+/// The report but for its end, `add_provenance`.
+report::Page tapping_page(const Request& request, const report::Table& table,
+                          const std::vector<report::Figure>& figures);
+
+}  // namespace tactus::experiments

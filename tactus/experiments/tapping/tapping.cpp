@@ -1,0 +1,133 @@
+#include <tactus/experiments/draws.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
+#include <tactus/signal/random.hpp>
+#include <tactus/simulation/quantile.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace tactus::experiments {
+
+namespace {
+
+/// The person rests this long before the reach, so that every filter is at rest too.
+constexpr double rest_s = 0.05;
+
+Check check_range(double lower, double upper, const char* lower_name, const char* upper_name) {
+  if (lower <= upper) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = std::string("task.") + upper_name,
+               .message = format_number(upper) + " is less than " + lower_name + ", " + format_number(lower) +
+                          ": raise one or lower the other",
+               .place = {}};
+}
+
+}  // namespace
+
+Result<TappingEnsemble> TappingEnsemble::make(const TappingParams& params) {
+  if (auto error = validate(params)) return *std::move(error);
+  const TappingTask& task = params.task;
+  if (auto error = check_range(task.slowest_m_per_s, task.fastest_m_per_s, "slowest_m_per_s", "fastest_m_per_s")) {
+    return *std::move(error);
+  }
+  if (auto error = check_range(task.shallowest_m, task.deepest_m, "shallowest_m", "deepest_m")) {
+    return *std::move(error);
+  }
+
+  std::vector<Tap> taps;
+  const signal::Random ensemble(static_cast<std::uint64_t>(task.seed));
+  for (std::int64_t i = 0; i < task.taps; ++i) {
+    signal::Random draw = ensemble.fork(static_cast<std::uint64_t>(i));
+    const auto between = [&draw](double lower, double upper) { return lower + (upper - lower) * draw.uniform(); };
+    const double speed = between(task.slowest_m_per_s, task.fastest_m_per_s);
+    const double depth = between(task.shallowest_m, task.deepest_m);
+    Tap tap{.params = params, .path = {}};
+    tap.params.person.tremor_amplitude_m *= between(0.5, 1.5);
+    tap.params.person.tremor_frequency_Hz *= between(0.8, 1.2);
+    tap.params.person.tremor_phase_cycles = draw.uniform();
+    limit_to_bounds(tap.params.person);
+    tap.params.slave.force_sensor.seed = static_cast<std::int64_t>(draw.bits() >> 1);
+    ModelMismatch mismatch = task.mismatch;
+    mismatch.mass *= between(1.0 - task.model_error, 1.0 + task.model_error);
+    mismatch.linkage_stiffness *= between(1.0 - task.model_error, 1.0 + task.model_error);
+    mismatch.operator_damping *= between(1.0 - task.model_error, 1.0 + task.model_error);
+    tap.params.control.model = mismatched(params.control.model, mismatch);
+    tap.params.channel.to_slave.seed = static_cast<std::int64_t>(draw.bits() >> 1);
+    tap.params.channel.to_master.seed = static_cast<std::int64_t>(draw.bits() >> 1);
+    tap.params.master.force_sensor.seed = static_cast<std::int64_t>(draw.bits() >> 1);
+
+    // The wall stands half-way, where a minimum-jerk reach is fastest.
+    const double wall = params.environment.position_m / params.control.position_scale;
+    tap.path = {.start_m = wall - depth,
+                .end_m = wall + depth,
+                .start_time_s = rest_s,
+                .duration_s = mechanics::MinimumJerk::duration_for(2.0 * depth, speed)};
+    if (auto teleoperator = simulation::Teleoperator::make(tap.params, tap.path.start_m); !teleoperator) {
+      return teleoperator.error();
+    }
+    taps.push_back(tap);
+  }
+  return TappingEnsemble(std::move(taps), task.observation_s);
+}
+
+TapResult TappingEnsemble::run(std::size_t tap, std::vector<simulation::Teleoperator::Record>* trace) const {
+  const auto& [params, path] = taps_[tap];
+  Result<simulation::Teleoperator> teleoperator = simulation::Teleoperator::make(params, path.start_m);
+  const double tick_s = teleoperator->tick_s();
+  TapObserver judge = observer(tap);
+  bool more = true;
+  for (std::size_t tick = 0; more; ++tick) {
+    const double time_s = static_cast<double>(tick) * tick_s;
+    const auto record = teleoperator->step(path.position_m(time_s), path.position_m(time_s + tick_s));
+    if (trace != nullptr) trace->push_back(record);
+    more = judge.observe(record, teleoperator->healthy());
+  }
+  return judge.result();
+}
+
+TappingMetrics summarise(const std::vector<TapResult>& taps) {
+  const auto collect = [&taps](auto&& value) {
+    std::vector<double> values;
+    values.reserve(taps.size());
+    for (const TapResult& tap : taps) values.push_back(static_cast<double>(value(tap)));
+    return values;
+  };
+  const auto settling = collect([](const TapResult& tap) { return tap.metrics.settling_time_s; });
+  const auto settled =
+      std::count_if(taps.begin(), taps.end(), [](const TapResult& tap) { return tap.metrics.settled; });
+  const bool diverged = std::any_of(taps.begin(), taps.end(), [](const TapResult& tap) { return tap.diverged; });
+
+  TappingMetrics metrics;
+  metrics.taps = taps.size();
+  metrics.settled_fraction = static_cast<double>(settled) / static_cast<double>(taps.size());
+  metrics.settling_time_median_s = simulation::quantile(settling, 0.5);
+  metrics.settling_time_p90_s = simulation::quantile(settling, 0.9);
+  metrics.contacts_median =
+      simulation::quantile(collect([](const TapResult& tap) { return tap.metrics.contacts; }), 0.5);
+  metrics.peak_force_N =
+      simulation::quantile(collect([](const TapResult& tap) { return tap.metrics.peak_force_N; }), 0.5);
+  metrics.residual_rms_N =
+      simulation::quantile(collect([](const TapResult& tap) { return tap.metrics.residual_rms_N; }), 0.5);
+  if (diverged) {
+    metrics.verdict = Verdict::diverged;
+  } else if (metrics.settled_fraction < 0.5) {
+    metrics.verdict = Verdict::limit_cycle;
+  } else if (metrics.settled_fraction >= 0.95 && metrics.settling_time_median_s <= settled_within_s) {
+    metrics.verdict = Verdict::settled;
+  } else {
+    metrics.verdict = Verdict::ringing;
+  }
+  return metrics;
+}
+
+std::size_t median_tap(const std::vector<TapResult>& taps) {
+  std::vector<std::size_t> order(taps.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&taps](std::size_t a, std::size_t b) {
+    return taps[a].metrics.settling_time_s < taps[b].metrics.settling_time_s;
+  });
+  return order[(order.size() - 1) / 2];
+}
+
+}  // namespace tactus::experiments
