@@ -1,8 +1,8 @@
-#include <tactus/control/disturbance_observer.hpp>
-#include <tactus/control/inverse_model_estimator.hpp>
-#include <tactus/control/kalman_force_estimator.hpp>
-#include <tactus/control/momentum_observer.hpp>
-#include <tactus/control/narx_force_estimator.hpp>
+#include <tactus/control/estimators/disturbance_observer.hpp>
+#include <tactus/control/estimators/inverse_model_estimator.hpp>
+#include <tactus/control/estimators/kalman_force_estimator.hpp>
+#include <tactus/control/estimators/momentum_observer.hpp>
+#include <tactus/control/estimators/narx_force_estimator.hpp>
 
 #include <cmath>
 #include <vector>

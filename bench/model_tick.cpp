@@ -1,4 +1,4 @@
-#include <tactus/control/cancellation.hpp>
+#include <tactus/control/stages/cancellation.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,21 @@
 #pragma once
 
-#include <tactus/control/position_force.hpp>
+#include <tactus/control/architectures/position_force.hpp>
 #include <tactus/control/site.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/checks.hpp>
 
 #include <cmath>
+
+/// The keys of its own, the group `[control.soft_limit]` of a file.
+struct SoftLimitParams {
+  double linear_fraction = 0.5;
+  static constexpr auto fields() {
+    return std::tuple{tactus::field("linear_fraction", &SoftLimitParams::linear_fraction, tactus::units::none,
+                                    tactus::between(0.1, 0.9),
+                                    "Share of the force limit up to which the force is displayed as it is.")};
+  }
+};
 
 /// A master site that displays force as position-force control does, but bends it into its limit instead of cutting it
 /// off there. Of the tip force F, with F_max = force_limit_N / force_gain where the display saturates and F_l the share
@@ -20,12 +30,10 @@ class SoftLimitMaster {
  public:
   struct Params {
     tactus::control::PositionForceMaster::Params site;
-    double linear_fraction = 0.5;
+    SoftLimitParams soft_limit;
     static constexpr auto fields() {
-      return std::tuple{
-          tactus::field("site", &Params::site, "The position-force site behind the bend."),
-          tactus::field("linear_fraction", &Params::linear_fraction, tactus::units::none, tactus::between(0.1, 0.9),
-                        "Share of the force limit up to which the force is displayed as it is.")};
+      return std::tuple{tactus::field("site", &Params::site, "The position-force site behind the bend."),
+                        tactus::field("soft_limit", &Params::soft_limit, "Where the bend begins.")};
     }
   };
   using Input = tactus::control::MasterInput;
@@ -59,7 +67,7 @@ class SoftLimitMaster {
   // With a force gain of 0 both bounds are infinite and nothing is bent.
   SoftLimitMaster(const Params& params, const tactus::control::PositionForceMaster& site)
       : largest_N_(params.site.force_limit_N / params.site.force_gain),
-        linear_N_(params.linear_fraction * largest_N_),
+        linear_N_(params.soft_limit.linear_fraction * largest_N_),
         site_(site) {}
 
   /// A NaN stays one, so it reaches the gate, which catches and latches it.

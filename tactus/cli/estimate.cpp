@@ -2,7 +2,7 @@
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
-#include <tactus/control/inverse_model_estimator.hpp>
+#include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/force_comparison.hpp>
 #include <tactus/report/text.hpp>

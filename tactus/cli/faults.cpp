@@ -62,7 +62,7 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
     ProgressLine line(request.name);
     const auto progress = [&line](double done) { line.update(done); };
     return options.real_time ? runtime::run_faults_in_real_time(request, options.servo, progress, listen)
-                             : experiments::FaultExperiment().run(request, progress);
+                             : experiments::faults_experiment()->run(request, progress);
   }();
   if (!outcome) return outcome.error();
   if (interruption) status = interruption->exit_status();

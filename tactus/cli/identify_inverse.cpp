@@ -2,7 +2,7 @@
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/configuration/toml_writer.hpp>
-#include <tactus/control/inverse_model_estimator.hpp>
+#include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/inverse_dynamics.hpp>
 #include <tactus/report/table.hpp>

@@ -55,21 +55,23 @@ std::string text_at(const auto& cell_at, std::size_t first) {
 
 AgreedParams agreed(const ControlParams& params, Seconds dt) {
   const SupervisionParams& supervision = params.supervision;
-  return {.architecture = params.architecture,
-          .rate_Hz = std::round(1e6 / dt.value) / 1e6,
-          .position_scale = params.position_scale,
-          .force_gain = params.force_gain,
-          .force_limit_N = params.force_limit_N,
-          .slave = params.slave,
-          .gate = params.gate,
-          .handle_gate = params.handle_gate,
-          .slave_gate = params.slave_gate,
-          .groups = params.groups,
-          .packets = supervision.packets,
-          .silence = supervision.silence,
-          .watchdog = supervision.watchdog,
-          .answer_within_s = supervision.answer_within_s,
-          .blend_s = supervision.blend_s};
+  AgreedParams all;
+  all.architecture = params.architecture;
+  all.rate_Hz = std::round(1e6 / dt.value) / 1e6;
+  all.position_scale = params.position_scale;
+  all.force_gain = params.force_gain;
+  all.force_limit_N = params.force_limit_N;
+  all.slave = params.slave;
+  all.gate = params.gate;
+  all.handle_gate = params.handle_gate;
+  all.slave_gate = params.slave_gate;
+  all.groups = params.groups;
+  all.packets = supervision.packets;
+  all.silence = supervision.silence;
+  all.watchdog = supervision.watchdog;
+  all.answer_within_s = supervision.answer_within_s;
+  all.blend_s = supervision.blend_s;
+  return all;
 }
 
 }  // namespace

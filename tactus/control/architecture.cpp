@@ -1,12 +1,12 @@
 #include <tactus/control/architecture.hpp>
-#include <tactus/control/energy_tank.hpp>
-#include <tactus/control/four_channel.hpp>
-#include <tactus/control/position_force.hpp>
-#include <tactus/control/position_position.hpp>
-#include <tactus/control/projection.hpp>
-#include <tactus/control/shared_compliant.hpp>
-#include <tactus/control/time_domain_passivity.hpp>
-#include <tactus/control/wave_variables.hpp>
+#include <tactus/control/architectures/energy_tank.hpp>
+#include <tactus/control/architectures/four_channel.hpp>
+#include <tactus/control/architectures/position_force.hpp>
+#include <tactus/control/architectures/position_position.hpp>
+#include <tactus/control/architectures/projection.hpp>
+#include <tactus/control/architectures/shared_compliant.hpp>
+#include <tactus/control/architectures/time_domain_passivity.hpp>
+#include <tactus/control/architectures/wave_variables.hpp>
 #include <tactus/core/spelling.hpp>
 
 #include <algorithm>

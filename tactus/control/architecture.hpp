@@ -1,9 +1,9 @@
 #pragma once
 
+#include <tactus/control/architectures/position_force.hpp>
+#include <tactus/control/estimators/slave_force.hpp>
 #include <tactus/control/own_params.hpp>
-#include <tactus/control/position_force.hpp>
 #include <tactus/control/site.hpp>
-#include <tactus/control/slave_force.hpp>
 #include <tactus/control/supervision.hpp>
 #include <tactus/core/parameters.hpp>
 

@@ -104,6 +104,7 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
   // Where a site does not follow, its state is the latch.
   if (!guards && fresh_) watchdog_.reset();
   const bool silent = watchdog_.step({.heard = fresh_, .elapsed_ticks = elapsed_ticks_});
+  const bool overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_});
   proved_ = proved_ || probe_.verdict() == ProbeVerdict::passed;
   supervisor_.step(
       {.requests = sight.requests,
@@ -115,7 +116,7 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
        .silent = silent,
        .unanswered = unanswered(),
        .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
-       .overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_}),
+       .overloaded = overloaded,
        .out_of_pace = pace_.step(
            {.following = before_ == SiteState::active, .sequence = newest_.sequence, .elapsed_ticks = elapsed_ticks_}),
        .force_sensor = sight.force_sensor,
@@ -123,6 +124,7 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
        .proved = proved_,
        .energy = sight.fault == GateFault::energy,
        .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
+  cannot_hold_ = state() == SiteState::hold && (cannot_hold_ || overloaded);
   if (arms_from_rest()) proved_ = !must_be_proved_;
   if (role_ == SiteRole::master || !probes()) answered_arming_ = supervisor_.armings();
   return state();

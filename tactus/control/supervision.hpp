@@ -183,13 +183,13 @@ class Supervision {
   void stand(double position_m) noexcept { follower_.settle(position_m); }
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
-  /// Whether the motor must get no force any more: in `fault`, and in a `hold` because the site misses its ticks, when
-  /// it cannot close a loop, or because motor and force sensor contradict one another, when either may be wrong.
-  [[nodiscard]] bool lets_go() const noexcept {
-    return state() == SiteState::fault || holds_for(SiteCause::overloaded) || contradicted();
-  }
+  /// Whether the motor must get no force any more: in `fault`, and in a `hold` in which the site misses too many ticks
+  /// to close a loop, or because motor and force sensor contradict one another, when either may be wrong.
+  [[nodiscard]] bool lets_go() const noexcept { return state() == SiteState::fault || cannot_hold_ || contradicted(); }
   /// Whether that is because motor and force sensor contradict one another.
-  [[nodiscard]] bool contradicted() const noexcept { return holds_for(SiteCause::force_sensor); }
+  [[nodiscard]] bool contradicted() const noexcept {
+    return state() == SiteState::hold && supervisor_.cause() == SiteCause::force_sensor && !cannot_hold_;
+  }
   [[nodiscard]] SiteState before() const noexcept { return before_; }
   /// What the other site has in common with this one.
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }
@@ -201,9 +201,6 @@ class Supervision {
   [[nodiscard]] SiteRecord record() const noexcept;
 
  private:
-  [[nodiscard]] bool holds_for(SiteCause cause) const noexcept {
-    return state() == SiteState::hold && supervisor_.cause() == cause;
-  }
   [[nodiscard]] bool is_renumbered(const Packet& packet) noexcept;
   [[nodiscard]] bool unanswered() noexcept;
   [[nodiscard]] bool arms_from_rest() const noexcept;
@@ -257,6 +254,7 @@ class Supervision {
   std::int64_t answered_arming_ = 0;  ///< that packets tell: a slave's only once its motor was tried
   bool proved_ = false;               ///< the motor was tried since the site was armed, or need not be
   bool probing_ = false;              ///< the trial is under way
+  bool cannot_hold_ = false;          ///< too many ticks were missed in this hold
   double share_ = 0.0;
   SiteState before_ = SiteState::configure;
 };

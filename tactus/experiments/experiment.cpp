@@ -1,17 +1,7 @@
-#include <tactus/experiments/contest/experiment.hpp>
 #include <tactus/experiments/experiment.hpp>
-#include <tactus/experiments/faults/experiment.hpp>
-#include <tactus/experiments/force_display/experiment.hpp>
-#include <tactus/experiments/force_estimators/experiment.hpp>
-#include <tactus/experiments/hydraulic_chirp/experiment.hpp>
-#include <tactus/experiments/hydraulic_rigid_contact/experiment.hpp>
-#include <tactus/experiments/inverse_model_chirp/experiment.hpp>
-#include <tactus/experiments/prediction_block/experiment.hpp>
-#include <tactus/experiments/sensorless/experiment.hpp>
-#include <tactus/experiments/tapping/experiment.hpp>
 
 #include <algorithm>
-#include <array>
+#include <utility>
 
 namespace tactus::experiments {
 
@@ -84,35 +74,18 @@ Error blame_variation(Error error, const Settings& settings) {
   return error;
 }
 
-std::span<const Experiment* const> experiments() {
-  static const TappingExperiment tapping;
-  static const ForceDisplayExperiment force_display;
-  static const ContestExperiment contest;
-  static const InverseModelChirpExperiment inverse_model_chirp;
-  static const PredictionBlockExperiment prediction_block;
-  static const ForceEstimatorsExperiment force_estimators;
-  static const HydraulicChirpExperiment hydraulic_chirp;
-  static const HydraulicRigidContactExperiment hydraulic_rigid_contact;
-  static const SensorlessExperiment sensorless;
-  static const FaultExperiment faults;
-  static constexpr auto all = std::to_array<const Experiment*>(
-      {&tapping, &force_display, &contest, &inverse_model_chirp, &prediction_block, &force_estimators, &hydraulic_chirp,
-       &hydraulic_rigid_contact, &sensorless, &faults});
-  return all;
+Error locate_in(const Request& request, const Settings& settings, const Error& error) {
+  configuration::Document document = request.document;
+  for (const auto& [key, value] : settings) (void)document.set(key + "=" + value);  // they were set before
+  return blame_variation(document.locate(error), settings);
 }
 
-Result<const Experiment*> choose_experiment(const configuration::Document& document) {
-  const auto kind = document.text_at("task.kind");
-  if (!kind) return kind.error();
-  std::string known;
-  for (const Experiment* experiment : experiments()) {
-    if (experiment->kind() == *kind) return experiment;
-    known += (known.empty() ? "" : ", ") + std::string(experiment->kind());
-  }
-  return document.locate({.code = ErrorCode::out_of_bounds,
-                          .parameter = "task.kind",
-                          .message = "'" + *kind + "' is no kind of experiment: write one of " + known,
-                          .place = {}});
+Check refuse_variations(const Request& request, std::string message) {
+  if (request.variations.empty()) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = request.variations.front().key,
+               .message = std::move(message),
+               .place = "--vary"};
 }
 
 }  // namespace tactus::experiments

@@ -7,6 +7,7 @@
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -52,7 +53,7 @@ struct Outcome {
   std::string html;                     ///< a self-contained report
   std::vector<report::Figure> figures;  ///< those of the report
   std::vector<Trace> traces = {};       ///< in the order of the table; none where an experiment has no teleoperator
-  std::string configuration = {};       ///< of the traces, the varied keys apart, as TOML
+  std::string configuration = {};       ///< of the first combination, as TOML
 };
 
 /// Called now and then with the share of the work that is done, from 0 to 1.
@@ -71,11 +72,19 @@ class Experiment {
   [[nodiscard]] virtual Result<Outcome> run(const Request& request, const Progress& progress) const = 0;
 };
 
-/// All kinds there are.
-std::span<const Experiment* const> experiments();
+/// Every kind there is, those of this library first.
+std::span<const std::unique_ptr<const Experiment>> experiments();
+
+/// Adds a kind. Call it before the command runs, from one thread. A second one of the same `kind()` takes the place of
+/// the first.
+void register_experiment(std::unique_ptr<const Experiment> experiment);
 
 /// The kind that a document asks for. Errors: `missing` without `task.kind`, `out_of_bounds` for an unknown kind.
 Result<const Experiment*> choose_experiment(const configuration::Document& document);
+
+/// `inconsistent` for a request that varies keys, of a kind that has no use for that: `message` says what to do
+/// instead.
+Check refuse_variations(const Request& request, std::string message);
 
 /// A combination with its content made, ready to run.
 template <class Prepared>
@@ -94,6 +103,9 @@ struct Cases {
 /// The error with the option that a person wrote as its place: a varied value is tried as an override, and the document
 /// calls every override `--set`.
 Error blame_variation(Error error, const Settings& settings);
+
+/// The error of a combination's run with the place where what it names was written.
+Error locate_in(const Request& request, const Settings& settings, const Error& error);
 
 /// Reads the parameters of each combination as `Params` and turns them into a `Prepared` with `prepare`, which returns
 /// a `Result`, before any combination is run.

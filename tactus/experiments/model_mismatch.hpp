@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/control/induced_motion_model.hpp>
+#include <tactus/control/model/induced_motion_model.hpp>
 #include <tactus/core/parameters.hpp>
 
 namespace tactus::experiments {

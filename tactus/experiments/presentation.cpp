@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -64,6 +66,39 @@ std::string gain_limit_text(const GainLimit& limit, double lowest_gain) {
   return (limit.beyond_search ? "≥ " : "") + report::number(limit.gain, 3);
 }
 
+report::Table table_of_runs(const Settings& varied, std::vector<report::Column> columns, std::string caption) {
+  std::vector<report::Column> all = settings_columns(varied);
+  std::move(columns.begin(), columns.end(), std::back_inserter(all));
+  return report::Table(std::move(all), std::move(caption));
+}
+
+void add_row(report::Table& table, const Settings& settings, std::vector<std::string> cells) {
+  std::vector<std::string> all = settings_cells(settings);
+  std::move(cells.begin(), cells.end(), std::back_inserter(all));
+  table.add_row(std::move(all));
+}
+
+std::string runs_json(const Request& request, const std::vector<std::pair<Settings, std::string>>& runs) {
+  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
+  for (const auto& [settings, members] : runs) {
+    nlohmann::ordered_json run{{"set", nlohmann::ordered_json::parse(settings_json(settings))}};
+    const auto own = nlohmann::ordered_json::parse(members, nullptr, false);
+    if (own.is_object()) {
+      run.update(own);
+    } else {
+      run["not_an_object"] = members;
+    }
+    document["runs"].push_back(std::move(run));
+  }
+  return document.dump(2) + "\n";
+}
+
+std::string metrics_json(const std::vector<std::pair<std::string, double>>& metrics) {
+  auto values = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : metrics) values[key] = value;  // what is not finite is written as null
+  return nlohmann::ordered_json{{"metrics", std::move(values)}}.dump();
+}
+
 void add_provenance(report::Page& page, const Request& request, std::string_view configuration) {
   page.heading("How to repeat this");
   page.code(request.command, "Command");
@@ -73,6 +108,16 @@ void add_provenance(report::Page& page, const Request& request, std::string_view
                        "the varied keys alone:");
   page.code(configuration, "Configuration");
   page.footer("tactus " + std::string(version()), request.command);
+}
+
+Outcome outcome_of(Presentation shown, const Request& request, std::string configuration) {
+  add_provenance(shown.page, request, configuration);
+  return {.text = std::move(shown.text),
+          .json = std::move(shown.json),
+          .html = shown.page.to_html(),
+          .figures = std::move(shown.figures),
+          .traces = {},
+          .configuration = std::move(configuration)};
 }
 
 }  // namespace tactus::experiments

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// What the results of every experiment have in common when they are shown.
@@ -29,8 +30,36 @@ std::optional<double> as_number(std::string_view text);
 /// A limit with `≥` where the search ended there, and `<` where not even its `lowest_gain` settled.
 std::string gain_limit_text(const GainLimit& limit, double lowest_gain);
 
+/// A table whose rows begin with the values of the varied keys, as those of `varied` are.
+report::Table table_of_runs(const Settings& varied, std::vector<report::Column> columns, std::string caption);
+void add_row(report::Table& table, const Settings& settings, std::vector<std::string> cells);
+
+/// `{"experiment": ..., "runs": [{"set": {...}, ...}, ...]}`: each run's settings, and behind them the members of a
+/// JSON object, given as text.
+std::string runs_json(const Request& request, const std::vector<std::pair<Settings, std::string>>& runs);
+template <class Runs, class Members>
+std::string runs_json(const Request& request, const Runs& runs, Members&& members) {
+  std::vector<std::pair<Settings, std::string>> texts;
+  for (const auto& run : runs) texts.emplace_back(run.settings, members(run));
+  return runs_json(request, texts);
+}
+
+/// `{"metrics": {"settling_time_s": 0.03, ...}}` as text, for `runs_json`. What is not finite becomes null.
+std::string metrics_json(const std::vector<std::pair<std::string, double>>& metrics);
+
 /// Ends a page with what is needed to repeat the run: the command, the configuration of its first combination, the
 /// version.
 void add_provenance(report::Page& page, const Request& request, std::string_view configuration);
+
+/// What a kind shows of its runs.
+struct Presentation {
+  std::string text;                     ///< tables and sentences for a terminal
+  std::string json;                     ///< one document
+  report::Page page;                    ///< but for its end, `add_provenance`
+  std::vector<report::Figure> figures;  ///< those of the page
+};
+
+/// The outcome that is presented so, with the configuration of its first combination.
+Outcome outcome_of(Presentation shown, const Request& request, std::string configuration);
 
 }  // namespace tactus::experiments

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/control/narx_force_estimator.hpp>
+#include <tactus/control/estimators/narx_force_estimator.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/control/inverse_model_estimator.hpp>
+#include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/result.hpp>
 
 #include <complex>

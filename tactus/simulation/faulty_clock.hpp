@@ -22,8 +22,9 @@ class FaultyClock {
     sleeps,  ///< as above, and the site's own clock with it
     dead     ///< the process is gone; started again with the next beat
   };
-  /// Once a tick. Real-time safe.
-  Beat step(const FaultMoment& moment) noexcept {
+  /// Once a tick. A clock that `sleeps` already counts nothing, so a second drift takes its share of what the first
+  /// leaves. Real-time safe.
+  Beat step(const FaultMoment& moment, bool sleeps = false) noexcept {
     if (!here_ || !moment.during) return Beat::steps;
     switch (plan_.kind) {
       case FaultKind::restart:
@@ -40,6 +41,7 @@ class FaultyClock {
         if (!misses_ticks(plan_, moment)) return Beat::steps;
         return plan_.choice % 2 == 0 ? Beat::stands : Beat::sleeps;
       case FaultKind::rate_drift:  // `size` is by what share the clock is slow
+        if (sleeps) return Beat::sleeps;
         behind_ticks_ += plan_.size;
         if (behind_ticks_ < 1.0) return Beat::steps;
         behind_ticks_ -= 1.0;

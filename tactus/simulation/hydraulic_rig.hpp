@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/control/inverse_model_estimator.hpp>
+#include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/mechanics/servo_hydraulic_slave.hpp>
 #include <tactus/simulation/clock.hpp>

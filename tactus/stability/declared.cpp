@@ -10,11 +10,10 @@ namespace {
 template <class Stage>
 struct Nothing {};
 
-Error inconsistent(std::string key, std::string message) {
-  return {.code = ErrorCode::inconsistent,
-          .parameter = "control." + std::move(key),
-          .message = std::move(message),
-          .place = {}};
+Error inconsistent(const std::string& key, std::string message) {
+  std::string parameter = join("control", key);
+  return {
+      .code = ErrorCode::inconsistent, .parameter = std::move(parameter), .message = std::move(message), .place = {}};
 }
 
 Check check_architecture(const control::ControlParams& control, Analysis analysis) {
@@ -31,17 +30,18 @@ Check check_architecture(const control::ControlParams& control, Analysis analysi
 
 }  // namespace
 
-Error detail::undeclared(Analysis analysis, std::string key) {
+Error detail::undeclared(Analysis analysis, const std::string& key) {
   const char* what = analysis == Analysis::linear ? "is linear" : "runs on lanes";
-  return inconsistent(std::move(key), std::string("has not declared whether it ") + what +
-                                          ": declare it in its class as tactus/control/stage.hpp says, or use `tactus "
-                                          "run`");
+  return inconsistent(std::move(key),
+                      std::string("has not declared whether it ") + what +
+                          ": declare it in its class as tactus/control/stages/stage.hpp says, or use `tactus "
+                          "run`");
 }
 
-Error detail::unfit(Analysis analysis, std::string key, const char* remedy) {
-  if (analysis == Analysis::linear) return inconsistent(std::move(key), remedy);
-  return inconsistent(std::move(key), std::string("asks for something that the loop of a map does not have: ") +
-                                          remedy + ", or use `tactus run` with an experiment of kind tapping");
+Error detail::unfit(Analysis analysis, const std::string& key, const char* remedy) {
+  if (analysis == Analysis::linear) return inconsistent(key, remedy);
+  return inconsistent(key, std::string("asks for something that the loop of a map does not have: ") + remedy +
+                               ", or use `tactus run` with an experiment of kind tapping");
 }
 
 Check check_declared(const control::ControlParams& control, Analysis analysis) {

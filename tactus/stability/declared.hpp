@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tactus/control/architecture.hpp>
-#include <tactus/control/stage.hpp>
+#include <tactus/control/stages/stage.hpp>
 #include <tactus/core/result.hpp>
 
 #include <functional>
@@ -27,8 +27,8 @@ Check check_stage(Analysis analysis, const typename Stage::Params& own,
 
 namespace detail {
 
-Error undeclared(Analysis analysis, std::string key);
-Error unfit(Analysis analysis, std::string key, const char* remedy);
+Error undeclared(Analysis analysis, const std::string& key);
+Error unfit(Analysis analysis, const std::string& key, const char* remedy);
 
 }  // namespace detail
 

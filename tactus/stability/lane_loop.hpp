@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/control/induced_motion_step.hpp>
+#include <tactus/control/model/induced_motion_step.hpp>
 #include <tactus/core/scalar.hpp>
 #include <tactus/mechanics/amplifier.hpp>
 #include <tactus/mechanics/cable_chain.hpp>

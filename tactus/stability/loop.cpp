@@ -107,14 +107,14 @@ Result<LinearSites> linear_sites(const simulation::Teleoperator::Params& params,
       if constexpr (!model) return probe_element<Stage>(own, tick);
     }();
     if (!system && !failed) failed = system.error();
-    const Part part(system ? *std::move(system) : StateSpace{}, states, now);
+    Part part(system ? *std::move(system) : StateSpace{}, states, now);
     if constexpr (model) {
       if (system) sites.modelled = *system;
       if (cancels) states += part.states();
-      return {.part = part, .cancels = cancels};
+      return {.part = std::move(part), .cancels = cancels};
     } else {
       states += part.states();
-      return {.part = part};
+      return {.part = std::move(part)};
     }
   };
   const auto stages = control::PositionForceMaster::each_stage<Linear>(control, linear);

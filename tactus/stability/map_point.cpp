@@ -1,4 +1,4 @@
-#include <tactus/control/cancellation.hpp>
+#include <tactus/control/stages/cancellation.hpp>
 #include <tactus/experiments/contact_metrics.hpp>
 #include <tactus/stability/declared.hpp>
 #include <tactus/stability/map_point.hpp>

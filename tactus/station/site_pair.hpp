@@ -9,37 +9,30 @@
 
 namespace tactus::station {
 
-/// The way of one site of a pair: what it hears at this tick, and the channel into which it speaks.
+/// The way of one site of a pair: what it hears at this tick, and the channel into which it speaks. Messages for a site
+/// without supervision, packets for one with it.
 template <class Payload>
-struct WayEnd;
+struct WayEnd {
+  using Delivery = typename ChannelOf<Payload>::Delivery;
 
-template <>
-struct WayEnd<control::Message> {
-  const Channel::Delivery& heard;
-  Channel& out;
-  Channel::Delivery& other_hears;
+  const Delivery& heard;
+  ChannelOf<Payload>& out;
+  Delivery& other_hears;
   double tick_s;
   bool a_tick_later;  ///< what arrived has lain there since the tick before
+
   [[nodiscard]] control::Arrival arrival() const noexcept { return {.message = heard.message, .fresh = heard.fresh}; }
-  void send(const control::Message& message) noexcept { other_hears = out.step(message); }
-};
+  void send(const Payload& message) noexcept { other_hears = out.step(message); }
 
-template <>
-struct WayEnd<control::Packet> {
-  const PacketChannel::Delivery& heard;
-  PacketChannel& out;
-  PacketChannel::Delivery& other_hears;
-  double tick_s;
-  bool a_tick_later;  ///< what arrived has lain there since the tick before
   template <class Take>
   void receive(const Tick& tick, Take&& take) noexcept {
     if (!heard.fresh) return;
-    control::Packet packet = heard.message;
+    Payload packet = heard.message;
     const std::int64_t lain_ticks = a_tick_later ? tick.missed + 1 : 0;
     packet.age_s = static_cast<double>(heard.sent_ticks_ago + lain_ticks) * tick_s;
     take(packet);
   }
-  void send(const control::Packet& packet, const Tick&) noexcept { other_hears = out.step(packet); }
+  void send(const Payload& packet, const Tick&) noexcept { send(packet); }
 };
 
 /// Both sites of a teleoperator on one clock, with the channel between them: the same in virtual and in real time.

@@ -1,6 +1,6 @@
 #include <tactus/control/architecture.hpp>
-#include <tactus/control/projection.hpp>
-#include <tactus/control/shared_compliant.hpp>
+#include <tactus/control/architectures/projection.hpp>
+#include <tactus/control/architectures/shared_compliant.hpp>
 
 #include <cstdint>
 #include <limits>

@@ -1,6 +1,6 @@
-#include <tactus/control/disturbance_observer.hpp>
-#include <tactus/control/kalman_force_estimator.hpp>
-#include <tactus/control/momentum_observer.hpp>
+#include <tactus/control/estimators/disturbance_observer.hpp>
+#include <tactus/control/estimators/kalman_force_estimator.hpp>
+#include <tactus/control/estimators/momentum_observer.hpp>
 
 #include <algorithm>
 #include <cmath>

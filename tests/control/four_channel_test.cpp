@@ -1,5 +1,5 @@
 #include <tactus/control/architecture.hpp>
-#include <tactus/control/four_channel.hpp>
+#include <tactus/control/architectures/four_channel.hpp>
 
 #include <algorithm>
 #include <array>

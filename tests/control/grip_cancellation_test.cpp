@@ -1,4 +1,4 @@
-#include <tactus/control/grip_cancellation.hpp>
+#include <tactus/control/stages/grip_cancellation.hpp>
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
-#include <tactus/control/hand_force_compensation.hpp>
-#include <tactus/control/position_force.hpp>
+#include <tactus/control/architectures/position_force.hpp>
+#include <tactus/control/stages/hand_force_compensation.hpp>
 
 #include <algorithm>
 #include <cmath>

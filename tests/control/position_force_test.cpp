@@ -1,4 +1,4 @@
-#include <tactus/control/position_force.hpp>
+#include <tactus/control/architectures/position_force.hpp>
 
 #include <algorithm>
 #include <cmath>

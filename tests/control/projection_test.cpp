@@ -1,4 +1,4 @@
-#include <tactus/control/projection.hpp>
+#include <tactus/control/architectures/projection.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include <tactus/control/architecture.hpp>
-#include <tactus/control/time_domain_passivity.hpp>
+#include <tactus/control/architectures/time_domain_passivity.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include <tactus/control/architecture.hpp>
-#include <tactus/control/wave_variables.hpp>
+#include <tactus/control/architectures/wave_variables.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include <tactus/control/induced_motion_model.hpp>
+#include <tactus/control/model/induced_motion_model.hpp>
 
 #include <algorithm>
 #include <array>

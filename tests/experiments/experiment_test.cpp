@@ -173,10 +173,12 @@ TEST(ChooseExperiment, KnowsItsKindsAndListsThemForAnother) {
   EXPECT_EQ(chosen("task.kind = 'contest'").value()->kind(), "contest");
   const auto unknown = chosen("[task]\nkind = 'grasping'");
   ASSERT_FALSE(unknown);
-  EXPECT_EQ(describe(unknown.error()),
-            "test.toml:2:8: task.kind: 'grasping' is no kind of experiment: write one of "
-            "tapping, force-display, contest, inverse-model-chirp, prediction-block, "
-            "force-estimators, hydraulic-chirp, hydraulic-rigid-contact, sensorless, faults");
+  // What a program registered stands behind those of the library.
+  EXPECT_TRUE(describe(unknown.error())
+                  .starts_with("test.toml:2:8: task.kind: 'grasping' is no kind of experiment: write one of "
+                               "tapping, force-display, contest, inverse-model-chirp, prediction-block, "
+                               "force-estimators, hydraulic-chirp, hydraulic-rigid-contact, sensorless, faults"))
+      << describe(unknown.error());
   const auto missing = chosen("[control]\nforce_gain = 1.0");
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().code, ErrorCode::missing);

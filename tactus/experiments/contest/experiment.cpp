@@ -1,10 +1,6 @@
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
 #include <tactus/experiments/contest/contest.hpp>
-#include <tactus/experiments/contest/experiment.hpp>
 #include <tactus/experiments/contest/presentation.hpp>
-#include <tactus/experiments/presentation.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
+#include <tactus/experiments/experiment_of.hpp>
 #include <tactus/simulation/parallel.hpp>
 
 #include <utility>
@@ -12,6 +8,12 @@
 namespace tactus::experiments {
 
 namespace {
+
+/// Every method on the same rig: one row for each, and one picture.
+class ContestExperiment final : public ExperimentOf<ContestParams> {
+  /// Errors besides those of every experiment: `inconsistent` for a varied key.
+  Result<Outcome> run(const Request& request, const Progress& progress) const override;
+};
 
 constexpr std::string_view contest_title = "Every way to keep contact stable, side by side";
 
@@ -37,8 +39,7 @@ report::Table settings_table() {
   return table;
 }
 
-std::string page_of(const Request& request, const report::Table& table, const report::Figure& figure,
-                    std::string_view configuration) {
+report::Page page_of(const Request& request, const report::Table& table, const report::Figure& figure) {
   report::Page page(request.name + ": " + std::string(contest_title));
   page.paragraph(
       "The same hand taps the same wall through the same devices; only the controllers differ. For each method the "
@@ -58,26 +59,13 @@ std::string page_of(const Request& request, const report::Table& table, const re
        {"effort", "Force of the hand over a reach of 60 mm in 0.5 s that meets nothing, at force gain 1."},
        {"lag", "How much later than the master's motor the slave's tip is half-way on that reach."}});
   page.table(settings_table());
-  add_provenance(page, request, configuration);
-  return page.to_html();
-}
-
-}  // namespace
-
-std::string ContestExperiment::schema() const {
-  return configuration::json_schema<ContestParams>("tactus experiment: contest");
-}
-
-std::string ContestExperiment::reference() const {
-  return configuration::reference_beside<ContestParams, TappingParams>("Experiment `contest`", "tapping");
+  return page;
 }
 
 Result<Outcome> ContestExperiment::run(const Request& request, const Progress& progress) const {
-  if (!request.variations.empty()) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = request.variations.front().key,
-                 .message = "the contest varies what it compares by itself: set one value with --set",
-                 .place = "--vary"};
+  if (Check error =
+          refuse_variations(request, "the contest varies what it compares by itself: set one value with --set")) {
+    return *std::move(error);
   }
   const auto params = request.document.read<ContestParams>();
   if (!params) return params.error();
@@ -95,11 +83,16 @@ Result<Outcome> ContestExperiment::run(const Request& request, const Progress& p
 
   const report::Table table = contest_table(scores, *params);
   report::Figure figure = contest_figure(scores, *params);
-  std::string html = page_of(request, table, figure, configuration::to_toml(*params));
-  return Outcome{.text = table.to_text(),
-                 .json = contest_json(request.name, scores, *params),
-                 .html = std::move(html),
-                 .figures = {std::move(figure)}};
+  report::Page page = page_of(request, table, figure);
+  return outcome_of({.text = table.to_text(),
+                     .json = contest_json(request.name, scores, *params),
+                     .page = std::move(page),
+                     .figures = {std::move(figure)}},
+                    request, configuration::to_toml(*params));
 }
+
+}  // namespace
+
+std::unique_ptr<const Experiment> contest_experiment() { return std::make_unique<ContestExperiment>(); }
 
 }  // namespace tactus::experiments

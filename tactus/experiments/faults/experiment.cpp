@@ -1,10 +1,7 @@
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/faults/experiment.hpp>
 #include <tactus/experiments/faults/table.hpp>
-#include <tactus/experiments/presentation.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
 
 #include <algorithm>
 #include <map>
@@ -16,6 +13,12 @@
 namespace tactus::experiments {
 
 namespace {
+
+/// The table of faults as an experiment: `task.kind = "faults"`.
+class FaultExperiment final : public ExperimentOf<FaultsParams> {
+  /// Errors besides those of every experiment: `inconsistent` for a varied key.
+  Result<Outcome> run(const Request& request, const Progress& progress) const override;
+};
 
 constexpr std::string_view title = "Faults survived";
 
@@ -273,24 +276,6 @@ report::Figure figure_of(const std::vector<FaultTally>& tallies) {
           .panels = {panel}};
 }
 
-}  // namespace
-
-std::string FaultExperiment::schema() const {
-  return configuration::json_schema<FaultsParams>("tactus experiment: faults");
-}
-
-std::string FaultExperiment::reference() const {
-  return configuration::reference_beside<FaultsParams, TappingParams>("Experiment `faults`", "tapping");
-}
-
-Check refuse_variations(const Request& request) {
-  if (request.variations.empty()) return std::nullopt;
-  return Error{.code = ErrorCode::inconsistent,
-               .parameter = request.variations.front().key,
-               .message = "the table of faults varies the faults only: use --set for a key",
-               .place = "--vary"};
-}
-
 Result<Outcome> FaultExperiment::run(const Request& request, const Progress& progress) const {
   if (auto error = refuse_variations(request)) return *std::move(error);
   const auto params = request.document.read<FaultsParams>();
@@ -298,6 +283,14 @@ Result<Outcome> FaultExperiment::run(const Request& request, const Progress& pro
   const auto table = run_faults(*params, progress);
   if (!table) return request.document.locate(table.error());
   return present_faults(request, *params, *table, std::nullopt);
+}
+
+}  // namespace
+
+std::unique_ptr<const Experiment> faults_experiment() { return std::make_unique<FaultExperiment>(); }
+
+Check refuse_variations(const Request& request) {
+  return refuse_variations(request, "the table of faults varies the faults only: use --set for a key");
 }
 
 Outcome present_faults(const Request& request, const FaultsParams& params, const FaultTable& table,
@@ -343,11 +336,11 @@ Outcome present_faults(const Request& request, const FaultsParams& params, const
     expected.emplace_back(tally.row.name, std::string(tally.row.injected) + ": " + std::string(tally.row.expected));
   }
   page.definitions(expected);
-  add_provenance(page, request, configuration::to_toml(params));
-  return Outcome{.text = std::move(text),
-                 .json = json_of(request, params, table, real_time),
-                 .html = page.to_html(),
-                 .figures = std::move(figures)};
+  return outcome_of({.text = std::move(text),
+                     .json = json_of(request, params, table, real_time),
+                     .page = std::move(page),
+                     .figures = std::move(figures)},
+                    request, configuration::to_toml(params));
 }
 
 }  // namespace tactus::experiments

@@ -4,21 +4,15 @@
 #include <tactus/experiments/faults/table.hpp>
 #include <tactus/report/table.hpp>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tactus::experiments {
 
-/// The table of faults as an experiment: `task.kind = "faults"`.
-class FaultExperiment final : public Experiment {
- public:
-  [[nodiscard]] std::string_view kind() const override { return "faults"; }
-  [[nodiscard]] std::string schema() const override;
-  [[nodiscard]] std::string reference() const override;
-  /// Errors besides those of every experiment: `inconsistent` for a varied key.
-  [[nodiscard]] Result<Outcome> run(const Request& request, const Progress& progress) const override;
-};
+/// The table of faults as an experiment.
+std::unique_ptr<const Experiment> faults_experiment();
 
 /// The error for a request that varies keys.
 Check refuse_variations(const Request& request);

@@ -40,10 +40,6 @@ std::vector<FaultPlan> plans_of(const FaultPlan& plan) {
     while (second > first) second -= ++first;
     const double second_s = plan.start_s + random.uniform(0.0, 0.3);
     std::vector<FaultPlan> both{strike(first, plan, plan.start_s), strike(second, plan, second_s)};
-    // A clock has one rate: where both are drifts, each site has its own.
-    if (first == second && both[0].kind == FaultKind::rate_drift) {
-      both[1].site = both[0].site == FaultSite::master ? FaultSite::slave : FaultSite::master;
-    }
     // A hand that let go stays away while anything else is wrong: pressing the switch again is no arming, and is
     // allowed.
     const double end_s = std::max(both[0].start_s + both[0].length_s, both[1].start_s + both[1].length_s);

@@ -21,7 +21,7 @@ class FaultProcess {
     using Beat = simulation::FaultyClock::Beat;
     bool dead = false, stands = missed, sleeps = false;
     for (FaultInjection& injection : injections) {
-      const Beat beat = injection.at(site_).clock.step(injection.moment());
+      const Beat beat = injection.at(site_).clock.step(injection.moment(), sleeps);
       dead = dead || beat == Beat::dead;
       stands = stands || beat == Beat::stands;
       sleeps = sleeps || beat == Beat::sleeps;

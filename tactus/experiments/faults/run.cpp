@@ -1,12 +1,12 @@
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/experiments/faults/faulty_configuration.hpp>
 #include <tactus/experiments/faults/faulty_site.hpp>
+#include <tactus/experiments/faults/handle.hpp>
 #include <tactus/experiments/faults/injection.hpp>
 #include <tactus/experiments/faults/judge.hpp>
 #include <tactus/experiments/faults/pairs.hpp>
 #include <tactus/experiments/faults/person.hpp>
 #include <tactus/experiments/faults/run.hpp>
-#include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/simulation/site_plants.hpp>
 #include <tactus/station/step.hpp>
 
@@ -26,9 +26,6 @@ constexpr double released_share = 0.05;
 constexpr double coasting = 1.1;
 /// A force that is wrong for less than this is hardly wrong.
 constexpr double slowly_s = 0.02;
-/// What a clamp holds a handle with.
-constexpr mechanics::LinearSpring::Params clamp{.stiffness_N_per_m = 20000.0, .damping_N_s_per_m = 50.0};
-
 }  // namespace
 
 class FaultRun::Run {
@@ -49,6 +46,7 @@ class FaultRun::Run {
         tick_s_(clock.tick_s),
         injections_(injections_of(plan, tick_s_)),
         person_(person),
+        handle_(params.person.grip),
         master_(std::move(master)),
         slave_(std::move(slave)),
         at_master_(params.control.gate.force_limit_N, params.control.gate.rate_limit_N_per_s, tick_s_),
@@ -74,11 +72,16 @@ class FaultRun::Run {
   /// a clock that loses ticks does not count how long a packet waits meanwhile.
   static double oldest_s(const simulation::Teleoperator::Params& params, const FaultPlan& plan, double tick_s) {
     const double factor = plan.kind == FaultKind::delay_asymmetric ? 2.0 : 1.0;
-    double waits_s = 0.0;
-    for (const FaultPlan& part : plans_of(plan)) {
-      if (part.kind == FaultKind::rate_drift) waits_s += tick_s * std::ceil(part.size / (1.0 - part.size));
+    double waits_ticks = 0.0;
+    for (const FaultSite site : {FaultSite::master, FaultSite::slave}) {
+      double longest_ticks = 1.0;  // from one step to the next
+      for (const FaultPlan& part : plans_of(plan)) {
+        if (part.kind == FaultKind::rate_drift && part.site == site)
+          longest_ticks *= std::ceil(1.0 / (1.0 - part.size));
+      }
+      waits_ticks += longest_ticks - 1.0;
     }
-    return factor * params.control.supervision.packets.longest_age_s + waits_s;
+    return factor * params.control.supervision.packets.longest_age_s + tick_s * waits_ticks;
   }
   template <class Site, class Make>
   static Result<std::pair<Site, std::vector<Site>>> starts(const FaultPlan& plan, const Make& make);
@@ -109,8 +112,6 @@ class FaultRun::Run {
   control::SiteRequests requests(FaultSite site) const;
   void spoil(station::DeviceReading& reading, FaultSite site);
   double drive(double told_N, bool enabled, FaultSite site);
-  void hold_handle();
-  [[nodiscard]] mechanics::Operator::Output clamped() const;
   template <class Here, class There>
   struct Way;
   template <class Here, class There>
@@ -125,15 +126,13 @@ class FaultRun::Run {
   double tick_s_;
   std::vector<FaultInjection> injections_;  ///< all that goes wrong; the first counts for the judge
   FaultPerson person_;
+  FaultHandle handle_;
   Master master_;
   Slave slave_;
   ForceWitness at_master_, at_handle_, at_slave_;
   FaultJudge judge_;
   FaultOutcome outcome_;
-  FaultyPerson::Hand hand_ = FaultyPerson::Hand::holds;
-  double clamped_at_m_ = 0.0;
-  mechanics::MinimumJerk returns_;  ///< how far off its path the hand still leads a handle that it took again
-  double misread_N_ = 0.0;          ///< of the tip's force, by a fault
+  double misread_N_ = 0.0;  ///< of the tip's force, by a fault
   Lasting misread_slowly_, misdriven_slowly_;
   std::int64_t tick_ = 0;
   std::int64_t ticks_ = 0;
@@ -274,45 +273,10 @@ void FaultRun::Run::step_site(Here& here, There& there) {
   here.forces.drive_N = drive(here.forces.motor_N, here.forces.enabled, here.where);
 }
 
-/// Lets go of the handle, clamps it or takes it again.
-void FaultRun::Run::hold_handle() {
-  using Hand = FaultyPerson::Hand;
-  Hand hand = Hand::holds;
-  for (const FaultInjection& injection : injections_) hand = std::max(hand, injection.person.hand(injection.moment()));
-  if (hand == hand_) return;
-  hand_ = hand;
-  const double now_s = moment().now_s, handle_m = master_.plant.mechanism().tip_position_m();
-  clamped_at_m_ = handle_m;
-  if (hand == Hand::holds) {
-    returns_ = FaultyPerson::returns_from(handle_m - person_.path_m(now_s), now_s);
-    master_.plant.take_again(params_.person.grip);
-  } else {
-    master_.plant.hold(hand == Hand::lets_go ? mechanics::nobody_holds : clamp);
-  }
-}
-
-/// Where the clamp that holds the handle wants it.
-mechanics::Operator::Output FaultRun::Run::clamped() const {
-  for (const FaultInjection& injection : injections_) {
-    if (injection.person.hand(injection.moment()) != FaultyPerson::Hand::is_clamped) continue;
-    const mechanics::Operator::Output pushed = injection.person.pushed(injection.moment());
-    return {.position_m = clamped_at_m_ + pushed.position_m, .velocity_m_per_s = pushed.velocity_m_per_s};
-  }
-  return {.position_m = clamped_at_m_, .velocity_m_per_s = 0.0};
-}
-
 void FaultRun::Run::advance() {
-  const double now_s = moment().now_s;
   master_.plant.write({.force_N = master_.forces.drive_N, .handle_force_N = master_.forces.handle_N});
   slave_.plant.write({.force_N = slave_.forces.drive_N});
-  hold_handle();
-  if (hand_ == FaultyPerson::Hand::holds) {
-    const auto meant_m = [this](double time_s) { return person_.path_m(time_s) + returns_.position_m(time_s); };
-    master_.plant.begin_tick(meant_m(now_s), meant_m(now_s + tick_s_));
-  } else {
-    // A hand that is away corrects nothing.
-    master_.plant.begin_tick(clamped());
-  }
+  handle_.lead(master_.plant, person_, injections_, tick_s_);
   slave_.plant.begin_tick();
   for (int i = 0; i < clock_.substeps; ++i) {
     master_.plant.substep(i);

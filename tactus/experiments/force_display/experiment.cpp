@@ -1,9 +1,5 @@
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
-#include <tactus/experiments/force_display/experiment.hpp>
+#include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/force_display/force_display.hpp>
-#include <tactus/experiments/presentation.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -13,52 +9,52 @@ namespace {
 
 constexpr std::string_view force_display_title = "A force displayed to a moving hand";
 
-/// One combination of the varied parameters as it went.
-struct DisplayRun {
-  Settings settings;
+struct Displayed {
   std::vector<ForceDisplayCase> cases;
   std::vector<ForceDisplayTrace> traces;
 };
 
+/// A force played to a moving hand: what cancellation leaves of the motion that it induces (paper A, Figs. 4 and 12).
+class ForceDisplayExperiment final : public SweepOf<ForceDisplayParams, Displayed> {
+  Check check(const ForceDisplayParams& params) const override;
+  Result<Displayed> run_one(const ForceDisplayParams& params) const override;
+  Presentation present(const Request& request, const Runs& runs) const override;
+};
+using DisplayRun = ForceDisplayExperiment::Run;
+
 report::Table table_of(const std::vector<DisplayRun>& runs) {
   using Align = report::Column::Align;
-  std::vector<report::Column> columns = settings_columns(runs.front().settings);
-  columns.insert(columns.end(), {{"force scale"},
-                                 {"model friction", "", Align::left},
-                                 {"model", "", Align::left},
-                                 {"induced motion", "um RMS"},
-                                 {"kept by the estimate", "%"},
-                                 {"encoder alone", "%"}});
-  report::Table table(columns, std::string(force_display_title) + ": what is left of the induced motion above 20 Hz");
+  report::Table table =
+      table_of_runs(runs.front().settings,
+                    {{"force scale"},
+                     {"model friction", "", Align::left},
+                     {"model", "", Align::left},
+                     {"induced motion", "um RMS"},
+                     {"kept by the estimate", "%"},
+                     {"encoder alone", "%"}},
+                    std::string(force_display_title) + ": what is left of the induced motion above 20 Hz");
   for (const DisplayRun& run : runs) {
-    for (const ForceDisplayCase& one : run.cases) {
-      std::vector<std::string> cells = settings_cells(run.settings);
-      cells.insert(cells.end(),
-                   {report::number(one.scale, 2), name_of(one.friction), one.mismatched ? "mismatched" : "nominal",
-                    report::number(1e6 * one.induced_rms_m, 3), report::number(100.0 * one.kept_fraction, 3),
-                    report::number(100.0 * one.encoder_fraction, 3)});
-      table.add_row(cells);
+    for (const ForceDisplayCase& one : run.found.cases) {
+      add_row(table, run.settings,
+              {report::number(one.scale, 2), name_of(one.friction), one.mismatched ? "mismatched" : "nominal",
+               report::number(1e6 * one.induced_rms_m, 3), report::number(100.0 * one.kept_fraction, 3),
+               report::number(100.0 * one.encoder_fraction, 3)});
     }
   }
   return table;
 }
 
-std::string json_of(const Request& request, const std::vector<DisplayRun>& runs) {
-  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
-  for (const DisplayRun& run : runs) {
-    auto cases = nlohmann::ordered_json::array();
-    for (const ForceDisplayCase& one : run.cases) {
-      cases.push_back({{"scale", one.scale},
-                       {"friction", name_of(one.friction)},
-                       {"model", one.mismatched ? "mismatched" : "nominal"},
-                       {"induced_rms_m", one.induced_rms_m},
-                       {"kept_fraction", one.kept_fraction},
-                       {"encoder_fraction", one.encoder_fraction}});
-    }
-    document["runs"].push_back(
-        {{"set", nlohmann::ordered_json::parse(settings_json(run.settings))}, {"metrics", {{"cases", cases}}}});
+std::string json_of(const DisplayRun& run) {
+  auto cases = nlohmann::ordered_json::array();
+  for (const ForceDisplayCase& one : run.found.cases) {
+    cases.push_back({{"scale", one.scale},
+                     {"friction", name_of(one.friction)},
+                     {"model", one.mismatched ? "mismatched" : "nominal"},
+                     {"induced_rms_m", one.induced_rms_m},
+                     {"kept_fraction", one.kept_fraction},
+                     {"encoder_fraction", one.encoder_fraction}});
   }
-  return document.dump(2) + "\n";
+  return nlohmann::ordered_json{{"metrics", {{"cases", cases}}}}.dump();
 }
 
 std::vector<double> times(double factor, const std::vector<double>& values) {
@@ -75,12 +71,12 @@ report::Figure figure_of(const DisplayRun& run) {
                             "the motor as measured, the estimate of the intended motion (nominal model, "
                             "friction on total velocity), and the same hand without the force. Compare Figs. 4 "
                             "and 12 of Kuchenbecker and Niemeyer.",
-                        .columns = static_cast<int>(run.traces.size()),
+                        .columns = static_cast<int>(run.found.traces.size()),
                         .panels = {},
                         .share_x = report::Sharing::by_quantity,
                         .share_y = report::Sharing::by_quantity};
   const report::Axis time{.label = "time since start of the force", .unit = "ms"};
-  for (const ForceDisplayTrace& trace : run.traces) {
+  for (const ForceDisplayTrace& trace : run.found.traces) {
     figure.column_titles.push_back("force scale " + report::number(trace.scale, 2));
     figure.panels.push_back({.title = {},
                              .x = time,
@@ -88,7 +84,7 @@ report::Figure figure_of(const DisplayRun& run) {
                              .lines = {{.name = "displayed force", .x = times(1e3, trace.time_s), .y = trace.force_N}},
                              .rules = {}});
   }
-  for (const ForceDisplayTrace& trace : run.traces) {
+  for (const ForceDisplayTrace& trace : run.found.traces) {
     const std::vector<double> time_ms = times(1e3, trace.time_s);
     figure.panels.push_back(
         {.title = {},
@@ -107,8 +103,8 @@ report::Figure figure_of(const DisplayRun& run) {
   return figure;
 }
 
-std::string page_of(const Request& request, const std::vector<DisplayRun>& runs, const report::Table& table,
-                    const std::vector<report::Figure>& figures, std::string_view configuration) {
+report::Page page_of(const Request& request, const std::vector<DisplayRun>& runs, const report::Table& table,
+                     const std::vector<report::Figure>& figures) {
   report::Page page(request.name + ": " + std::string(force_display_title));
   page.paragraph(
       "While a person moves the handle at constant speed, a force is played that knows nothing of the motion. The "
@@ -131,36 +127,33 @@ std::string page_of(const Request& request, const std::vector<DisplayRun>& runs,
     if (!runs[i].settings.empty()) page.heading(settings_caption(runs[i].settings));
     page.figure(figures[i]);
   }
-  add_provenance(page, request, configuration);
-  return page.to_html();
+  return page;
+}
+
+Check ForceDisplayExperiment::check(const ForceDisplayParams& params) const {
+  const auto display = ForceDisplay::make(params);
+  return display ? Check{} : Check{display.error()};
+}
+
+Result<Displayed> ForceDisplayExperiment::run_one(const ForceDisplayParams& params) const {
+  const auto display = ForceDisplay::make(params);
+  if (!display) return display.error();
+  return Displayed{.cases = display->cases(), .traces = display->traces()};
+}
+
+Presentation ForceDisplayExperiment::present(const Request& request, const Runs& runs) const {
+  const report::Table table = table_of(runs);
+  std::vector<report::Figure> figures;
+  for (const Run& run : runs) figures.push_back(figure_of(run));
+  report::Page page = page_of(request, runs, table, figures);
+  return {.text = table.to_text(),
+          .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
+          .page = std::move(page),
+          .figures = std::move(figures)};
 }
 
 }  // namespace
 
-std::string ForceDisplayExperiment::schema() const {
-  return configuration::json_schema<ForceDisplayParams>("tactus experiment: force-display");
-}
-
-std::string ForceDisplayExperiment::reference() const {
-  return configuration::reference_beside<ForceDisplayParams, TappingParams>("Experiment `force-display`", "tapping");
-}
-
-Result<Outcome> ForceDisplayExperiment::run(const Request& request, const Progress& progress) const {
-  const auto cases = prepare_cases<ForceDisplayParams, ForceDisplay>(
-      request, [](const ForceDisplayParams& params) { return ForceDisplay::make(params); });
-  if (!cases) return cases.error();
-
-  std::vector<DisplayRun> runs;
-  for (const auto& [settings, display] : cases->all) {
-    runs.push_back({.settings = settings, .cases = display.cases(), .traces = display.traces()});
-    progress(static_cast<double>(runs.size()) / static_cast<double>(cases->all.size()));
-  }
-  const report::Table table = table_of(runs);
-  std::vector<report::Figure> figures;
-  for (const DisplayRun& run : runs) figures.push_back(figure_of(run));
-  std::string html = page_of(request, runs, table, figures, cases->first_configuration);
-  return Outcome{
-      .text = table.to_text(), .json = json_of(request, runs), .html = std::move(html), .figures = std::move(figures)};
-}
+std::unique_ptr<const Experiment> force_display_experiment() { return std::make_unique<ForceDisplayExperiment>(); }
 
 }  // namespace tactus::experiments

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/control/cancellation.hpp>
+#include <tactus/control/stages/cancellation.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/experiments/model_mismatch.hpp>
 #include <tactus/mechanics/cable_driven_master.hpp>

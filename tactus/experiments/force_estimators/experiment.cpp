@@ -1,9 +1,5 @@
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
-#include <tactus/experiments/force_estimators/experiment.hpp>
+#include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/force_estimators/force_estimators.hpp>
-#include <tactus/experiments/presentation.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
 
 #include <utility>
 
@@ -20,28 +16,29 @@ std::string in_millinewton(double force_N, int digits) {
   return force_N < 1e-12 ? "0" : report::number(1e3 * force_N, digits);
 }
 
-/// One combination of the varied parameters with its result.
-struct EstimatorsRun {
-  Settings settings;
-  ForceEstimatorsParams params;
-  ForceEstimatorsResult result;
+/// Estimators of contact force on the same data: one row for each.
+class ForceEstimatorsExperiment final : public SweepOf<ForceEstimatorsParams, ForceEstimatorsResult> {
+  Check check(const ForceEstimatorsParams& params) const override { return experiments::check(params); }
+  Result<ForceEstimatorsResult> run_one(const ForceEstimatorsParams& params) const override {
+    return compare_force_estimators(params);
+  }
+  Presentation present(const Request& request, const Runs& runs) const override;
 };
+using EstimatorsRun = ForceEstimatorsExperiment::Run;
 
 report::Table table_of(const std::vector<EstimatorsRun>& runs) {
-  std::vector<report::Column> columns = settings_columns(runs.front().settings);
-  columns.insert(columns.end(), {{"estimator", "", report::Column::Align::left},
-                                 {"error in contact", "mN RMS"},
-                                 {"lead", "ms"},
-                                 {"false force in free motion", "mN RMS"},
-                                 {"noise at rest", "mN RMS"}});
-  report::Table table(columns, std::string(force_estimators_title));
+  report::Table table = table_of_runs(runs.front().settings,
+                                      {{"estimator", "", report::Column::Align::left},
+                                       {"error in contact", "mN RMS"},
+                                       {"lead", "ms"},
+                                       {"false force in free motion", "mN RMS"},
+                                       {"noise at rest", "mN RMS"}},
+                                      std::string(force_estimators_title));
   for (const EstimatorsRun& run : runs) {
-    for (const EstimatorScore& score : run.result.scores) {
-      std::vector<std::string> cells = settings_cells(run.settings);
-      cells.insert(cells.end(),
-                   {score.name, in_millinewton(score.contact_error_N, 3), report::number(1e3 * score.lead_s, 2),
-                    in_millinewton(score.free_residual_N, 3), in_millinewton(score.rest_noise_N, 2)});
-      table.add_row(cells);
+    for (const EstimatorScore& score : run.found.scores) {
+      add_row(table, run.settings,
+              {score.name, in_millinewton(score.contact_error_N, 3), report::number(1e3 * score.lead_s, 2),
+               in_millinewton(score.free_residual_N, 3), in_millinewton(score.rest_noise_N, 2)});
     }
   }
   return table;
@@ -104,20 +101,20 @@ report::Figure figure_of(const EstimatorsRun& run) {
                         double until_s) {
     report::Line result{.name = std::move(name), .x = {}, .y = {}, .colour = colour};
     for (std::size_t tick = 0; tick < force_N.size(); ++tick) {
-      const double time_s = static_cast<double>(tick) * run.result.run.tick_s;
+      const double time_s = static_cast<double>(tick) * run.found.run.tick_s;
       if (time_s < from_s || time_s > until_s) continue;
       result.x.push_back(time_s);
       result.y.push_back(force_N[tick]);
     }
     return result;
   };
-  for (std::size_t i = 1; i < run.result.scores.size(); ++i) {
-    const EstimatorScore& score = run.result.scores[i];
+  for (std::size_t i = 1; i < run.found.scores.size(); ++i) {
+    const EstimatorScore& score = run.found.scores[i];
     for (const auto& [from_s, until_s] : {std::pair{plan.rest_s, plan.free_until_s}, {plan.press_s, plan.end_s}}) {
       figure.panels.push_back({.title = score.name,
                                .x = {.label = "time", .unit = "s"},
                                .y = {.label = "force", .unit = "N"},
-                               .lines = {line("true", 7, run.result.run.true_N, from_s, until_s),
+                               .lines = {line("true", 7, run.found.run.true_N, from_s, until_s),
                                          line("estimated", 0, score.estimate_N, from_s, until_s)},
                                .rules = {}});
     }
@@ -125,51 +122,21 @@ report::Figure figure_of(const EstimatorsRun& run) {
   return figure;
 }
 
-std::string json_of(const Request& request, const std::vector<EstimatorsRun>& runs) {
-  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
-  for (const EstimatorsRun& run : runs) {
-    nlohmann::ordered_json estimators = nlohmann::ordered_json::array();
-    for (const EstimatorScore& score : run.result.scores) {
-      estimators.push_back({{"name", score.name},
-                            {"contact_error_N", score.contact_error_N},
-                            {"lead_s", score.lead_s},
-                            {"free_motion_residual_N", score.free_residual_N},
-                            {"rest_noise_N", score.rest_noise_N}});
-    }
-    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))},
-                                {"estimators", estimators},
-                                {"narx", narx_json(run.result.narx)}});
+std::string json_of(const EstimatorsRun& run) {
+  nlohmann::ordered_json estimators = nlohmann::ordered_json::array();
+  for (const EstimatorScore& score : run.found.scores) {
+    estimators.push_back({{"name", score.name},
+                          {"contact_error_N", score.contact_error_N},
+                          {"lead_s", score.lead_s},
+                          {"free_motion_residual_N", score.free_residual_N},
+                          {"rest_noise_N", score.rest_noise_N}});
   }
-  return document.dump(2) + "\n";
+  return nlohmann::ordered_json{{"estimators", estimators}, {"narx", narx_json(run.found.narx)}}.dump();
 }
 
-}  // namespace
-
-std::string ForceEstimatorsExperiment::schema() const {
-  return configuration::json_schema<ForceEstimatorsParams>("tactus experiment: force-estimators");
-}
-
-std::string ForceEstimatorsExperiment::reference() const {
-  return configuration::reference_beside<ForceEstimatorsParams, TappingParams>("Experiment `force-estimators`",
-                                                                               "tapping");
-}
-
-Result<Outcome> ForceEstimatorsExperiment::run(const Request& request, const Progress& progress) const {
-  const auto cases = prepare_cases<ForceEstimatorsParams, ForceEstimatorsParams>(
-      request, [](const ForceEstimatorsParams& params) -> Result<ForceEstimatorsParams> {
-        if (auto error = check(params)) return *std::move(error);
-        return params;
-      });
-  if (!cases) return cases.error();
-  std::vector<EstimatorsRun> runs;
-  for (const auto& [settings, params] : cases->all) {
-    auto result = compare_force_estimators(params);
-    if (!result) return result.error();
-    runs.push_back({settings, params, *std::move(result)});
-    progress(static_cast<double>(runs.size()) / static_cast<double>(cases->all.size()));
-  }
+Presentation ForceEstimatorsExperiment::present(const Request& request, const Runs& runs) const {
   const report::Table table = table_of(runs);
-  const report::Table narx_table = narx_table_of(runs.front().result.narx);
+  const report::Table narx_table = narx_table_of(runs.front().found.narx);
   report::Figure figure = figure_of(runs.front());
   report::Page page(request.name + ": " + std::string(force_estimators_title));
   page.paragraph(
@@ -188,11 +155,16 @@ Result<Outcome> ForceEstimatorsExperiment::run(const Request& request, const Pro
                      "the model's own output i lags ago; each over its scale."},
                     {"error reduction", "Share of the squared force that the term explained when it was chosen."}});
   page.figure(figure);
-  add_provenance(page, request, cases->first_configuration);
-  return Outcome{.text = table.to_text() + "\n" + narx_table.to_text(),
-                 .json = json_of(request, runs),
-                 .html = page.to_html(),
-                 .figures = {std::move(figure)}};
+  return {.text = table.to_text() + "\n" + narx_table.to_text(),
+          .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
+          .page = std::move(page),
+          .figures = {std::move(figure)}};
+}
+
+}  // namespace
+
+std::unique_ptr<const Experiment> force_estimators_experiment() {
+  return std::make_unique<ForceEstimatorsExperiment>();
 }
 
 }  // namespace tactus::experiments

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <tactus/control/disturbance_observer.hpp>
-#include <tactus/control/inverse_model_estimator.hpp>
-#include <tactus/control/kalman_force_estimator.hpp>
-#include <tactus/control/momentum_observer.hpp>
-#include <tactus/control/servo_pd.hpp>
+#include <tactus/control/estimators/disturbance_observer.hpp>
+#include <tactus/control/estimators/inverse_model_estimator.hpp>
+#include <tactus/control/estimators/kalman_force_estimator.hpp>
+#include <tactus/control/estimators/momentum_observer.hpp>
+#include <tactus/control/stages/servo_pd.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/identification/narx_fit.hpp>
 #include <tactus/mechanics/electric_slave.hpp>

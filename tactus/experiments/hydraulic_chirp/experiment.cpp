@@ -1,8 +1,5 @@
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
-#include <tactus/experiments/hydraulic_chirp/experiment.hpp>
+#include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/hydraulic_chirp/hydraulic_chirp.hpp>
-#include <tactus/experiments/presentation.hpp>
 
 #include <cmath>
 
@@ -14,34 +11,36 @@ namespace {
 
 constexpr std::string_view hydraulic_chirp_title = "Valve current in free motion, measured and from an inverse model";
 
-struct HydraulicChirpRun {
-  Settings settings;
-  HydraulicChirpParams params;
-  HydraulicChirpResult result;
-
-  [[nodiscard]] double percent(double current_mA) const {
-    return 100.0 * current_mA / params.slave.valve.rated_current_mA;
+/// The current of a servo-hydraulic slave's valve, measured and as an inverse model says it (paper B, Fig. 7).
+class HydraulicChirpExperiment final : public SweepOf<HydraulicChirpParams, HydraulicChirpResult> {
+  Check check(const HydraulicChirpParams& params) const override { return experiments::check(params); }
+  Result<HydraulicChirpResult> run_one(const HydraulicChirpParams& params) const override {
+    return run_hydraulic_chirp(params);
   }
+  Presentation present(const Request& request, const Runs& runs) const override;
 };
+using HydraulicChirpRun = HydraulicChirpExperiment::Run;
+
+double percent_of_full(const HydraulicChirpRun& run, double current_mA) {
+  return 100.0 * current_mA / run.params.slave.valve.rated_current_mA;
+}
 
 report::Table table_of(const std::vector<HydraulicChirpRun>& runs) {
-  std::vector<report::Column> columns = settings_columns(runs.front().settings);
-  columns.insert(columns.end(), {{"inverse model", "", report::Column::Align::left},
-                                 {"Tp", "ms"},
-                                 {"error", "mA MAE"},
-                                 {"of full current", "%"},
-                                 {"below 2 Hz", "mA MAE"},
-                                 {"of full current", "%"}});
-  report::Table table(columns, std::string(hydraulic_chirp_title));
+  report::Table table = table_of_runs(runs.front().settings,
+                                      {{"inverse model", "", report::Column::Align::left},
+                                       {"Tp", "ms"},
+                                       {"error", "mA MAE"},
+                                       {"of full current", "%"},
+                                       {"below 2 Hz", "mA MAE"},
+                                       {"of full current", "%"}},
+                                      std::string(hydraulic_chirp_title));
   for (const HydraulicChirpRun& run : runs) {
-    for (const CurrentScore& score : run.result.scores) {
-      std::vector<std::string> cells = settings_cells(run.settings);
-      cells.insert(
-          cells.end(),
-          {score.name, score.blocks > 0 ? report::number(1e3 * score.time_constant_s, 3) : std::string("-"),
-           report::number(score.mae_mA, 3), report::number(run.percent(score.mae_mA), 2),
-           report::number(score.mae_below_2_Hz_mA, 3), report::number(run.percent(score.mae_below_2_Hz_mA), 2)});
-      table.add_row(cells);
+    for (const CurrentScore& score : run.found.scores) {
+      add_row(table, run.settings,
+              {score.name, score.blocks > 0 ? report::number(1e3 * score.time_constant_s, 3) : std::string("-"),
+               report::number(score.mae_mA, 3), report::number(percent_of_full(run, score.mae_mA), 2),
+               report::number(score.mae_below_2_Hz_mA, 3),
+               report::number(percent_of_full(run, score.mae_below_2_Hz_mA), 2)});
     }
   }
   return table;
@@ -59,7 +58,7 @@ report::Figure figure_of(const HydraulicChirpRun& run) {
   const report::Axis time{.label = "time", .unit = "s"};
   report::Panel errors{.title = {}, .x = time, .y = {.label = "error", .unit = "mA"}, .lines = {}, .rules = {}};
   report::Panel close{.title = {}, .x = time, .y = {.label = "current", .unit = "mA"}, .lines = {}, .rules = {}};
-  const auto& samples = run.result.run;
+  const auto& samples = run.found.run;
   const double close_from_s = 0.95 * samples.back().time_s;
   report::Line measured{.name = "measured", .x = {}, .y = {}, .colour = 7};
   for (const auto& sample : samples) {
@@ -69,7 +68,7 @@ report::Figure figure_of(const HydraulicChirpRun& run) {
   }
   close.lines.push_back(std::move(measured));
   int colour = 0;
-  for (const CurrentScore& score : run.result.scores) {
+  for (const CurrentScore& score : run.found.scores) {
     if (score.blocks != 0 && score.name != "2 blocks") continue;  // the rest is in the table
     report::Line error{.name = score.name, .x = {}, .y = {}, .colour = colour};
     report::Line current = error;
@@ -88,58 +87,31 @@ report::Figure figure_of(const HydraulicChirpRun& run) {
   return figure;
 }
 
-std::string json_of(const Request& request, const std::vector<HydraulicChirpRun>& runs) {
-  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
-  for (const HydraulicChirpRun& run : runs) {
-    auto variants = nlohmann::ordered_json::array();
-    for (const CurrentScore& score : run.result.scores) {
-      variants.push_back({{"estimator", score.name},
-                          {"blocks", score.blocks},
-                          {"time_constant_s", score.time_constant_s},
-                          {"mae_mA", score.mae_mA},
-                          {"percent_of_rated_current", run.percent(score.mae_mA)},
-                          {"mae_below_2_Hz_mA", score.mae_below_2_Hz_mA},
-                          {"percent_of_rated_current_below_2_Hz", run.percent(score.mae_below_2_Hz_mA)}});
-    }
-    const auto& friction = run.result.fitted.model.friction;
-    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))},
-                                {"metrics",
+std::string json_of(const HydraulicChirpRun& run) {
+  auto variants = nlohmann::ordered_json::array();
+  for (const CurrentScore& score : run.found.scores) {
+    variants.push_back({{"estimator", score.name},
+                        {"blocks", score.blocks},
+                        {"time_constant_s", score.time_constant_s},
+                        {"mae_mA", score.mae_mA},
+                        {"percent_of_rated_current", percent_of_full(run, score.mae_mA)},
+                        {"mae_below_2_Hz_mA", score.mae_below_2_Hz_mA},
+                        {"percent_of_rated_current_below_2_Hz", percent_of_full(run, score.mae_below_2_Hz_mA)}});
+  }
+  const auto& friction = run.found.fitted.model.friction;
+  return nlohmann::ordered_json{{"metrics",
                                  {{"model",
                                    {{"damping_N", friction.force_N},
                                     {"linear", friction.linear},
                                     {"quadratic", friction.quadratic},
                                     {"offset_N", friction.offset_N},
-                                    {"apparent_mass_kg", run.result.fitted.apparent_mass_kg},
-                                    {"fit_residual_rms_mA", run.result.fitted.residual_rms_mA}}},
-                                  {"variants", variants}}}});
-  }
-  return document.dump(2) + "\n";
+                                    {"apparent_mass_kg", run.found.fitted.apparent_mass_kg},
+                                    {"fit_residual_rms_mA", run.found.fitted.residual_rms_mA}}},
+                                  {"variants", variants}}}}
+      .dump();
 }
 
-}  // namespace
-
-std::string HydraulicChirpExperiment::schema() const {
-  return configuration::json_schema<HydraulicChirpParams>("tactus experiment: hydraulic-chirp");
-}
-
-std::string HydraulicChirpExperiment::reference() const {
-  return configuration::reference_markdown<HydraulicChirpParams>("Experiment `hydraulic-chirp`");
-}
-
-Result<Outcome> HydraulicChirpExperiment::run(const Request& request, const Progress& progress) const {
-  const auto cases = prepare_cases<HydraulicChirpParams, HydraulicChirpParams>(
-      request, [](const HydraulicChirpParams& params) -> Result<HydraulicChirpParams> {
-        if (Check error = check(params)) return *std::move(error);
-        return params;
-      });
-  if (!cases) return cases.error();
-  std::vector<HydraulicChirpRun> runs;
-  for (const auto& [settings, params] : cases->all) {
-    auto result = run_hydraulic_chirp(params);
-    if (!result) return blame_variation(request.document.locate(result.error()), settings);
-    runs.push_back({.settings = settings, .params = params, .result = *std::move(result)});
-    progress(static_cast<double>(runs.size()) / static_cast<double>(cases->all.size()));
-  }
+Presentation HydraulicChirpExperiment::present(const Request& request, const Runs& runs) const {
   const report::Table table = table_of(runs);
   std::vector<report::Figure> figures;
   for (const HydraulicChirpRun& run : runs) figures.push_back(figure_of(run));
@@ -159,9 +131,14 @@ Result<Outcome> HydraulicChirpExperiment::run(const Request& request, const Prog
         "What the fit of the current on acceleration comes to. It holds the lags of valve and sensors, "
         "which the mass as weighed does not."}});
   for (const report::Figure& figure : figures) page.figure(figure);
-  add_provenance(page, request, cases->first_configuration);
-  return Outcome{
-      .text = table.to_text(), .json = json_of(request, runs), .html = page.to_html(), .figures = std::move(figures)};
+  return {.text = table.to_text(),
+          .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
+          .page = std::move(page),
+          .figures = std::move(figures)};
 }
+
+}  // namespace
+
+std::unique_ptr<const Experiment> hydraulic_chirp_experiment() { return std::make_unique<HydraulicChirpExperiment>(); }
 
 }  // namespace tactus::experiments

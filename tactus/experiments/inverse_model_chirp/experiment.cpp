@@ -1,8 +1,5 @@
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
-#include <tactus/experiments/inverse_model_chirp/experiment.hpp>
+#include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/inverse_model_chirp/inverse_model_chirp.hpp>
-#include <tactus/experiments/presentation.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -12,10 +9,15 @@ namespace {
 
 constexpr std::string_view inverse_model_chirp_title = "Force felt in free motion through an inverse model";
 
-struct ChirpRun {
-  Settings settings;
-  InverseModelChirpResult result;
+/// Force felt in free motion through an inverse model (paper B, Fig. 5).
+class InverseModelChirpExperiment final : public SweepOf<InverseModelChirpParams, InverseModelChirpResult> {
+  Check check(const InverseModelChirpParams& params) const override { return experiments::check(params); }
+  Result<InverseModelChirpResult> run_one(const InverseModelChirpParams& params) const override {
+    return run_inverse_model_chirp(params);
+  }
+  Presentation present(const Request& request, const Runs& runs) const override;
 };
+using ChirpRun = InverseModelChirpExperiment::Run;
 
 std::string label(const InverseModelVariant& variant) {
   if (variant.blocks == 0) return variant.name;
@@ -23,40 +25,36 @@ std::string label(const InverseModelVariant& variant) {
 }
 
 report::Table table_of(const std::vector<ChirpRun>& runs) {
-  std::vector<report::Column> columns = settings_columns(runs.front().settings);
-  columns.insert(columns.end(), {{"estimator", "", report::Column::Align::left},
-                                 {"Tp", "ms"},
-                                 {"chirp", "N RMS"},
-                                 {"below 2 Hz", "N RMS"},
-                                 {"multisine", "N RMS"},
-                                 {"multisine below 2 Hz", "N RMS"}});
-  report::Table table(columns, std::string(inverse_model_chirp_title));
+  report::Table table = table_of_runs(runs.front().settings,
+                                      {{"estimator", "", report::Column::Align::left},
+                                       {"Tp", "ms"},
+                                       {"chirp", "N RMS"},
+                                       {"below 2 Hz", "N RMS"},
+                                       {"multisine", "N RMS"},
+                                       {"multisine below 2 Hz", "N RMS"}},
+                                      std::string(inverse_model_chirp_title));
   for (const ChirpRun& run : runs) {
-    for (const InverseModelVariant& one : run.result.variants) {
-      std::vector<std::string> cells = settings_cells(run.settings);
-      cells.insert(cells.end(),
-                   {label(one), one.blocks > 0 ? report::number(1e3 * one.time_constant_s, 4) : std::string("-"),
-                    report::number(one.chirp.rms_N, 3), report::number(one.chirp.below_2_Hz_N, 3),
-                    report::number(one.multisine.rms_N, 3), report::number(one.multisine.below_2_Hz_N, 3)});
-      table.add_row(cells);
+    for (const InverseModelVariant& one : run.found.variants) {
+      add_row(table, run.settings,
+              {label(one), one.blocks > 0 ? report::number(1e3 * one.time_constant_s, 4) : std::string("-"),
+               report::number(one.chirp.rms_N, 3), report::number(one.chirp.below_2_Hz_N, 3),
+               report::number(one.multisine.rms_N, 3), report::number(one.multisine.below_2_Hz_N, 3)});
     }
   }
   return table;
 }
 
 report::Table band_table(const std::vector<ChirpRun>& runs) {
-  std::vector<report::Column> columns = settings_columns(runs.front().settings);
-  columns.insert(columns.end(), {{"two blocks", "", report::Column::Align::left}, {"Tp", "ms"}});
-  report::Table table(columns, "The time constant, three ways");
+  report::Table table =
+      table_of_runs(runs.front().settings, {{"two blocks", "", report::Column::Align::left}, {"Tp", "ms"}},
+                    "The time constant, three ways");
   for (const ChirpRun& run : runs) {
     const auto add = [&](const std::string& how, double time_constant_s) {
-      std::vector<std::string> cells = settings_cells(run.settings);
-      cells.insert(cells.end(), {how, report::number(1e3 * time_constant_s, 5)});
-      table.add_row(cells);
+      add_row(table, run.settings, {how, report::number(1e3 * time_constant_s, 5)});
     };
-    add("closed form", run.result.closed_form_s);
-    add("numeric limit", run.result.limit_s);
-    for (const BandOptimum& one : run.result.by_band) {
+    add("closed form", run.found.closed_form_s);
+    add("numeric limit", run.found.limit_s);
+    for (const BandOptimum& one : run.found.by_band) {
       add("from data up to " + format_number(one.band_Hz) + " Hz", one.time_constant_s);
     }
   }
@@ -67,35 +65,31 @@ nlohmann::ordered_json felt_json(const FeltForce& felt) {
   return {{"rms_N", felt.rms_N}, {"rms_below_2_Hz_N", felt.below_2_Hz_N}};
 }
 
-std::string json_of(const Request& request, const std::vector<ChirpRun>& runs) {
-  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
-  for (const ChirpRun& run : runs) {
-    auto variants = nlohmann::ordered_json::array();
-    for (const InverseModelVariant& one : run.result.variants) {
-      variants.push_back({{"estimator", label(one)},
-                          {"blocks", one.blocks},
-                          {"time_constant_s", one.time_constant_s},
-                          {"fitted_trajectory", felt_json(one.chirp)},
-                          {"other_trajectory", felt_json(one.multisine)}});
-    }
-    auto bands = nlohmann::ordered_json::array();
-    for (const BandOptimum& one : run.result.by_band) {
-      bands.push_back({{"band_Hz", one.band_Hz}, {"from_data_s", one.time_constant_s}});
-    }
-    document["runs"].push_back(
-        {{"set", nlohmann::ordered_json::parse(settings_json(run.settings))},
-         {"metrics",
-          {{"phase_margin_deg", run.result.phase_margin_deg},
-           {"command_rms_N", run.result.command_rms_N},
-           {"time_constant",
-            {{"closed_form_s", run.result.closed_form_s}, {"limit_s", run.result.limit_s}, {"by_band", bands}}},
-           {"variants", variants}}}});
+std::string json_of(const ChirpRun& run) {
+  auto variants = nlohmann::ordered_json::array();
+  for (const InverseModelVariant& one : run.found.variants) {
+    variants.push_back({{"estimator", label(one)},
+                        {"blocks", one.blocks},
+                        {"time_constant_s", one.time_constant_s},
+                        {"fitted_trajectory", felt_json(one.chirp)},
+                        {"other_trajectory", felt_json(one.multisine)}});
   }
-  return document.dump(2) + "\n";
+  auto bands = nlohmann::ordered_json::array();
+  for (const BandOptimum& one : run.found.by_band) {
+    bands.push_back({{"band_Hz", one.band_Hz}, {"from_data_s", one.time_constant_s}});
+  }
+  return nlohmann::ordered_json{
+      {"metrics",
+       {{"phase_margin_deg", run.found.phase_margin_deg},
+        {"command_rms_N", run.found.command_rms_N},
+        {"time_constant",
+         {{"closed_form_s", run.found.closed_form_s}, {"limit_s", run.found.limit_s}, {"by_band", bands}}},
+        {"variants", variants}}}}
+      .dump();
 }
 
 report::Figure figure_of(const ChirpRun& run) {
-  const simulation::SlaveRecord& record = run.result.chirp;
+  const simulation::SlaveRecord& record = run.found.chirp;
   report::Figure figure{
       .title = "Free motion along a chirp",
       .caption =
@@ -110,7 +104,7 @@ report::Figure figure_of(const ChirpRun& run) {
   needed.lines.push_back({.name = "command", .x = record.time_s, .y = record.command, .colour = 7});
   report::Panel felt{.title = {}, .x = time, .y = {.label = "force fed back", .unit = "N"}, .lines = {}, .rules = {}};
   int colour = 0;
-  for (const InverseModelVariant& one : run.result.variants) {
+  for (const InverseModelVariant& one : run.found.variants) {
     if (one.blocks == 1 || one.blocks == 3) continue;  // the paper shows two blocks
     std::vector<double> said = one.felt_N;
     for (std::size_t i = 0; i < said.size(); ++i) said[i] += record.command[i];
@@ -121,30 +115,7 @@ report::Figure figure_of(const ChirpRun& run) {
   return figure;
 }
 
-}  // namespace
-
-std::string InverseModelChirpExperiment::schema() const {
-  return configuration::json_schema<InverseModelChirpParams>("tactus experiment: inverse-model-chirp");
-}
-
-std::string InverseModelChirpExperiment::reference() const {
-  return configuration::reference_markdown<InverseModelChirpParams>("Experiment `inverse-model-chirp`");
-}
-
-Result<Outcome> InverseModelChirpExperiment::run(const Request& request, const Progress& progress) const {
-  const auto cases = prepare_cases<InverseModelChirpParams, InverseModelChirpParams>(
-      request, [](const InverseModelChirpParams& params) -> Result<InverseModelChirpParams> {
-        if (Check error = check(params)) return *std::move(error);
-        return params;
-      });
-  if (!cases) return cases.error();
-  std::vector<ChirpRun> runs;
-  for (const auto& [settings, params] : cases->all) {
-    auto result = run_inverse_model_chirp(params);
-    if (!result) return blame_variation(request.document.locate(result.error()), settings);
-    runs.push_back({.settings = settings, .result = *std::move(result)});
-    progress(static_cast<double>(runs.size()) / static_cast<double>(cases->all.size()));
-  }
+Presentation InverseModelChirpExperiment::present(const Request& request, const Runs& runs) const {
   const report::Table table = table_of(runs), bands = band_table(runs);
   std::vector<report::Figure> figures;
   for (const ChirpRun& run : runs) figures.push_back(figure_of(run));
@@ -161,11 +132,16 @@ Result<Outcome> InverseModelChirpExperiment::run(const Request& request, const P
        {"fitted fourth order", "Numerator and denominator of degree four, output error, fitted to this chirp."},
        {"Tp", "Time constant of each block, in closed form for their number."}});
   for (const report::Figure& figure : figures) page.figure(figure);
-  add_provenance(page, request, cases->first_configuration);
-  return Outcome{.text = table.to_text() + "\n" + bands.to_text(),
-                 .json = json_of(request, runs),
-                 .html = page.to_html(),
-                 .figures = std::move(figures)};
+  return {.text = table.to_text() + "\n" + bands.to_text(),
+          .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
+          .page = std::move(page),
+          .figures = std::move(figures)};
+}
+
+}  // namespace
+
+std::unique_ptr<const Experiment> inverse_model_chirp_experiment() {
+  return std::make_unique<InverseModelChirpExperiment>();
 }
 
 }  // namespace tactus::experiments

@@ -1,7 +1,4 @@
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
-#include <tactus/experiments/prediction_block/experiment.hpp>
-#include <tactus/experiments/presentation.hpp>
+#include <tactus/experiments/experiment_of.hpp>
 #include <tactus/signal/predictor.hpp>
 
 #include <cmath>
@@ -62,11 +59,18 @@ struct PredictorRow {
   double lead_s, usable_band_Hz, high_frequency_gain, noise_gain;
 };
 
-struct BlockRun {
-  Settings settings;
-  PredictionBlockParams params;
-  std::vector<PredictorRow> rows;  ///< one to four blocks, then the rivals
+using PredictorRows = std::vector<PredictorRow>;  ///< one to four blocks, then the rivals
+
+/// What prediction blocks do in frequency and in time (paper B, Fig. 3).
+class PredictionBlockExperiment final : public SweepOf<PredictionBlockParams, PredictorRows> {
+  Check check(const PredictionBlockParams& params) const override {
+    const auto rows = run_one(params);
+    return rows ? Check{} : Check{rows.error()};
+  }
+  Result<PredictorRows> run_one(const PredictionBlockParams& params) const override;
+  Presentation present(const Request& request, const Runs& runs) const override;
 };
+using BlockRun = PredictionBlockExperiment::Run;
 
 constexpr std::size_t cascades = 4;
 
@@ -85,9 +89,9 @@ PredictorRow rival(const std::string& name, const signal::Predictor::Params& par
           .noise_gain = element.white_noise_gain()};
 }
 
-Result<BlockRun> run_of(const Settings& settings, const PredictionBlockParams& params) {
+Result<PredictorRows> PredictionBlockExperiment::run_one(const PredictionBlockParams& params) const {
   const Seconds dt{1.0 / params.task.sample_rate_Hz};
-  BlockRun run{.settings = settings, .params = params, .rows = {}};
+  PredictorRows rows;
   for (std::size_t blocks = 1; blocks <= cascades; ++blocks) {
     const auto count = static_cast<std::int64_t>(blocks);
     const signal::PredictionCascade::Params cascade{.blocks = count, .block = params.block};
@@ -96,25 +100,25 @@ Result<BlockRun> run_of(const Settings& settings, const PredictionBlockParams& p
     const auto response = [cascade](double frequency_Hz) {
       return signal::response(cascade, std::complex<double>(0.0, 2.0 * std::numbers::pi * frequency_Hz));
     };
-    run.rows.push_back({.name = std::to_string(blocks) + (blocks == 1 ? " block" : " blocks"),
-                        .params = {.blocks = count, .block = params.block},
-                        .response = response,
-                        .lead_s = static_cast<double>(blocks) * params.block.time_constant_s,
-                        .usable_band_Hz = signal::usable_band_Hz(cascade, params.task.tolerance),
-                        .high_frequency_gain = std::exp2(static_cast<double>(blocks)),
-                        .noise_gain = *gain});
+    rows.push_back({.name = std::to_string(blocks) + (blocks == 1 ? " block" : " blocks"),
+                    .params = {.blocks = count, .block = params.block},
+                    .response = response,
+                    .lead_s = static_cast<double>(blocks) * params.block.time_constant_s,
+                    .usable_band_Hz = signal::usable_band_Hz(cascade, params.task.tolerance),
+                    .high_frequency_gain = std::exp2(static_cast<double>(blocks)),
+                    .noise_gain = *gain});
   }
   const auto polynomial = signal::PolynomialPredictor::make(params.polynomial, dt);
   if (!polynomial) return under("polynomial", polynomial.error());
-  run.rows.push_back(rival("polynomial of degree " + std::to_string(params.polynomial.degree) + ", " +
-                               std::to_string(params.polynomial.samples) + " samples",
-                           {.kind = signal::PredictionKind::polynomial, .polynomial = params.polynomial}, *polynomial,
-                           params.task));
+  rows.push_back(rival("polynomial of degree " + std::to_string(params.polynomial.degree) + ", " +
+                           std::to_string(params.polynomial.samples) + " samples",
+                       {.kind = signal::PredictionKind::polynomial, .polynomial = params.polynomial}, *polynomial,
+                       params.task));
   const auto kalman = signal::KalmanPredictor::make(params.kalman, dt);
   if (!kalman) return under("kalman", kalman.error());
-  run.rows.push_back(rival("Kalman, " + std::string(name_of(params.kalman.kinematics)),
-                           {.kind = signal::PredictionKind::kalman, .kalman = params.kalman}, *kalman, params.task));
-  return run;
+  rows.push_back(rival("Kalman, " + std::string(name_of(params.kalman.kinematics)),
+                       {.kind = signal::PredictionKind::kalman, .kalman = params.kalman}, *kalman, params.task));
+  return rows;
 }
 
 report::Figure figure_of(const BlockRun& run) {
@@ -135,7 +139,7 @@ report::Figure figure_of(const BlockRun& run) {
   }
   step.lines.push_back({.name = "not predicted", .x = time_ms, .y = lagged, .colour = 7});
   int colour = 0;
-  for (const PredictorRow& row : run.rows) {
+  for (const PredictorRow& row : run.found) {
     std::vector<double> f_Hz, amplitude, degrees;
     std::complex<double> before = 1.0;
     double phase_rad = 0.0;
@@ -163,54 +167,42 @@ report::Figure figure_of(const BlockRun& run) {
       .panels = {std::move(gain), std::move(phase), std::move(step)}};
 }
 
-}  // namespace
-
-std::string PredictionBlockExperiment::schema() const {
-  return configuration::json_schema<PredictionBlockParams>("tactus experiment: prediction-block");
-}
-
-std::string PredictionBlockExperiment::reference() const {
-  return configuration::reference_markdown<PredictionBlockParams>("Experiment `prediction-block`");
-}
-
-Result<Outcome> PredictionBlockExperiment::run(const Request& request, const Progress& progress) const {
-  const auto cases = prepare_cases<PredictionBlockParams, BlockRun>(
-      request, [](const PredictionBlockParams& params) { return run_of({}, params); });
-  if (!cases) return cases.error();
-  std::vector<report::Column> columns = settings_columns(cases->all.front().settings);
-  columns.insert(columns.end(), {{"predictor", "", report::Column::Align::left},
-                                 {"lead at rest", "ms"},
-                                 {"usable band", "Hz"},
-                                 {"gain at high frequency"},
-                                 {"gain of white noise"}});
-  report::Table table(columns, std::string(prediction_block_title));
-  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
-  std::vector<report::Figure> figures;
-  for (const auto& [settings, run] : cases->all) {
-    auto blocks = nlohmann::ordered_json::array(), rivals = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < run.rows.size(); ++i) {
-      const PredictorRow& row = run.rows[i];
-      std::vector<std::string> cells = settings_cells(settings);
-      cells.insert(cells.end(), {row.name, report::number(1e3 * row.lead_s, 3), report::number(row.usable_band_Hz, 3),
-                                 report::number(row.high_frequency_gain, 3), report::number(row.noise_gain, 3)});
-      table.add_row(cells);
-      nlohmann::ordered_json entry;
-      if (i < cascades) {
-        entry["blocks"] = row.params.blocks;
-      } else {
-        entry["predictor"] = row.name;
-      }
-      entry.update({{"lead_s", row.lead_s},
-                    {"usable_band_Hz", row.usable_band_Hz},
-                    {"high_frequency_gain", row.high_frequency_gain},
-                    {"white_noise_gain", row.noise_gain}});
-      (i < cascades ? blocks : rivals).push_back(std::move(entry));
+std::string json_of(const BlockRun& run) {
+  auto blocks = nlohmann::ordered_json::array(), rivals = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < run.found.size(); ++i) {
+    const PredictorRow& row = run.found[i];
+    nlohmann::ordered_json entry;
+    if (i < cascades) {
+      entry["blocks"] = row.params.blocks;
+    } else {
+      entry["predictor"] = row.name;
     }
-    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(settings))},
-                                {"metrics", {{"cascades", blocks}, {"rivals", rivals}}}});
+    entry.update({{"lead_s", row.lead_s},
+                  {"usable_band_Hz", row.usable_band_Hz},
+                  {"high_frequency_gain", row.high_frequency_gain},
+                  {"white_noise_gain", row.noise_gain}});
+    (i < cascades ? blocks : rivals).push_back(std::move(entry));
+  }
+  return nlohmann::ordered_json{{"metrics", {{"cascades", blocks}, {"rivals", rivals}}}}.dump();
+}
+
+Presentation PredictionBlockExperiment::present(const Request& request, const Runs& runs) const {
+  report::Table table = table_of_runs(runs.front().settings,
+                                      {{"predictor", "", report::Column::Align::left},
+                                       {"lead at rest", "ms"},
+                                       {"usable band", "Hz"},
+                                       {"gain at high frequency"},
+                                       {"gain of white noise"}},
+                                      std::string(prediction_block_title));
+  std::vector<report::Figure> figures;
+  for (const Run& run : runs) {
+    for (const PredictorRow& row : run.found) {
+      add_row(table, run.settings,
+              {row.name, report::number(1e3 * row.lead_s, 3), report::number(row.usable_band_Hz, 3),
+               report::number(row.high_frequency_gain, 3), report::number(row.noise_gain, 3)});
+    }
     figures.push_back(figure_of(run));
   }
-  progress(1.0);
   report::Page page(request.name + ": " + std::string(prediction_block_title));
   page.paragraph(
       "A prediction block leads by its time constant at low frequency and doubles what is fast. A polynomial through "
@@ -222,9 +214,16 @@ Result<Outcome> PredictionBlockExperiment::run(const Request& request, const Pro
         "Up to where a predictor differs from the ideal one by task.tolerance; of blocks, the continuous ones."},
        {"gain of white noise", "RMS out over RMS in, sampled."}});
   for (const report::Figure& figure : figures) page.figure(figure);
-  add_provenance(page, request, cases->first_configuration);
-  return Outcome{
-      .text = table.to_text(), .json = document.dump(2) + "\n", .html = page.to_html(), .figures = std::move(figures)};
+  return {.text = table.to_text(),
+          .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
+          .page = std::move(page),
+          .figures = std::move(figures)};
+}
+
+}  // namespace
+
+std::unique_ptr<const Experiment> prediction_block_experiment() {
+  return std::make_unique<PredictionBlockExperiment>();
 }
 
 }  // namespace tactus::experiments

@@ -1,9 +1,5 @@
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
-#include <tactus/experiments/presentation.hpp>
-#include <tactus/experiments/sensorless/experiment.hpp>
+#include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/sensorless/presentation.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/simulation/parallel.hpp>
 
 #include <utility>
@@ -12,10 +8,16 @@ namespace tactus::experiments {
 
 namespace {
 
+/// Sources of the slave's force, cancellation and delay: one row for each combination, and one picture.
+class SensorlessExperiment final : public ExperimentOf<SensorlessParams> {
+  /// Errors besides those of every experiment: `inconsistent` for a varied key.
+  Result<Outcome> run(const Request& request, const Progress& progress) const override;
+};
+
 constexpr std::string_view sensorless_title = "Teleoperation without a force sensor";
 
-std::string page_of(const Request& request, const report::Table& table, const report::Figure& figure,
-                    const std::vector<std::string>& verdicts, std::string_view configuration) {
+report::Page page_of(const Request& request, const report::Table& table, const report::Figure& figure,
+                     const std::vector<std::string>& verdicts) {
   report::Page page(request.name + ": " + std::string(sensorless_title));
   page.paragraph(
       "The same hand taps the same wall through the same devices; the force that comes back is the slave's sensor's, "
@@ -37,26 +39,13 @@ std::string page_of(const Request& request, const report::Table& table, const re
         "Largest force gain up to which every gain that was tried settled, to 2 %: at least 95 % of the taps, the "
         "median within 100 ms plus two round trips. ≥: the search ended there. <: not even its lowest gain settled."},
        {"at … N", "The same with a display that saturates later."}});
-  add_provenance(page, request, configuration);
-  return page.to_html();
-}
-
-}  // namespace
-
-std::string SensorlessExperiment::schema() const {
-  return configuration::json_schema<SensorlessParams>("tactus experiment: sensorless");
-}
-
-std::string SensorlessExperiment::reference() const {
-  return configuration::reference_beside<SensorlessParams, TappingParams>("Experiment `sensorless`", "tapping");
+  return page;
 }
 
 Result<Outcome> SensorlessExperiment::run(const Request& request, const Progress& progress) const {
-  if (!request.variations.empty()) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = request.variations.front().key,
-                 .message = "this experiment varies what it compares by itself: set one value with --set",
-                 .place = "--vary"};
+  if (Check error =
+          refuse_variations(request, "this experiment varies what it compares by itself: set one value with --set")) {
+    return *std::move(error);
   }
   const auto params = request.document.read<SensorlessParams>();
   if (!params) return params.error();
@@ -76,11 +65,16 @@ Result<Outcome> SensorlessExperiment::run(const Request& request, const Progress
   report::Figure figure = sensorless_figure(*rows, scores, *params);
   std::string text = table.to_text();
   for (const std::string& sentence : verdicts) text += sentence + "\n";
-  std::string html = page_of(request, table, figure, verdicts, configuration::to_toml(*params));
-  return Outcome{.text = std::move(text),
-                 .json = sensorless_json(request.name, *rows, scores, *params),
-                 .html = std::move(html),
-                 .figures = {std::move(figure)}};
+  report::Page page = page_of(request, table, figure, verdicts);
+  return outcome_of({.text = std::move(text),
+                     .json = sensorless_json(request.name, *rows, scores, *params),
+                     .page = std::move(page),
+                     .figures = {std::move(figure)}},
+                    request, configuration::to_toml(*params));
 }
+
+}  // namespace
+
+std::unique_ptr<const Experiment> sensorless_experiment() { return std::make_unique<SensorlessExperiment>(); }
 
 }  // namespace tactus::experiments

@@ -1,7 +1,4 @@
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
-#include <tactus/experiments/presentation.hpp>
-#include <tactus/experiments/tapping/experiment.hpp>
+#include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/tapping/figures.hpp>
 #include <tactus/experiments/tapping/presentation.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
@@ -9,13 +6,12 @@
 
 namespace tactus::experiments {
 
-std::string TappingExperiment::schema() const {
-  return configuration::json_schema<TappingParams>("tactus experiment: tapping");
-}
+namespace {
 
-std::string TappingExperiment::reference() const {
-  return configuration::reference_markdown<TappingParams>("Experiment `tapping`");
-}
+/// Taps through the teleoperator: one row for each combination of the varied parameters (paper A, Fig. 13).
+class TappingExperiment final : public ExperimentOf<TappingParams> {
+  Result<Outcome> run(const Request& request, const Progress& progress) const override;
+};
 
 Result<Outcome> TappingExperiment::run(const Request& request, const Progress& progress) const {
   struct Prepared {
@@ -66,15 +62,17 @@ Result<Outcome> TappingExperiment::run(const Request& request, const Progress& p
   const report::Table table = tapping_table(runs);
   std::vector<report::Figure> figures = tapping_figures(runs);
   report::Page page = tapping_page(request, table, figures);
-  add_provenance(page, request, cases->first_configuration);
-  Outcome outcome{.text = table.to_text(),
-                  .json = tapping_json(request, runs),
-                  .html = page.to_html(),
-                  .figures = std::move(figures),
-                  .traces = {},
-                  .configuration = cases->first_configuration};
+  Outcome outcome = outcome_of({.text = table.to_text(),
+                                .json = tapping_json(request, runs),
+                                .page = std::move(page),
+                                .figures = std::move(figures)},
+                               request, cases->first_configuration);
   for (TappingRun& run : runs) outcome.traces.push_back({std::move(run.settings), std::move(run.trace)});
   return outcome;
 }
+
+}  // namespace
+
+std::unique_ptr<const Experiment> tapping_experiment() { return std::make_unique<TappingExperiment>(); }
 
 }  // namespace tactus::experiments

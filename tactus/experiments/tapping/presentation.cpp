@@ -10,48 +10,44 @@ constexpr std::string_view tapping_title = "Tapping a wall through the teleopera
 }  // namespace
 
 report::Table tapping_table(const std::vector<TappingRun>& runs) {
-  std::vector<report::Column> columns = settings_columns(runs.empty() ? Settings{} : runs.front().settings);
-  columns.insert(columns.end(), {{"taps"},
-                                 {"settled", "%"},
-                                 {"settling, median", "ms"},
-                                 {"settling, p90", "ms"},
-                                 {"contacts"},
-                                 {"peak force", "N"},
-                                 {"residual", "mN RMS"},
-                                 {"verdict", "", report::Column::Align::left}});
-  report::Table table(columns, std::string(tapping_title));
+  report::Table table = table_of_runs(runs.empty() ? Settings{} : runs.front().settings,
+                                      {{"taps"},
+                                       {"settled", "%"},
+                                       {"settling, median", "ms"},
+                                       {"settling, p90", "ms"},
+                                       {"contacts"},
+                                       {"peak force", "N"},
+                                       {"residual", "mN RMS"},
+                                       {"verdict", "", report::Column::Align::left}},
+                                      std::string(tapping_title));
   for (const TappingRun& run : runs) {
     const TappingMetrics& m = run.metrics;
     // A quantile that falls on a tap that never settled is only a lower bound.
     const auto settling = [&](double seconds) {
       return (seconds >= run.observation_s ? "> " : "") + report::number(1e3 * seconds, 3);
     };
-    std::vector<std::string> cells = settings_cells(run.settings);
-    cells.insert(cells.end(),
-                 {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
-                  settling(m.settling_time_median_s), settling(m.settling_time_p90_s), format_number(m.contacts_median),
-                  report::number(m.peak_force_N, 3), report::number(1e3 * m.residual_rms_N, 3), name_of(m.verdict)});
-    table.add_row(cells);
+    add_row(table, run.settings,
+            {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3), settling(m.settling_time_median_s),
+             settling(m.settling_time_p90_s), format_number(m.contacts_median), report::number(m.peak_force_N, 3),
+             report::number(1e3 * m.residual_rms_N, 3), name_of(m.verdict)});
   }
   return table;
 }
 
 std::string tapping_json(const Request& request, const std::vector<TappingRun>& runs) {
-  nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
-  for (const TappingRun& run : runs) {
+  return runs_json(request, runs, [](const TappingRun& run) {
     const TappingMetrics& m = run.metrics;
-    document["runs"].push_back({{"set", nlohmann::ordered_json::parse(settings_json(run.settings))},
-                                {"metrics",
-                                 {{"taps", m.taps},
-                                  {"settled_fraction", m.settled_fraction},
-                                  {"settling_time_median_s", m.settling_time_median_s},
-                                  {"settling_time_p90_s", m.settling_time_p90_s},
-                                  {"contacts_median", m.contacts_median},
-                                  {"peak_force_N", m.peak_force_N},
-                                  {"residual_rms_N", m.residual_rms_N},
-                                  {"verdict", name_of(m.verdict)}}}});
-  }
-  return document.dump(2) + "\n";
+    return nlohmann::ordered_json{{"metrics",
+                                   {{"taps", m.taps},
+                                    {"settled_fraction", m.settled_fraction},
+                                    {"settling_time_median_s", m.settling_time_median_s},
+                                    {"settling_time_p90_s", m.settling_time_p90_s},
+                                    {"contacts_median", m.contacts_median},
+                                    {"peak_force_N", m.peak_force_N},
+                                    {"residual_rms_N", m.residual_rms_N},
+                                    {"verdict", name_of(m.verdict)}}}}
+        .dump();
+  });
 }
 
 report::Page tapping_page(const Request& request, const report::Table& table,

@@ -1,5 +1,5 @@
-#include <tactus/control/projection.hpp>
-#include <tactus/control/shared_compliant.hpp>
+#include <tactus/control/architectures/projection.hpp>
+#include <tactus/control/architectures/shared_compliant.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 

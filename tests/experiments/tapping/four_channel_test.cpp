@@ -1,4 +1,4 @@
-#include <tactus/control/four_channel.hpp>
+#include <tactus/control/architectures/four_channel.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 

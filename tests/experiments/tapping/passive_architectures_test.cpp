@@ -1,4 +1,4 @@
-#include <tactus/control/time_domain_passivity.hpp>
+#include <tactus/control/architectures/time_domain_passivity.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 
 #include <algorithm>

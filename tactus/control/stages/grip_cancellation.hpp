@@ -1,0 +1,143 @@
+#pragma once
+
+#include <tactus/control/stages/cancellation.hpp>
+#include <tactus/control/stages/stage.hpp>
+#include <tactus/core/element.hpp>
+#include <tactus/core/parameters.hpp>
+#include <tactus/signal/filtered_derivative.hpp>
+#include <tactus/signal/low_pass.hpp>
+
+#include <array>
+#include <cstddef>
+
+namespace tactus::control {
+
+/// Where cancellation learns how firmly the person holds.
+enum class OperatorEstimate {
+  off,        ///< nowhere: the operator of the model is fixed, as in paper A
+  online,     ///< from what the displayed force does to the motor
+  scheduled,  ///< from a sensor of the grip
+};
+constexpr auto enumerators(OperatorEstimate) {
+  return std::array{Enumerator{OperatorEstimate::off, "off"}, Enumerator{OperatorEstimate::online, "online"},
+                    Enumerator{OperatorEstimate::scheduled, "scheduled"}};
+}
+
+/// The controller's model of the same master in a hand that holds it `grip` times as firmly. `grip` above 0.
+///
+/// Stiffness and damping of the hand go with the grip. The quintic limit k₅ goes with its tenth power, so that the slow
+/// deflection it allows goes with grip⁻², and is left as it is for a grip above 1: the impact on a light hand lasts
+/// longer and carries it further, and a limit within the reach of an impact makes it limp (docs/theory/changing-grip.md
+/// measures this). The held quintic force is then no less stable than at grip 1.
+MasterModel held(MasterModel model, double grip) noexcept;
+
+/// Cancellation of induced master motion (see `Cancellation`) for a grip that changes (paper A, Sec. IX, which names
+/// this as future work): a bank of models of the same master in five hands, run side by side.
+///
+///     x̂_intended = x_m − Σ wᵢ x̂ᵢ,   wᵢ ≥ 0, Σ wᵢ = 1, toward its target with a time constant of 10 ms
+///
+/// *Online*: the residuals x_m − x̂ᵢ hold what the person does, the same in all, and what model i does not explain. A
+/// high-pass of second order at 40 Hz leaves out the first; the mean squares over 20 ms of what is left are compared.
+/// Another model is chosen where its mean square is below half that of the one chosen so far. Without a displayed force
+/// that moves anything the comparison says nothing, so the weights go back to the nominal model, over 2 s.
+///
+/// *Scheduled*: the weights interpolate between the two hands next to the sensor's, on a logarithmic scale.
+///
+/// A bank and not recursive least squares, because each model of it is valid and stable whatever the data, the
+/// nonlinear parts included, and it cannot wind up where nothing excites it; grips between two hands are rounded to
+/// either, a factor of 1.4 at most, which cancellation stands. Five model steps a tick, no more and no less.
+class GripCancellation {
+ public:
+  struct Params {
+    Cancellation::Params cancellation;
+    OperatorEstimate estimate = OperatorEstimate::off;
+    static constexpr auto fields() {
+      return std::tuple{field("cancellation", &Params::cancellation, "Cancellation with the nominal hand."),
+                        field("estimate", &Params::estimate, "Where the grip is known from.")};
+    }
+  };
+  struct Input {
+    double measured_position_m = 0.0;  ///< of the motor, now
+    double motor_force_N = 0.0;        ///< that acts from now to the next tick, positive toward the environment
+    double grip = 1.0;                 ///< the sensor's, over nominal; used by `scheduled` alone
+  };
+  /// The motor position in m that the person intended.
+  using Output = double;
+
+  /// The grips that the bank knows, over nominal. A sensor's below or above counts as the nearest.
+  static constexpr std::array<double, 5> grips{0.25, 0.5, 1.0, 2.0, 4.0};
+
+  /// A sensor of the grip that does not change leaves the weights of the bank as they are.
+  static constexpr std::optional<Unfit> not_linear(const Params& params) {
+    if (params.estimate != OperatorEstimate::online) return {};
+    return Unfit{"estimate",
+                 "an estimate that adapts to the loop is not linear: choose off, and try hands with operator.grip"};
+  }
+  static constexpr std::optional<Unfit> not_on_lanes(const Params& params) {
+    if (params.cancellation.model.step != CancellationStep::exact)
+      return Unfit{"cancellation.model.step", "write exact"};
+    if (params.estimate != OperatorEstimate::off) return Unfit{"estimate", "write off"};
+    return {};
+  }
+
+  static Result<GripCancellation> make(const Params& params, Seconds dt);
+
+  /// The position in m that the person intended, from the one measured now. Once a tick. A sensor's grip that is not a
+  /// positive number counts as 1. Real-time safe.
+  double intended(double measured_position_m, double grip) noexcept;
+  /// Advances the models to the next tick, under the force that really acts until then. Real-time safe.
+  void advance(double motor_force_N) noexcept;
+  /// Both at once.
+  Output step(const Input& input) noexcept {
+    const double intended_m = intended(input.measured_position_m, input.grip);
+    advance(input.motor_force_N);
+    return intended_m;
+  }
+  void reset() noexcept;
+
+  /// Where the force so far has moved the motor, in m, at the instant of the last `intended`.
+  [[nodiscard]] double induced_position_m() const noexcept { return induced_m_; }
+  /// The grip that the weights stand for, over nominal: their mean on a logarithmic scale.
+  [[nodiscard]] double grip() const noexcept;
+
+ private:
+  static constexpr std::size_t nominal = 2;
+  template <class T>
+  using Each = std::array<T, grips.size()>;
+
+  /// Two first-order high-passes in line.
+  struct HighPass {
+    signal::LowPass first, second;
+    double step(double input) noexcept {
+      const double once = input - first.step(input);
+      return once - second.step(once);
+    }
+    void settle(double value) noexcept {
+      first.settle(value);
+      second.reset();
+    }
+  };
+
+  GripCancellation(OperatorEstimate estimate, const Each<InducedMotionModel>& models,
+                   const signal::FilteredDerivative& intended_velocity, const signal::LowPass& low_pass, Seconds dt);
+
+  void compare(double measured_position_m) noexcept;
+  void schedule(double grip) noexcept;
+  void move_weights(const Each<double>& target, double share) noexcept;
+
+  OperatorEstimate estimate_;
+  Each<InducedMotionModel> models_;
+  signal::FilteredDerivative intended_velocity_;
+  Each<HighPass> residual_;
+  HighPass excitation_;
+  double mean_share_, weight_share_, forget_share_;  ///< of the way that one tick takes
+  Each<double> mean_square_m2_{};
+  double excitation_m2_ = 0.0;
+  Each<double> weights_{0.0, 0.0, 1.0, 0.0, 0.0};
+  std::size_t chosen_ = nominal;
+  bool primed_ = false;
+  double induced_m_ = 0.0;
+  double intended_velocity_m_per_s_ = 0.0;
+};
+
+}  // namespace tactus::control
