@@ -1,10 +1,9 @@
 // The same real-time loop with observers, with none, and beside a load that has nothing to do with it, in alternating
 // windows: scripts/compare-with-observers.
-#include <tactus/cli/ros2_session.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/live/live_view.hpp>
 #include <tactus/live/server.hpp>
-#include <tactus/ros2/bridge.hpp>
+#include <tactus/ros2/observer.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
@@ -206,7 +205,7 @@ Window observed(const Options& options, const Observers& who, Seen& seen) {
       [&engine, bridge = bridge ? &*bridge : nullptr](const station::Tick& tick) noexcept {
         engine.step();
         if (bridge != nullptr) {
-          bridge->publish(cli::snapshot_of(engine.newest(0), tick.deadline_ns, true));
+          bridge->publish(ros2::snapshot_of(engine.newest(0), tick.deadline_ns, ros2::OperatingState::enabled));
           static_cast<void>(bridge->take_wish());
         }
         return true;

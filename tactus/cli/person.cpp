@@ -28,8 +28,8 @@ sigset_t arming_signal() {
 
 }  // namespace
 
-Result<std::unique_ptr<Person>> Person::listen_to(int descriptor, control::SiteRole role, SiteExchange& exchange,
-                                                  LineWriter& lines) {
+Result<std::unique_ptr<Person>> Person::listen_to(int descriptor, control::SiteRole role,
+                                                  runtime::SiteExchange& exchange, LineWriter& lines) {
   std::unique_ptr<Person> made(new Person(descriptor, role, exchange, lines));
   auto thread = start_quiet_thread([self = made.get()] { self->listen(); });
   if (!thread) return thread.error();
@@ -37,7 +37,7 @@ Result<std::unique_ptr<Person>> Person::listen_to(int descriptor, control::SiteR
   return made;
 }
 
-Person::Person(int descriptor, control::SiteRole role, SiteExchange& exchange, LineWriter& lines)
+Person::Person(int descriptor, control::SiteRole role, runtime::SiteExchange& exchange, LineWriter& lines)
     : descriptor_(descriptor), role_(role), exchange_(&exchange), lines_(&lines) {
   asked_to_arm.store(false, std::memory_order_relaxed);
   const sigset_t set = arming_signal();
@@ -83,9 +83,9 @@ void Person::listen() {
 void Person::pass_on() {
   const bool master = role_ == control::SiteRole::master;
   arm_ = (asked_to_arm.exchange(false, std::memory_order_relaxed) && master) || arm_;
-  if (arm_) arm_ = !exchange_->words.try_push(SiteWord::arm);
+  if (arm_) arm_ = !exchange_->words.try_push(runtime::SiteWord::arm);
   for (auto end = typed_.find('\n'); end != std::string::npos; end = typed_.find('\n')) {
-    const auto word = parse_site_word(std::string_view(typed_).substr(0, end), role_);
+    const auto word = runtime::parse_site_word(std::string_view(typed_).substr(0, end), role_);
     if (!word) {
       lines_->say("tactus: " + describe(word.error()) + "\n");
     } else if (!exchange_->words.try_push(*word)) {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <tactus/cli/line_writer.hpp>
-#include <tactus/cli/site_exchange.hpp>
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/runtime/site_exchange.hpp>
 
 #include <atomic>
 #include <csignal>
@@ -13,7 +13,7 @@
 
 namespace tactus::cli {
 
-/// What a person asks of a running site: words that come on a descriptor, a line each, and SIGUSR1, which arms. A
+/// What a person asks of sites that run: words that come on a descriptor, a line each, and SIGUSR1, which arms. A
 /// thread that does nothing else passes them on, in their order; it never writes, so no terminal keeps a word from
 /// being heard.
 ///
@@ -24,14 +24,14 @@ class Person {
  public:
   /// All else must outlive it. A wrong word, and the end at the master, are told on `lines`. Errors: `failed` where the
   /// system gives no thread.
-  static Result<std::unique_ptr<Person>> listen_to(int descriptor, control::SiteRole role, SiteExchange& exchange,
-                                                   LineWriter& lines);
+  static Result<std::unique_ptr<Person>> listen_to(int descriptor, control::SiteRole role,
+                                                   runtime::SiteExchange& exchange, LineWriter& lines);
   Person(const Person&) = delete;
   Person& operator=(const Person&) = delete;
   ~Person();
 
  private:
-  Person(int descriptor, control::SiteRole role, SiteExchange& exchange, LineWriter& lines);
+  Person(int descriptor, control::SiteRole role, runtime::SiteExchange& exchange, LineWriter& lines);
   void listen();
   void pass_on();
   void read_what_waits();
@@ -39,7 +39,7 @@ class Person {
 
   int descriptor_;
   control::SiteRole role_;
-  SiteExchange* exchange_;
+  runtime::SiteExchange* exchange_;
   LineWriter* lines_;
   std::string typed_;
   bool open_ = true;

@@ -31,12 +31,12 @@ std::string exact(double value) {
 }
 
 std::string text_of(const runtime::Replay& replay) {
-  std::string text =
-      "Replayed " + std::to_string(replay.ticks) + " ticks of " + std::to_string(replay.taps) + " taps: ";
+  std::string text = "Replayed " + std::to_string(replay.ticks) + " ticks of " + replay.of + ": ";
   if (const auto& found = replay.difference) {
-    text += "the first difference is at tick " + std::to_string(found->tick) + " of tap " + std::to_string(found->tap) +
-            ", topic " + found->topic + ", signal " + found->signal + ": recorded " + exact(found->recorded) +
-            ", replayed " + exact(found->replayed) + ".\n";
+    const std::string tap = replay.taps > 0 ? " of tap " + std::to_string(found->tap) : "";
+    text += "the first difference is at tick " + std::to_string(found->tick) + tap + ", topic " + found->topic +
+            ", signal " + found->signal + ": recorded " + exact(found->recorded) + ", replayed " +
+            exact(found->replayed) + ".\n";
     if (replay.version != version()) {
       text += "The log was written by version " + replay.version + ", this is " + std::string(version()) + ".\n";
     }
@@ -46,7 +46,8 @@ std::string text_of(const runtime::Replay& replay) {
 }
 
 std::string json_of(const runtime::Replay& replay) {
-  nlohmann::ordered_json document{{"taps", replay.taps},
+  nlohmann::ordered_json document{{"of", replay.of},
+                                  {"taps", replay.taps},
                                   {"ticks", replay.ticks},
                                   {"equal", !replay.difference.has_value()},
                                   {"version", replay.version}};
@@ -62,7 +63,7 @@ std::string json_of(const runtime::Replay& replay) {
 void add_replay(CLI::App& app, int& status) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* verb = app.add_subcommand("replay", "Step the sites of a logged run in real time again, on what they read");
-  verb->add_option("LOG", options->log, "Log (.mcap) of `run --realtime --out`, or the folder that holds it")
+  verb->add_option("LOG", options->log, "Log (.mcap) of `run --realtime --out` or `run --site --out`, or its folder")
       ->required();
   verb->add_flag("--check", options->check, "End with status 1 where anything differs from the log");
   verb->add_flag("--json", options->json, "Print one JSON document and nothing else");

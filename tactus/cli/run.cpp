@@ -1,16 +1,18 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/onlookers.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
-#include <tactus/cli/run_site.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/supervised_run.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
 
+#include <array>
 #include <cstdint>
 #include <iostream>
 #include <memory>
@@ -35,9 +37,8 @@ struct RunOptions {
   std::optional<std::string> plant;
   double plant_silence_s = station::usual_silence.value;
   runtime::ServoThreadParams servo;
-  SiteOptions site;
-  bool ros2 = false;
-  std::string name_space = "tactus";
+  SupervisedOptions supervised;
+  OnlookerOptions onlookers;
 };
 
 Result<experiments::Request> make_request(const RunOptions& options, const std::string& command) {
@@ -70,10 +71,22 @@ Check run_in_real_time(const RunOptions& options, const experiments::Request& re
     real_time.log = output.log_folder() / "log.mcap";
     real_time.before_log = [&output] { return output.begin(); };
   }
+  auto onlookers = Onlookers::open(options.onlookers, request);
+  if (!onlookers) return onlookers.error();
+  const auto say = [&output](const std::string& line) {
+    if (!line.empty()) (output.json() ? std::cerr : std::cout) << line << std::flush;
+  };
+  if (onlookers->any()) {
+    real_time.look_on = [&](const std::vector<runtime::RealTimeStreams>& all) {
+      for (const runtime::RealTimeStreams& streams : all) onlookers->watch(streams);
+      return onlookers->begin(say);
+    };
+  }
   const auto done = [&] {
     ProgressLine line(request.name);
     return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
   }();
+  say(onlookers->end());
   if (!done) return done.error();
   if (done->interrupted) status = (*interruption)->exit_status();
   if (auto error = write_outcome(output, done->outcome)) return error;
@@ -97,8 +110,11 @@ Check run_among_ros2_nodes(const RunOptions& options, const experiments::Request
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();
-  const Ros2Options session{
-      .name_space = options.name_space, .servo = options.servo, .end = end, .log_limit_bytes = options.log_limit};
+  const Ros2Options session{.name_space = options.onlookers.name_space,
+                            .live = options.onlookers.live,
+                            .servo = options.servo,
+                            .end = end,
+                            .log_limit_bytes = options.log_limit};
   const auto outcome = run_ros2_session(request, session, output);
   if (!outcome) return outcome.error();
   if (auto error = write_outcome(output, *outcome)) return error;
@@ -106,14 +122,50 @@ Check run_among_ros2_nodes(const RunOptions& options, const experiments::Request
   return std::nullopt;
 }
 
-Check refuse_servo_options_without_a_servo_thread(const CLI::App& verb, const RunOptions& options) {
-  if (options.real_time || options.ros2 || !options.site.site.empty()) return std::nullopt;
-  for (const char* name : {"--priority", "--core", "--spin-s"}) {
-    if (verb.count(name) == 0) continue;
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = {},
-                 .message = "there is no servo thread in virtual time: add --realtime, --ros2 or --site",
-                 .place = name};
+/// What cannot go together, with the reason and what to write in its place.
+Check refuse_what_makes_no_sense(const CLI::App& verb, const RunOptions& options) {
+  const bool one_site = !options.supervised.site.empty();
+  const bool own_devices = !options.supervised.devices.empty();
+  const bool at_real_clock = options.real_time || options.onlookers.ros2 || one_site;
+  struct Rule {
+    bool broken;
+    std::vector<const char*> options;  ///< of which the first that was given is named
+    const char* why;
+  };
+  const std::array rules{
+      Rule{options.plant && one_site,
+           {"--plant"},
+           "a plant has both devices, for one process that drives both: leave out --plant, and name the device of this "
+           "site with --device, or leave out --site"},
+      Rule{options.plant && own_devices,
+           {"--plant"},
+           "a plant has the devices of both sites: leave out --plant or --device"},
+      Rule{options.plant && !options.real_time, {"--plant"}, "a plant runs at the real clock: add --realtime"},
+      Rule{own_devices && !options.real_time && !one_site,
+           {"--device"},
+           "a device runs at the real clock: add --realtime for both sites in this program, or --site for one of two"},
+      Rule{options.supervised.wanted() && !options.vary.empty(),
+           {"--vary"},
+           "sites that a person arms run one combination: write --set in place of --vary"},
+      Rule{!options.supervised.wanted(),
+           {"--arm", "--duration-s"},
+           "the taps of an experiment are armed by nobody and end by themselves: add --realtime --device or --site"},
+      Rule{!one_site,
+           {"--peer", "--listen", "--key", "--unencrypted"},
+           "there is no link where both sites run in one program: add --site master or --site slave"},
+      Rule{!at_real_clock,
+           {"--live"},
+           "virtual time is over before anybody looks: add --realtime or --site, or be the operator yourself on the "
+           "page of `tactus serve`"},
+      Rule{!at_real_clock,
+           {"--priority", "--core", "--spin-s"},
+           "there is no servo thread in virtual time: add --realtime, --ros2 or --site"}};
+  for (const Rule& rule : rules) {
+    if (!rule.broken) continue;
+    for (const char* name : rule.options) {
+      if (verb.count(name) == 0) continue;
+      return Error{.code = ErrorCode::inconsistent, .parameter = {}, .message = rule.why, .place = name};
+    }
   }
   return std::nullopt;
 }
@@ -123,20 +175,14 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
   if (!request) return request.error();
   auto output = OutputFolder::open(options.output);
   if (!output) return output.error();
-  if (!options.site.site.empty()) {
-    if (!options.vary.empty()) {
-      return Error{.code = ErrorCode::inconsistent,
-                   .parameter = {},
-                   .message = "one site runs one combination: leave --vary out",
-                   .place = "--site"};
-    }
-    return run_site(options.site, options.servo, *request, *output, options.log_limit);
+  if (options.supervised.wanted()) {
+    return run_supervised(options.supervised, options.onlookers, options.servo, *request, *output, options.log_limit);
   }
   const auto experiment = experiments::choose_experiment(request->document);
   if (!experiment) return experiment.error();
 
-  if (options.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
   if (options.real_time) return run_in_real_time(options, *request, *output, status);
+  if (options.onlookers.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
 
   Result<experiments::Outcome> outcome = [&] {
     ProgressLine line(request->name);
@@ -162,30 +208,22 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
       ->allow_extra_args(false);
   add_output_options(*verb, options->output, "Folder for report.html, results.json, the figures and the log");
   add_log_limit_option(*verb, options->log_limit);
-  CLI::Option* real_time = verb->add_flag("--realtime", options->real_time,
-                                          "Run it at the real clock, on a servo thread, with simulated devices");
+  verb->add_flag("--realtime", options->real_time,
+                 "Run it at the real clock, on a servo thread, with simulated devices, those of a plant or "
+                 "your own");
   CLI::Option* plant = verb->add_option("--plant", options->plant,
                                         "Drive the devices of the `tactus plant` of that name, not ones of its own")
-                           ->type_name("NAME")
-                           ->needs(real_time);
+                           ->type_name("NAME");
   verb->add_option("--plant-silence-s", options->plant_silence_s,
                    "The longest silence of that plant before both sites let go, 0.001 to 10")
       ->type_name("S")
       ->capture_default_str()
       ->needs(plant);
   add_servo_options(*verb, options->servo);
-  add_site_options(*verb, options->site);
-  verb->get_option("--site")->excludes(real_time);
-  CLI::Option* const ros2 =
-      verb->add_flag("--ros2", options->ros2,
-                     "Run the taps in real time among ROS 2 nodes: publish under CRTK names, take operator/servo_jp");
-  ros2->excludes(real_time)->excludes("--site");
-  verb->add_option("--namespace", options->name_space, "Namespace of the ROS 2 topics")
-      ->type_name("NAME")
-      ->capture_default_str()
-      ->needs(ros2);
+  add_supervised_options(*verb, options->supervised);
+  add_onlooker_options(*verb, options->onlookers);
   verb->callback([options, verb, &app, &command, &status] {
-    Check error = refuse_servo_options_without_a_servo_thread(*verb, *options);
+    Check error = refuse_what_makes_no_sense(*verb, *options);
     if (!error) error = run(*options, command, status);
     if (error) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

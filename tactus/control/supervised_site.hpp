@@ -37,6 +37,8 @@ class SupervisedMaster {
 
   [[nodiscard]] SiteState state() const noexcept { return supervision_.state(); }
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
+  /// The packet of the other site that was applied last; of session 0 before any.
+  [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
   [[nodiscard]] const MasterSite& site() const noexcept { return site_; }
 
  private:
@@ -74,6 +76,8 @@ class SupervisedSlave {
 
   [[nodiscard]] SiteState state() const noexcept { return supervision_.state(); }
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
+  /// The packet of the other site that was applied last; of session 0 before any.
+  [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
   [[nodiscard]] const SlaveSite& site() const noexcept { return site_; }
 
  private:

@@ -193,6 +193,8 @@ class Supervision {
   [[nodiscard]] SiteState before() const noexcept { return before_; }
   /// What the other site has in common with this one.
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return agreement_; }
+  /// The packet that was applied last; of session 0 before any.
+  [[nodiscard]] const Packet& heard() const noexcept { return newest_; }
   /// Whether the site leaves what its gate or its controller latched, at this tick.
   [[nodiscard]] bool rearms() const noexcept;
   /// Everything that supervision itself knows; the rest is the site's to fill in.

@@ -17,9 +17,9 @@ constexpr std::uint64_t collections_between_counts = 100;
 
 Check Server::State::listen() {
   const auto refuse = [this](const beast::error_code& error) {
-    std::string remedy = "choose another with --listen and --port";
-    if (error == asio::error::address_in_use) remedy = "another program listens there; choose another with --port";
-    if (error == asio::error::access_denied) remedy = "ports below 1024 are reserved; choose another with --port";
+    std::string remedy = "name another address and port";
+    if (error == asio::error::address_in_use) remedy = "another program listens there; name another port";
+    if (error == asio::error::access_denied) remedy = "ports below 1024 are reserved; name another port";
     return Error{.code = ErrorCode::unwritable,
                  .parameter = {},
                  .message = "cannot listen: " + error.message() + ": " + remedy,
@@ -33,7 +33,7 @@ Check Server::State::listen() {
                  .parameter = {},
                  .message =
                      "listening on every address is refused, for the Host of each request is compared with the "
-                     "address: name one address of this machine with --listen",
+                     "address: name one address of this machine",
                  .place = options.address};
   }
   const Tcp::endpoint endpoint(address, options.port);

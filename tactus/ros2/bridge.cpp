@@ -3,10 +3,13 @@
 #include <tactus/telemetry/ring.hpp>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <optional>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 namespace tactus::ros2 {
@@ -57,24 +60,33 @@ constexpr double nothing_m = std::numeric_limits<double>::quiet_NaN();
 /// All that is open.
 struct Endpoints {
   Participant participant;
-  DeviceWriters master;
-  DeviceWriters slave;
+  std::optional<DeviceWriters> master;
+  std::optional<DeviceWriters> slave;
   Writer<Text> state;
-  Reader<JointState> servo_jp;
+  std::optional<Reader<JointState>> servo_jp;
 };
 
 Result<Endpoints> open(const Bridge::Params& params) {
   auto participant = Participant::create(params.network);
   if (!participant) return participant.error();
-  auto master = open_writers(*participant, params.name_space, "master");
-  if (!master) return master.error();
-  auto slave = open_writers(*participant, params.name_space, "slave");
-  if (!slave) return slave.error();
-  auto state = participant->writer<Text>(dds_topic(params.name_space, "state"));
+  std::optional<DeviceWriters> master, slave;
+  for (const auto& [wanted, device, writers] :
+       {std::tuple{params.master, "master", &master}, std::tuple{params.slave, "slave", &slave}}) {
+    if (!wanted) continue;
+    auto opened = open_writers(*participant, params.name_space, device);
+    if (!opened) return opened.error();
+    *writers = *std::move(opened);
+  }
+  const char* const state_name = master && slave ? "state" : master ? "master/state" : "slave/state";
+  auto state = participant->writer<Text>(dds_topic(params.name_space, state_name));
   if (!state) return state.error();
-  auto servo_jp = participant->reader<JointState>(dds_topic(params.name_space, "operator/servo_jp"));
-  if (!servo_jp) return servo_jp.error();
-  return Endpoints{*std::move(participant), *master, *slave, *state, *servo_jp};
+  std::optional<Reader<JointState>> servo_jp;
+  if (params.takes_wishes) {
+    auto opened = participant->reader<JointState>(dds_topic(params.name_space, "operator/servo_jp"));
+    if (!opened) return opened.error();
+    servo_jp = *std::move(opened);
+  }
+  return Endpoints{*std::move(participant), master, slave, *state, servo_jp};
 }
 
 }  // namespace
@@ -86,7 +98,7 @@ struct Bridge::State {
   alignas(64) std::int64_t period_ns;
   std::int64_t due_ns = 0;
   std::int64_t state_due_ns = 0;
-  bool told_healthy = true;
+  OperatingState told_state = OperatingState::enabled;
   std::atomic<double> wished_m{nothing_m};  ///< the newest that was not taken
 
   alignas(64) Endpoints dds;
@@ -107,7 +119,7 @@ struct Bridge::State {
   void publish(const Snapshot& at) noexcept {
     const bool clock_was_set_back = at.stamp_ns < due_ns - period_ns;
     const bool measured = at.stamp_ns >= due_ns || clock_was_set_back;
-    const bool state = at.stamp_ns >= state_due_ns || clock_was_set_back || at.healthy != told_healthy;
+    const bool state = at.stamp_ns >= state_due_ns || clock_was_set_back || at.state != told_state;
     if (!measured && !state) return;
     if (!snapshots.try_push({.at = at, .measured = measured, .state = state})) return;
     if (measured) {
@@ -117,30 +129,38 @@ struct Bridge::State {
     }
     if (state) {
       state_due_ns = at.stamp_ns + state_every_ns;
-      told_healthy = at.healthy;
+      told_state = at.state;
     }
+  }
+
+  void tell_master(const Snapshot& at, DeviceWriters& writers) {
+    JointState measured = joint_state(at, "master");
+    measured.position = {at.master_position_m};
+    send(writers.measured_js, measured);
+    JointState setpoint = joint_state(at, "master");
+    setpoint.effort = {at.master_force_N};
+    send(writers.setpoint_js, setpoint);
+    send(writers.measured_cf, wrench(at, "master", at.hand_force_N));
+  }
+
+  void tell_slave(const Snapshot& at, DeviceWriters& writers) {
+    JointState measured = joint_state(at, "slave");
+    measured.position = {at.slave_position_m};
+    send(writers.measured_js, measured);
+    JointState setpoint = joint_state(at, "slave");
+    setpoint.position = {at.slave_command_m};
+    send(writers.setpoint_js, setpoint);
+    send(writers.measured_cf, wrench(at, "slave", -at.environment_force_N));
   }
 
   void tell(const Told& told) {
     const Snapshot& at = told.at;
     if (told.measured) {
-      JointState measured = joint_state(at, "master");
-      measured.position = {at.master_position_m};
-      send(dds.master.measured_js, measured);
-      JointState setpoint = joint_state(at, "master");
-      setpoint.effort = {at.master_force_N};
-      send(dds.master.setpoint_js, setpoint);
-      send(dds.master.measured_cf, wrench(at, "master", at.hand_force_N));
-      measured = joint_state(at, "slave");
-      measured.position = {at.slave_position_m};
-      send(dds.slave.measured_js, measured);
-      setpoint = joint_state(at, "slave");
-      setpoint.position = {at.slave_command_m};
-      send(dds.slave.setpoint_js, setpoint);
-      send(dds.slave.measured_cf, wrench(at, "slave", -at.environment_force_N));
+      if (dds.master) tell_master(at, *dds.master);
+      if (dds.slave) tell_slave(at, *dds.slave);
       published.fetch_add(1, std::memory_order_relaxed);
     }
-    if (told.state) send(dds.state, {at.healthy ? "ENABLED" : "FAULT"});
+    if (told.state) send(dds.state, {name_of(at.state)});
   }
 
   void drain() {
@@ -149,7 +169,8 @@ struct Bridge::State {
   }
 
   void listen() {
-    for (const JointState& command : dds.servo_jp.take()) {
+    if (!dds.servo_jp) return;
+    for (const JointState& command : dds.servo_jp->take()) {
       if (command.position.size() == 1 && std::isfinite(command.position.front())) {
         wishes.fetch_add(1, std::memory_order_relaxed);
         wished_m.store(command.position.front(), std::memory_order_relaxed);
@@ -161,7 +182,11 @@ struct Bridge::State {
 
   void run() noexcept {
     while (!stop.load(std::memory_order_acquire)) {
-      dds.servo_jp.wait(look_every);
+      if (dds.servo_jp) {
+        dds.servo_jp->wait(look_every);
+      } else {
+        std::this_thread::sleep_for(std::chrono::duration<double>(look_every.value));
+      }
       without_memory_lost([this] {
         listen();
         drain();
@@ -169,7 +194,7 @@ struct Bridge::State {
     }
     without_memory_lost([this] {
       drain();
-      send(dds.state, {"DISABLED"});
+      send(dds.state, {name_of(OperatingState::disabled)});
     });
   }
 

@@ -1,14 +1,23 @@
 #pragma once
 
+#include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/ros2/names.hpp>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
 namespace tactus::ros2 {
+
+/// What a robot does in the words of CRTK: `paused` gives no motion of its own accord, though it may hold.
+enum class OperatingState { disabled, enabled, paused, fault };
+constexpr auto enumerators(OperatingState) {
+  return std::array{Enumerator{OperatingState::disabled, "DISABLED"}, Enumerator{OperatingState::enabled, "ENABLED"},
+                    Enumerator{OperatingState::paused, "PAUSED"}, Enumerator{OperatingState::fault, "FAULT"}};
+}
 
 /// What the other programs are told about one tick of a one-axis teleoperator. Positions and forces are positive toward
 /// the environment, unless said otherwise.
@@ -20,12 +29,13 @@ struct Snapshot {
   double slave_position_m = 0.0;     ///< measured, at the motor
   double slave_command_m = 0.0;      ///< position command as it left the master
   double environment_force_N = 0.0;  ///< as the slave told it, positive when the environment pushes it back
-  bool healthy = true;               ///< no safety gate has latched a fault
+  OperatingState state = OperatingState::enabled;
 };
 
 /// A teleoperator among ROS 2 nodes. Under the namespace, by default `tactus`, it publishes the topics of `topics()`
 /// and subscribes to `operator/servo_jp` (`sensor_msgs/msg/JointState` with one position in m): where another program
-/// means the operator's hand to be.
+/// means the operator's hand to be. Of one site alone it publishes that device's topics, with the state as
+/// `master/state` or `slave/state`.
 ///
 /// The thread that steps the teleoperator calls `publish` and `take_wish`, which touch a wait-free ring, the newest
 /// wish and nothing else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and
@@ -36,6 +46,9 @@ class Bridge {
     Network network = {};
     std::string name_space = "tactus";
     double rate_Hz = 500.0;  ///< of the measured signals, at most; positive, up to 10 kHz
+    bool master = true;      ///< whether the topics of that device are published
+    bool slave = true;
+    bool takes_wishes = true;  ///< whether `operator/servo_jp` is subscribed to
   };
   struct Counts {
     std::uint64_t published = 0;  ///< snapshots, each a message on every topic of a device

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace tactus::runtime {
@@ -24,6 +25,15 @@ struct RealTimeStreams {
   Sites* sites = nullptr;      ///< what `replay` needs
   std::int64_t tap = 0;        ///< number of the tap, for the log
   std::int64_t origin_ns = 0;  ///< of the times in the log, on CLOCK_MONOTONIC
+  std::string prefix{};        ///< of the topics: `/run_1`, or nothing
+
+  /// Calls `visit(topic, type_name, stream)` for each stream there is.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    if (teleoperator != nullptr) visit(prefix + "/teleoperator", "tactus_msgs/msg/TeleoperatorRecord", *teleoperator);
+    if (servo != nullptr) visit(prefix + "/servo", "tactus_msgs/msg/ServoRecord", *servo);
+    if (sites != nullptr) visit(prefix + "/sites", "tactus_msgs/msg/SitesRecord", *sites);
+  }
 };
 
 /// One tap through simulated devices in real time: the step of a servo thread. Where the tap is over, or was ended from

@@ -2,7 +2,6 @@
 #include <tactus/experiments/tapping/presentation.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/files.hpp>
-#include <tactus/runtime/real_time_tap.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 #include <tactus/runtime/shared_plant.hpp>
@@ -72,44 +71,60 @@ Result<std::unique_ptr<SharedPlant>> attach_plant(const PlantChoice& choice, con
   return plant;
 }
 
-/// The recorder with three streams for each run.
-struct Log {
-  telemetry::Recorder recorder;
-  std::vector<RealTimeStreams> streams;
+/// Where the ticks of all runs go.
+class Outlets {
+ public:
+  explicit Outlets(const Cases& cases) {
+    for (std::size_t i = 0; i < cases.all.size(); ++i) {
+      owned_.push_back(std::make_unique<Owned>());
+      Owned& own = *owned_.back();
+      all_.push_back({.teleoperator = &own.teleoperator,
+                      .servo = &own.servo,
+                      .sites = &own.sites,
+                      .origin_ns = monotonic_ns(),
+                      .prefix = cases.all.size() > 1 ? "/" + run_name(i) : std::string()});
+    }
+  }
+  [[nodiscard]] const std::vector<RealTimeStreams>& all() const { return all_; }
+  static std::string run_name(std::size_t i) { return "run_" + std::to_string(i + 1); }
+
+ private:
+  struct Owned {
+    RealTimeStreams::Teleoperator teleoperator;
+    RealTimeStreams::Servo servo;
+    RealTimeStreams::Sites sites;
+  };
+  std::vector<std::unique_ptr<Owned>> owned_;
+  std::vector<RealTimeStreams> all_;
 };
 
-Result<std::unique_ptr<Log>> open_log(const experiments::Request& request, const RealTimeOptions& options,
-                                      const Cases& cases) {
+Result<telemetry::Recorder> open_log(const experiments::Request& request, const RealTimeOptions& options,
+                                     const Cases& cases, const Outlets& outlets) {
   if (options.before_log) {
     if (auto error = options.before_log()) return *std::move(error);
   }
   if (auto error = report::prepare_directory(options.log->parent_path())) return *std::move(error);
   auto recorder = telemetry::Recorder::create(*options.log, options.log_limit_bytes);
   if (!recorder) return recorder.error();
-  auto log = std::make_unique<Log>(Log{*std::move(recorder), {}});
   auto about = options.about;
   about["experiment"] = request.name;
   about["configuration"] = cases.first_configuration;
   about["clock"] = "real";
-  log->recorder.add_metadata("tactus", about);
+  recorder->add_metadata("tactus", about);
   for (std::size_t i = 0; i < cases.all.size(); ++i) {
-    const std::string name = "run_" + std::to_string(i + 1);
     const experiments::Settings& settings = cases.all[i].settings;
-    if (!settings.empty()) log->recorder.add_metadata(name, {settings.begin(), settings.end()});
-    const std::string prefix = cases.all.size() > 1 ? "/" + name : "";
-    log->streams.push_back({.teleoperator = &log->recorder.add<simulation::Teleoperator::Record>(
-                                prefix + "/teleoperator", "tactus_msgs/msg/TeleoperatorRecord"),
-                            .servo = &log->recorder.add<ServoRecord>(prefix + "/servo", "tactus_msgs/msg/ServoRecord"),
-                            .sites = &log->recorder.add<SitesRecord>(prefix + "/sites", "tactus_msgs/msg/SitesRecord"),
-                            .origin_ns = monotonic_ns()});
+    if (!settings.empty()) recorder->add_metadata(Outlets::run_name(i), {settings.begin(), settings.end()});
+    outlets.all()[i].for_each([&recorder](const std::string& topic, const char* type_name, const auto& stream) {
+      recorder->add(topic, type_name, stream);
+    });
   }
-  log->recorder.start();
-  return log;
+  recorder->start();
+  return recorder;
 }
 
-Check close_log(Log& log, const std::filesystem::path& file) {
-  if (auto error = log.recorder.stop()) return error;
-  return telemetry::write_bag_metadata(file, log.recorder.log());
+Check close_log(telemetry::Recorder& recorder, const std::filesystem::path& file) {
+  if (auto error = recorder.stop()) return error;
+  return telemetry::write_bag_metadata(file, recorder.log());
 }
 
 /// Taps of a run whose every tick is kept in memory, one of them to be shown; the log has all.
@@ -231,11 +246,16 @@ Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, co
     plant = *std::move(attached);
   }
 
-  std::unique_ptr<Log> log;
+  std::optional<Outlets> outlets;
+  if (options.log || options.look_on) outlets.emplace(*cases);
+  if (options.look_on) {
+    if (auto error = options.look_on(outlets->all())) return *std::move(error);
+  }
+  std::optional<telemetry::Recorder> log;
   if (options.log) {
-    auto opened = open_log(request, options, *cases);
+    auto opened = open_log(request, options, *cases, *outlets);
     if (!opened) return opened.error();
-    log = *std::move(opened);
+    log.emplace(*std::move(opened));
   }
 
   std::size_t taps = 0;
@@ -249,7 +269,7 @@ Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, co
   std::vector<ServoReport> servos;
   ServoReport all;
   for (std::size_t i = 0; i < cases->all.size() && !end.asked(); ++i) {
-    auto done = run_taps(cases->all[i], plant.get(), log ? log->streams[i] : RealTimeStreams{}, end, tap_done);
+    auto done = run_taps(cases->all[i], plant.get(), outlets ? outlets->all()[i] : RealTimeStreams{}, end, tap_done);
     if (!done) {
       if (log) (void)close_log(*log, *options.log);  // it shows how it came to that
       return done.error();

@@ -3,6 +3,7 @@
 #include <tactus/core/result.hpp>
 #include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/end_request.hpp>
+#include <tactus/runtime/real_time_tap.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/runtime/shared_device.hpp>
 
@@ -12,6 +13,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus::runtime {
 
@@ -30,6 +32,8 @@ struct RealTimeOptions {
   std::function<Check()> before_log{};       ///< called once the request has proved right, before the log is opened
   std::optional<PlantChoice> plant{};        ///< else devices are simulated on the servo thread
   const EndRequest* end = nullptr;           ///< that somebody may make while it runs; outlives the run
+  /// Told of the streams of each run before the first tick, for who looks on beside the log.
+  std::function<Check(const std::vector<RealTimeStreams>&)> look_on{};
 };
 
 /// What came out, and what became of the log.

@@ -20,17 +20,20 @@ struct ReplayDifference {
 };
 
 struct Replay {
-  std::int64_t taps = 0;
+  std::string of;          ///< what was stepped: `2 taps`, `the master`, `both sites`
+  std::int64_t taps = 0;   ///< 0 where a person armed the sites
   std::int64_t ticks = 0;  ///< steps that were compared, the one that differs included
   std::optional<ReplayDifference> difference;
   std::string version;  ///< of the program that wrote the log; another build may round otherwise
 };
 
-/// Steps the sites of a run in real time once more on what its log says that they read, with the configuration that the
-/// log carries, and compares all that they give bit for bit. The first difference ends it.
+/// Steps the sites of a run in real time once more on what its log says that they read and were asked, and on what came
+/// over the link, with the configuration that the log carries, and compares all that they give bit for bit. The first
+/// difference ends it. The run is one of taps, of one site over a network, or of both sites with devices of one's own.
 ///
-/// Errors: those of reading a log; `missing` where it has no topic `/sites`, `inconsistent` where steps are missing in
-/// it or its signals are others; `out_of_bounds` and others where its configuration makes no teleoperator.
+/// Errors: those of reading a log; `missing` where it has none of the topics `/sites`, `/site` and `/master/site`,
+/// `inconsistent` where steps are missing in it or its signals are others; `out_of_bounds` and others where its
+/// configuration makes no teleoperator.
 Result<Replay> replay(const std::filesystem::path& log);
 
 }  // namespace tactus::runtime

@@ -8,8 +8,8 @@ namespace tactus::telemetry {
 
 namespace {
 
-/// How long the writer sleeps between two looks into the rings: a small part of what they hold, and seldom enough that
-/// it hardly disturbs who shares its core.
+/// How long the writer sleeps between two looks into the streams: a small part of what they hold, and seldom enough
+/// that it hardly disturbs who shares its core.
 constexpr std::chrono::milliseconds look_every{10};
 
 }  // namespace
@@ -22,6 +22,7 @@ struct Recorder::State {
 
   LogWriter log;
   std::vector<std::unique_ptr<Stream>> streams;
+  std::vector<std::shared_ptr<void>> kept;
   std::vector<Told> told;
   std::uint16_t gaps = 0;
   std::uint32_t gap_sequence = 0;
@@ -88,6 +89,8 @@ void Recorder::add_stream(std::unique_ptr<Stream> stream) {
   state_->streams.push_back(std::move(stream));
   state_->told.emplace_back();
 }
+
+void Recorder::keep(std::shared_ptr<void> stream) { state_->kept.push_back(std::move(stream)); }
 
 void Recorder::add_metadata(const std::string& name, const std::map<std::string, std::string>& content) {
   state_->log.add_metadata(name, content);

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <tactus/telemetry/broadcast.hpp>
 #include <tactus/telemetry/cdr.hpp>
 #include <tactus/telemetry/log_writer.hpp>
-#include <tactus/telemetry/ring.hpp>
 
 #include <atomic>
 #include <concepts>
@@ -27,7 +27,7 @@ struct Gap {
     return std::tuple{
         observed("channel", &Gap::channel, units::none, "", "", "", "Number of the channel that has the gap."),
         observed("dropped", &Gap::dropped, units::none, "", "", "",
-                 "Records of it that found the ring full, since the start."),
+                 "Records of it that came faster than they were written, since the start."),
         observed("lost", &Gap::lost, units::none, "", "", "",
                  "Records of it in chunks that could not be written, since the start.")};
   }
@@ -46,40 +46,54 @@ class Stream {
   [[nodiscard]] virtual std::uint64_t dropped() const noexcept = 0;
 };
 
-/// One channel as the servo thread sees it. By default the ring holds 0.8 s at 5 kHz.
+/// One channel as the servo thread sees it: one copy of each record, for a log and for whoever else looks on. By
+/// default it holds 0.8 s at 5 kHz.
 template <Recordable Record, std::size_t Capacity = 4096>
-class RecordStream final : public Stream {
+class RecordStream {
  public:
-  explicit RecordStream(std::uint16_t channel) : channel_(channel) {}
-
-  /// One copy into the ring; where that is full, the record is dropped and counted, and its place in the sequence stays
-  /// empty. One thread only. Real-time safe: wait-free, no allocation, no system call.
-  bool push(std::uint64_t time_ns, const Record& record) noexcept {
-    return ring_.try_push({time_ns, sequence_++, record});
-  }
-
-  void drain(LogWriter& log) override {
-    Entry entry;
-    // No more than was there at the start or so: the other channels want their turn.
-    for (std::size_t i = 0; i < Capacity && ring_.try_pop(entry); ++i) {
-      log.write(channel_, entry.sequence, entry.time_ns, to_cdr(entry.record));
-    }
-  }
-
-  [[nodiscard]] std::uint64_t dropped() const noexcept override { return ring_.dropped(); }
-
- private:
   struct Entry {
     std::uint64_t time_ns = 0;
-    std::uint32_t sequence = 0;
+    std::uint64_t number = 0;  ///< of the records of this stream, from 0
     Record record;
   };
-  Ring<Entry, Capacity> ring_;
-  std::uint32_t sequence_ = 0;
-  std::uint16_t channel_;
+  using Reader = typename Broadcast<Entry, Capacity>::Reader;
+
+  /// One thread only. Real-time safe: wait-free, no allocation, no system call, whoever looks on or does not.
+  void push(std::uint64_t time_ns, const Record& record) noexcept { entries_->push({time_ns, next_++, record}); }
+  /// Sees what is pushed from now on. Who falls behind by more than the capacity loses the oldest, and counts it.
+  [[nodiscard]] Reader watch() const { return Reader(entries_); }
+
+ private:
+  std::shared_ptr<Broadcast<Entry, Capacity>> entries_ = std::make_shared<Broadcast<Entry, Capacity>>();
+  std::uint64_t next_ = 0;
 };
 
-/// Records at full rate beside a servo thread: rings on one side, a thread of its own that writes the log on the other.
+/// A record stream on its way into a log. The number of a record is its place in the sequence.
+template <Recordable Record, std::size_t Capacity>
+class LoggedStream final : public Stream {
+ public:
+  LoggedStream(const RecordStream<Record, Capacity>& stream, std::uint16_t channel)
+      : entries_(stream.watch()), channel_(channel) {}
+
+  void drain(LogWriter& log) override {
+    typename RecordStream<Record, Capacity>::Entry entry;
+    // No more than was there at the start or so: the other channels want their turn.
+    for (std::size_t i = 0; i < Capacity && entries_.next(entry); ++i) {
+      log.write(channel_, static_cast<std::uint32_t>(entry.number), entry.time_ns, to_cdr(entry.record));
+    }
+    dropped_.store(entries_.lost(), std::memory_order_relaxed);
+  }
+
+  [[nodiscard]] std::uint64_t dropped() const noexcept override { return dropped_.load(std::memory_order_relaxed); }
+
+ private:
+  typename RecordStream<Record, Capacity>::Reader entries_;
+  std::uint16_t channel_;
+  std::atomic<std::uint64_t> dropped_{0};
+};
+
+/// Records at full rate beside a servo thread: streams on one side, a thread of its own that writes the log on the
+/// other.
 ///
 /// Order of use: `create`, `add` for each channel, `start`, pushes, `stop`. What goes wrong on the disk reaches the
 /// counts and the result of `stop`, and never the thread that pushes.
@@ -91,14 +105,19 @@ class Recorder {
   Recorder& operator=(Recorder&&) = delete;
   ~Recorder();  ///< stops
 
-  /// Before `start` only. The stream lives as long as the recorder.
+  /// Logs what is pushed into the stream from now on. Before `start` only.
+  template <Recordable Record, std::size_t Capacity>
+  void add(const std::string& topic, const std::string& type_name, const RecordStream<Record, Capacity>& stream) {
+    add({.topic = topic, .type_name = type_name, .columns = columns_of<Record>()},
+        [&stream](std::uint16_t channel) { return std::make_unique<LoggedStream<Record, Capacity>>(stream, channel); });
+  }
+  /// The same for a stream of its own, which lives as long as the recorder.
   template <Recordable Record, std::size_t Capacity = 4096>
   RecordStream<Record, Capacity>& add(const std::string& topic, const std::string& type_name) {
-    auto stream = std::make_unique<RecordStream<Record, Capacity>>(
-        add_channel({.topic = topic, .type_name = type_name, .columns = columns_of<Record>()}));
-    auto& added = *stream;
-    add_stream(std::move(stream));
-    return added;
+    auto stream = std::make_shared<RecordStream<Record, Capacity>>();
+    add(topic, type_name, *stream);
+    keep(stream);
+    return *stream;
   }
   /// The same for records that come another way: `make` is given the number of the channel.
   void add(const ChannelDescription& channel,
@@ -113,7 +132,7 @@ class Recorder {
   /// disk, `failed` where memory ran out on the way.
   Check stop();
 
-  /// For each channel in the order of adding, what found its ring full. Any thread.
+  /// For each channel in the order of adding, what was overwritten before it was written down. Any thread.
   [[nodiscard]] std::vector<std::uint64_t> dropped() const;
   /// The log itself; while the thread runs it belongs to that.
   [[nodiscard]] const LogWriter& log() const;
@@ -123,6 +142,7 @@ class Recorder {
   explicit Recorder(std::unique_ptr<State> state);
   std::uint16_t add_channel(const ChannelDescription& channel);
   void add_stream(std::unique_ptr<Stream> stream);
+  void keep(std::shared_ptr<void> stream);
   std::unique_ptr<State> state_;
 };
 

@@ -18,6 +18,8 @@ namespace person_test {
 
 using namespace std::chrono_literals;
 using control::SiteRole;
+using runtime::SiteExchange;
+using runtime::SiteWord;
 using std::chrono::steady_clock;
 
 /// A pipe whose ends are closed with it.

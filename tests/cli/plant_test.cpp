@@ -94,7 +94,7 @@ TEST_F(Plant, WrongUseIsRefusedByTheOption) {
     EXPECT_EQ(outcome.status, 2) << outcome.err;
     EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
   };
-  expect_refused({"run", "quick.toml", "--plant", name}, "--plant requires --realtime");
+  expect_refused({"run", "quick.toml", "--plant", name}, "--plant: a plant runs at the real clock: add --realtime");
   expect_refused({"run", "quick.toml", "--realtime", "--plant-silence-s", "1"}, "--plant-silence-s requires --plant");
   expect_refused({"run", "quick.toml", "--realtime", "--plant", "a/b"}, "--plant: 'a/b' is no name");
   expect_refused({"run", "quick.toml", "--realtime", "--plant", name, "--plant-silence-s", "20"},

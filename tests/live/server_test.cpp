@@ -145,7 +145,7 @@ TEST(Server, APortInUseIsAnErrorThatSaysSo) {
   const auto view = sample_view();
   const auto second = Server::start({.port = served.port(), .conversation = {}}, {}, *view);
   ASSERT_FALSE(second);
-  EXPECT_NE(second.error().message.find("--port"), std::string::npos);
+  EXPECT_NE(second.error().message.find("another port"), std::string::npos);
   EXPECT_EQ(second.error().place, "127.0.0.1:" + std::to_string(served.port()));
   EXPECT_FALSE(Server::start({.address = "0.0.0.0", .port = 0, .conversation = {}}, {}, *view));
   EXPECT_FALSE(Server::start({.address = "no address", .port = 0, .conversation = {}}, {}, *view));

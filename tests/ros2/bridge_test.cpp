@@ -68,7 +68,7 @@ TEST_F(BridgeTest, AnotherVendorReceivesWhatTheTeleoperatorDoes) {
   EXPECT_EQ(test::wrench_of(last_of("slave/measured_cf")).frame_id, "slave");
   EXPECT_EQ(test::text_of(last_of("state")).data, "ENABLED");
 
-  at.healthy = false;
+  at.state = OperatingState::fault;
   ASSERT_TRUE(eventually([&] {
     at.stamp_ns += 1'000'000;
     bridge.publish(at);

@@ -51,26 +51,43 @@ TEST_F(RecorderTest, WhatTwoThreadsPushIsInTheLogInOrder) {
   }
 }
 
-TEST_F(RecorderTest, WhatAFullRingDropsIsInTheLogAsANumber) {
+TEST_F(RecorderTest, WhatIsOverwrittenBeforeItIsWrittenDownIsInTheLogAsANumber) {
   auto recorder = Recorder::create(file_);
   ASSERT_TRUE(recorder);
   auto& stream = recorder->add<Sample, 8>("/sample", "tactus_msgs/msg/Sample");
-  for (std::int64_t k = 0; k < 20; ++k) stream.push(time_of(k), sample(k));  // nobody drains yet: 12 are dropped
+  for (std::int64_t k = 0; k < 20; ++k) stream.push(time_of(k), sample(k));  // nobody drains yet: 12 are overwritten
   recorder->start(Seconds{0.001});
-  while (!stream.push(time_of(20), sample(20))) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   ASSERT_FALSE(recorder->stop());
-  const auto dropped = recorder->dropped();
-  ASSERT_GE(dropped[0], 12U);
+  EXPECT_EQ(recorder->dropped(), (std::vector<std::uint64_t>{12}));
 
   const auto log = read_log(file_);
   ASSERT_TRUE(log);
   const LogTable* samples = find(*log, "/sample");
   const LogTable* gaps = find(*log, "/tactus/gaps");
   ASSERT_TRUE(samples != nullptr && gaps != nullptr);
-  EXPECT_EQ(samples->times_ns.size(), 9U);
-  EXPECT_EQ(samples->missing, dropped[0]);
+  ASSERT_EQ(samples->times_ns.size(), 8U);
+  EXPECT_EQ(samples->times_ns.front(), time_of(12)) << "the newest are kept";
   EXPECT_EQ(gaps->values[0].back(), 0.0);
-  EXPECT_EQ(gaps->values[1].back(), static_cast<double>(dropped[0]));
+  EXPECT_EQ(gaps->values[1].back(), 12.0);
+}
+
+TEST_F(RecorderTest, OneCopyIsForTheLogAndForWhoeverElseLooksOn) {
+  auto recorder = Recorder::create(file_);
+  ASSERT_TRUE(recorder);
+  RecordStream<Sample> stream;
+  recorder->add("/sample", "tactus_msgs/msg/Sample", stream);
+  auto onlooker = stream.watch();
+  for (std::int64_t k = 0; k < 20; ++k) stream.push(time_of(k), sample(k));
+  recorder->start(Seconds{0.001});
+  ASSERT_FALSE(recorder->stop());
+  EXPECT_EQ(read_log(file_).value().tables.front().times_ns.size(), 20U);
+  RecordStream<Sample>::Entry entry;
+  for (std::uint64_t k = 0; k < 20; ++k) {
+    ASSERT_TRUE(onlooker.next(entry));
+    EXPECT_EQ(entry.number, k);
+    EXPECT_EQ(entry.time_ns, time_of(static_cast<std::int64_t>(k)));
+  }
+  EXPECT_FALSE(onlooker.next(entry));
 }
 
 TEST_F(RecorderTest, AFullDiskLeavesThePushingThreadAloneAndIsReportedAtTheEnd) {
@@ -79,7 +96,7 @@ TEST_F(RecorderTest, AFullDiskLeavesThePushingThreadAloneAndIsReportedAtTheEnd) 
   auto& stream = recorder->add<Sample>("/sample", "tactus_msgs/msg/Sample");
   recorder->start(Seconds{0.001});
   for (std::int64_t k = 0; k < 200; ++k) {
-    EXPECT_TRUE(stream.push(time_of(k), sample(k)));
+    stream.push(time_of(k), sample(k));
     if (k % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   const Check error = recorder->stop();
@@ -94,7 +111,7 @@ TEST_F(RecorderTest, APushDoesNotAllocate) {
   auto recorder = Recorder::create(file_);
   auto& stream = recorder->add<Sample>("/sample", "tactus_msgs/msg/Sample");
   const auto before = laws::allocation_count();
-  for (std::int64_t k = 0; k < 5000; ++k) stream.push(time_of(k), sample(k));  // the last find the ring full
+  for (std::int64_t k = 0; k < 5000; ++k) stream.push(time_of(k), sample(k));  // the last overwrite the first
   EXPECT_EQ(laws::allocation_count(), before);
 }
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-namespace tactus::cli {
+namespace tactus::runtime {
 
 /// What a person may type at a running site.
 enum class SiteWord {
@@ -51,4 +51,4 @@ class SiteButtons {
   bool lost_ = false;
 };
 
-}  // namespace tactus::cli
+}  // namespace tactus::runtime

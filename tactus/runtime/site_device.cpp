@@ -1,9 +1,9 @@
-#include <tactus/cli/site_device.hpp>
+#include <tactus/runtime/site_device.hpp>
 
 #include <cmath>
 #include <utility>
 
-namespace tactus::cli {
+namespace tactus::runtime {
 
 namespace {
 
@@ -39,14 +39,14 @@ Result<SiteDevice> simulated_device(const experiments::TappingParams& params, co
     const double start_m = params.control.position_scale * path.start_m();
     const auto plant = simulation::SlavePlant::make(params.slave, params.environment, *clock, start_m);
     if (!plant) return plant.error();
-    return SiteDevice{.device = std::make_unique<runtime::SimulatedSlave>(*plant, *clock, station::DeviceLimits{})};
+    return SiteDevice{.device = std::make_unique<SimulatedSlave>(*plant, *clock, station::DeviceLimits{})};
   }
   const auto plant = simulation::MasterPlant::make(params.master, params.person, *clock, path.start_m());
   if (!plant) return plant.error();
-  auto device = std::make_unique<runtime::SimulatedMasterOf<PatientPerson>>(
-      *plant, *clock, PatientPerson(path, clock->tick_s), station::DeviceLimits{});
+  auto device = std::make_unique<SimulatedMasterOf<PatientPerson>>(*plant, *clock, PatientPerson(path, clock->tick_s),
+                                                                   station::DeviceLimits{});
   PatientPerson* const person = &device->person();
   return SiteDevice{.device = std::move(device), .person = person};
 }
 
-}  // namespace tactus::cli
+}  // namespace tactus::runtime

@@ -1,4 +1,7 @@
-#include <tactus/cli/site_loop.hpp>
+#include <tactus/configuration/toml_writer.hpp>
+#include <tactus/runtime/replay.hpp>
+#include <tactus/runtime/rights.hpp>
+#include <tactus/runtime/site_loop.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
 #include <algorithm>
@@ -6,11 +9,13 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,7 +24,7 @@
 #include <tests/link/pair.hpp>
 #include <tests/scratch_path.hpp>
 
-namespace tactus::cli {
+namespace tactus::runtime {
 namespace site_loop_test {
 
 using control::GateFault;
@@ -65,14 +70,15 @@ class Sites : public ::testing::Test {
                                  site.exchange, simulated_device(params, role).value());
       ASSERT_TRUE(made) << describe(made.error());
       site.loop.emplace(*std::move(made));
-      experiments::Request request;
-      request.name = "test";
-      auto log = SiteLog::create(folder / name_of(role), request, "[task]\nseed = 5\n", role);
+      SiteStreams streams = SiteStreams::of_one(role);
+      streams.origin_ns = 0;  // the test's clock
+      auto log =
+          SiteLog::create(folder / name_of(role), streams,
+                          {{"tactus", {{"site", name_of(role)}, {"configuration", configuration::to_toml(params)}}},
+                           {std::string("device_of_") + name_of(role), in_words(station::DeviceLimits{})}});
       ASSERT_TRUE(log) << describe(log.error());
       site.log.emplace(*std::move(log));
-      SiteStreams streams = site.log->streams();
-      streams.origin_ns = 0;  // the test's clock
-      site.loop->log_to(streams);
+      site.loop->leave_in(streams);
     };
     make(master, SiteRole::master, ports.master, ports.slave);
     make(slave, SiteRole::slave, ports.slave, ports.master);
@@ -97,8 +103,9 @@ class Sites : public ::testing::Test {
     return {};
   }
 
-  /// The log's rings hold 4096 ticks, and the disk wants time too.
+  /// The log's streams hold 4096 ticks, and the disk wants time too.
   void run(int ticks, bool step_master = true, bool step_slave = true) {
+    const FlushedDenormals as_a_servo_thread_does;
     for (int i = 0; i < ticks; ++i) {
       now_ns += tick_ns;
       if (step_master) master.step(now_ns);
@@ -168,7 +175,7 @@ TEST_F(Sites, ThatAreCutOffHoldUntilAPersonArms) {
   EXPECT_EQ(totals.armings, 2);
   EXPECT_EQ(totals.holds[SiteCause::silent], 1);
   EXPECT_NEAR(totals.longest_silence_at_hold_s, 0.1, 0.001);
-  EXPECT_EQ(totals.stale_applied, 0);
+  EXPECT_EQ(master.loop->link_totals().stale_applied, 0);
   EXPECT_EQ(totals.steps_above_limit, 0);
 }
 
@@ -203,8 +210,7 @@ TEST_F(Sites, TheLastSecondIsInTheLogAndInTheReport) {
   const auto table = close(slave, SiteRole::slave);
   const auto servo = telemetry::read_log(folder / "slave", "/servo").value().tables.at(0);
   EXPECT_EQ(metadata["site"], "slave");
-  EXPECT_EQ(metadata["configuration"], "[task]\nseed = 5\n");
-  EXPECT_FALSE(metadata["version"].empty());
+  EXPECT_EQ(metadata["configuration"], configuration::to_toml(params));
   EXPECT_TRUE(std::filesystem::exists(folder / "slave" / "metadata.yaml"));
   ASSERT_EQ(table.times_ns.size(), 7'777U);
   ASSERT_EQ(servo.times_ns.size(), 7'777U);
@@ -327,44 +333,82 @@ TEST_F(Sites, ATickWithItsLogDoesNotAllocate) {
   EXPECT_EQ(laws::own_allocation_count(), before);
 }
 
-TEST(SiteWords, AreReadFromALineAndAWrongOneNamesThoseThatThereAre) {
-  EXPECT_EQ(parse_site_word("", SiteRole::master).value(), SiteWord::arm);
-  EXPECT_EQ(parse_site_word("  release \r", SiteRole::master).value(), SiteWord::release);
-  EXPECT_EQ(parse_site_word("clear", SiteRole::slave).value(), SiteWord::clear);
-  const auto wrong = parse_site_word("amr", SiteRole::master);
-  ASSERT_FALSE(wrong);
-  EXPECT_NE(describe(wrong.error()).find("arm, press, release, clutch, unclutch, stop, clear"), std::string::npos)
-      << describe(wrong.error());
-  const auto elsewhere = parse_site_word("arm", SiteRole::slave);
-  ASSERT_FALSE(elsewhere);
-  EXPECT_NE(describe(elsewhere.error()).find("at the master"), std::string::npos) << describe(elsewhere.error());
-  EXPECT_FALSE(parse_site_word("", SiteRole::slave));
+/// The same log with one number of a topic changed by its last digit, a whole one by 1.
+std::filesystem::path tampered(const std::filesystem::path& folder, const std::string& topic, const std::string& signal,
+                               std::size_t row) {
+  const auto content = telemetry::read_log(folder).value();
+  const auto file = folder.parent_path() / "tampered.mcap";
+  auto writer = telemetry::LogWriter::create(file).value();
+  for (const auto& [name, metadata] : content.summary.metadata) writer.add_metadata(name, metadata);
+  const auto write = [&](telemetry::LogTable table, auto record) {
+    using Record = decltype(record);
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      if (table.topic != topic || table.columns[i].name != signal) continue;
+      double& value = table.values[i][row];
+      const bool whole = table.columns[i].type == telemetry::SignalType::int64;
+      value = whole ? value + 1.0 : std::nextafter(value, std::numeric_limits<double>::infinity());
+    }
+    const auto channel =
+        writer.add_channel({.topic = table.topic, .type_name = table.type_name, .columns = table.columns});
+    for (std::size_t k = 0; k < table.times_ns.size(); ++k) {
+      std::size_t column = 0;
+      for_each_signal<Record>([&](const auto& one) {
+        auto& member = record.*one.member;
+        member = static_cast<std::remove_reference_t<decltype(member)>>(table.values[column++][k]);
+      });
+      writer.write(channel, static_cast<std::uint32_t>(k), table.times_ns[k], telemetry::to_cdr(record));
+    }
+  };
+  for (const telemetry::LogTable& table : content.tables) {
+    if (table.topic == "/site") write(table, SiteLogRecord());
+    if (table.topic == "/packets") write(table, PacketRecord());
+  }
+  EXPECT_FALSE(writer.close());
+  return file;
 }
 
-TEST(SiteButtons, AButtonIsPushedForATickAndTheDeadManSwitchComesAfterArming) {
-  SiteButtons buttons;
-  EXPECT_FALSE(buttons.step(SiteState::configure).align) << "what is pressed at the start is not heard";
-  EXPECT_TRUE(buttons.step(SiteState::configure).align);
-  EXPECT_FALSE(buttons.step(SiteState::align).align);
-  ASSERT_TRUE(buttons.ready());
-  buttons.take(SiteWord::arm);
-  const auto pushed = buttons.step(SiteState::align);
-  EXPECT_TRUE(pushed.arm);
-  EXPECT_FALSE(pushed.dead_man);
-  EXPECT_FALSE(buttons.ready()) << "let go first, or a second push would not rise";
-  const auto after = buttons.step(SiteState::armed);
-  EXPECT_FALSE(after.arm);
-  EXPECT_TRUE(after.dead_man);
-  ASSERT_TRUE(buttons.ready());
-  buttons.take(SiteWord::arm);
-  EXPECT_FALSE(buttons.step(SiteState::armed).dead_man) << "armed anew, pressed anew";
-  EXPECT_TRUE(buttons.step(SiteState::armed).dead_man);
-  buttons.take(SiteWord::arm);
-  EXPECT_TRUE(buttons.step(SiteState::active).dead_man) << "an arming while active lets nothing go";
-  EXPECT_FALSE(buttons.step(SiteState::hold).dead_man);
-  buttons.take(SiteWord::release);
-  EXPECT_FALSE(buttons.step(SiteState::active).dead_man);
+// Through all that changes a state: buttons, silence, an arming anew and an end.
+TEST_F(Sites, TheLogOfEitherReplaysBitForBit) {
+  open(true);
+  run(5005);
+  expect(SiteState::active, SiteState::active);
+  for (const SiteWord word : {SiteWord::release, SiteWord::press, SiteWord::clutch, SiteWord::unclutch}) {
+    master.exchange.words.try_push(word);
+    run(700);
+  }
+  run(600, true, false);
+  run(1000);
+  for (const SiteWord word : {SiteWord::arm, SiteWord::stop, SiteWord::clear}) {
+    master.exchange.words.try_push(word);
+    run(1500);
+  }
+  master.exchange.end.ask();
+  run(200);
+  close(master, SiteRole::master);
+  close(slave, SiteRole::slave);
+  for (const Site* site : {&master, &slave}) {
+    const std::string name = site == &master ? "master" : "slave";
+    const auto replayed = replay(folder / name);
+    ASSERT_TRUE(replayed) << describe(replayed.error());
+    EXPECT_EQ(replayed->of, "the " + name);
+    EXPECT_EQ(replayed->ticks, site->loop->totals().ticks);
+    EXPECT_FALSE(replayed->difference) << name << ": " << replayed->difference->signal << " at "
+                                       << replayed->difference->tick;
+  }
+  // Each input counts: what was read, what was pressed, what came.
+  const auto differs = [this](const std::string& topic, const std::string& signal, std::size_t row) {
+    const auto replayed = replay(tampered(folder / "slave", topic, signal, row));
+    ASSERT_TRUE(replayed) << describe(replayed.error());
+    ASSERT_TRUE(replayed->difference) << topic << " " << signal;
+    EXPECT_GE(replayed->difference->tick, static_cast<std::int64_t>(row) - 2);
+  };
+  differs("/site", "motor_force_N", 5000);
+  differs("/site", "position_m", 5000);
+  differs("/packets", "position_m", 5000);
+  const auto lacking = replay(tampered(folder / "slave", "/packets", "tick", 5000));
+  ASSERT_FALSE(lacking);
+  EXPECT_NE(lacking.error().message.find("/packets lacks"), std::string::npos) << lacking.error().message;
 }
 
 }  // namespace site_loop_test
-}  // namespace tactus::cli
+}  // namespace tactus::runtime

@@ -1,8 +1,8 @@
-#include <tactus/cli/site_misfit.hpp>
 #include <tactus/control/agreed_parameters.hpp>
 #include <tactus/link/datagram.hpp>
+#include <tactus/runtime/site_misfit.hpp>
 
-namespace tactus::cli {
+namespace tactus::runtime {
 
 std::string describe(const SiteMisfit& misfit, control::SiteRole role) {
   const std::string other = role == control::SiteRole::master ? "the slave" : "the master";
@@ -18,4 +18,4 @@ std::string describe(const SiteMisfit& misfit, control::SiteRole role) {
          other + ": start both with the same experiment and the same --set";
 }
 
-}  // namespace tactus::cli
+}  // namespace tactus::runtime

@@ -8,7 +8,7 @@
 
 #include <memory>
 
-namespace tactus::cli {
+namespace tactus::runtime {
 
 /// The way a person taps on and on: there, press, back, rest, with the mean speed and depth of an experiment's taps.
 class RepeatedTaps {
@@ -28,7 +28,7 @@ class PatientPerson {
  public:
   PatientPerson(const RepeatedTaps& path, double tick_s) : path_(path), tick_s_(tick_s) {}
   /// Once a tick. Real-time safe.
-  runtime::Intent step() noexcept {
+  Intent step() noexcept {
     const double now_s = path_s_;
     if (follows_) path_s_ += tick_s_;
     return {.now_m = path_.position_m(now_s), .at_next_tick_m = path_.position_m(path_s_)};
@@ -52,4 +52,4 @@ struct SiteDevice {
 /// The device of a site as an experiment describes it, at rest where the taps begin. Errors: those of clock and plant.
 Result<SiteDevice> simulated_device(const experiments::TappingParams& params, control::SiteRole role);
 
-}  // namespace tactus::cli
+}  // namespace tactus::runtime

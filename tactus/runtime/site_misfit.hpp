@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace tactus::cli {
+namespace tactus::runtime {
 
 /// Why two sites that hear each other cannot work together.
 struct SiteMisfit {
@@ -17,4 +17,4 @@ struct SiteMisfit {
 /// What a person has to know of it, in one sentence with the remedy, at the site of this role.
 std::string describe(const SiteMisfit& misfit, control::SiteRole role);
 
-}  // namespace tactus::cli
+}  // namespace tactus::runtime

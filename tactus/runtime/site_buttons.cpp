@@ -1,11 +1,11 @@
-#include <tactus/cli/site_buttons.hpp>
 #include <tactus/report/text.hpp>
+#include <tactus/runtime/site_buttons.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <string>
 
-namespace tactus::cli {
+namespace tactus::runtime {
 
 Result<SiteWord> parse_site_word(std::string_view line, control::SiteRole role) {
   constexpr std::string_view spaces = " \t\r";
@@ -68,4 +68,4 @@ control::SiteRequests SiteButtons::step(control::SiteState state) noexcept {
   return pressed;
 }
 
-}  // namespace tactus::cli
+}  // namespace tactus::runtime

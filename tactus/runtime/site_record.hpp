@@ -1,17 +1,14 @@
 #pragma once
 
-#include <tactus/control/supervision.hpp>
-#include <tactus/experiments/experiment.hpp>
-#include <tactus/runtime/servo_record.hpp>
-#include <tactus/telemetry/recorder.hpp>
+#include <tactus/control/supervised_site.hpp>
+#include <tactus/core/signals.hpp>
+#include <tactus/station/step.hpp>
 
 #include <cstdint>
-#include <filesystem>
-#include <string>
-#include <string_view>
 #include <tuple>
 
-namespace tactus::cli {
+/// What a site under supervision leaves of each tick: with the configuration, enough to step it again.
+namespace tactus::runtime {
 
 /// One tick of a site: what supervision shows, what the link knows, and what the site read, heard and gave. Positions
 /// and forces are positive toward the environment unless said otherwise.
@@ -28,6 +25,8 @@ struct SiteLogRecord : control::SiteRecord {
   double handle_force_N = 0.0;
   double induced_position_m = 0.0;
   double intended_position_m = 0.0;
+  std::int64_t pressed = 0;
+  std::int64_t arrivals = 0;
   double heard_position_m = 0.0;
   double heard_velocity_m_per_s = 0.0;
   double heard_force_N = 0.0;
@@ -40,10 +39,6 @@ struct SiteLogRecord : control::SiteRecord {
   double told_wave = 0.0;
   double told_energy_J = 0.0;
 
-  /// The other site's message that was applied last.
-  void hear(const control::Message& message) noexcept;
-  /// What was sent at this tick.
-  void tell(const control::Packet& packet) noexcept;
   [[nodiscard]] control::Message told() const noexcept;
 
   static constexpr auto signals() {
@@ -72,6 +67,11 @@ struct SiteLogRecord : control::SiteRecord {
                      "toward the environment", "Estimated effect of the displayed force."),
             observed("intended_position_m", &R::intended_position_m, units::metre, "master", "hand",
                      "toward the environment", "Measured less induced."),
+            observed("pressed", &R::pressed, units::none, "", "", "",
+                     "By the person, added up: 1 align, 2 arm, 4 clear, 8 dead-man switch, 16 clutch, 32 emergency "
+                     "stop, 64 leave."),
+            observed("arrivals", &R::arrivals, units::none, "", "", "",
+                     "Packets that came over the link at this tick, each a record of the topic /packets."),
             observed("heard_position_m", &R::heard_position_m, units::metre, "", "slave", "",
                      "Of the message that was applied last."),
             observed("heard_velocity_m_per_s", &R::heard_velocity_m_per_s, units::metre_per_second, "", "slave", "",
@@ -92,37 +92,54 @@ struct SiteLogRecord : control::SiteRecord {
   }
 };
 
-/// Where a running site leaves every tick. Null streams take nothing.
-struct SiteStreams {
-  telemetry::RecordStream<SiteLogRecord>* site = nullptr;
-  telemetry::RecordStream<runtime::ServoRecord>* servo = nullptr;
-  std::int64_t origin_ns = 0;  ///< of the times in the log, on CLOCK_MONOTONIC
+/// A packet that came over the link, as the supervision of the site was handed it.
+struct PacketRecord : control::Message {
+  std::int64_t tick = 0;
+  std::int64_t session = 0;
+  std::int64_t sequence = 0;
+  double age_s = 0.0;
+  std::int64_t state = 0;
+  std::int64_t armings = 0;
+  std::int64_t digest_high = 0;
+  std::int64_t digest_low = 0;
+  std::int64_t cell = 0;
+  std::int64_t value_high = 0;
+  std::int64_t value_low = 0;
+
+  [[nodiscard]] control::Packet packet() const noexcept;
+
+  static constexpr auto signals() {
+    using R = PacketRecord;
+    return std::tuple_cat(
+        std::tuple{observed("tick", &R::tick, units::none, "", "", "", "At which it came."),
+                   observed("session", &R::session, units::none, "", "", "", "Of the other site."),
+                   observed("sequence", &R::sequence, units::none, "", "", "", "Its number in that session."),
+                   observed("age_s", &R::age_s, units::second, "", "", "", "On arrival, as well as is known."),
+                   observed("state", &R::state, units::none, "", "", "", control::state_legend.text),
+                   observed("armings", &R::armings, units::none, "", "", "", "The arming that is followed there."),
+                   observed("digest_high", &R::digest_high, units::none, "", "", "",
+                            "Upper 32 bits of the digest of what both sites must have in common."),
+                   observed("digest_low", &R::digest_low, units::none, "", "", "", "Its lower 32 bits."),
+                   observed("cell", &R::cell, units::none, "", "", "", "Number of the cell of it that is told."),
+                   observed("value_high", &R::value_high, units::none, "", "", "", "Upper 32 bits of that cell."),
+                   observed("value_low", &R::value_low, units::none, "", "", "", "Its lower 32 bits.")},
+        control::Message::signals());
+  }
 };
 
-/// The log of one site: the topics `/site` and `/servo`, written beside the servo thread.
-class SiteLog {
- public:
-  /// Opens `folder/log.mcap`; the folder is made. The log says what ran: experiment, configuration with its seeds,
-  /// version, machine and which site. `most_bytes` and errors as in `LogWriter::create`.
-  static Result<SiteLog> create(const std::filesystem::path& folder, const experiments::Request& request,
-                                std::string_view configuration, control::SiteRole role, std::uint64_t most_bytes = 0);
+/// The record of a packet that came at this tick. Real-time safe, as is all below.
+PacketRecord recorded(const station::Tick& tick, const control::Packet& packet) noexcept;
 
-  [[nodiscard]] const SiteStreams& streams() const { return streams_; }
-  /// Writes what is waiting, ends the log and adds `metadata.yaml` for ROS 2 bag tools. After the last push. Errors:
-  /// `unwritable` where anything was lost on the disk.
-  Check close();
-  /// Records that found their ring full, of both topics.
-  [[nodiscard]] std::uint64_t dropped() const;
-  /// Records that went with the oldest parts of a log with a limit. After `close`.
-  [[nodiscard]] std::uint64_t removed() const { return recorder_.log().removed(); }
+/// What was pressed, as a number of `SiteLogRecord`, and back.
+std::int64_t number_of(const control::SiteRequests& pressed) noexcept;
+control::SiteRequests requests_of(std::int64_t pressed) noexcept;
 
- private:
-  SiteLog(std::filesystem::path file, telemetry::Recorder recorder)
-      : file_(std::move(file)), recorder_(std::move(recorder)) {}
+/// The record of a step of a site; what only the link knows is left at 0.
+SiteLogRecord recorded(const station::Tick& tick, const control::SiteRequests& pressed,
+                       const control::SupervisedMaster& site,
+                       const station::Step<control::SupervisedMaster>& done) noexcept;
+SiteLogRecord recorded(const station::Tick& tick, const control::SiteRequests& pressed,
+                       const control::SupervisedSlave& site,
+                       const station::Step<control::SupervisedSlave>& done) noexcept;
 
-  std::filesystem::path file_;
-  telemetry::Recorder recorder_;
-  SiteStreams streams_;
-};
-
-}  // namespace tactus::cli
+}  // namespace tactus::runtime

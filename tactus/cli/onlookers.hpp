@@ -1,0 +1,66 @@
+#pragma once
+
+#include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
+#include <tactus/live/run_view.hpp>
+#include <tactus/live/server.hpp>
+#include <tactus/ros2/observer.hpp>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace CLI {  // NOLINT: the name is not ours
+class App;
+}
+
+namespace tactus::cli {
+
+/// Who looks on at a run at the real clock, beside its log.
+struct OnlookerOptions {
+  std::optional<std::string> live;  ///< `[[HOST:]PORT]` of the live page; empty for any free port of the loopback
+  bool ros2 = false;
+  std::string name_space = "tactus";
+};
+
+/// Adds `--live`, `--ros2` and `--namespace` to a verb.
+void add_onlooker_options(CLI::App& verb, OnlookerOptions& options);
+
+/// The live page and the ROS 2 nodes of a run. They read its record streams on threads of their own, as its log does,
+/// so the servo thread waits for none of them; they change nothing.
+class Onlookers {
+ public:
+  /// Opens what is asked for before anything runs; `sites` says whose topics go to ROS 2. Errors: a place that is none;
+  /// those of `ros2::Observer::create`.
+  static Result<Onlookers> open(const OnlookerOptions& options, const experiments::Request& request,
+                                const std::optional<control::SiteRole>& site = {});
+
+  /// Shows what goes into these streams from now on: `RealTimeStreams` or `SiteStreams`. Before `begin`.
+  template <class Streams>
+  void watch(const Streams& streams) {
+    if (view_) {
+      streams.for_each([this](const std::string& topic, const char* type_name, const auto& stream) {
+        view_->add(topic, type_name, stream);
+      });
+    }
+    if (ros2_) ros2_->watch(streams);
+  }
+  /// Begins to serve, and says at once where. Errors: those of `live::Server::start` and `ros2::Observer::start`.
+  Check begin(const std::function<void(const std::string&)>& say);
+  /// Ends it, and tells in a line for each who saw how much; empty where nobody could.
+  std::string end();
+
+  [[nodiscard]] bool any() const { return view_ || ros2_; }
+
+ private:
+  Onlookers() = default;
+
+  live::ServerOptions where_;
+  std::unique_ptr<live::RunView> view_;
+  std::unique_ptr<ros2::Observer> ros2_;
+  std::optional<live::Server> server_;  ///< before the view it goes
+};
+
+}  // namespace tactus::cli

@@ -1,0 +1,49 @@
+#include <tactus/report/files.hpp>
+#include <tactus/runtime/site_log.hpp>
+
+#include <numeric>
+#include <utility>
+
+namespace tactus::runtime {
+
+SiteStreams SiteStreams::of_one(control::SiteRole role) {
+  SiteStreams streams{.site = {},
+                      .packets = std::make_shared<Packets>(),
+                      .servo = std::make_shared<Servo>(),
+                      .origin_ns = monotonic_ns()};
+  streams.site[static_cast<std::size_t>(role)] = std::make_shared<Site>();
+  return streams;
+}
+
+SiteStreams SiteStreams::of_both() {
+  return {.site = {std::make_shared<Site>(), std::make_shared<Site>()},
+          .packets = nullptr,
+          .servo = std::make_shared<Servo>(),
+          .origin_ns = monotonic_ns()};
+}
+
+Result<SiteLog> SiteLog::create(const std::filesystem::path& folder, const SiteStreams& streams,
+                                const LogMetadata& about, std::uint64_t most_bytes) {
+  if (auto error = report::prepare_directory(folder)) return *std::move(error);
+  std::filesystem::path file = folder / "log.mcap";
+  auto recorder = telemetry::Recorder::create(file, most_bytes);
+  if (!recorder) return recorder.error();
+  for (const auto& [name, content] : about) recorder->add_metadata(name, content);
+  streams.for_each([&recorder](const std::string& topic, const char* type_name, const auto& stream) {
+    recorder->add(topic, type_name, stream);
+  });
+  recorder->start();
+  return SiteLog(std::move(file), *std::move(recorder));
+}
+
+Check SiteLog::close() {
+  if (auto error = recorder_.stop()) return error;
+  return telemetry::write_bag_metadata(file_, recorder_.log());
+}
+
+std::uint64_t SiteLog::dropped() const {
+  const auto counts = recorder_.dropped();
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
+}  // namespace tactus::runtime

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <tactus/control/site_supervisor.hpp>
+#include <tactus/core/result.hpp>
+#include <tactus/runtime/servo_record.hpp>
+#include <tactus/runtime/site_record.hpp>
+#include <tactus/telemetry/recorder.hpp>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace tactus::runtime {
+
+/// Where sites that run leave every tick: a stream for each topic, for a log and for whoever else looks on. Null
+/// streams take nothing.
+struct SiteStreams {
+  using Site = telemetry::RecordStream<SiteLogRecord>;
+  using Packets = telemetry::RecordStream<PacketRecord>;
+  using Servo = telemetry::RecordStream<ServoRecord>;
+  std::array<std::shared_ptr<Site>, 2> site;  ///< by role
+  std::shared_ptr<Packets> packets;           ///< of a site that is alone: what came over the link
+  std::shared_ptr<Servo> servo;
+  std::int64_t origin_ns = 0;  ///< of the times, on CLOCK_MONOTONIC
+
+  /// Of one site; of both. Times count from now.
+  static SiteStreams of_one(control::SiteRole role);
+  static SiteStreams of_both();
+
+  [[nodiscard]] Site* of(control::SiteRole role) const noexcept { return site[static_cast<std::size_t>(role)].get(); }
+  /// A time of the servo's clock as the records carry it. Real-time safe.
+  [[nodiscard]] std::uint64_t time_ns(std::int64_t monotonic_ns) const noexcept {
+    return static_cast<std::uint64_t>(monotonic_ns - origin_ns);
+  }
+  /// Calls `visit(topic, type_name, stream)` for each stream there is.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    const bool both = site[0] && site[1];
+    for (const auto& [role, name] : enumerators(control::SiteRole{})) {
+      if (of(role) == nullptr) continue;
+      visit(both ? std::string("/") + name + "/site" : std::string("/site"), "tactus_msgs/msg/SiteRecord", *of(role));
+    }
+    if (packets) visit(std::string("/packets"), "tactus_msgs/msg/PacketRecord", *packets);
+    if (servo) visit(std::string("/servo"), "tactus_msgs/msg/ServoRecord", *servo);
+  }
+};
+
+/// What a log says about itself: a name, and values by their keys.
+using LogMetadata = std::map<std::string, std::map<std::string, std::string>>;
+
+/// The log of sites that run, written beside the servo thread.
+class SiteLog {
+ public:
+  /// Opens `folder/log.mcap`, which takes all that goes into the streams from now on; the folder is made. `about` says
+  /// what ran. `most_bytes` and errors as in `LogWriter::create`.
+  static Result<SiteLog> create(const std::filesystem::path& folder, const SiteStreams& streams,
+                                const LogMetadata& about, std::uint64_t most_bytes = 0);
+
+  /// Writes what is waiting, ends the log and adds `metadata.yaml` for ROS 2 bag tools. After the last push. Errors:
+  /// `unwritable` where anything was lost on the disk.
+  Check close();
+  /// Records that came faster than they were written, of all topics.
+  [[nodiscard]] std::uint64_t dropped() const;
+  /// Records that went with the oldest parts of a log with a limit. After `close`.
+  [[nodiscard]] std::uint64_t removed() const { return recorder_.log().removed(); }
+
+ private:
+  SiteLog(std::filesystem::path file, telemetry::Recorder recorder)
+      : file_(std::move(file)), recorder_(std::move(recorder)) {}
+
+  std::filesystem::path file_;
+  telemetry::Recorder recorder_;
+};
+
+}  // namespace tactus::runtime
