@@ -1,27 +1,34 @@
 #include <tactus/control/architecture.hpp>
-#include <tactus/control/architectures/energy_tank.hpp>
-#include <tactus/control/architectures/four_channel.hpp>
-#include <tactus/control/architectures/position_force.hpp>
-#include <tactus/control/architectures/position_position.hpp>
-#include <tactus/control/architectures/projection.hpp>
-#include <tactus/control/architectures/shared_compliant.hpp>
-#include <tactus/control/architectures/time_domain_passivity.hpp>
-#include <tactus/control/architectures/wave_variables.hpp>
 #include <tactus/core/spelling.hpp>
 
 #include <algorithm>
 #include <vector>
 
+/// The architectures of this library, in the order in which they are listed: a line here, and in the folder
+/// `architectures` the function that it names, which makes the `Architecture`.
+#define TACTUS_ARCHITECTURES(NAME)             \
+  NAME(position_force_architecture)            \
+  NAME(position_position_architecture)         \
+  NAME(projection_architecture)                \
+  NAME(shared_compliant_architecture)          \
+  NAME(four_channel_architecture)              \
+  NAME(four_channel_cancellation_architecture) \
+  NAME(wave_variables_architecture)            \
+  NAME(time_domain_passivity_architecture)     \
+  NAME(energy_tank_architecture)
+
 namespace tactus::control {
+
+#define TACTUS_DECLARE(name) Architecture name();
+TACTUS_ARCHITECTURES(TACTUS_DECLARE)
+#undef TACTUS_DECLARE
 
 namespace {
 
 std::vector<Architecture>& registry() {
-  static std::vector<Architecture> all{
-      position_force_architecture(),   position_position_architecture(),     projection_architecture(),
-      shared_compliant_architecture(), four_channel_architecture(),          four_channel_cancellation_architecture(),
-      wave_variables_architecture(),   time_domain_passivity_architecture(), energy_tank_architecture(),
-  };
+#define TACTUS_MADE(name) name(),
+  static std::vector<Architecture> all{TACTUS_ARCHITECTURES(TACTUS_MADE)};
+#undef TACTUS_MADE
   return all;
 }
 

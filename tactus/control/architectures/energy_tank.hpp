@@ -157,8 +157,4 @@ class TankSlave {
   EnergyTank tank_;
 };
 
-struct Architecture;
-/// `energy-tank`, as a file names it.
-Architecture energy_tank_architecture();
-
 }  // namespace tactus::control

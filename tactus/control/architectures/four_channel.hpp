@@ -208,9 +208,4 @@ class CancellingSlave {
   double sent_force_N_ = 0.0;  ///< at the last tick, so displayed from this one on
 };
 
-struct Architecture;
-/// `four-channel` and `four-channel-cancellation`, as a file names them.
-Architecture four_channel_architecture();
-Architecture four_channel_cancellation_architecture();
-
 }  // namespace tactus::control

@@ -209,8 +209,4 @@ class PositionForceSlave {
   ServoPd servo_;
 };
 
-struct Architecture;
-/// `position-force`, as a file names it.
-Architecture position_force_architecture();
-
 }  // namespace tactus::control

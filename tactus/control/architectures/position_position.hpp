@@ -99,8 +99,4 @@ class PositionPositionSlave {
   PositionForceSlave following_;
 };
 
-struct Architecture;
-/// `position-position`, as a file names it.
-Architecture position_position_architecture();
-
 }  // namespace tactus::control

@@ -97,8 +97,4 @@ class ProjectionMaster {
   HandForceObserver hand_;
 };
 
-struct Architecture;
-/// `projection`, as a file names it.
-Architecture projection_architecture();
-
 }  // namespace tactus::control

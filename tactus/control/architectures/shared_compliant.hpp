@@ -75,8 +75,4 @@ class SharedCompliantSlave {
   signal::LowPass yielding_;
 };
 
-struct Architecture;
-/// `shared-compliant`, as a file names it.
-Architecture shared_compliant_architecture();
-
 }  // namespace tactus::control

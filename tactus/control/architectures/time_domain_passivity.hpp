@@ -169,8 +169,4 @@ class PassivitySlave {
   double applied_N_ = 0.0;
 };
 
-struct Architecture;
-/// `time-domain-passivity`, as a file names it.
-Architecture time_domain_passivity_architecture();
-
 }  // namespace tactus::control

@@ -164,8 +164,4 @@ class WaveSlave {
   double sent_J_ = 0.0;
 };
 
-struct Architecture;
-/// `wave-variables`, as a file names it.
-Architecture wave_variables_architecture();
-
 }  // namespace tactus::control
