@@ -54,7 +54,7 @@ class Fall final : public SweepOf<FallParams, double> {
     report::Table table = table_of_runs(runs.front().settings, {{"duration", "s"}}, "Falls");
     for (const Run& run : runs) add_row(table, run.settings, {report::number(run.found, 3)});
     std::string json = runs_json(request, runs, [](const Run& run) {
-      return metrics_json({{"duration_s", run.found}});
+      return metrics_json({{"height_m", run.params.task.height_m}, {"duration_s", run.found}});
     });
     return {.text = table.to_text(), .json = std::move(json), .page = report::Page(request.name), .figures = {}};
   }
@@ -83,10 +83,10 @@ TEST(SweepOf, RunsEachCombinationOfAKindThatAProgramRegistered) {
   const auto outcome = outcome_of(file, {"task.height_m=5,20", "task.gravity_m_per_s2=10,2.5"}, &progress);
   ASSERT_TRUE(outcome) << describe(outcome.error());
   const Json expected = Json::parse(R"({"experiment": "fall", "runs": [
-    {"set": {"task.height_m": 5, "task.gravity_m_per_s2": 10}, "metrics": {"duration_s": 1.0}},
-    {"set": {"task.height_m": 5, "task.gravity_m_per_s2": 2.5}, "metrics": {"duration_s": 2.0}},
-    {"set": {"task.height_m": 20, "task.gravity_m_per_s2": 10}, "metrics": {"duration_s": 2.0}},
-    {"set": {"task.height_m": 20, "task.gravity_m_per_s2": 2.5}, "metrics": {"duration_s": 4.0}}]})");
+    {"set": {"task.height_m": 5, "task.gravity_m_per_s2": 10}, "metrics": {"height_m": 5.0, "duration_s": 1.0}},
+    {"set": {"task.height_m": 5, "task.gravity_m_per_s2": 2.5}, "metrics": {"height_m": 5.0, "duration_s": 2.0}},
+    {"set": {"task.height_m": 20, "task.gravity_m_per_s2": 10}, "metrics": {"height_m": 20.0, "duration_s": 2.0}},
+    {"set": {"task.height_m": 20, "task.gravity_m_per_s2": 2.5}, "metrics": {"height_m": 20.0, "duration_s": 4.0}}]})");
   EXPECT_EQ(outcome->json, expected.dump(2) + "\n");
   EXPECT_EQ(progress, (std::vector{0.25, 0.5, 0.75, 1.0}));
 }

@@ -15,12 +15,13 @@ set(expected
   "signal/foreign.hpp: the kernel needs the standard library and Eigen only, so it may not include <nlohmann/json.hpp>"
   "recording/leak.hpp: it is installed, so it may not include <matio.h>"
   "cli/leak.hpp: it is installed, so it may not include <CLI/CLI.hpp>"
+  "recording/tape/upward.hpp: recording may not include <tactus/cli/leak.hpp>: cli does not stand before it"
   "recording/quoted.hpp: write #include \"quoted.hpp\" as <tactus/module/thing.hpp>"
   "recording/unknown.hpp: recording may not include <tactus/stray/thing.hpp>"
   "recording/prying.hpp: <tactus/recording/internal/tools.hpp> is for the sources of recording alone"
   "cli/prying.cpp: <tactus/recording/internal/tools.hpp> is for the sources of recording alone"
   "stray/thing.hpp: its folder is not in TACTUS_LAYERS"
-  "10 of the includes in 13 files break the layers")
+  "11 of the includes in 14 files break the layers")
 foreach(text IN LISTS expected)
   string(FIND "${output}" "${text}" position)
   if(position EQUAL -1)
