@@ -15,8 +15,9 @@ SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
   if (input.probe != SiteCause::none) return input.probe;
   if (input.unanswered) return SiteCause::unanswered;
   const bool stands = input.peer != SiteState::armed && input.peer != SiteState::active;
-  // While armed, what stands under another number has not heard of this arming yet.
-  const bool counts = state_ == SiteState::active || input.peer_armings == armings_;
+  // What stands under another number has not heard yet of the arming of a master. A slave has its number from the
+  // master, whose other one is newer.
+  const bool counts = state_ == SiteState::active || role_ == SiteRole::slave || input.peer_armings == armings_;
   return stands && counts ? SiteCause::peer : SiteCause::none;
 }
 

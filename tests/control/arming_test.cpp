@@ -207,6 +207,23 @@ TEST(Arming, WithoutTheOtherSiteThereIsNoArming) {
   EXPECT_EQ(sites.master(), SiteState::align);
 }
 
+// A master that was armed a second time holds under a number that its slave never heard.
+TEST(Arming, ASlaveDoesNotStayArmedWhileAMasterThatWasArmedAgainHolds) {
+  TwoSites sites;
+  sites.run(20);
+  sites.to_master = false;
+  sites.run(28, true);
+  ASSERT_EQ(sites.slave(), SiteState::armed);
+  sites.to_slave = false;
+  sites.run(69, true);
+  ASSERT_EQ(sites.master(), SiteState::hold);
+  ASSERT_EQ(sites.slave(), SiteState::armed);
+  sites.to_slave = sites.to_master = true;
+  sites.run(20);
+  EXPECT_EQ(sites.slave(), SiteState::hold);
+  EXPECT_EQ(sites.slave_cause(), SiteCause::peer);
+}
+
 // Each time that the slave is armed it is under another arming: another number, or the number of another session. And
 // whatever happened, in peace and without a person neither site goes on following one that does not.
 TEST(Arming, NeverDoesTheSlaveFollowAnArmingThatIsOver) {
