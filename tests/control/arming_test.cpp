@@ -215,7 +215,7 @@ TEST(Arming, ASlaveDoesNotStayArmedWhileAMasterThatWasArmedAgainHolds) {
   sites.run(28, true);
   ASSERT_EQ(sites.slave(), SiteState::armed);
   sites.to_slave = false;
-  sites.run(69, true);
+  sites.run(80, true);
   ASSERT_EQ(sites.master(), SiteState::hold);
   ASSERT_EQ(sites.slave(), SiteState::armed);
   sites.to_slave = sites.to_master = true;
