@@ -43,7 +43,7 @@ class LocalSites : public ::testing::Test {
     log.emplace(*std::move(opened));
     loop->leave_in(streams);
   }
-  /// The log's streams hold 4096 ticks, and the disk wants time too.
+  /// The streams of the log hold 4096 ticks, and who writes it wants time, the more so under a sanitizer.
   void run(int ticks) {
     const FlushedDenormals as_a_servo_thread_does;
     for (int i = 0; i < ticks && more; ++i) {
@@ -51,7 +51,7 @@ class LocalSites : public ::testing::Test {
       more = (*loop)({.number = tick++, .deadline_ns = now_ns, .began_ns = now_ns});
       SiteSecond second;
       while (exchange.seconds.try_pop(second)) seconds[static_cast<std::size_t>(second.role)] = second;
-      if (i % 500 == 499) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      if (i % 500 == 499) std::this_thread::sleep_for(std::chrono::milliseconds(25));
     }
   }
   void ask(SiteWord word) {

@@ -110,7 +110,7 @@ class Sites : public ::testing::Test {
       now_ns += tick_ns;
       if (step_master) master.step(now_ns);
       if (step_slave) slave.step(now_ns);
-      if (i % 500 == 499) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      if (i % 500 == 499) std::this_thread::sleep_for(std::chrono::milliseconds(25));
     }
   }
   /// One second in which this is asked first.
