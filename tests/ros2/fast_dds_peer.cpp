@@ -126,6 +126,8 @@ struct FastDdsPeer::State final : dds::DomainParticipantListener {
 
   template <class Info>
   void note(const Info& info, bool writes) {
+    // Fast DDS announces its own readers and writers too.
+    if (participant != nullptr && info.guid().guidPrefix == participant->guid().guidPrefix) return;
     const auto& user_data = info.m_qos.m_userData;
     const std::scoped_lock lock(mutex);
     announced[info.topicName().to_string()] = {
