@@ -24,7 +24,7 @@ class FaultyClock {
   };
   /// Once a tick. A clock that `sleeps` already counts nothing, so a second drift takes its share of what the first
   /// leaves. Real-time safe.
-  Beat step(const FaultMoment& moment, bool sleeps = false) noexcept {
+  Beat step(const FaultMoment& moment, bool sleeps) noexcept {
     if (!here_ || !moment.during) return Beat::steps;
     switch (plan_.kind) {
       case FaultKind::restart:

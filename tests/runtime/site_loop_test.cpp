@@ -1,134 +1,20 @@
-#include <tactus/configuration/toml_writer.hpp>
-#include <tactus/runtime/replay.hpp>
-#include <tactus/runtime/rights.hpp>
-#include <tactus/runtime/site_loop.hpp>
-#include <tactus/telemetry/log_reader.hpp>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
-#include <map>
-#include <optional>
 #include <set>
 #include <string>
-#include <thread>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <tests/allocation_counter.hpp>
-#include <tests/link/pair.hpp>
-#include <tests/scratch_path.hpp>
+#include <tests/runtime/site_loop_test.hpp>
 
 namespace tactus::runtime {
 namespace site_loop_test {
 
 using control::GateFault;
 using control::SiteCause;
-using control::SiteRole;
-using control::SiteState;
-
-constexpr std::int64_t tick_ns = 200'000;
-/// Armed at once, the slave stands pressed against the wall at this tick.
-constexpr int pressing_tick = 6500;
-
-/// Both sites in one program, over the loopback and in plain text, at a clock of the test's own: as fast as they can.
-class Sites : public ::testing::Test {
- protected:
-  struct Site {
-    SiteExchange exchange;
-    std::optional<SiteLog> log;
-    std::optional<SiteLoop> loop;
-    std::int64_t tick = 0;
-    /// Where it stood at the end of the second that ended last.
-    SiteSecond second;
-    bool more = true;  ///< what its step said last
-
-    void step(std::int64_t now_ns) noexcept {
-      more = (*loop)({.number = tick++, .deadline_ns = now_ns, .began_ns = now_ns});
-      while (exchange.seconds.try_pop(second)) {
-      }
-    }
-  };
-
-  Sites() { params.control.force_gain = 1.0; }
-  ~Sites() override { std::filesystem::remove_all(folder); }
-
-  void open(bool arm_at_once = false) {
-    const link::testing::Ports ports;
-    const auto make = [&](Site& site, SiteRole role, std::uint16_t own, std::uint16_t other) {
-      auto made = SiteLoop::make(params,
-                                 {.link = {.site = role,
-                                           .peer = link::testing::loopback(other),
-                                           .listen = link::testing::loopback(own),
-                                           .key = std::nullopt},
-                                  .arm_at_once = arm_at_once && role == SiteRole::master},
-                                 site.exchange, simulated_device(params, role).value());
-      ASSERT_TRUE(made) << describe(made.error());
-      site.loop.emplace(*std::move(made));
-      SiteStreams streams = SiteStreams::of_one(role);
-      streams.origin_ns = 0;  // the test's clock
-      auto log =
-          SiteLog::create(folder / name_of(role), streams,
-                          {{"tactus", {{"site", name_of(role)}, {"configuration", configuration::to_toml(params)}}},
-                           {std::string("device_of_") + name_of(role), in_words(station::DeviceLimits{})}});
-      ASSERT_TRUE(log) << describe(log.error());
-      site.log.emplace(*std::move(log));
-      site.loop->leave_in(streams);
-    };
-    make(master, SiteRole::master, ports.master, ports.slave);
-    make(slave, SiteRole::slave, ports.slave, ports.master);
-  }
-  /// Ends both and reads a topic of a site's log.
-  telemetry::LogTable close(Site& site, SiteRole role, const std::string& topic = "/site") {
-    site.loop->finish();
-    while (site.exchange.seconds.try_pop(site.second)) {
-    }
-    EXPECT_FALSE(site.log->close());
-    EXPECT_EQ(site.log->dropped(), 0U);
-    auto content = telemetry::read_log(folder / name_of(role), topic).value();
-    EXPECT_TRUE(content.summary.complete);
-    metadata = content.summary.metadata["tactus"];
-    return content.tables.at(0);
-  }
-  static std::vector<double> column(const telemetry::LogTable& table, const std::string& name) {
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      if (table.columns[i].name == name) return table.values[i];
-    }
-    ADD_FAILURE() << "no column " << name;
-    return {};
-  }
-
-  /// The log's streams hold 4096 ticks, and the disk wants time too.
-  void run(int ticks, bool step_master = true, bool step_slave = true) {
-    const FlushedDenormals as_a_servo_thread_does;
-    for (int i = 0; i < ticks; ++i) {
-      now_ns += tick_ns;
-      if (step_master) master.step(now_ns);
-      if (step_slave) slave.step(now_ns);
-      if (i % 500 == 499) std::this_thread::sleep_for(std::chrono::milliseconds(25));
-    }
-  }
-  /// One second in which this is asked first.
-  void ask(Site& site, SiteWord word) {
-    site.exchange.words.try_push(word);
-    run(5000);
-  }
-  void expect(SiteState at_master, SiteState at_slave) const {
-    EXPECT_STREQ(name_of(master.second.state), name_of(at_master));
-    EXPECT_STREQ(name_of(slave.second.state), name_of(at_slave));
-  }
-
-  const std::filesystem::path folder = scratch_path();
-  experiments::TappingParams params;
-  Site master, slave;
-  std::int64_t now_ns = 1'000'000'000;
-  std::map<std::string, std::string> metadata;
-};
 
 TEST_F(Sites, GoThroughTheirStatesAsAPersonAsks) {
   open();
@@ -331,83 +217,6 @@ TEST_F(Sites, ATickWithItsLogDoesNotAllocate) {
   const std::uint64_t before = laws::own_allocation_count();
   run(3000);
   EXPECT_EQ(laws::own_allocation_count(), before);
-}
-
-/// The same log with one number of a topic changed by its last digit, a whole one by 1.
-std::filesystem::path tampered(const std::filesystem::path& folder, const std::string& topic, const std::string& signal,
-                               std::size_t row) {
-  const auto content = telemetry::read_log(folder).value();
-  const auto file = folder.parent_path() / "tampered.mcap";
-  auto writer = telemetry::LogWriter::create(file).value();
-  for (const auto& [name, metadata] : content.summary.metadata) writer.add_metadata(name, metadata);
-  const auto write = [&](telemetry::LogTable table, auto record) {
-    using Record = decltype(record);
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-      if (table.topic != topic || table.columns[i].name != signal) continue;
-      double& value = table.values[i][row];
-      const bool whole = table.columns[i].type == telemetry::SignalType::int64;
-      value = whole ? value + 1.0 : std::nextafter(value, std::numeric_limits<double>::infinity());
-    }
-    const auto channel =
-        writer.add_channel({.topic = table.topic, .type_name = table.type_name, .columns = table.columns});
-    for (std::size_t k = 0; k < table.times_ns.size(); ++k) {
-      std::size_t column = 0;
-      for_each_signal<Record>([&](const auto& one) {
-        auto& member = record.*one.member;
-        member = static_cast<std::remove_reference_t<decltype(member)>>(table.values[column++][k]);
-      });
-      writer.write(channel, static_cast<std::uint32_t>(k), table.times_ns[k], telemetry::to_cdr(record));
-    }
-  };
-  for (const telemetry::LogTable& table : content.tables) {
-    if (table.topic == "/site") write(table, SiteLogRecord());
-    if (table.topic == "/packets") write(table, PacketRecord());
-  }
-  EXPECT_FALSE(writer.close());
-  return file;
-}
-
-// Through all that changes a state: buttons, silence, an arming anew and an end.
-TEST_F(Sites, TheLogOfEitherReplaysBitForBit) {
-  open(true);
-  run(5005);
-  expect(SiteState::active, SiteState::active);
-  for (const SiteWord word : {SiteWord::release, SiteWord::press, SiteWord::clutch, SiteWord::unclutch}) {
-    master.exchange.words.try_push(word);
-    run(700);
-  }
-  run(600, true, false);
-  run(1000);
-  for (const SiteWord word : {SiteWord::arm, SiteWord::stop, SiteWord::clear}) {
-    master.exchange.words.try_push(word);
-    run(1500);
-  }
-  master.exchange.end.ask();
-  run(200);
-  close(master, SiteRole::master);
-  close(slave, SiteRole::slave);
-  for (const Site* site : {&master, &slave}) {
-    const std::string name = site == &master ? "master" : "slave";
-    const auto replayed = replay(folder / name);
-    ASSERT_TRUE(replayed) << describe(replayed.error());
-    EXPECT_EQ(replayed->of, "the " + name);
-    EXPECT_EQ(replayed->ticks, site->loop->totals().ticks);
-    EXPECT_FALSE(replayed->difference) << name << ": " << replayed->difference->signal << " at "
-                                       << replayed->difference->tick;
-  }
-  // Each input counts: what was read, what was pressed, what came.
-  const auto differs = [this](const std::string& topic, const std::string& signal, std::size_t row) {
-    const auto replayed = replay(tampered(folder / "slave", topic, signal, row));
-    ASSERT_TRUE(replayed) << describe(replayed.error());
-    ASSERT_TRUE(replayed->difference) << topic << " " << signal;
-    EXPECT_GE(replayed->difference->tick, static_cast<std::int64_t>(row) - 2);
-  };
-  differs("/site", "motor_force_N", 5000);
-  differs("/site", "position_m", 5000);
-  differs("/packets", "position_m", 5000);
-  const auto lacking = replay(tampered(folder / "slave", "/packets", "tick", 5000));
-  ASSERT_FALSE(lacking);
-  EXPECT_NE(lacking.error().message.find("/packets lacks"), std::string::npos) << lacking.error().message;
 }
 
 }  // namespace site_loop_test
