@@ -24,8 +24,9 @@ FaultsParams::FaultsParams() {
     gate->reversal = {.force_N = 0.3, .gained_m_per_s = 0.1, .lasting_s = 0.003};
     gate->thermal = {.continuous_force_N = 2.0, .time_constant_s = 10.0};
   }
-  // A hand that turns around dwells within a count for up to 40 ms: docs/theory/safety.md.
-  control.gate.encoder.frozen_after_s = 0.05;
+  // A hand that turns around dwells within a count for up to 40 ms, and one that pushes as fast as the force grows was
+  // seen to for 76 ms: docs/theory/safety.md.
+  control.gate.encoder.frozen_after_s = 0.1;
   // More than twice the friction of the slave, and by then 12 counts away.
   control.slave_gate.encoder.unbalanced_force_N = 0.06;
   control.slave_gate.encoder.frozen_after_s = 0.015;
