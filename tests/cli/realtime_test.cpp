@@ -91,6 +91,25 @@ TEST_F(RealTime, FaultsRunAtTheRealClockAfterVirtualTime) {
   EXPECT_GT(document["real_time"]["servo"]["ticks"], 10000);
 }
 
+TEST_F(RealTime, AFaultThatIsNotSurvivedSaysWhetherMissedTicksLostIt) {
+  // Nothing sees the frozen encoder, so the run is lost whether the clock is kept or not.
+  const Outcome outcome =
+      tactus({"faults", "--realtime", "--seeds", "1", "--only", "encoder-freeze", "--set", "task.real_time_seeds=6",
+              "--set", "control.gate.encoder.frozen_after_s=1", "--set", "control.slave_gate.encoder.frozen_after_s=1",
+              "--priority", "10", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json document = Json::parse(outcome.out)["real_time"];
+  const Json& lost = document["lost"];
+  const int survived = document["rows"][0]["survived"];
+  EXPECT_EQ(static_cast<int>(lost.size()), 6 - survived);
+  ASSERT_GT(lost.size(), 0U);
+  for (const Json& run : lost) {
+    EXPECT_EQ(run["id"], "encoder-freeze");
+    EXPECT_EQ(run["survives_on_time"], false) << run;
+    EXPECT_GE(run["missed_ticks"], run["longest_gap_ticks"]);
+  }
+}
+
 TEST_F(RealTime, HowToKeepTimeIsNoQuestionInVirtualTime) {
   EXPECT_EQ(tactus({"run", quick_experiment(), "--core", "0"}).status, 2);
   const Outcome spin = tactus(run(quick_experiment(), {"--spin-s", "0.0004"}));

@@ -162,7 +162,43 @@ std::string control_summary(const std::vector<FaultTally>& controls) {
          " controls failed in half of their runs or more, as they must.\n" + text;
 }
 
+/// The runs that were lost at the real clock, and what lost them.
+report::Table lost_table(const std::vector<LostInRealTime>& lost, double rate_Hz) {
+  report::Table table({{"fault"}, {"number"}, {"rule"}, {"ticks missed"}, {"in a row", "ms"}, {"with none missed"}},
+                      "Not survived in real time");
+  for (const LostInRealTime& run : lost) {
+    table.add_row({std::string(run.row.name), std::to_string(run.failure.number), std::string(run.failure.rule),
+                   std::to_string(run.missed_ticks),
+                   report::number(1e3 * static_cast<double>(run.longest_gap_ticks) / rate_Hz, 3),
+                   run.survives_on_time ? "survived" : "not survived"});
+  }
+  return table;
+}
+
+/// How many of them the clock explains.
+std::string lost_text(const std::vector<LostInRealTime>& lost) {
+  if (lost.empty()) return {};
+  const auto explained =
+      std::count_if(lost.begin(), lost.end(), [](const LostInRealTime& run) { return run.survives_on_time; });
+  return "Lost by missed ticks alone: " + of(explained, static_cast<std::int64_t>(lost.size())) +
+         ". With none missed such a run survives.\n";
+}
+
 using Json = nlohmann::ordered_json;
+
+Json lost_json(const std::vector<LostInRealTime>& lost) {
+  Json runs = Json::array();
+  for (const LostInRealTime& run : lost) {
+    runs.push_back({{"id", run.row.id},
+                    {"number", run.failure.number},
+                    {"rule", run.failure.rule},
+                    {"missed_ticks", run.missed_ticks},
+                    {"longest_gap_ticks", run.longest_gap_ticks},
+                    {"late_ours", run.late_ours},
+                    {"survives_on_time", run.survives_on_time}});
+  }
+  return runs;
+}
 
 Json failures_json(const FaultTally& tally) {
   Json failures = Json::array();
@@ -246,6 +282,7 @@ std::string json_of(const Request& request, const FaultsParams& params, const Fa
     document["real_time"] = {{"seeds", real_time->params.task.seeds},
                              {"longest_cut_s", real_time->params.task.longest_cut_s},
                              {"rows", json_of(real_time->tallies)},
+                             {"lost", lost_json(real_time->lost)},
                              {"servo", Json::parse(real_time->timing_json)}};
   }
   return document.dump(2) + "\n";
@@ -325,6 +362,13 @@ Outcome present_faults(const Request& request, const FaultsParams& params, const
     page.heading("In real time");
     text += "\n";
     add(real_time->params, real_time->tallies, "real");
+    if (!real_time->lost.empty()) {
+      const report::Table lost = lost_table(real_time->lost, params.servo.rate_Hz);
+      const std::string said = lost_text(real_time->lost);
+      page.table(lost);
+      page.paragraph(said);
+      text += "\n" + lost.to_text() + "\n" + said;
+    }
     for (const report::Table& timing : real_time->timing) {
       page.table(timing);
       text += "\n";
