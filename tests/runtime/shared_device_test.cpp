@@ -229,7 +229,12 @@ TEST(SharedDevice, AMotorWhoseCommandsStayAwayGetsNoForceUntilTheNextSession) {
 constexpr Seconds long_silence{10.0};
 constexpr double trips = 2000.0;
 
-station::Tick now() { return {.began_ns = monotonic_ns()}; }
+/// The next tick of the calling thread. A command of a tick that does not grow would be silence after 10 s, which two
+/// thousand trips may take on a machine that has other work.
+station::Tick now() {
+  thread_local std::int64_t number = 0;
+  return {.number = ++number, .began_ns = monotonic_ns()};
+}
 
 /// The owner of a device that stands where it was told, until the last trip.
 void echo(DeviceSlots& slots) {
