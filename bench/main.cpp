@@ -74,12 +74,13 @@ int main(int count, char** arguments) {
   tactus::bench::add_model_tick();
   tactus::bench::add_force_estimators();
   tactus::bench::add_virtual_time();
+  tactus::bench::add_joints();
   const auto times = tactus::bench::run_cases(quick ? 5 : 21, quick ? 0.005 : 0.02);
 
   Findings findings = tactus::bench::model_tick(times);
   for (const auto& more :
        {tactus::bench::tick_tail(), tactus::bench::force_estimators(times), tactus::bench::virtual_time(times),
-        tactus::bench::isolation(), tactus::bench::servo_step(quick)}) {
+        tactus::bench::joints(times), tactus::bench::isolation(), tactus::bench::servo_step(quick)}) {
     findings.insert(findings.end(), more.begin(), more.end());
   }
   if (json) {

@@ -27,4 +27,8 @@ Findings servo_step(bool quick);
 void add_virtual_time();
 Findings virtual_time(const Times& times);
 
+/// One tick of both sites under supervision, of one axis and of 1 to 8 joints.
+void add_joints();
+Findings joints(const Times& times);
+
 }  // namespace tactus::bench

@@ -98,6 +98,13 @@ Agreement agreement_of(const ControlParams& params, Seconds dt) {
   return agreement;
 }
 
+Agreement agreement_of(const JointParams auto& params, Seconds dt) {
+  Agreement agreement;
+  for (const ControlParams& joint : params) agreement.add("joint", agreement_of(joint, dt).digest());
+  return agreement;
+}
+template Agreement agreement_of(const Joints<ControlParams>&, Seconds);
+
 std::optional<Disagreement> first_disagreement(const AgreementCheck& check) {
   if (!check.disagrees() || check.first_difference() == 0) return std::nullopt;
   const std::size_t differing = check.first_difference() - 1;

@@ -26,7 +26,7 @@ struct AgreedParams {
   ForceGate::Params handle_gate;
   SafetyGate::Params slave_gate;
   OwnParams groups;
-  PacketJudge::Params packets;
+  PacketJudgeParams packets;
   MessageFollower::Params silence;
   Watchdog::Params watchdog;
   double answer_within_s = 0.0;
@@ -55,6 +55,8 @@ struct AgreedParams {
 
 /// Of the `[control]` section of an experiment at a sample time. Allocates.
 Agreement agreement_of(const ControlParams& params, Seconds dt);
+/// Of all joints of a device: a cell for each, which holds the digest of what is agreed for it. Allocates.
+Agreement agreement_of(const JointParams auto& params, Seconds dt);
 
 /// One key with both values, as a person writes them.
 struct Disagreement {

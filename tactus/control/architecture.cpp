@@ -91,6 +91,57 @@ Check estimate_slave_force(const ControlParams& params, const Architecture& arch
   return {};
 }
 
+/// All that the sites of one joint are made of.
+struct Parts {
+  Controllers controllers;
+  MasterGates master;
+  SlaveGates slave;
+};
+
+Result<Parts> make_parts(const ControlParams& params, Seconds dt) {
+  if (auto error = validate(params)) return *std::move(error);
+  const Architecture* chosen = find_architecture(params.architecture);
+  if (chosen == nullptr) return unknown_architecture(params.architecture);
+  auto controllers = chosen->make(params, dt);
+  if (!controllers) return controllers.error();
+  if (auto error = estimate_slave_force(params, *chosen, dt, *controllers)) return *std::move(error);
+  const auto gate = SafetyGate::make(params.gate, dt);
+  if (!gate) return under("gate", gate.error());
+  const auto handle_gate = ForceGate::make(params.handle_gate, dt);
+  if (!handle_gate) return under("handle_gate", handle_gate.error());
+  const auto slave_gate = SafetyGate::make(params.slave_gate, dt);
+  if (!slave_gate) return under("slave_gate", slave_gate.error());
+  return Parts{*std::move(controllers), {*gate, *handle_gate}, *slave_gate};
+}
+
+/// One controller for each joint, none of which knows of the others.
+template <class Input, class Output>
+class IndependentJoints final : public SiteController<Joints<Input>, Joints<Output>> {
+ public:
+  using OfOneJoint = std::vector<std::unique_ptr<SiteController<Input, Output>>>;
+  explicit IndependentJoints(OfOneJoint joints) : joints_(std::move(joints)) {}
+
+  Joints<Output> respond(const Joints<Input>& input) noexcept override {
+    Joints<Output> output(joints_.size());
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) output[joint] = joints_[joint]->respond(input[joint]);
+    return output;
+  }
+  void applied(Joints<double> motor_force_N) noexcept override {
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) joints_[joint]->applied(motor_force_N[joint]);
+  }
+  void reset() noexcept override {
+    for (const auto& joint : joints_) joint->reset();
+  }
+  [[nodiscard]] std::unique_ptr<SiteController<Joints<Input>, Joints<Output>>> clone() const override {
+    OfOneJoint copies;
+    for (const auto& joint : joints_) copies.push_back(joint->clone());
+    return std::make_unique<IndependentJoints>(std::move(copies));
+  }
+
+ private:
+  OfOneJoint joints_;
+};
+
 }  // namespace
 
 std::span<const Architecture> architectures() { return registry(); }
@@ -129,20 +180,39 @@ Check register_architecture(const Architecture& architecture) {
 }
 
 Result<Sites> make_sites(const ControlParams& params, Seconds dt) {
-  if (auto error = validate(params)) return *std::move(error);
-  const Architecture* chosen = find_architecture(params.architecture);
-  if (chosen == nullptr) return unknown_architecture(params.architecture);
-  auto controllers = chosen->make(params, dt);
-  if (!controllers) return controllers.error();
-  if (auto error = estimate_slave_force(params, *chosen, dt, *controllers)) return *std::move(error);
-  const auto gate = SafetyGate::make(params.gate, dt);
-  if (!gate) return under("gate", gate.error());
-  const auto handle_gate = ForceGate::make(params.handle_gate, dt);
-  if (!handle_gate) return under("handle_gate", handle_gate.error());
-  const auto slave_gate = SafetyGate::make(params.slave_gate, dt);
-  if (!slave_gate) return under("slave_gate", slave_gate.error());
-  return Sites{MasterSite(std::move(controllers->master), {*gate, *handle_gate}),
-               SlaveSite(std::move(controllers->slave), *slave_gate)};
+  auto parts = make_parts(params, dt);
+  if (!parts) return parts.error();
+  return Sites{MasterSite(std::move(parts->controllers.master), parts->master),
+               SlaveSite(std::move(parts->controllers.slave), parts->slave)};
 }
+
+Result<JointSites> make_sites(const JointParams auto& params, Seconds dt) {
+  std::vector<std::unique_ptr<MasterController>> masters;
+  std::vector<std::unique_ptr<SlaveController>> slaves;
+  std::optional<Joints<MasterGates>> master_gates;
+  std::optional<Joints<SlaveGates>> slave_gates;
+  for (std::size_t joint = 0; joint < params.size(); ++joint) {
+    auto parts = make_parts(params[joint], dt);
+    if (!parts) return under_joint<Joints<ControlParams>>(joint, parts.error());
+    masters.push_back(std::move(parts->controllers.master));
+    slaves.push_back(std::move(parts->controllers.slave));
+    if (!master_gates) master_gates.emplace(params.size(), parts->master);
+    if (!slave_gates) slave_gates.emplace(params.size(), parts->slave);
+    (*master_gates)[joint] = parts->master;
+    (*slave_gates)[joint] = parts->slave;
+  }
+  if (!master_gates) {
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = "joints",
+                 .message = "there is none: a device has 1 to " + std::to_string(most_joints),
+                 .place = {}};
+  }
+  using Master = IndependentJoints<MasterInput, MasterOutput>;
+  using Slave = IndependentJoints<SlaveInput, SlaveOutput>;
+  return JointSites{JointMasterSite(std::make_unique<Master>(std::move(masters)), *master_gates),
+                    JointSlaveSite(std::make_unique<Slave>(std::move(slaves)), *slave_gates)};
+}
+
+template Result<JointSites> make_sites(const Joints<ControlParams>&, Seconds);
 
 }  // namespace tactus::control

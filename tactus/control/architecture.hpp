@@ -7,6 +7,7 @@
 #include <tactus/control/supervision.hpp>
 #include <tactus/core/parameters.hpp>
 
+#include <concepts>
 #include <memory>
 #include <span>
 #include <string>
@@ -55,6 +56,11 @@ struct ControlParams : PositionForceMaster::Params {
   }
 };
 
+/// The parameters of several joints. What takes them beside those of one axis is a template, so that `{}` stays one
+/// axis.
+template <class T>
+concept JointParams = std::same_as<T, Joints<ControlParams>>;
+
 /// The controllers of both sites, before their safety gates.
 struct Controllers {
   std::unique_ptr<MasterController> master;
@@ -95,14 +101,21 @@ const Architecture* find_architecture(std::string_view name);
 [[nodiscard]] Check register_architecture(const Architecture& architecture);
 
 /// Both sites, gates included.
-struct Sites {
-  MasterSite master;
-  SlaveSite slave;
+template <class Master, class Slave>
+struct SitesOf {
+  Master master;
+  Slave slave;
 };
+using Sites = SitesOf<MasterSite, SlaveSite>;
+using JointSites = SitesOf<JointMasterSite, JointSlaveSite>;
 
 /// Makes the sites that `params` describe. Errors: an unknown architecture, naming the nearest; what its `make`
 /// refuses; an estimator of the slave's force that cannot be, or that the architecture has no use for; a gate's
 /// parameters.
 Result<Sites> make_sites(const ControlParams& params, Seconds dt);
+/// The same for devices of several joints, each of which is controlled by itself, as `params` of that joint describe.
+/// What couples joints is a controller of all of them: make a `JointMasterSite` around yours. Errors stand under the
+/// joint, as `joint_2`.
+Result<JointSites> make_sites(const JointParams auto& params, Seconds dt);
 
 }  // namespace tactus::control

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/control/safety_gate.hpp>
+#include <tactus/core/joints.hpp>
 #include <tactus/core/signals.hpp>
 
 #include <cmath>
@@ -11,8 +12,9 @@
 #include <type_traits>
 #include <utility>
 
-/// What the two sites of a teleoperator measure, command and tell one another, and what a controller of a site is. One
-/// axis each; positions and forces are positive toward the environment unless said otherwise.
+/// What the two sites of a teleoperator measure, command and tell one another, and what a controller of a site is. Of
+/// one axis each, or, as `Joints` of the same, of a device of several; positions and forces are positive toward the
+/// environment unless said otherwise.
 namespace tactus::control {
 
 /// What one site tells the other at a tick. Each architecture fills the members that it uses; the rest stay zero.
@@ -88,6 +90,13 @@ inline bool is_finite(const SlaveInput& input) noexcept {
   return std::isfinite(input.motor_position_m) && std::isfinite(input.tip_force_N) && is_finite(input.arrival.message);
 }
 
+template <class T>
+bool is_finite(const Joints<T>& joints) noexcept {
+  bool finite = true;
+  for (const T& each : joints) finite = finite && is_finite(each);
+  return finite;
+}
+
 /// Puts what was read last in the place of each number that is none. Real-time safe.
 inline void mend(double& value, double last) noexcept {
   if (!std::isfinite(value)) value = last;
@@ -115,8 +124,8 @@ class SiteController {
   virtual ~SiteController() = default;
   /// What to do about what was measured.
   virtual Output respond(const Input& input) noexcept = 0;
-  /// The force in N that the safety gate really let through to the motor, until the next tick.
-  virtual void applied(double motor_force_N) noexcept = 0;
+  /// The force in N that the safety gate really let through to the motor, until the next tick; that of each joint.
+  virtual void applied(Each<Input, double> motor_force_N) noexcept = 0;
   /// Back to the state in which it was made.
   virtual void reset() noexcept = 0;
   [[nodiscard]] virtual std::unique_ptr<SiteController> clone() const = 0;
@@ -140,7 +149,7 @@ class ControllerOf final : public SiteController<Input, Output> {
  public:
   explicit ControllerOf(const E& element) : element_(element) {}
   Output respond(const Input& input) noexcept override { return element_.respond(input); }
-  void applied(double motor_force_N) noexcept override {
+  void applied(Each<Input, double> motor_force_N) noexcept override {
     if constexpr (requires { element_.applied(motor_force_N); }) element_.applied(motor_force_N);
   }
   void reset() noexcept override { element_.reset(); }
@@ -223,17 +232,20 @@ class SlaveGates {
 };
 
 /// A controller behind its safety gates, one for each actuator. They stand outside of the controller, so none can leave
-/// them out. A copy is a fork: it owns a clone of the controller.
-template <class In, class Out, class Gates>
+/// them out. Of several joints each has gates of its own, and a fault of one lets all go. A copy is a fork: it owns a
+/// clone of the controller.
+template <class In, class Out, class JointGates>
 class Site {
  public:
   using Sensors = In;
   using Output = Out;
   using Wish = double;  ///< what share of the controller's force is wanted
   using Controller = SiteController<Sensors, Output>;
+  using Gates = Each<In, JointGates>;
+  using Forces = Each<In, double>;  ///< in N
 
   Site(std::unique_ptr<Controller> controller, const Gates& gates)
-      : controller_(std::move(controller)), gates_(gates) {}
+      : controller_(std::move(controller)), gates_(gates), believed_(nothing()) {}
   Site(const Site& other) : controller_(other.controller_->clone()), gates_(other.gates_), believed_(other.believed_) {}
   Site(Site&&) noexcept = default;
   Site& operator=(Site other) noexcept {
@@ -245,72 +257,121 @@ class Site {
   ~Site() = default;
 
   /// One tick; the forces in the output are what the gates let through. What the controller wants is scaled by `share`
-  /// before it, which brings a force in and out, and `added_N` comes to it at the motor. `elapsed_ticks` is more than 1
-  /// after a stall. Real-time safe.
-  Output step(const Sensors& input, double share = 1.0, std::int64_t elapsed_ticks = 1, double added_N = 0.0) noexcept {
+  /// before it, which brings a force in and out. `elapsed_ticks` is more than 1 after a stall. Real-time safe.
+  Output step(const Sensors& input, double share = 1.0, std::int64_t elapsed_ticks = 1) noexcept {
+    return step(input, share, elapsed_ticks, same_for_each(gates_, 0.0));
+  }
+  /// The same, and `added_N` comes to it at the motor.
+  Output step(const Sensors& input, double share, std::int64_t elapsed_ticks, const Forces& added_N) noexcept {
     // A site that reads nonsense lets go until it is re-armed, even where the nonsense would not have reached a force,
     // and its controller goes on with what was read last: no number that is none gets into its state.
     Sensors read = input;
-    if (!is_finite(input)) {
-      gates_.motor().refuse();
-      mend(read, believed_);
-    }
-    read.motor_position_m = gates_.believe(read, elapsed_ticks);
+    for_each_joint(
+        [elapsed_ticks](JointGates& gates, JointOf<In>& joint, const JointOf<In>& believed) noexcept {
+          if (!is_finite(joint)) {
+            gates.motor().refuse();
+            mend(joint, believed);
+          }
+          joint.motor_position_m = gates.believe(joint, elapsed_ticks);
+        },
+        gates_, read, believed_);
     believed_ = read;
     Output output = controller_->respond(believed_);
-    if (share != 1.0) scale(output, share);
-    if (added_N != 0.0) output.motor_force_N += added_N;
-    gates_.pass(output);
-    controller_->applied(output.motor_force_N);
+    Forces passed = added_N;
+    for_each_joint(
+        [share](JointGates& gates, JointOf<Out>& joint, double added, double& force) noexcept {
+          if (share != 1.0) scale(joint, share);
+          if (added != 0.0) joint.motor_force_N += added;
+          gates.pass(joint);
+          force = joint.motor_force_N;
+        },
+        gates_, output, added_N, passed);
+    if constexpr (has_joints<In>) {
+      if (const GateFault found = fault(); found != GateFault::none && found != GateFault::energy) let_go();
+    }
+    controller_->applied(passed);
     return output;
   }
   /// As made.
   void reset() noexcept {
     controller_->reset();
-    gates_.reset();
-    believed_ = {};
+    for_each_joint([](JointGates& gates) noexcept { gates.reset(); }, gates_);
+    believed_ = nothing();
   }
   /// The controller as made and no fault any more; the forces go on from where they are, within the rate limit.
   void rearm() noexcept {
     controller_->reset();
-    gates_.rearm();
-    believed_ = {};
+    for_each_joint([](JointGates& gates) noexcept { gates.rearm(); }, gates_);
+    believed_ = nothing();
   }
-  [[nodiscard]] GateFault fault() const noexcept { return gates_.motor().fault(); }
-  [[nodiscard]] ActiveLimit limit() const noexcept { return gates_.motor().limit(); }
+  /// Of the first joint that has one; one of energy counts last.
+  [[nodiscard]] GateFault fault() const noexcept {
+    GateFault found = GateFault::none;
+    for_each_joint(
+        [&found](const JointGates& gates) noexcept {
+          const bool counts = found == GateFault::none || found == GateFault::energy;
+          if (counts && gates.motor().fault() != GateFault::none) found = gates.motor().fault();
+        },
+        gates_);
+    return found;
+  }
+  /// Of the first joint that has one.
+  [[nodiscard]] ActiveLimit limit() const noexcept {
+    ActiveLimit found = ActiveLimit::none;
+    for_each_joint(
+        [&found](const JointGates& gates) noexcept {
+          if (found == ActiveLimit::none) found = gates.motor().limit();
+        },
+        gates_);
+    return found;
+  }
   /// The forces go to zero at the rate limit and stay there until `rearm`, but for that of a second actuator, which
   /// follows its share. Real-time safe.
-  void let_go() noexcept { gates_.motor().let_go(); }
+  void let_go() noexcept {
+    for_each_joint([](JointGates& gates) noexcept { gates.motor().let_go(); }, gates_);
+  }
   /// The same, but the motor first brings the device to a stand where it can (`StoppingBrake`). Real-time safe.
-  void brake() noexcept { gates_.motor().brake(); }
+  void brake() noexcept {
+    for_each_joint([](JointGates& gates) noexcept { gates.motor().brake(); }, gates_);
+  }
   /// Whether a force passes to any actuator.
-  [[nodiscard]] bool passes_a_force() const noexcept { return gates_.pass_a_force(); }
-  /// The gate of the motor, to look at.
-  [[nodiscard]] const SafetyGate& gate() const noexcept { return gates_.motor(); }
+  [[nodiscard]] bool passes_a_force() const noexcept {
+    bool passes = false;
+    for_each_joint([&passes](const JointGates& gates) noexcept { passes = passes || gates.pass_a_force(); }, gates_);
+    return passes;
+  }
+  /// To look at.
+  [[nodiscard]] const Gates& gates() const noexcept { return gates_; }
 
   /// Exchanges the controller for that of `other` and keeps the gates, so that no limit is lost. The new one first
   /// lives through `ticks` ticks of what was read last and of the force that the motor has now: its filters and models
   /// are then where a long rest at this very instant would have brought them. Does not allocate.
   void exchange_controller(Site& other, int ticks) noexcept {
     std::swap(controller_, other.controller_);
+    Forces passed = same_for_each(gates_, 0.0);
+    for_each_joint([](const JointGates& gates, double& force) noexcept { force = gates.motor().passed_N(); }, gates_,
+                   passed);
     for (int i = 0; i < ticks; ++i) {
       controller_->respond(believed_);
-      controller_->applied(gates_.motor().passed_N());
+      controller_->applied(passed);
     }
   }
 
  private:
-  static void scale(Output& output, double share) noexcept {
+  static void scale(JointOf<Out>& output, double share) noexcept {
     output.motor_force_N *= share;
     if constexpr (requires { output.handle_force_N; }) output.handle_force_N *= share;
   }
+  [[nodiscard]] Sensors nothing() const noexcept { return same_for_each(gates_, JointOf<In>{}); }
 
   std::unique_ptr<Controller> controller_;
   Gates gates_;
-  Sensors believed_{};
+  Sensors believed_;
 };
 
 using MasterSite = Site<MasterInput, MasterOutput, MasterGates>;
 using SlaveSite = Site<SlaveInput, SlaveOutput, SlaveGates>;
+using JointMasterSite = Site<Joints<MasterInput>, Joints<MasterOutput>, MasterGates>;
+using JointSlaveSite = Site<Joints<SlaveInput>, Joints<SlaveOutput>, SlaveGates>;
 
 }  // namespace tactus::control

@@ -7,67 +7,106 @@ namespace tactus::control {
 
 namespace {
 
-template <class Site>
-void fill(SiteRecord& record, const Site& site, const Supervision& supervision) noexcept {
+template <class Gated, class Payload>
+void fill(SiteRecord& record, const Gated& site, const SupervisionOf<Payload>& supervision) noexcept {
   record.enabled = supervision.state() != SiteState::configure && (!supervision.lets_go() || site.passes_a_force());
   record.limit = static_cast<std::int64_t>(site.limit());
   record.fault = static_cast<std::int64_t>(site.fault());
-  record.given_J = site.gate().given_J();
+  for_each_joint(
+      [&record](const auto& gates) noexcept { record.given_J = farther(record.given_J, gates.motor().given_J()); },
+      site.gates());
+}
+
+/// What the sensors read, with what is to be believed of the other site.
+template <class Sensors>
+Sensors with(Sensors sensors, const Each<Sensors, Arrival>& arrivals) noexcept {
+  for_each_joint([](JointOf<Sensors>& joint, const Arrival& arrival) noexcept { joint.arrival = arrival; }, sensors,
+                 arrivals);
+  return sensors;
 }
 
 }  // namespace
 
-SupervisedMaster::Output SupervisedMaster::step(const Input& input) noexcept {
-  const bool contradicts =
-      std::isfinite(input.sensors.hand_force_N) && hand_sensor_.step({.acted_N = site_.gate().passed_N(),
-                                                                      .tip_force_N = -input.sensors.hand_force_N,
-                                                                      .elapsed_ticks = input.elapsed_ticks});
+/// Whether motor and force sensor contradict one another, at any joint.
+template <class Gated>
+bool SupervisedMasterOf<Gated>::contradicted(const Input& input) noexcept {
+  bool found = false;
+  for_each_joint(
+      [&](ForceSensorCheck& check, const MasterGates& gates, const MasterInput& sensors) noexcept {
+        const bool contradicts =
+            std::isfinite(sensors.hand_force_N) && check.step({.acted_N = gates.motor().passed_N(),
+                                                               .tip_force_N = -sensors.hand_force_N,
+                                                               .elapsed_ticks = input.elapsed_ticks});
+        found = found || contradicts;
+      },
+      hand_sensor_, site_.gates(), input.sensors);
+  return found;
+}
+
+template <class Gated>
+typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const Input& input) noexcept {
   const SiteState state = supervision_.decide({.requests = input.requests,
                                                .elapsed_ticks = input.elapsed_ticks,
                                                .fault = site_.fault(),
-                                               .force_sensor = contradicts});
+                                               .force_sensor = contradicted(input)});
   if (supervision_.rearms()) {
     site_.rearm();
-    hand_sensor_.reset();
+    for_each_joint([](ForceSensorCheck& check) noexcept { check.reset(); }, hand_sensor_);
   }
   if (supervision_.lets_go()) site_.let_go();
   const bool follows = state == SiteState::active && !input.requests.clutch;
 
-  MasterInput sensors = input.sensors;
-  sensors.arrival = supervision_.arrival(offset_m_);
-  const double probe_N = supervision_.probe(sensors.motor_position_m, site_.passes_a_force());
+  const Sensors sensors = with(input.sensors, supervision_.arrival(offset_m_));
+  const auto probe_N =
+      supervision_.probe(member_of_each(sensors, &MasterInput::motor_position_m), site_.passes_a_force());
   Output output{.site = site_.step(sensors, supervision_.blend(follows), input.elapsed_ticks, probe_N),
                 .packet = {},
                 .record = supervision_.record()};
-  const double position_m = output.site.message.position_m;
-  if (follows || state == SiteState::configure) {
-    told_m_ = position_m + offset_m_;
-  } else {
-    offset_m_ = told_m_ - position_m;
-  }
-  Message message = output.site.message;
-  message.position_m = told_m_;
+  Payload message = member_of_each(output.site, &MasterOutput::message);
+  for_each_joint(
+      [&](Message& told, double& told_m, double& offset_m) noexcept {
+        if (follows || state == SiteState::configure) {
+          told_m = told.position_m + offset_m;
+        } else {
+          offset_m = told_m - told.position_m;
+        }
+        told.position_m = told_m;
+        output.record.offset_m = farther(output.record.offset_m, offset_m);
+      },
+      message, told_m_, offset_m_);
   output.packet = supervision_.packet(message);
   fill(output.record, site_, supervision_);
-  output.record.offset_m = offset_m_;
   return output;
 }
 
-SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
-  const bool finite = std::isfinite(input.sensors.tip_force_N);
-  const bool implausible = finite && force_sensor_.step({.acted_N = site_.gate().passed_N(),
-                                                         .tip_force_N = input.sensors.tip_force_N,
-                                                         .elapsed_ticks = input.elapsed_ticks});
+template <class Gated>
+bool SupervisedSlaveOf<Gated>::contradicted(const Input& input) noexcept {
+  bool found = false;
+  for_each_joint(
+      [&](ForceSensorCheck& check, const SlaveGates& gates, const SlaveInput& sensors) noexcept {
+        const bool contradicts =
+            std::isfinite(sensors.tip_force_N) && check.step({.acted_N = gates.motor().passed_N(),
+                                                              .tip_force_N = sensors.tip_force_N,
+                                                              .elapsed_ticks = input.elapsed_ticks});
+        found = found || contradicts;
+      },
+      force_sensor_, site_.gates(), input.sensors);
+  return found;
+}
+
+template <class Gated>
+typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const Input& input) noexcept {
   const SiteState state = supervision_.decide({.requests = input.requests,
                                                .elapsed_ticks = input.elapsed_ticks,
                                                .fault = site_.fault(),
-                                               .force_sensor = implausible});
+                                               .force_sensor = contradicted(input)});
+  const auto here_m = member_of_each(input.sensors, &SlaveInput::motor_position_m);
   if (supervision_.rearms()) {
     site_.rearm();
-    force_sensor_.reset();
+    for_each_joint([](ForceSensorCheck& check) noexcept { check.reset(); }, force_sensor_);
     // A slave that was released in hold may be elsewhere than it was told to be.
     const bool was_released = supervision_.before() == SiteState::hold;
-    if (state == SiteState::align || was_released) supervision_.stand(input.sensors.motor_position_m);
+    if (state == SiteState::align || was_released) supervision_.stand(here_m);
   }
   // Nobody holds a tool, so it would coast.
   if (supervision_.contradicted()) {
@@ -75,47 +114,82 @@ SupervisedSlave::Output SupervisedSlave::step(const Input& input) noexcept {
   } else if (supervision_.lets_go()) {
     site_.let_go();
   }
-  if (supervision_.probes()) supervision_.stand(input.sensors.motor_position_m);
-  SlaveInput sensors = input.sensors;
-  sensors.arrival = supervision_.arrival(0.0);
-  const double probe_N = supervision_.probe(sensors.motor_position_m, site_.passes_a_force());
+  if (supervision_.probes()) supervision_.stand(here_m);
+  const Sensors sensors = with(input.sensors, supervision_.arrival(same_for_each(here_m, 0.0)));
+  const auto probe_N = supervision_.probe(here_m, site_.passes_a_force());
   const bool stands = state == SiteState::align || state == SiteState::armed;
   const double share = supervision_.blend((stands || state == SiteState::active) && !supervision_.probes());
   Output output{
       .site = site_.step(sensors, share, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
-  output.packet = supervision_.packet(output.site.message);
+  output.packet = supervision_.packet(member_of_each(output.site, &SlaveOutput::message));
   fill(output.record, site_, supervision_);
   return output;
 }
 
+template class SupervisedMasterOf<MasterSite>;
+template class SupervisedMasterOf<JointMasterSite>;
+template class SupervisedSlaveOf<SlaveSite>;
+template class SupervisedSlaveOf<JointSlaveSite>;
+
+namespace {
+
+template <class Params>
+auto supervised_master(const Params& params, std::int64_t session, Seconds dt, const Agreement& agreement)
+    -> Result<SupervisedMasterOf<decltype(make_sites(params, dt)->master)>> {
+  auto sites = make_sites(params, dt);
+  if (!sites) return sites.error();
+  const auto settings = member_of_each(params, &ControlParams::supervision);
+  const auto supervision =
+      SupervisionOf<Each<Params, Message>>::make(settings, SiteRole::master, session, dt, agreement);
+  if (!supervision) return under("supervision", supervision.error());
+  const auto hand_sensor = make_each<ForceSensorCheck>(member_of_each(settings, &SupervisionParams::hand_sensor), dt);
+  if (!hand_sensor) return under("supervision.hand_sensor", hand_sensor.error());
+  return SupervisedMasterOf(std::move(sites->master), *supervision, *hand_sensor);
+}
+
+template <class Params>
+auto supervised_slave(const Params& params, std::int64_t session, Seconds dt, const Agreement& agreement)
+    -> Result<SupervisedSlaveOf<decltype(make_sites(params, dt)->slave)>> {
+  auto sites = make_sites(params, dt);
+  if (!sites) return sites.error();
+  const auto settings = member_of_each(params, &ControlParams::supervision);
+  const auto supervision =
+      SupervisionOf<Each<Params, Message>>::make(settings, SiteRole::slave, session, dt, agreement);
+  if (!supervision) return under("supervision", supervision.error());
+  const auto force_sensor = make_each<ForceSensorCheck>(member_of_each(settings, &SupervisionParams::force_sensor), dt);
+  if (!force_sensor) return under("supervision.force_sensor", force_sensor.error());
+  return SupervisedSlaveOf(std::move(sites->slave), *supervision, *force_sensor);
+}
+
+}  // namespace
+
 Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt) {
   return make_supervised_master(params, session, dt, agreement_of(params, dt));
 }
-
 Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt,
                                                 const Agreement& agreement) {
-  auto sites = make_sites(params, dt);
-  if (!sites) return sites.error();
-  const auto supervision = Supervision::make(params.supervision, SiteRole::master, session, dt, agreement);
-  if (!supervision) return under("supervision", supervision.error());
-  const auto hand_sensor = ForceSensorCheck::make(params.supervision.hand_sensor, dt);
-  if (!hand_sensor) return under("supervision.hand_sensor", hand_sensor.error());
-  return SupervisedMaster(std::move(sites->master), *supervision, *hand_sensor);
+  return supervised_master(params, session, dt, agreement);
+}
+Result<JointSupervisedMaster> make_supervised_master(const JointParams auto& params, std::int64_t session, Seconds dt,
+                                                     const Agreement& agreement) {
+  return supervised_master(params, session, dt, agreement);
 }
 
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt) {
   return make_supervised_slave(params, session, dt, agreement_of(params, dt));
 }
-
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt,
                                               const Agreement& agreement) {
-  auto sites = make_sites(params, dt);
-  if (!sites) return sites.error();
-  const auto supervision = Supervision::make(params.supervision, SiteRole::slave, session, dt, agreement);
-  if (!supervision) return under("supervision", supervision.error());
-  const auto force_sensor = ForceSensorCheck::make(params.supervision.force_sensor, dt);
-  if (!force_sensor) return under("supervision.force_sensor", force_sensor.error());
-  return SupervisedSlave(std::move(sites->slave), *supervision, *force_sensor);
+  return supervised_slave(params, session, dt, agreement);
 }
+Result<JointSupervisedSlave> make_supervised_slave(const JointParams auto& params, std::int64_t session, Seconds dt,
+                                                   const Agreement& agreement) {
+  return supervised_slave(params, session, dt, agreement);
+}
+
+template Result<JointSupervisedMaster> make_supervised_master(const Joints<ControlParams>&, std::int64_t, Seconds,
+                                                              const Agreement&);
+template Result<JointSupervisedSlave> make_supervised_slave(const Joints<ControlParams>&, std::int64_t, Seconds,
+                                                            const Agreement&);
 
 }  // namespace tactus::control

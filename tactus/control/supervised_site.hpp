@@ -12,9 +12,12 @@ namespace tactus::control {
 /// The master. A person arms it and presses the dead-man switch; then it tells the slave where the hand means to be and
 /// displays what the slave tells. While the clutch is pressed, and in every state but `active`, it tells the position
 /// that it told last and gives no force: what the hand moved meanwhile becomes the workspace offset.
-class SupervisedMaster {
+template <class Gated>
+class SupervisedMasterOf {
  public:
-  using Sensors = MasterInput;
+  using Sensors = typename Gated::Sensors;
+  using Payload = Each<Sensors, Message>;
+  using Packet = PacketOf<Payload>;
   using Wish = SiteRequests;
   struct Input {
     Sensors sensors{};  ///< its arrival is not used: packets say what came
@@ -22,13 +25,18 @@ class SupervisedMaster {
     std::int64_t elapsed_ticks = 1;  ///< since the step before; more after a stall
   };
   struct Output {
-    MasterOutput site;
+    typename Gated::Output site;
     Packet packet;  ///< for the slave
     SiteRecord record;
   };
 
-  SupervisedMaster(MasterSite site, const Supervision& supervision, const ForceSensorCheck& hand_sensor)
-      : site_(std::move(site)), supervision_(supervision), hand_sensor_(hand_sensor) {}
+  SupervisedMasterOf(Gated site, const SupervisionOf<Payload>& supervision,
+                     const Each<Sensors, ForceSensorCheck>& hand_sensor)
+      : site_(std::move(site)),
+        supervision_(supervision),
+        hand_sensor_(hand_sensor),
+        told_m_(same_for_each(hand_sensor, 0.0)),
+        offset_m_(told_m_) {}
 
   /// A packet that has come; any number of them before `step`. Real-time safe.
   PacketVerdict take(const Packet& packet) noexcept { return supervision_.take(packet); }
@@ -39,21 +47,26 @@ class SupervisedMaster {
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
   /// The packet of the other site that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
-  [[nodiscard]] const MasterSite& site() const noexcept { return site_; }
+  [[nodiscard]] const Gated& site() const noexcept { return site_; }
 
  private:
-  MasterSite site_;
-  Supervision supervision_;
-  ForceSensorCheck hand_sensor_;  ///< the hand resists the motor as a wall does a slave
-  double told_m_ = 0.0;
-  double offset_m_ = 0.0;
+  [[nodiscard]] bool contradicted(const Input& input) noexcept;
+
+  Gated site_;
+  SupervisionOf<Payload> supervision_;
+  Each<Sensors, ForceSensorCheck> hand_sensor_;  ///< the hand resists the motor as a wall does a slave
+  Each<Sensors, double> told_m_;
+  Each<Sensors, double> offset_m_;
 };
 
 /// The slave. Out of `configure` it stands where it is, by its own servo, until it follows. In `hold` it stands where
 /// it was told to be last while its force fades; armed again, it stands where it is then.
-class SupervisedSlave {
+template <class Gated>
+class SupervisedSlaveOf {
  public:
-  using Sensors = SlaveInput;
+  using Sensors = typename Gated::Sensors;
+  using Payload = Each<Sensors, Message>;
+  using Packet = PacketOf<Payload>;
   using Wish = SiteRequests;
   struct Input {
     Sensors sensors{};  ///< its arrival is not used: packets say what came
@@ -61,12 +74,13 @@ class SupervisedSlave {
     std::int64_t elapsed_ticks = 1;
   };
   struct Output {
-    SlaveOutput site;
+    typename Gated::Output site;
     Packet packet;  ///< for the master
     SiteRecord record;
   };
 
-  SupervisedSlave(SlaveSite site, const Supervision& supervision, const ForceSensorCheck& force_sensor)
+  SupervisedSlaveOf(Gated site, const SupervisionOf<Payload>& supervision,
+                    const Each<Sensors, ForceSensorCheck>& force_sensor)
       : site_(std::move(site)), supervision_(supervision), force_sensor_(force_sensor) {}
 
   /// A packet that has come; any number of them before `step`. Real-time safe.
@@ -78,13 +92,20 @@ class SupervisedSlave {
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
   /// The packet of the other site that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
-  [[nodiscard]] const SlaveSite& site() const noexcept { return site_; }
+  [[nodiscard]] const Gated& site() const noexcept { return site_; }
 
  private:
-  SlaveSite site_;
-  Supervision supervision_;
-  ForceSensorCheck force_sensor_;
+  [[nodiscard]] bool contradicted(const Input& input) noexcept;
+
+  Gated site_;
+  SupervisionOf<Payload> supervision_;
+  Each<Sensors, ForceSensorCheck> force_sensor_;
 };
+
+using SupervisedMaster = SupervisedMasterOf<MasterSite>;
+using SupervisedSlave = SupervisedSlaveOf<SlaveSite>;
+using JointSupervisedMaster = SupervisedMasterOf<JointMasterSite>;
+using JointSupervisedSlave = SupervisedSlaveOf<JointSlaveSite>;
 
 /// The site that `params` describe, under supervision. `session` is any number but 0 that no earlier start of this site
 /// used. Errors: those of `make_sites` and of `Supervision`, under `supervision`.
@@ -95,5 +116,10 @@ Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std
                                                 const Agreement& agreement);
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt,
                                               const Agreement& agreement);
+/// The same of several joints. Errors of one of them stand under it, as `joint_2`.
+Result<JointSupervisedMaster> make_supervised_master(const JointParams auto& params, std::int64_t session, Seconds dt,
+                                                     const Agreement& agreement);
+Result<JointSupervisedSlave> make_supervised_slave(const JointParams auto& params, std::int64_t session, Seconds dt,
+                                                   const Agreement& agreement);
 
 }  // namespace tactus::control

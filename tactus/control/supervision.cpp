@@ -21,20 +21,61 @@ SiteCause cause_of(ProbeVerdict verdict) {
   return SiteCause::none;
 }
 
+/// The name of the first number in which two sets of parameters differ; empty where they don't.
+template <Described T>
+std::string first_difference(const T& one, const T& other) {
+  std::string found;
+  for_each_field<T>([&](const auto& f) {
+    if (!found.empty()) return;
+    using Value = std::remove_cvref_t<decltype(one.*f.member)>;
+    if constexpr (Described<Value>) {
+      const std::string inner = first_difference(one.*f.member, other.*f.member);
+      if (!inner.empty()) found = std::string(f.name).append(1, '.').append(inner);
+    } else if (one.*f.member != other.*f.member) {
+      found = f.name;
+    }
+  });
+  return found;
+}
+
+/// That a joint has no other value of what the site has but once.
+Check check_shared(const SupervisionParams& site, SupervisionParams joint) {
+  joint.packets.position_limit_m = site.packets.position_limit_m;
+  joint.packets.force_limit_N = site.packets.force_limit_N;
+  joint.silence = site.silence;
+  joint.force_sensor = site.force_sensor;
+  joint.hand_sensor = site.hand_sensor;
+  joint.probe = site.probe;
+  const std::string other = first_difference(site, joint);
+  if (other.empty()) return {};
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = other,
+               .message = "differs from that of joint 1: a site has one for all its joints",
+               .place = {}};
+}
+
 }  // namespace
 
-Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt,
-                                      const Agreement& agreement) {
-  if (auto error = signal::check(params, dt)) return *std::move(error);
+template <class Payload>
+Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, SiteRole role, std::int64_t session,
+                                                            Seconds dt, const Agreement& agreement) {
+  const SupervisionParams& params = joint_of(all, 0);
+  double tried_after_s = params.blend_s;
+  for (std::size_t joint = 0; joint < joints_of(all); ++joint) {
+    const SupervisionParams& own = joint_of(all, joint);
+    if (auto error = signal::check(own, dt)) return under_joint<Payload>(joint, *std::move(error));
+    if (auto error = check_shared(params, own)) return under_joint<Payload>(joint, *std::move(error));
+    if (own.probe.force_N > 0.0) tried_after_s += own.probe.duration_s;
+  }
   if (session == 0) {
     return Error{.code = ErrorCode::out_of_bounds,
                  .parameter = "session",
                  .message = "0 stands for no session: draw another number",
                  .place = {}};
   }
-  const auto judge = PacketJudge::make(params.packets, dt);
+  const auto judge = PacketJudgeOf<Payload>::make(member_of_each(all, &SupervisionParams::packets), dt);
   if (!judge) return under("packets", judge.error());
-  const auto follower = MessageFollower::make(params.silence, dt);
+  const auto follower = make_each<MessageFollower>(member_of_each(all, &SupervisionParams::silence), dt);
   if (!follower) return under("silence", follower.error());
   const auto watchdog = Watchdog::make(params.watchdog, dt);
   if (!watchdog) return under("watchdog", watchdog.error());
@@ -45,10 +86,9 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   const auto pace = PaceCheck::make(
       {.slack_s = params.packets.longest_age_s + params.watchdog.timeout_s, .tolerance_share = params.pace_share}, dt);
   if (!pace) return pace.error();
-  const auto probe = SignProbe::make(params.probe, dt);
+  const auto probe = make_each<SignProbe>(member_of_each(all, &SupervisionParams::probe), dt);
   if (!probe) return under("probe", probe.error());
-  const double tried_after_s = params.blend_s + params.probe.duration_s;
-  if (params.probe.force_N > 0.0 && params.answer_within_s <= tried_after_s) {
+  if (tried_after_s > params.blend_s && params.answer_within_s <= tried_after_s) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "answer_within_s",
                  .message = format_number(params.answer_within_s) +
@@ -58,13 +98,14 @@ Result<Supervision> Supervision::make(const SupervisionParams& params, SiteRole 
   }
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return Supervision(*judge, *follower, *watchdog, *answer, *overload, *pace, *probe, *supervisor, role, params,
-                     session, dt, agreement);
+  return SupervisionOf(*judge, *follower, *watchdog, *answer, *overload, *pace, *probe, *supervisor, role, all, session,
+                       dt, agreement);
 }
 
 /// A packet tells the cell that its number names. One that does not is an old one under a new number, and so may be the
 /// next that does by chance: its session is believed again once all cells have come in their turn.
-bool Supervision::is_renumbered(const Packet& packet) noexcept {
+template <class Payload>
+bool SupervisionOf<Payload>::is_renumbered(const Packet& packet) noexcept {
   const AgreementExcerpt& said = packet.agreement;
   const Agreement& own = agreement_.own();
   if (said.digest == own.digest() && said.cell != own.excerpt(packet.sequence).cell) {
@@ -74,7 +115,8 @@ bool Supervision::is_renumbered(const Packet& packet) noexcept {
   return packet.session == doubted_session_ && packet.sequence <= believed_from_;
 }
 
-PacketVerdict Supervision::take(const Packet& packet) noexcept {
+template <class Payload>
+PacketVerdict SupervisionOf<Payload>::take(const Packet& packet) noexcept {
   const PacketVerdict verdict = is_renumbered(packet) ? PacketVerdict::stale : judge_.step(packet);
   if (verdict == PacketVerdict::applied) {
     newest_ = packet;
@@ -87,7 +129,8 @@ PacketVerdict Supervision::take(const Packet& packet) noexcept {
 }
 
 /// Whether the master has waited too long for the slave to follow its arming.
-bool Supervision::unanswered() noexcept {
+template <class Payload>
+bool SupervisionOf<Payload>::unanswered() noexcept {
   const std::int64_t armings = supervisor_.armings();
   const bool waits = role_ == SiteRole::master && before_ == SiteState::armed && newest_.armings != armings;
   if (!waits || armings != awaited_arming_) answer_.reset();
@@ -95,7 +138,8 @@ bool Supervision::unanswered() noexcept {
   return waits && answer_.step({.heard = false, .elapsed_ticks = elapsed_ticks_});
 }
 
-SiteState Supervision::decide(const Sight& sight) noexcept {
+template <class Payload>
+SiteState SupervisionOf<Payload>::decide(const Sight& sight) noexcept {
   before_ = supervisor_.state();
   elapsed_ticks_ = std::max<std::int64_t>(sight.elapsed_ticks, 1);
   fresh_ = arrived_;
@@ -105,7 +149,7 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
   if (!guards && fresh_) watchdog_.reset();
   const bool silent = watchdog_.step({.heard = fresh_, .elapsed_ticks = elapsed_ticks_});
   const bool overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_});
-  proved_ = proved_ || probe_.verdict() == ProbeVerdict::passed;
+  proved_ = proved_ || probe_passed();
   supervisor_.step(
       {.requests = sight.requests,
        .heard = newest_.session != 0,
@@ -120,36 +164,83 @@ SiteState Supervision::decide(const Sight& sight) noexcept {
        .out_of_pace = pace_.step(
            {.following = before_ == SiteState::active, .sequence = newest_.sequence, .elapsed_ticks = elapsed_ticks_}),
        .force_sensor = sight.force_sensor,
-       .probe = cause_of(probe_.verdict()),
+       .probe = probe_failed(),
        .proved = proved_,
        .energy = sight.fault == GateFault::energy,
        .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
   cannot_hold_ = state() == SiteState::hold && (cannot_hold_ || overloaded);
-  if (arms_from_rest()) proved_ = !must_be_proved_;
+  if (arms_from_rest()) {
+    proved_ = true;
+    for_each_joint([this](bool tried) noexcept { proved_ = proved_ && !tried; }, tried_);
+  }
   if (role_ == SiteRole::master || !probes()) answered_arming_ = supervisor_.armings();
   return state();
 }
 
-bool Supervision::arms_from_rest() const noexcept {
+template <class Payload>
+bool SupervisionOf<Payload>::arms_from_rest() const noexcept {
   return state() == SiteState::armed && (before_ == SiteState::align || before_ == SiteState::hold);
 }
 
-bool Supervision::rearms() const noexcept {
+template <class Payload>
+bool SupervisionOf<Payload>::rearms() const noexcept {
   return arms_from_rest() || (state() == SiteState::align && before_ != SiteState::align);
 }
 
-Arrival Supervision::arrival(double offset_m) noexcept {
-  Arrival told{.message = newest_.message, .fresh = fresh_};
-  told.message.position_m -= offset_m;
-  return follower_.step({.arrival = told, .following = state() == SiteState::active, .elapsed_ticks = elapsed_ticks_});
+template <class Payload>
+Each<Payload, Arrival> SupervisionOf<Payload>::arrival(const Lengths& offset_m) noexcept {
+  Each<Payload, Arrival> arrivals = same_for_each(offset_m, Arrival{});
+  for_each_joint(
+      [this](MessageFollower& follower, const Message& message, double offset, Arrival& arrival) noexcept {
+        Arrival told{.message = message, .fresh = fresh_};
+        told.message.position_m -= offset;
+        arrival = follower.step(
+            {.arrival = told, .following = state() == SiteState::active, .elapsed_ticks = elapsed_ticks_});
+      },
+      follower_, newest_.message, offset_m, arrivals);
+  return arrivals;
 }
 
-double Supervision::probe(double position_m, bool force_passes) noexcept {
+template <class Payload>
+typename SupervisionOf<Payload>::Forces SupervisionOf<Payload>::probe(const Lengths& position_m,
+                                                                      bool force_passes) noexcept {
   probing_ = probes() && (probing_ || (share_ == 0.0 && !force_passes));
-  return probe_.step({.probing = probing_, .position_m = position_m, .elapsed_ticks = elapsed_ticks_});
+  Forces forces = same_for_each(position_m, 0.0);
+  bool turn = probing_;
+  for_each_joint(
+      [this, &turn](SignProbe& probe, bool tried, double position, double& force) noexcept {
+        force = probe.step({.probing = turn && tried, .position_m = position, .elapsed_ticks = elapsed_ticks_});
+        turn = turn && (!tried || probe.verdict() == ProbeVerdict::passed);
+      },
+      probe_, tried_, position_m, forces);
+  return forces;
 }
 
-double Supervision::blend(bool in) noexcept {
+/// Why the first joint that did not pass did not.
+template <class Payload>
+SiteCause SupervisionOf<Payload>::probe_failed() const noexcept {
+  SiteCause cause = SiteCause::none;
+  for_each_joint(
+      [&cause](const SignProbe& probe) noexcept {
+        if (cause == SiteCause::none) cause = cause_of(probe.verdict());
+      },
+      probe_);
+  return cause;
+}
+
+template <class Payload>
+bool SupervisionOf<Payload>::probe_passed() const noexcept {
+  bool passed = true;
+  for_each_joint(
+      [&passed](const SignProbe& probe, bool tried) noexcept {
+        passed = passed && (!tried || probe.verdict() == ProbeVerdict::passed);
+      },
+      probe_, tried_);
+  return passed;
+}
+
+template <class Payload>
+double SupervisionOf<Payload>::blend(bool in) noexcept {
   // Who lets go of the switch may let go of the handle, and what is left of the force would throw it.
   const bool nobody_holds =
       role_ == SiteRole::master && state() == SiteState::armed && supervisor_.cause() == SiteCause::dead_man;
@@ -159,7 +250,8 @@ double Supervision::blend(bool in) noexcept {
   return share_ = in ? std::min(share_ + blend_step_, 1.0) : std::max(share_ - out_step, 0.0);
 }
 
-Packet Supervision::packet(const Message& message) noexcept {
+template <class Payload>
+PacketOf<Payload> SupervisionOf<Payload>::packet(const Payload& message) noexcept {
   return {.session = session_,
           .sequence = ++sequence_,
           .age_s = 0.0,
@@ -169,7 +261,11 @@ Packet Supervision::packet(const Message& message) noexcept {
           .agreement = agreement_.own().excerpt(sequence_)};
 }
 
-SiteRecord Supervision::record() const noexcept {
+template <class Payload>
+SiteRecord SupervisionOf<Payload>::record() const noexcept {
+  double gap_m = 0.0;
+  for_each_joint([&gap_m](const MessageFollower& follower) noexcept { gap_m = farther(gap_m, follower.gap_m()); },
+                 follower_);
   return {.state = static_cast<std::int64_t>(state()),
           .cause = static_cast<std::int64_t>(supervisor_.cause()),
           .armings = supervisor_.armings(),
@@ -179,8 +275,11 @@ SiteRecord Supervision::record() const noexcept {
           .fresh = fresh_,
           .silence_s = watchdog_.silence_s(),
           .share = share_,
-          .gap_m = follower_.gap_m(),
+          .gap_m = gap_m,
           .differs = static_cast<std::int64_t>(agreement_.first_difference())};
 }
+
+template class SupervisionOf<Message>;
+template class SupervisionOf<Joints<Message>>;
 
 }  // namespace tactus::control

@@ -31,7 +31,7 @@ struct HoldParams {
 
 /// The group `[control.supervision]`: what a site makes of the other one and of its own state.
 struct SupervisionParams {
-  PacketJudge::Params packets;
+  PacketJudgeParams packets;
   MessageFollower::Params silence;
   Watchdog::Params watchdog;
   ForceSensorCheck::Params force_sensor;
@@ -148,12 +148,22 @@ struct SiteRecord {
   }
 };
 
-/// One site's half of the link, its watchdog and its state: what both sites have in common.
-class Supervision {
+/// One site's half of the link, its watchdog and its state: what both sites have in common. A site is in one state,
+/// with all its joints: what is wrong with one of them holds them all. Each joint has its own follower, and its motor
+/// is tried by itself, one after the other, since each moves the others too.
+template <class Payload>
+class SupervisionOf {
  public:
-  /// A site whose other half does not have `agreement` in common with it is never armed.
-  static Result<Supervision> make(const SupervisionParams& params, SiteRole role, std::int64_t session, Seconds dt,
-                                  const Agreement& agreement = {});
+  using Params = Each<Payload, SupervisionParams>;
+  using Packet = PacketOf<Payload>;
+  using Lengths = Each<Payload, double>;  ///< in m
+  using Forces = Each<Payload, double>;   ///< in N
+
+  /// A site whose other half does not have `agreement` in common with it is never armed. Of several joints, what the
+  /// site has but once must be the same for all: what they may differ in are the limits of `packets`, `silence`,
+  /// `probe` and the checks of force sensors.
+  static Result<SupervisionOf> make(const Params& params, SiteRole role, std::int64_t session, Seconds dt,
+                                    const Agreement& agreement = {});
 
   /// What the site itself saw, for `decide`.
   struct Sight {
@@ -168,19 +178,22 @@ class Supervision {
   /// The state for this tick. Real-time safe.
   SiteState decide(const Sight& sight) noexcept;
   /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
-  Arrival arrival(double offset_m) noexcept;
+  Each<Payload, Arrival> arrival(const Lengths& offset_m) noexcept;
   /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone and none
   /// passes to the motor any more, `position_m` being measured. Once, after `decide` and before `blend`.
-  double probe(double position_m, bool force_passes) noexcept;
+  Forces probe(const Lengths& position_m, bool force_passes) noexcept;
   /// Whether the site is armed and its motor not yet tried: the controller's force must go.
   [[nodiscard]] bool probes() const noexcept { return state() == SiteState::armed && !proved_; }
   /// The share of the controller's force, on its way to 1 or 0; in `fault`, and at a master whose dead-man switch was
   /// let go, 0 at once, for the gate to ramp. Once, after `decide`.
   double blend(bool in) noexcept;
   /// The packet that says `message`. Once a tick.
-  Packet packet(const Message& message) noexcept;
+  Packet packet(const Payload& message) noexcept;
   /// A slave's command is `position_m` until it follows.
-  void stand(double position_m) noexcept { follower_.settle(position_m); }
+  void stand(const Lengths& position_m) noexcept {
+    for_each_joint([](MessageFollower& follower, double at_m) noexcept { follower.settle(at_m); }, follower_,
+                   position_m);
+  }
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
   /// Whether the motor must get no force any more: in `fault`, and in a `hold` in which the site misses too many ticks
@@ -204,10 +217,12 @@ class Supervision {
   [[nodiscard]] bool is_renumbered(const Packet& packet) noexcept;
   [[nodiscard]] bool unanswered() noexcept;
   [[nodiscard]] bool arms_from_rest() const noexcept;
-  Supervision(const PacketJudge& judge, const MessageFollower& follower, const Watchdog& watchdog,
-              const Watchdog& answer, const OverloadCheck& overload, const PaceCheck& pace, const SignProbe& probe,
-              const SiteSupervisor& supervisor, SiteRole role, const SupervisionParams& params, std::int64_t session,
-              Seconds dt, const Agreement& agreement)
+  [[nodiscard]] SiteCause probe_failed() const noexcept;
+  [[nodiscard]] bool probe_passed() const noexcept;
+  SupervisionOf(const PacketJudgeOf<Payload>& judge, const Each<Payload, MessageFollower>& follower,
+                const Watchdog& watchdog, const Watchdog& answer, const OverloadCheck& overload, const PaceCheck& pace,
+                const Each<Payload, SignProbe>& probe, const SiteSupervisor& supervisor, SiteRole role,
+                const Params& all, std::int64_t session, Seconds dt, const Agreement& agreement)
       : judge_(judge),
         follower_(follower),
         watchdog_(watchdog),
@@ -218,34 +233,38 @@ class Supervision {
         supervisor_(supervisor),
         role_(role),
         dt_s_(dt.value),
-        longest_stall_s_(params.longest_stall_s),
-        blend_step_(dt.value / params.blend_s),
-        hold_step_(dt.value /
-                   (role == SiteRole::slave ? params.hold.release_s : std::min(params.hold.release_s, params.blend_s))),
-        must_be_proved_(params.probe.force_N > 0.0),
         session_(session),
-        agreement_(agreement) {}
+        agreement_(agreement),
+        newest_{.message = same_for_each(all, Message{})},
+        tried_(same_for_each(all, false)) {
+    const SupervisionParams& params = joint_of(all, 0);
+    longest_stall_s_ = params.longest_stall_s;
+    blend_step_ = dt.value / params.blend_s;
+    hold_step_ =
+        dt.value / (role == SiteRole::slave ? params.hold.release_s : std::min(params.hold.release_s, params.blend_s));
+    for_each_joint([](bool& tried, const SupervisionParams& joint) { tried = joint.probe.force_N > 0.0; }, tried_, all);
+  }
 
-  PacketJudge judge_;
-  MessageFollower follower_;
+  PacketJudgeOf<Payload> judge_;
+  Each<Payload, MessageFollower> follower_;
   Watchdog watchdog_;
   Watchdog answer_;  ///< of the slave to an arming
   OverloadCheck overload_;
   PaceCheck pace_;
-  SignProbe probe_;
+  Each<Payload, SignProbe> probe_;
   SiteSupervisor supervisor_;
   SiteRole role_;
   double dt_s_;
-  double longest_stall_s_;
-  double blend_step_;
-  double hold_step_;  ///< of the share, in a tick of `hold`
-  bool must_be_proved_;
+  double longest_stall_s_ = 0.0;
+  double blend_step_ = 0.0;
+  double hold_step_ = 0.0;  ///< of the share, in a tick of `hold`
   std::int64_t session_;
   std::int64_t sequence_ = 0;
   std::int64_t doubted_session_ = 0;  ///< which put new numbers on old packets
   std::int64_t believed_from_ = 0;    ///< number of its packets after which they count again
   AgreementCheck agreement_;
   Packet newest_;
+  Each<Payload, bool> tried_;  ///< whether arming tries the motor
   bool arrived_ = false;
   bool fresh_ = false;
   std::int64_t elapsed_ticks_ = 1;
@@ -258,5 +277,7 @@ class Supervision {
   double share_ = 0.0;
   SiteState before_ = SiteState::configure;
 };
+using Supervision = SupervisionOf<Message>;
+using JointSupervision = SupervisionOf<Joints<Message>>;
 
 }  // namespace tactus::control

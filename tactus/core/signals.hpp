@@ -2,10 +2,14 @@
 
 #include <tactus/core/units.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 
 /// One description of everything that can be looked at.
 ///
@@ -54,5 +58,39 @@ template <Recordable T, class Visit>
 constexpr void for_each_signal(Visit&& visit) {
   std::apply([&](const auto&... all) { (visit(all), ...); }, T::signals());
 }
+
+/// A text as a template argument.
+template <std::size_t size>
+struct FixedText {
+  char text[size]{};
+  constexpr FixedText(const char (&from)[size]) { std::copy_n(from, size, text); }
+};
+
+/// The signals of `T` as a part of a record that derives from it, each name after `prefix`. So a record may hold two
+/// parts of one type: what a site heard and what it told.
+template <class T, FixedText prefix>
+struct Part : T {
+  static constexpr auto signals() { return signals(std::make_index_sequence<count>()); }
+
+ private:
+  static constexpr std::size_t count = std::tuple_size_v<decltype(T::signals())>;
+  template <std::size_t I>
+  static constexpr auto name = [] {
+    constexpr std::string_view own = std::get<I>(T::signals()).name;
+    std::array<char, sizeof(prefix.text) + own.size()> joined{};
+    std::copy(own.begin(), own.end(), std::copy_n(prefix.text, sizeof(prefix.text) - 1, joined.begin()));
+    return joined;
+  }();
+  template <std::size_t I>
+  static constexpr auto renamed() {
+    constexpr auto own = std::get<I>(T::signals());
+    using Value = typename decltype(own)::value_type;
+    return Observed<Part, Value>{name<I>.data(), own.member, own.unit, own.site, own.frame, own.sign, own.doc};
+  }
+  template <std::size_t... I>
+  static constexpr auto signals(std::index_sequence<I...>) {
+    return std::tuple{renamed<I>()...};
+  }
+};
 
 }  // namespace tactus

@@ -86,7 +86,7 @@ Snapshot snapshot_of(const SiteLogRecord& record, SiteRole role, std::int64_t st
     snapshot.hand_force_N = record.read_force_N;
   } else {
     snapshot.slave_position_m = record.position_m;
-    snapshot.slave_command_m = record.heard_position_m;
+    snapshot.slave_command_m = record.Heard::position_m;
     snapshot.environment_force_N = record.read_force_N;
   }
   return snapshot;
@@ -96,7 +96,7 @@ Snapshot snapshot_of(const SiteLogRecord& master, const SiteLogRecord& slave, st
   Snapshot snapshot = snapshot_of(master, SiteRole::master, stamp_ns);
   const Snapshot of_slave = snapshot_of(slave, SiteRole::slave, stamp_ns);
   snapshot.slave_position_m = of_slave.slave_position_m;
-  snapshot.slave_command_m = master.told_position_m;
+  snapshot.slave_command_m = master.Told::position_m;
   snapshot.environment_force_N = of_slave.environment_force_N;
   snapshot.state = together(snapshot.state, of_slave.state);
   return snapshot;

@@ -82,7 +82,7 @@ class Outlets {
                       .servo = &own.servo,
                       .sites = &own.sites,
                       .origin_ns = monotonic_ns(),
-                      .prefix = cases.all.size() > 1 ? "/" + run_name(i) : std::string()});
+                      .prefix = cases.all.size() > 1 ? std::string("/").append(run_name(i)) : std::string()});
     }
   }
   [[nodiscard]] const std::vector<RealTimeStreams>& all() const { return all_; }

@@ -38,7 +38,8 @@ void SiteBooks::judge(const SiteLogRecord& record) noexcept {
 
 void SiteBooks::measure(const SiteLogRecord& record) noexcept {
   const double force_N = record.motor_force_N;
-  if (!std::isfinite(force_N) || !control::is_finite(record.told())) ++totals_.not_finite;
+  if (!std::isfinite(force_N) || !control::is_finite(static_cast<const SiteLogRecord::Told&>(record)))
+    ++totals_.not_finite;
   const double step_N = std::fabs(force_N - last_.motor_force_N);
   constexpr double round_off = 1e-12;
   if (step_N > totals_.force_step_limit_N * (1.0 + round_off)) ++totals_.steps_above_limit;

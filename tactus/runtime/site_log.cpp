@@ -22,17 +22,12 @@ SiteStreams SiteStreams::of_both() {
           .origin_ns = monotonic_ns()};
 }
 
-Result<SiteLog> SiteLog::create(const std::filesystem::path& folder, const SiteStreams& streams,
-                                const LogMetadata& about, std::uint64_t most_bytes) {
+Result<SiteLog> SiteLog::open(const std::filesystem::path& folder, const LogMetadata& about, std::uint64_t most_bytes) {
   if (auto error = report::prepare_directory(folder)) return *std::move(error);
   std::filesystem::path file = folder / "log.mcap";
   auto recorder = telemetry::Recorder::create(file, most_bytes);
   if (!recorder) return recorder.error();
   for (const auto& [name, content] : about) recorder->add_metadata(name, content);
-  streams.for_each([&recorder](const std::string& topic, const char* type_name, const auto& stream) {
-    recorder->add(topic, type_name, stream);
-  });
-  recorder->start();
   return SiteLog(std::move(file), *std::move(recorder));
 }
 

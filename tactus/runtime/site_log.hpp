@@ -41,7 +41,8 @@ struct SiteStreams {
     const bool both = site[0] && site[1];
     for (const auto& [role, name] : enumerators(control::SiteRole{})) {
       if (of(role) == nullptr) continue;
-      visit(both ? std::string("/") + name + "/site" : std::string("/site"), "tactus_msgs/msg/SiteRecord", *of(role));
+      visit(both ? std::string("/").append(name).append("/site") : std::string("/site"), "tactus_msgs/msg/SiteRecord",
+            *of(role));
     }
     if (packets) visit(std::string("/packets"), "tactus_msgs/msg/PacketRecord", *packets);
     if (servo) visit(std::string("/servo"), "tactus_msgs/msg/ServoRecord", *servo);
@@ -51,13 +52,22 @@ struct SiteStreams {
 /// What a log says about itself: a name, and values by their keys.
 using LogMetadata = std::map<std::string, std::map<std::string, std::string>>;
 
-/// The log of sites that run, written beside the servo thread.
+/// The log of sites that run, written beside the servo thread: all that goes into `SiteStreams` or `JointStreams`.
 class SiteLog {
  public:
   /// Opens `folder/log.mcap`, which takes all that goes into the streams from now on; the folder is made. `about` says
   /// what ran. `most_bytes` and errors as in `LogWriter::create`.
-  static Result<SiteLog> create(const std::filesystem::path& folder, const SiteStreams& streams,
-                                const LogMetadata& about, std::uint64_t most_bytes = 0);
+  template <class Streams>
+  static Result<SiteLog> create(const std::filesystem::path& folder, const Streams& streams, const LogMetadata& about,
+                                std::uint64_t most_bytes = 0) {
+    auto log = open(folder, about, most_bytes);
+    if (!log) return log.error();
+    streams.for_each([&log](const std::string& topic, const char* type_name, const auto& stream) {
+      log->recorder_.add(topic, type_name, stream);
+    });
+    log->recorder_.start();
+    return log;
+  }
 
   /// Writes what is waiting, ends the log and adds `metadata.yaml` for ROS 2 bag tools. After the last push. Errors:
   /// `unwritable` where anything was lost on the disk.
@@ -68,6 +78,7 @@ class SiteLog {
   [[nodiscard]] std::uint64_t removed() const { return recorder_.log().removed(); }
 
  private:
+  static Result<SiteLog> open(const std::filesystem::path& folder, const LogMetadata& about, std::uint64_t most_bytes);
   SiteLog(std::filesystem::path file, telemetry::Recorder recorder)
       : file_(std::move(file)), recorder_(std::move(recorder)) {}
 

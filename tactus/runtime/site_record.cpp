@@ -18,41 +18,43 @@ constexpr bool control::SiteRequests::*buttons[]{&control::SiteRequests::align, 
                                                  &control::SiteRequests::leave};
 
 template <class Supervised>
-SiteLogRecord either(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,
-                     const station::Step<Supervised>& done) noexcept {
-  SiteLogRecord record{done.output.record};
+SiteTickRecord of_site(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,
+                       const station::Step<Supervised>& done) noexcept {
+  SiteTickRecord record{done.output.record};
   record.tick = tick.number;
   record.missed = tick.missed;
-  record.position_m = done.reading.position_m;
-  record.read_force_N = done.reading.force_N;
-  record.motor_force_N = done.output.site.motor_force_N;
+  record.age_s = site.heard().age_s;
   record.pressed = number_of(pressed);
-  const control::Packet& heard = site.heard();
-  record.age_s = heard.age_s;
-  record.heard_position_m = heard.message.position_m;
-  record.heard_velocity_m_per_s = heard.message.velocity_m_per_s;
-  record.heard_force_N = heard.message.force_N;
-  record.heard_wave = heard.message.wave;
-  record.heard_energy_J = heard.message.energy_J;
-  const control::Packet& told = done.output.packet;
-  record.told_sequence = told.sequence;
-  record.told_position_m = told.message.position_m;
-  record.told_velocity_m_per_s = told.message.velocity_m_per_s;
-  record.told_force_N = told.message.force_N;
-  record.told_wave = told.message.wave;
-  record.told_energy_J = told.message.energy_J;
+  record.told_sequence = done.output.packet.sequence;
+  return record;
+}
+
+/// What one axis read and gave, into `record`, which has what is common to both kinds of log.
+template <class Record, class Output>
+void fill(Record& record, const station::DeviceReading& reading, const Output& output, const control::Message& heard,
+          const control::Message& told) noexcept {
+  record.position_m = reading.position_m;
+  record.read_force_N = reading.force_N;
+  record.motor_force_N = output.motor_force_N;
+  if constexpr (requires { output.handle_force_N; }) {
+    record.grip = reading.grip;
+    record.handle_force_N = output.handle_force_N;
+    record.induced_position_m = output.induced_position_m;
+    record.intended_position_m = output.intended_position_m;
+  }
+  static_cast<control::Message&>(static_cast<typename Record::Heard&>(record)) = heard;
+  static_cast<control::Message&>(static_cast<typename Record::Told&>(record)) = told;
+}
+
+template <class Supervised>
+SiteLogRecord of_one_axis(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,
+                          const station::Step<Supervised>& done) noexcept {
+  SiteLogRecord record{of_site(tick, pressed, site, done), {}, {}, {}};
+  fill(record, done.reading, done.output.site, site.heard().message, done.output.packet.message);
   return record;
 }
 
 }  // namespace
-
-control::Message SiteLogRecord::told() const noexcept {
-  return {.position_m = told_position_m,
-          .velocity_m_per_s = told_velocity_m_per_s,
-          .force_N = told_force_N,
-          .wave = told_wave,
-          .energy_J = told_energy_J};
-}
 
 control::Packet PacketRecord::packet() const noexcept {
   return {.session = session,
@@ -104,18 +106,43 @@ control::SiteRequests requests_of(std::int64_t pressed) noexcept {
 SiteLogRecord recorded(const station::Tick& tick, const control::SiteRequests& pressed,
                        const control::SupervisedMaster& site,
                        const station::Step<control::SupervisedMaster>& done) noexcept {
-  SiteLogRecord record = either(tick, pressed, site, done);
-  record.grip = done.reading.grip;
-  record.handle_force_N = done.output.site.handle_force_N;
-  record.induced_position_m = done.output.site.induced_position_m;
-  record.intended_position_m = done.output.site.intended_position_m;
-  return record;
+  return of_one_axis(tick, pressed, site, done);
 }
 
 SiteLogRecord recorded(const station::Tick& tick, const control::SiteRequests& pressed,
                        const control::SupervisedSlave& site,
                        const station::Step<control::SupervisedSlave>& done) noexcept {
-  return either(tick, pressed, site, done);
+  return of_one_axis(tick, pressed, site, done);
 }
+
+template <class Site>
+SiteTickRecord recorded(const station::Tick& tick, const control::SiteRequests& pressed, const Site& site,
+                        const station::Step<Site>& done) noexcept {
+  return of_site(tick, pressed, site, done);
+}
+
+template <class Site>
+JointLogRecord recorded(const station::Tick& tick, std::size_t joint, const Site& site,
+                        const station::Step<Site>& done) noexcept {
+  JointLogRecord record;
+  const control::SafetyGate& gate = site.site().gates()[joint].motor();
+  record.tick = tick.number;
+  record.limit = static_cast<std::int64_t>(gate.limit());
+  record.fault = static_cast<std::int64_t>(gate.fault());
+  record.given_J = gate.given_J();
+  fill(record, done.reading[joint], done.output.site[joint], site.heard().message[joint],
+       done.output.packet.message[joint]);
+  return record;
+}
+
+using Master = control::JointSupervisedMaster;
+using Slave = control::JointSupervisedSlave;
+template SiteTickRecord recorded(const station::Tick&, const control::SiteRequests&, const Master&,
+                                 const station::Step<Master>&) noexcept;
+template SiteTickRecord recorded(const station::Tick&, const control::SiteRequests&, const Slave&,
+                                 const station::Step<Slave>&) noexcept;
+template JointLogRecord recorded(const station::Tick&, std::size_t, const Master&,
+                                 const station::Step<Master>&) noexcept;
+template JointLogRecord recorded(const station::Tick&, std::size_t, const Slave&, const station::Step<Slave>&) noexcept;
 
 }  // namespace tactus::runtime

@@ -4,45 +4,25 @@
 #include <tactus/core/signals.hpp>
 #include <tactus/station/step.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <tuple>
 
 /// What a site under supervision leaves of each tick: with the configuration, enough to step it again.
 namespace tactus::runtime {
 
-/// One tick of a site: what supervision shows, what the link knows, and what the site read, heard and gave. Positions
-/// and forces are positive toward the environment unless said otherwise.
-struct SiteLogRecord : control::SiteRecord {
+/// One tick of a site, with all its joints: what supervision and the link show of it.
+struct SiteTickRecord : control::SiteRecord {
   std::int64_t tick = 0;
   std::int64_t missed = 0;
   double age_s = 0.0;
   double round_trip_s = 0.0;
   double link_silence_s = 0.0;
-  double position_m = 0.0;
-  double read_force_N = 0.0;
-  double grip = 0.0;
-  double motor_force_N = 0.0;
-  double handle_force_N = 0.0;
-  double induced_position_m = 0.0;
-  double intended_position_m = 0.0;
   std::int64_t pressed = 0;
   std::int64_t arrivals = 0;
-  double heard_position_m = 0.0;
-  double heard_velocity_m_per_s = 0.0;
-  double heard_force_N = 0.0;
-  double heard_wave = 0.0;
-  double heard_energy_J = 0.0;
   std::int64_t told_sequence = 0;
-  double told_position_m = 0.0;
-  double told_velocity_m_per_s = 0.0;
-  double told_force_N = 0.0;
-  double told_wave = 0.0;
-  double told_energy_J = 0.0;
-
-  [[nodiscard]] control::Message told() const noexcept;
-
   static constexpr auto signals() {
-    using R = SiteLogRecord;
+    using R = SiteTickRecord;
     return std::tuple_cat(
         control::SiteRecord::signals(),
         std::tuple{
@@ -52,43 +32,72 @@ struct SiteLogRecord : control::SiteRecord {
             observed("round_trip_s", &R::round_trip_s, units::second, "", "", "", "Of the latest echo."),
             observed("link_silence_s", &R::link_silence_s, units::second, "", "", "",
                      "Since any packet of the other site arrived, applied or not; 0 before the first."),
-            observed("position_m", &R::position_m, units::metre, "", "", "toward the environment",
-                     "Read at the motor."),
-            observed(
-                "read_force_N", &R::read_force_N, units::newton, "", "", "",
-                "Master: read on the handle, toward the environment. Slave: read at the tip, which is pushed back."),
-            observed("grip", &R::grip, units::none, "master", "", "",
-                     "Read: how firmly the person holds, over nominal."),
-            observed("motor_force_N", &R::motor_force_N, units::newton, "", "", "toward the environment",
-                     "Commanded to the motor."),
-            observed("handle_force_N", &R::handle_force_N, units::newton, "master", "hand", "toward the environment",
-                     "Commanded to the actuator on the handle."),
-            observed("induced_position_m", &R::induced_position_m, units::metre, "master", "hand",
-                     "toward the environment", "Estimated effect of the displayed force."),
-            observed("intended_position_m", &R::intended_position_m, units::metre, "master", "hand",
-                     "toward the environment", "Measured less induced."),
             observed("pressed", &R::pressed, units::none, "", "", "",
                      "By the person, added up: 1 align, 2 arm, 4 clear, 8 dead-man switch, 16 clutch, 32 emergency "
                      "stop, 64 leave."),
             observed("arrivals", &R::arrivals, units::none, "", "", "",
                      "Packets that came over the link at this tick, each a record of the topic /packets."),
-            observed("heard_position_m", &R::heard_position_m, units::metre, "", "slave", "",
-                     "Of the message that was applied last."),
-            observed("heard_velocity_m_per_s", &R::heard_velocity_m_per_s, units::metre_per_second, "", "slave", "",
-                     "Of the message that was applied last."),
-            observed("heard_force_N", &R::heard_force_N, units::newton, "", "slave", "",
-                     "Of the message that was applied last."),
-            observed("heard_wave", &R::heard_wave, units::none, "", "slave", "",
-                     "Of the message that was applied last."),
-            observed("heard_energy_J", &R::heard_energy_J, units::joule, "", "slave", "",
-                     "Of the message that was applied last."),
-            observed("told_sequence", &R::told_sequence, units::none, "", "", "", "Of the packet that was sent."),
-            observed("told_position_m", &R::told_position_m, units::metre, "", "slave", "", "Told to the other site."),
-            observed("told_velocity_m_per_s", &R::told_velocity_m_per_s, units::metre_per_second, "", "slave", "",
-                     "Told to the other site."),
-            observed("told_force_N", &R::told_force_N, units::newton, "", "slave", "", "Told to the other site."),
-            observed("told_wave", &R::told_wave, units::none, "", "slave", "", "Told to the other site."),
-            observed("told_energy_J", &R::told_energy_J, units::joule, "", "slave", "", "Told to the other site.")});
+            observed("told_sequence", &R::told_sequence, units::none, "", "", "", "Of the packet that was sent.")});
+  }
+};
+
+/// One tick of one axis, or of one joint of several: what was read, and what was given. Positions and forces are
+/// positive toward the environment unless said otherwise.
+struct AxisRecord {
+  double position_m = 0.0;
+  double read_force_N = 0.0;
+  double grip = 0.0;
+  double motor_force_N = 0.0;
+  double handle_force_N = 0.0;
+  double induced_position_m = 0.0;
+  double intended_position_m = 0.0;
+  static constexpr auto signals() {
+    using R = AxisRecord;
+    return std::tuple{
+        observed("position_m", &R::position_m, units::metre, "", "", "toward the environment", "Read at the motor."),
+        observed("read_force_N", &R::read_force_N, units::newton, "", "", "",
+                 "Master: read on the handle, toward the environment. Slave: read at the tip, which is pushed back."),
+        observed("grip", &R::grip, units::none, "master", "", "", "Read: how firmly the person holds, over nominal."),
+        observed("motor_force_N", &R::motor_force_N, units::newton, "", "", "toward the environment",
+                 "Commanded to the motor."),
+        observed("handle_force_N", &R::handle_force_N, units::newton, "master", "hand", "toward the environment",
+                 "Commanded to the actuator on the handle."),
+        observed("induced_position_m", &R::induced_position_m, units::metre, "master", "hand", "toward the environment",
+                 "Estimated effect of the displayed force."),
+        observed("intended_position_m", &R::intended_position_m, units::metre, "master", "hand",
+                 "toward the environment", "Measured less induced.")};
+  }
+};
+
+/// One tick of a site of one axis.
+struct SiteLogRecord : SiteTickRecord, AxisRecord, Part<control::Message, "heard_">, Part<control::Message, "told_"> {
+  using Heard = Part<control::Message, "heard_">;  ///< the message that was applied last
+  using Told = Part<control::Message, "told_">;    ///< to the other site
+  using AxisRecord::position_m;
+  static constexpr auto signals() {
+    return std::tuple_cat(SiteTickRecord::signals(), AxisRecord::signals(), Heard::signals(), Told::signals());
+  }
+};
+
+/// One tick of one joint of a site of several, in the joint's unit: where a name says m and N, one that turns has rad
+/// and N m. What all joints share is in the `SiteTickRecord` of the tick.
+struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<control::Message, "told_"> {
+  using Heard = Part<control::Message, "heard_">;
+  using Told = Part<control::Message, "told_">;
+  using AxisRecord::position_m;
+  std::int64_t tick = 0;
+  std::int64_t limit = 0;
+  std::int64_t fault = 0;
+  double given_J = 0.0;
+  static constexpr auto signals() {
+    using R = JointLogRecord;
+    return std::tuple_cat(
+        std::tuple{observed("tick", &R::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
+                   observed("limit", &R::limit, units::none, "", "", "", control::limit_legend.text),
+                   observed("fault", &R::fault, units::none, "", "", "", control::fault_legend.text),
+                   observed("given_J", &R::given_J, units::joule, "", "", "the motor gave it",
+                            "Account of the passivity monitor.")},
+        AxisRecord::signals(), Heard::signals(), Told::signals());
   }
 };
 
@@ -141,5 +150,14 @@ SiteLogRecord recorded(const station::Tick& tick, const control::SiteRequests& p
 SiteLogRecord recorded(const station::Tick& tick, const control::SiteRequests& pressed,
                        const control::SupervisedSlave& site,
                        const station::Step<control::SupervisedSlave>& done) noexcept;
+
+/// The same of a site of several joints: what they share, and one of them, from 0. `Site` is `JointSupervisedMaster` or
+/// `JointSupervisedSlave`.
+template <class Site>
+SiteTickRecord recorded(const station::Tick& tick, const control::SiteRequests& pressed, const Site& site,
+                        const station::Step<Site>& done) noexcept;
+template <class Site>
+JointLogRecord recorded(const station::Tick& tick, std::size_t joint, const Site& site,
+                        const station::Step<Site>& done) noexcept;
 
 }  // namespace tactus::runtime

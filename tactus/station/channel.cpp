@@ -38,5 +38,7 @@ typename ChannelOf<Payload>::Delivery ChannelOf<Payload>::step(const Payload& me
 
 template class ChannelOf<control::Message>;
 template class ChannelOf<control::Packet>;
+template class ChannelOf<Joints<control::Message>>;
+template class ChannelOf<control::JointPacket>;
 
 }  // namespace tactus::station

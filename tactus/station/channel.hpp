@@ -39,7 +39,7 @@ struct LinkParams {
 };
 
 /// One way of the link in ticks of one clock: a delay, jitter that may reorder, and loss. `Payload` is a `Message` or a
-/// `Packet`.
+/// `Packet`, of one axis or of several joints.
 ///
 /// Each message takes the delay plus an evenly drawn share of the jitter, in whole ticks. Of the messages that arrive
 /// in a tick the newest counts, and one that is older than what came before is dropped: an old state is never applied.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/core/joints.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/station/tick.hpp>
 
@@ -42,21 +43,30 @@ struct DeviceCommand {
   bool enabled = true;          ///< false: the forces end at the rate limit, then the drive has no power
 };
 
-/// One axis of hardware, or what stands for it: where a user plugs in. Once a tick `read` and then `write` are called,
-/// on the servo thread; both and `health` must not allocate, lock, throw or block. The command holds until the next
-/// one.
-class Device {
+/// Hardware of one axis, or of several joints behind one bus, or what stands for it: where a user plugs in. Once a tick
+/// `read` and then `write` are called, on the servo thread; both and `health` must not allocate, lock, throw or block.
+/// A bus that blocks has a thread of its own, and these exchange the newest values with it. The command holds until the
+/// next one.
+template <class Reading>
+class DeviceOf {
  public:
-  virtual ~Device() = default;
-  /// Not real-time safe.
-  [[nodiscard]] virtual DeviceLimits limits() const = 0;
+  using Command = Each<Reading, DeviceCommand>;
+
+  virtual ~DeviceOf() = default;
+  /// Of each joint; they say how many there are. Not real-time safe.
+  [[nodiscard]] virtual Each<Reading, DeviceLimits> limits() const = 0;
   /// Whether nobody can be hurt by it. Anything else needs limits of its own and gates that somebody has set.
   [[nodiscard]] virtual bool simulated() const noexcept { return false; }
   /// What the sensors read at this tick. A device that has nothing new gives its last reading and is `degraded`.
-  virtual DeviceReading read(const Tick& tick) noexcept = 0;
+  virtual Reading read(const Tick& tick) noexcept = 0;
   /// To the actuators.
-  virtual void write(const DeviceCommand& command) noexcept = 0;
+  virtual void write(const Command& command) noexcept = 0;
+  /// Of the device as a whole.
   [[nodiscard]] virtual DeviceHealth health() const noexcept = 0;
 };
+/// Of one axis.
+using Device = DeviceOf<DeviceReading>;
+/// Of several joints.
+using JointDevice = DeviceOf<Joints<DeviceReading>>;
 
 }  // namespace tactus::station

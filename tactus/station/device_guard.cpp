@@ -103,8 +103,9 @@ DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) n
   return passed_;
 }
 
-Check check_limits(const Device& device) {
-  const DeviceLimits limits = device.limits();
+namespace {
+
+Check check_limits(const DeviceLimits& limits, bool simulated) {
   for (const auto& [name, value, unit, needed] :
        {std::tuple{"force_N", limits.force_N, units::newton, true},
         std::tuple{"handle_force_N", limits.handle_force_N, units::newton, false},
@@ -112,7 +113,7 @@ Check check_limits(const Device& device) {
         std::tuple{"velocity_m_per_s", limits.velocity_m_per_s, units::metre_per_second, true},
         std::tuple{"position_m", limits.position_m, units::metre, true}}) {
     if (!std::isfinite(value) || value < 0.0) return out_of_bounds(name, value, non_negative, unit);
-    if (value == 0.0 && needed && !device.simulated()) {
+    if (value == 0.0 && needed && !simulated) {
       return Error{.code = ErrorCode::missing,
                    .parameter = name,
                    .message =
@@ -124,23 +125,66 @@ Check check_limits(const Device& device) {
   return std::nullopt;
 }
 
-DeviceReading GuardedDevice::read(const Tick& tick) noexcept {
-  const DeviceReading reading = device_->read(tick);
+}  // namespace
+
+template <class Reading>
+Check check_limits(const DeviceOf<Reading>& device) {
+  const auto limits = device.limits();
+  if (joints_of(limits) == 0 || joints_of(limits) > most_joints) {
+    return out_of_bounds("joints", static_cast<double>(joints_of(limits)), between(1.0, most_joints), units::none);
+  }
+  for (std::size_t joint = 0; joint < joints_of(limits); ++joint) {
+    if (auto error = check_limits(joint_of(limits, joint), device.simulated())) {
+      return under_joint<Reading>(joint, *std::move(error));
+    }
+  }
+  return std::nullopt;
+}
+
+template <class Reading>
+Reading GuardedDeviceOf<Reading>::read(const Tick& tick) noexcept {
+  const Reading reading = device_->read(tick);
   const bool silent = written_ns_ != now_.deadline_ns;
   now_ = tick;
-  if (device_->health() != DeviceHealth::lost) guard_.observe(reading.position_m, tick);
+  if (device_->health() != DeviceHealth::lost) {
+    for_each_joint(
+        [&tick](DeviceGuard& guard, const DeviceReading& joint) noexcept { guard.observe(joint.position_m, tick); },
+        guard_, reading);
+  }
   if (written_ && silent) {
-    if (tick.deadline_ns - written_ns_ > patience_ns_) guard_.let_go(LetGo::silent);
-    device_->write(guard_.pass(wanted_, tick));
+    if (tick.deadline_ns - written_ns_ > patience_ns_) {
+      for_each_joint([](DeviceGuard& guard) noexcept { guard.let_go(LetGo::silent); }, guard_);
+    }
+    device_->write(pass());
   }
   return reading;
 }
 
-void GuardedDevice::write(const DeviceCommand& command) noexcept {
+template <class Reading>
+void GuardedDeviceOf<Reading>::write(const Command& command) noexcept {
   wanted_ = command;
-  device_->write(guard_.pass(wanted_, now_));
+  device_->write(pass());
   written_ = true;
   written_ns_ = now_.deadline_ns;
 }
+
+/// What may reach the actuators of what was wanted last. Where one joint lets go, so do the others.
+template <class Reading>
+typename GuardedDeviceOf<Reading>::Command GuardedDeviceOf<Reading>::pass() noexcept {
+  if constexpr (has_joints<Reading>) {
+    if (const LetGo found = cause(); found != LetGo::none) {
+      for_each_joint([found](DeviceGuard& guard) noexcept { guard.let_go(found); }, guard_);
+    }
+  }
+  Command passed = wanted_;
+  for_each_joint([this](DeviceGuard& guard, DeviceCommand& joint) noexcept { joint = guard.pass(joint, now_); }, guard_,
+                 passed);
+  return passed;
+}
+
+template Check check_limits(const Device&);
+template Check check_limits(const JointDevice&);
+template class GuardedDeviceOf<DeviceReading>;
+template class GuardedDeviceOf<Joints<DeviceReading>>;
 
 }  // namespace tactus::station

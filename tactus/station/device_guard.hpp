@@ -74,35 +74,67 @@ class DeviceGuard {
 };
 
 /// That every limit is a number and none negative; of a device that is not simulated, that none is missing but that of
-/// a second actuator. Errors: `out_of_bounds` or `missing`, with the limit's name.
-Check check_limits(const Device& device);
+/// a second actuator. Errors: `out_of_bounds` or `missing`, with the limit's name, under the joint where there are
+/// several.
+template <class Reading>
+Check check_limits(const DeviceOf<Reading>& device);
 
-/// A device behind its wall, for the process whose servo thread drives it. `lost` once the wall has let go. All but
-/// `limits` is real-time safe as far as the device is.
-class GuardedDevice final : public Device {
+/// A device behind its wall, for the process whose servo thread drives it. `lost` once the wall has let go, of all
+/// joints where one was wrong. All but `limits` is real-time safe as far as the device is.
+template <class Reading>
+class GuardedDeviceOf final : public DeviceOf<Reading> {
  public:
-  /// Around a device that outlives it, its limits checked.
-  explicit GuardedDevice(Device& device, Seconds patience = usual_silence)
-      : device_(&device), guard_(device.limits(), patience), patience_ns_(std::int64_t(1e9 * patience.value)) {}
+  using Command = Each<Reading, DeviceCommand>;
 
-  [[nodiscard]] DeviceLimits limits() const override { return device_->limits(); }
+  /// Around a device that outlives it, its limits checked.
+  explicit GuardedDeviceOf(DeviceOf<Reading>& device, Seconds patience = usual_silence)
+      : device_(&device),
+        guard_(guards_of(device.limits(), patience)),
+        patience_ns_(std::int64_t(1e9 * patience.value)),
+        wanted_(same_for_each(guard_, DeviceCommand{.enabled = false})) {}
+
+  [[nodiscard]] Each<Reading, DeviceLimits> limits() const override { return device_->limits(); }
   [[nodiscard]] bool simulated() const noexcept override { return device_->simulated(); }
   /// Lets go as well where nothing was written for longer than `patience`.
-  DeviceReading read(const Tick& tick) noexcept override;
-  void write(const DeviceCommand& command) noexcept override;
+  Reading read(const Tick& tick) noexcept override;
+  void write(const Command& command) noexcept override;
   [[nodiscard]] DeviceHealth health() const noexcept override {
-    return guard_.cause() == LetGo::none ? device_->health() : DeviceHealth::lost;
+    return cause() == LetGo::none ? device_->health() : DeviceHealth::lost;
   }
-  [[nodiscard]] const DeviceGuard& guard() const noexcept { return guard_; }
+  /// What was latched, at the first joint that has let go.
+  [[nodiscard]] LetGo cause() const noexcept {
+    LetGo found = LetGo::none;
+    for_each_joint(
+        [&found](const DeviceGuard& guard) noexcept {
+          if (found == LetGo::none) found = guard.cause();
+        },
+        guard_);
+    return found;
+  }
+  /// Of each joint.
+  [[nodiscard]] const Each<Reading, DeviceGuard>& guard() const noexcept { return guard_; }
 
  private:
-  Device* device_;
-  DeviceGuard guard_;
+  static Each<Reading, DeviceGuard> guards_of(const Each<Reading, DeviceLimits>& limits, Seconds patience) {
+    auto guards = same_for_each(limits, DeviceGuard(joint_of(limits, 0), patience));
+    for_each_joint(
+        [patience](DeviceGuard& guard, const DeviceLimits& joint) {
+          guard = {joint, patience};
+        },
+        guards, limits);
+    return guards;
+  }
+  Command pass() noexcept;
+
+  DeviceOf<Reading>* device_;
+  Each<Reading, DeviceGuard> guard_;
   std::int64_t patience_ns_;
   Tick now_;
-  DeviceCommand wanted_{.enabled = false};
+  Command wanted_;
   std::int64_t written_ns_ = 0;
   bool written_ = false;  ///< ever
 };
+using GuardedDevice = GuardedDeviceOf<DeviceReading>;
+using GuardedJointDevice = GuardedDeviceOf<Joints<DeviceReading>>;
 
 }  // namespace tactus::station

@@ -4,13 +4,13 @@
 namespace tactus::station {
 
 template <class Pair>
-Result<DevicePair<Pair>> DevicePair<Pair>::make(const control::ControlParams& control, const LinkParams& channel,
-                                                Seconds tick, double slave_start_m, Device& master, Device& slave) {
+Result<DevicePair<Pair>> DevicePair<Pair>::make(const Params& control, const LinkParams& channel, Seconds tick,
+                                                const Lengths& slave_start_m, Device& master, Device& slave) {
   auto master_wall = wall_before(master, control, control::SiteRole::master);
   if (!master_wall) return master_wall.error();
   auto slave_wall = wall_before(slave, control, control::SiteRole::slave);
   if (!slave_wall) return slave_wall.error();
-  if (std::is_same_v<Pair, BarePair> && (*master_wall || *slave_wall)) {
+  if (!std::is_same_v<Wish, control::SiteRequests> && (*master_wall || *slave_wall)) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = *master_wall ? "master" : "slave",
                  .message =
@@ -18,14 +18,16 @@ Result<DevicePair<Pair>> DevicePair<Pair>::make(const control::ControlParams& co
                      "drive it by a LocalTeleoperator",
                  .place = {}};
   }
-  const control::ControlParams own = tightened(tightened(control, control::SiteRole::master, master.limits()),
-                                               control::SiteRole::slave, slave.limits());
+  const Params own = tightened(tightened(control, control::SiteRole::master, master.limits()), control::SiteRole::slave,
+                               slave.limits());
   auto sites = Pair::make(own, channel, tick, slave_start_m);
   if (!sites) return sites.error();
-  return DevicePair(*std::move(sites), {*std::move(master_wall), *std::move(slave_wall)}, master, slave);
+  return DevicePair(*std::move(sites), {*std::move(master_wall), *std::move(slave_wall)}, slave_start_m, master, slave);
 }
 
 template class DevicePair<SupervisedPair>;
 template class DevicePair<BarePair>;
+template class DevicePair<JointSupervisedPair>;
+template class DevicePair<JointBarePair>;
 
 }  // namespace tactus::station

@@ -19,11 +19,15 @@ class DevicePair {
  public:
   using Output = typename Pair::Output;
   using Wish = typename Pair::Wish;
+  using Params = typename Pair::Params;
+  using Lengths = typename Pair::Lengths;  ///< in m
+  using Reading = Each<Lengths, DeviceReading>;
+  using Device = DeviceOf<Reading>;
 
   /// For devices that outlive it, at rest with the slave at `slave_start_m`. Errors name `control`, `channel`, `master`
   /// and `slave`, the last two where a limit of a device is no limit.
-  static Result<DevicePair> make(const control::ControlParams& control, const LinkParams& channel, Seconds tick,
-                                 double slave_start_m, Device& master, Device& slave);
+  static Result<DevicePair> make(const Params& control, const LinkParams& channel, Seconds tick,
+                                 const Lengths& slave_start_m, Device& master, Device& slave);
 
   /// One tick. `wish` is what the person presses, at both sites, or, without supervision, the share of the force that
   /// is let in. Real-time safe as far as the devices are.
@@ -36,18 +40,20 @@ class DevicePair {
   [[nodiscard]] bool at_rest() const noexcept { return sites_.at_rest(); }
   /// Commands no force at once, whatever it was: for an end that cannot wait. Real-time safe as far as the devices are.
   void release() noexcept {
-    master_->write({.enabled = false});
-    slave_->write({.enabled = false});
+    const auto nothing = same_for_each(joints_, DeviceCommand{.enabled = false});
+    master_->write(nothing);
+    slave_->write(nothing);
   }
   /// False once a safety gate has latched a fault.
   [[nodiscard]] bool healthy() const noexcept { return sites_.healthy(); }
   [[nodiscard]] const Pair& sites() const noexcept { return sites_; }
 
  private:
-  using Walls = std::array<std::unique_ptr<GuardedDevice>, 2>;
-  DevicePair(Pair sites, Walls walls, Device& master, Device& slave)
+  using Walls = std::array<std::unique_ptr<GuardedDeviceOf<Reading>>, 2>;
+  DevicePair(Pair sites, Walls walls, const Lengths& joints, Device& master, Device& slave)
       : sites_(std::move(sites)),
         walls_(std::move(walls)),
+        joints_(joints),
         master_(walls_[0] ? walls_[0].get() : &master),
         slave_(walls_[1] ? walls_[1].get() : &slave) {}
   static Wish leaving() noexcept {
@@ -59,7 +65,8 @@ class DevicePair {
   }
 
   Pair sites_;
-  Walls walls_;  ///< before devices that are not simulated
+  Walls walls_;     ///< before devices that are not simulated
+  Lengths joints_;  ///< as many as the devices have
   Device* master_;
   Device* slave_;
 };
@@ -68,5 +75,8 @@ class DevicePair {
 using LocalTeleoperator = DevicePair<SupervisedPair>;
 /// As in the papers, at work from the first tick on. For simulated devices only.
 using BareTeleoperator = DevicePair<BarePair>;
+/// Both with devices of several joints.
+using JointLocalTeleoperator = DevicePair<JointSupervisedPair>;
+using JointBareTeleoperator = DevicePair<JointBarePair>;
 
 }  // namespace tactus::station

@@ -21,7 +21,12 @@ struct WayEnd {
   double tick_s;
   bool a_tick_later;  ///< what arrived has lain there since the tick before
 
-  [[nodiscard]] control::Arrival arrival() const noexcept { return {.message = heard.message, .fresh = heard.fresh}; }
+  [[nodiscard]] Each<Payload, control::Arrival> arrival() const noexcept {
+    auto arrivals = same_for_each(heard.message, control::Arrival{.message = {}, .fresh = heard.fresh});
+    for_each_joint([](control::Arrival& to, const control::Message& from) noexcept { to.message = from; }, arrivals,
+                   heard.message);
+    return arrivals;
+  }
   void send(const Payload& message) noexcept { other_hears = out.step(message); }
 
   template <class Take>
@@ -35,17 +40,21 @@ struct WayEnd {
   void send(const Payload& packet, const Tick&) noexcept { send(packet); }
 };
 
-/// Both sites of a teleoperator on one clock, with the channel between them: the same in virtual and in real time.
+/// Both sites of a teleoperator on one clock, of one axis or of several joints, with the channel between them: the same
+/// in virtual and in real time.
 ///
 /// The master steps, then the slave. What is sent to the slave with no channel delay arrives in the same tick, what is
 /// sent to the master at the next.
 template <class Master, class Slave>
 class SitePair {
   static constexpr bool supervised = Supervised<Master>;
-  using Payload = std::conditional_t<supervised, control::Packet, control::Message>;
+  using Messages = Each<typename Master::Sensors, control::Message>;
+  using Payload = std::conditional_t<supervised, control::PacketOf<Messages>, Messages>;
   using Way = ChannelOf<Payload>;
 
  public:
+  using Params = Each<Messages, control::ControlParams>;
+  using Lengths = Each<Messages, double>;  ///< in m
   struct Output {
     Step<Master> master;
     Step<Slave> slave;
@@ -54,8 +63,8 @@ class SitePair {
   using Wish = typename Master::Wish;
 
   /// With a slave that rests at `slave_start_m`. Errors name `control` and `channel`.
-  static Result<SitePair> make(const control::ControlParams& control, const LinkParams& channel, Seconds tick,
-                               double slave_start_m);
+  static Result<SitePair> make(const Params& control, const LinkParams& channel, Seconds tick,
+                               const Lengths& slave_start_m);
 
   /// One tick. Real-time safe as far as the devices are.
   template <Drivable MasterDevice, Drivable SlaveDevice>
@@ -108,11 +117,12 @@ class SitePair {
     }
   }
 
-  SitePair(Master master, Slave slave, Way to_slave, Way to_master, Seconds tick)
+  SitePair(Master master, Slave slave, Way to_slave, Way to_master, Seconds tick, const Payload& nothing)
       : master_(std::move(master)),
         slave_(std::move(slave)),
         to_slave_(std::move(to_slave)),
         to_master_(std::move(to_master)),
+        at_master_{.message = nothing},
         tick_s_(tick.value) {}
 
   Master master_;
@@ -127,5 +137,8 @@ class SitePair {
 using SupervisedPair = SitePair<control::SupervisedMaster, control::SupervisedSlave>;
 /// As the papers have them: a controller and its gate, at work from the first tick on. For simulated devices.
 using BarePair = SitePair<control::MasterSite, control::SlaveSite>;
+/// Both of devices of several joints.
+using JointSupervisedPair = SitePair<control::JointSupervisedMaster, control::JointSupervisedSlave>;
+using JointBarePair = SitePair<control::JointMasterSite, control::JointSlaveSite>;
 
 }  // namespace tactus::station

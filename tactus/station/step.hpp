@@ -10,9 +10,11 @@ namespace tactus::station {
 
 /// What the tick asks of what it drives. A `Device` is such, and so is a plant in virtual time.
 template <class D>
-concept Drivable = requires(D& device, const Tick& tick, const DeviceCommand& command) {
+concept Drivable = requires(D& device, const Tick& tick,
+                            const Each<decltype(device.read(tick)), DeviceCommand>& command) {
+  requires std::same_as<JointOf<decltype(device.read(tick))>, DeviceReading>;
   { device.read(tick) }
-  noexcept->std::same_as<DeviceReading>;
+  noexcept;
   { device.write(command) }
   noexcept;
 };
@@ -20,7 +22,7 @@ concept Drivable = requires(D& device, const Tick& tick, const DeviceCommand& co
 /// A site that takes packets and is asked things by a person. One without supervision hears messages, and is told which
 /// share of its controller's force to let in.
 template <class Site>
-concept Supervised = requires(Site& site, const control::Packet& packet) {
+concept Supervised = requires(Site& site, const typename Site::Packet& packet) {
   { site.take(packet) }
   noexcept;
 };
@@ -28,7 +30,7 @@ concept Supervised = requires(Site& site, const control::Packet& packet) {
 /// What one tick of a site showed.
 template <class Site>
 struct Step {
-  DeviceReading reading;
+  Each<typename Site::Sensors, DeviceReading> reading;
   typename Site::Output output;
 };
 
@@ -48,12 +50,23 @@ inline DeviceCommand command_of(const control::SlaveOutput& output, bool enabled
   return {.force_N = output.motor_force_N, .handle_force_N = 0.0, .enabled = enabled};
 }
 
-/// What the device reads. Of a device that is lost the position is not a number, so that its site lets go.
+template <class Output>
+Joints<DeviceCommand> command_of(const Joints<Output>& output, bool enabled = true) noexcept {
+  Joints<DeviceCommand> command(output.size());
+  for_each_joint([enabled](DeviceCommand& to, const Output& joint) noexcept { to = command_of(joint, enabled); },
+                 command, output);
+  return command;
+}
+
+/// What the device reads. Of a device that is lost no position is a number, so that its site lets go.
 template <Drivable Device>
-DeviceReading trusted_reading(Device& device, const Tick& tick) noexcept {
-  DeviceReading reading = device.read(tick);
+auto trusted_reading(Device& device, const Tick& tick) noexcept {
+  auto reading = device.read(tick);
   if constexpr (requires { device.health(); }) {
-    if (device.health() == DeviceHealth::lost) reading.position_m = std::numeric_limits<double>::quiet_NaN();
+    if (device.health() == DeviceHealth::lost) {
+      for_each_joint([](DeviceReading& joint) noexcept { joint.position_m = std::numeric_limits<double>::quiet_NaN(); },
+                     reading);
+    }
   }
   return reading;
 }
@@ -68,19 +81,22 @@ template <class Site, Drivable Device, class Way>
 Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const typename Site::Wish& wish) noexcept {
   Step<Site> done;
   done.reading = trusted_reading(device, tick);
-  typename Site::Sensors sensors;
-  put(done.reading, sensors);
+  using Sensors = typename Site::Sensors;
+  Sensors sensors = same_for_each(done.reading, JointOf<Sensors>{});
+  for_each_joint([](const DeviceReading& reading, JointOf<Sensors>& joint) noexcept { put(reading, joint); },
+                 done.reading, sensors);
   const std::int64_t elapsed_ticks = tick.missed + 1;
   if constexpr (Supervised<Site>) {
-    way.receive(tick, [&site](const control::Packet& packet) noexcept { return site.take(packet); });
+    way.receive(tick, [&site](const typename Site::Packet& packet) noexcept { return site.take(packet); });
     done.output = site.step({.sensors = sensors, .requests = wish, .elapsed_ticks = elapsed_ticks});
     device.write(command_of(done.output.site, done.output.record.enabled));
     way.send(done.output.packet, tick);
   } else {
-    sensors.arrival = way.arrival();
+    for_each_joint([](JointOf<Sensors>& joint, const control::Arrival& arrival) noexcept { joint.arrival = arrival; },
+                   sensors, way.arrival());
     done.output = site.step(sensors, wish, elapsed_ticks);
     device.write(command_of(done.output));
-    way.send(done.output.message);
+    way.send(member_of_each(done.output, &JointOf<typename Site::Output>::message));
   }
   return done;
 }

@@ -2,6 +2,7 @@
 #include <tactus/station/wall.hpp>
 
 #include <algorithm>
+#include <string>
 
 namespace tactus::station {
 
@@ -20,15 +21,31 @@ void tighten(control::SafetyGate::Params& gate, const DeviceLimits& device) {
 
 }  // namespace
 
-Result<std::unique_ptr<GuardedDevice>> wall_before(Device& device, const control::ControlParams& control,
-                                                   control::SiteRole role) {
-  if (auto error = check_limits(device)) {
-    return under(role == control::SiteRole::master ? "master" : "slave", *std::move(error));
+template <class Reading>
+Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>& device,
+                                                              const Each<Reading, control::ControlParams>& control,
+                                                              control::SiteRole role) {
+  const char* site = role == control::SiteRole::master ? "master" : "slave";
+  if (auto error = check_limits(device)) return under(site, *std::move(error));
+  if (const std::size_t joints = joints_of(device.limits()); joints != joints_of(control)) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = site,
+                 .message = "has " + std::to_string(joints) + " joints, and the parameters are of " +
+                            std::to_string(joints_of(control)),
+                 .place = {}};
   }
-  if (device.simulated()) return std::unique_ptr<GuardedDevice>();
-  if (auto error = control::refuse_default_limits(control, role)) return under("control", *std::move(error));
-  return std::make_unique<GuardedDevice>(device);
+  if (device.simulated()) return std::unique_ptr<GuardedDeviceOf<Reading>>();
+  for (std::size_t joint = 0; joint < joints_of(control); ++joint) {
+    if (auto error = control::refuse_default_limits(joint_of(control, joint), role)) {
+      return under("control", under_joint<Reading>(joint, *std::move(error)));
+    }
+  }
+  return std::make_unique<GuardedDeviceOf<Reading>>(device);
 }
+
+template Result<std::unique_ptr<GuardedDevice>> wall_before(Device&, const control::ControlParams&, control::SiteRole);
+template Result<std::unique_ptr<GuardedJointDevice>> wall_before(JointDevice&, const Joints<control::ControlParams>&,
+                                                                 control::SiteRole);
 
 control::ControlParams tightened(const control::ControlParams& control, control::SiteRole role,
                                  const DeviceLimits& device) {
@@ -40,6 +57,15 @@ control::ControlParams tightened(const control::ControlParams& control, control:
   tighten(own.gate, device);
   tighten(own.handle_gate.force_limit_N, device.handle_force_N);
   tighten(own.handle_gate.rate_limit_N_per_s, device.rate_N_per_s);
+  return own;
+}
+
+Joints<control::ControlParams> tightened(const Joints<control::ControlParams>& control, control::SiteRole role,
+                                         const Joints<DeviceLimits>& device) {
+  Joints<control::ControlParams> own = control;
+  for_each_joint(
+      [role](control::ControlParams& joint, const DeviceLimits& limits) { joint = tightened(joint, role, limits); },
+      own, device);
   return own;
 }
 

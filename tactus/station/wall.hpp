@@ -8,14 +8,19 @@
 /// What must be so before a site drives a device.
 namespace tactus::station {
 
-/// What must stand before a device that is not simulated; null for one that is. Errors: those of `check_limits`, under
-/// `master` or `slave`; those of `refuse_default_limits`, under `control`.
-Result<std::unique_ptr<GuardedDevice>> wall_before(Device& device, const control::ControlParams& control,
-                                                   control::SiteRole role);
+/// What must stand before a device that is not simulated; null for one that is. `control` is of as many joints. Errors:
+/// those of `check_limits`, under `master` or `slave`; those of `refuse_default_limits`, under `control`;
+/// `inconsistent` for another number of joints.
+template <class Reading>
+Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>& device,
+                                                              const Each<Reading, control::ControlParams>& control,
+                                                              control::SiteRole role);
 
 /// The parameters with the gates of a site within what its device allows, so that they act before the wall does and
 /// what the site believes to be applied is.
 control::ControlParams tightened(const control::ControlParams& control, control::SiteRole role,
                                  const DeviceLimits& device);
+Joints<control::ControlParams> tightened(const Joints<control::ControlParams>& control, control::SiteRole role,
+                                         const Joints<DeviceLimits>& device);
 
 }  // namespace tactus::station

@@ -125,6 +125,15 @@ endif()
 build_against_the_package(${SOURCE}/examples/own-device ${SCRATCH}/device)
 run(sh ${CMAKE_CURRENT_LIST_DIR}/own_device.sh ${SCRATCH}/device/my-device ${experiment} ${SCRATCH}/device-run)
 
+# Devices of three joints at the real clock, one of them felt half as strongly.
+build_against_the_package(${SOURCE}/examples/several-joints ${SCRATCH}/joints)
+run(${SCRATCH}/joints/several-joints ${SCRATCH}/joints-run)
+if(NOT output MATCHES "felt: ([0-9.]+), ([0-9.]+) and ([0-9.]+) N" OR NOT CMAKE_MATCH_1 GREATER 0.1
+   OR NOT CMAKE_MATCH_1 STREQUAL CMAKE_MATCH_2 OR NOT CMAKE_MATCH_3 LESS CMAKE_MATCH_1)
+  message(FATAL_ERROR "three joints felt something else:\n${output}")
+endif()
+run(${my_tactus} export ${SCRATCH}/joints-run --topic /master/joint_2 --to csv --out ${SCRATCH}/joints.csv)
+
 # An experiment of a user's own is a kind like those of the library: its keys load, vary, are refused by name and stand in
 # schema and reference. A faster servo renders a stiffer wall (J. E. Colgate and G. Schenkel, Journal of Robotic Systems
 # 14(1), 1997: K < 2 (b - B)/T).

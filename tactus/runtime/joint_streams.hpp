@@ -1,0 +1,59 @@
+#pragma once
+
+#include <tactus/runtime/servo_record.hpp>
+#include <tactus/runtime/site_record.hpp>
+#include <tactus/station/local_teleoperator.hpp>
+#include <tactus/telemetry/recorder.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tactus::runtime {
+
+/// Where both sites of a teleoperator of several joints leave every tick: a stream for what the joints of a site share,
+/// and one for each joint.
+class JointStreams {
+ public:
+  /// 1 to `most_joints` at each site. Times count from now.
+  explicit JointStreams(std::size_t joints);
+
+  /// A tick of both sites. Real-time safe.
+  void push(const station::Tick& tick, const control::SiteRequests& pressed,
+            const station::JointLocalTeleoperator& sites, const station::JointLocalTeleoperator::Output& done) noexcept;
+
+  /// Calls `visit(topic, type_name, stream)` for each stream: `/master/site`, `/master/joint_1` and on, the slave's,
+  /// `/servo`.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const auto& [role, name] : enumerators(control::SiteRole{})) {
+      const OfSite& site = sites_[static_cast<std::size_t>(role)];
+      const std::string place = std::string("/").append(name);
+      visit(std::string(place).append("/site"), "tactus_msgs/msg/SiteTickRecord", *site.ticks);
+      for (std::size_t joint = 0; joint < site.joints.size(); ++joint) {
+        visit(std::string(place).append("/joint_").append(std::to_string(joint + 1)), "tactus_msgs/msg/JointRecord",
+              *site.joints[joint]);
+      }
+    }
+    visit(std::string("/servo"), "tactus_msgs/msg/ServoRecord", *servo_);
+  }
+
+ private:
+  struct OfSite {
+    std::shared_ptr<telemetry::RecordStream<SiteTickRecord>> ticks;
+    std::vector<std::shared_ptr<telemetry::RecordStream<JointLogRecord>>> joints;
+
+    template <class Site>
+    void push(std::uint64_t due_ns, const station::Tick& tick, const control::SiteRequests& pressed, const Site& site,
+              const station::Step<Site>& done) noexcept;
+  };
+
+  std::array<OfSite, 2> sites_;  ///< by role
+  std::shared_ptr<telemetry::RecordStream<ServoRecord>> servo_;
+  std::int64_t origin_ns_;  ///< of the times, on CLOCK_MONOTONIC
+};
+
+}  // namespace tactus::runtime

@@ -1,0 +1,115 @@
+#include <tactus/runtime/joint_streams.hpp>
+#include <tactus/runtime/site_device.hpp>
+#include <tactus/runtime/site_log.hpp>
+#include <tactus/runtime/site_parts.hpp>
+#include <tactus/station/joined_devices.hpp>
+#include <tactus/telemetry/log_reader.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tests/allocation_counter.hpp>
+#include <tests/sanitizers.hpp>
+#include <tests/scratch_path.hpp>
+
+namespace tactus::runtime {
+namespace {
+
+using control::SiteRole;
+using control::SiteState;
+
+constexpr std::size_t joints = 8;
+
+/// One device of eight simulated ones of an experiment, and the persons who hold its handles.
+struct Simulated {
+  std::unique_ptr<station::JoinedDevices> device;
+  std::vector<PatientPerson*> persons;
+
+  Simulated(const experiments::TappingParams& params, SiteRole role) {
+    std::vector<std::unique_ptr<station::Device>> owned;
+    for (std::size_t joint = 0; joint < joints; ++joint) {
+      SiteDevice one = simulated_device(params, role).value();
+      if (one.person != nullptr) persons.push_back(one.person);
+      owned.push_back(std::move(one.device));
+    }
+    device = std::make_unique<station::JoinedDevices>(std::move(owned));
+  }
+};
+
+std::vector<double> column(const telemetry::LogTable& table, const std::string& name) {
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (table.columns[i].name == name) return table.values[i];
+  }
+  ADD_FAILURE() << "no column " << name;
+  return {};
+}
+
+TEST(SeveralJoints, EightRunAtOneKilohertzInRealTimeAndLeaveEveryTickInALog) {
+  experiments::TappingParams params;
+  params.servo.rate_Hz = 1000.0;
+  params.control.force_gain = 1.0;
+  params.control.supervision.overload.missed_share = 0.9;
+  params.control.supervision.longest_stall_s = 1.0;
+  params.control.supervision.watchdog.timeout_s = 1.0;
+  const Seconds tick_s{1e-3};
+  Simulated master(params, SiteRole::master), slave(params, SiteRole::slave);
+  const Joints<control::ControlParams> control(joints, control_of(params));
+  auto made = station::JointLocalTeleoperator::make(control, params.channel, tick_s, Joints<double>(joints, 0.0),
+                                                    *master.device, *slave.device);
+  ASSERT_TRUE(made) << describe(made.error());
+  station::JointLocalTeleoperator& sites = *made;
+
+  const std::filesystem::path folder = scratch_path();
+  JointStreams streams(joints);
+  auto log = SiteLog::create(folder, streams, {});
+  ASSERT_TRUE(log) << describe(log.error());
+
+  std::int64_t steps = 0;
+  std::uint64_t allocations = 0;
+  const auto report = run_servo({.rate_Hz = 1000.0, .priority = 10}, [&](const station::Tick& tick) noexcept {
+    const std::uint64_t before = laws::own_allocation_count();
+    const control::SiteRequests pressed{
+        .align = steps > 100, .arm = steps > 200, .dead_man = steps > 400 && steps < 2600};
+    const auto done = sites.step(tick, pressed);
+    streams.push(tick, pressed, sites, done);
+    const bool follows = sites.sites().master().state() == SiteState::active;
+    for (PatientPerson* person : master.persons) person->follow(follows);
+    allocations += laws::own_allocation_count() - before;
+    return ++steps < 3000;
+  });
+  ASSERT_TRUE(report) << describe(report.error());
+  ASSERT_FALSE(log->close());
+  EXPECT_EQ(log->dropped(), 0U);
+  EXPECT_EQ(allocations, 0U);
+  EXPECT_EQ(report->ticks, 3000);
+#if !TACTUS_UNDER_ADDRESS_SANITIZER && !TACTUS_UNDER_THREAD_SANITIZER
+  EXPECT_LT(report->duration.quantile_ns(0.5), 500'000) << "half of a tick, for sixteen simulated plants too";
+#endif
+
+  for (const std::string site : {"/master/", "/slave/"}) {
+    const auto ticks = telemetry::read_log(folder, site + "site").value().tables.at(0);
+    const auto states = column(ticks, "state");
+    EXPECT_EQ(states.size(), 3000U);
+    EXPECT_EQ(std::count(states.begin(), states.end(), static_cast<double>(SiteState::fault)), 0);
+    EXPECT_GT(std::count(states.begin(), states.end(), static_cast<double>(SiteState::active)), 1000);
+    for (std::size_t joint = 1; joint <= joints; ++joint) {
+      const auto table = telemetry::read_log(folder, site + "joint_" + std::to_string(joint)).value().tables.at(0);
+      EXPECT_EQ(column(table, "tick"), column(ticks, "tick"));
+      const auto position_m = column(table, "position_m");
+      const auto [least_m, most_m] = std::minmax_element(position_m.begin(), position_m.end());
+      EXPECT_GT(*most_m - *least_m, 0.005) << site << joint << " never moved";
+      const auto force_N = column(table, "motor_force_N");
+      EXPECT_GT(std::fabs(*std::min_element(force_N.begin(), force_N.end())), 0.01) << site << joint << " felt nothing";
+    }
+  }
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace tactus::runtime
