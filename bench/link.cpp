@@ -42,7 +42,7 @@ struct End {
 struct Bare {
   Socket socket;
   std::array<std::byte, datagram_bytes> sent{};
-  std::array<std::byte, Packet::longest> received{};
+  std::array<std::byte, Received::longest> received{};
 };
 
 struct Contestant {

@@ -63,13 +63,16 @@ int main(int count, char** arguments) {
 
   std::array<double, joints> felt_N{};
   const auto report = runtime::run_servo({.rate_Hz = rate_Hz}, [&](const station::Tick& tick) noexcept {
-    const control::SiteRequests pressed = pressed_at(static_cast<double>(tick.number) / rate_Hz);
-    const auto done = sites->step(tick, pressed);
+    const double time_s = static_cast<double>(tick.number) / rate_Hz;
+    const control::SiteRequests pressed = pressed_at(time_s);
+    // A follower that is armed holds its place: at the end all forces go.
+    const bool over = time_s > 3.0;
+    const auto done = over ? sites->let_go(tick) : sites->step(tick, pressed);
     streams.push(tick, pressed, *sites, done);
     for (std::size_t joint = 0; joint < joints; ++joint) {
       felt_N[joint] = std::max(felt_N[joint], std::fabs(done.master.output.site[joint].motor_force_N));
     }
-    return tick.number < 3000 || !sites->at_rest();
+    return !over || !sites->at_rest();
   });
   if (!report) return fail(report.error());
   if (const auto error = log->close()) return fail(*error);

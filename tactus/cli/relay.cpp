@@ -57,7 +57,7 @@ class Way {
         passages_(params.loss_fraction, mean_burst, params.jitter_s > 0.0, params.seed),
         doubles_(signal::Random(static_cast<std::uint64_t>(params.seed)).fork(0)) {}
 
-  void take(const link::Packet& packet, std::int64_t now_ns) {
+  void take(const link::Received& packet, std::int64_t now_ns) {
     ++counters_.arrived;
     if (duplicate_fraction_ > 0.0 && doubles_.uniform() < duplicate_fraction_) {
       ++counters_.doubled;
@@ -90,7 +90,7 @@ class Way {
     }
   };
 
-  void hold(const link::Packet& packet, std::int64_t now_ns) {
+  void hold(const link::Received& packet, std::int64_t now_ns) {
     const auto [lost, jitter_share] = passages_.next();
     if (lost) {
       ++counters_.lost;
@@ -168,8 +168,8 @@ Check run(const RelayOptions& options) {
   while (!end.asked()) {
     std::int64_t now_ns = link::monotonic_ns();
     if (options.duration_s > 0.0 && static_cast<double>(now_ns - start_ns) > options.duration_s * 1e9) break;
-    for (const link::Packet& packet : master->receive()) to_slave.take(packet, now_ns);
-    for (const link::Packet& packet : slave->receive()) to_master.take(packet, now_ns);
+    for (const link::Received& packet : master->receive()) to_slave.take(packet, now_ns);
+    for (const link::Received& packet : slave->receive()) to_master.take(packet, now_ns);
     to_slave.pass(*slave, now_ns);
     to_master.pass(*master, now_ns);
     now_ns = link::monotonic_ns();

@@ -34,7 +34,7 @@ Connection::Progress Connection::shake_hands(std::span<const std::byte> records)
 }
 
 bool Connection::proves(std::span<const std::byte> record) noexcept {
-  std::array<std::byte, Packet::longest> message;
+  std::array<std::byte, Received::longest> message;
   return open(record, message) > 0;
 }
 

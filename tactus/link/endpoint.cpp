@@ -40,7 +40,7 @@ std::span<const control::Packet> Endpoint::receive(std::int64_t now_ns) noexcept
   DatagramBytes opened;
   for (std::size_t taken = 0; taken < packets_a_tick;) {
     const auto packets = socket_->receive();
-    for (const Packet& packet : packets) {
+    for (const Received& packet : packets) {
       if (secure_ && !secure_->open(packet, opened)) continue;
       const auto bytes = secure_ ? std::span<const std::byte>(opened) : packet.bytes();
       Datagram datagram;

@@ -22,7 +22,7 @@ constexpr std::uint64_t window = 64;
 constexpr std::int64_t filter_every_ns = 50'000'000;
 
 /// The number of a record in its epoch.
-std::uint64_t number_of(const Packet& packet) noexcept {
+std::uint64_t number_of(const Received& packet) noexcept {
   std::uint64_t number = 0;
   for (std::size_t i = number_at; i < number_end; ++i) {
     number = number << 8 | std::to_integer<std::uint64_t>(packet.data[i]);
@@ -61,14 +61,14 @@ class SecureChannel::Implementation {
   Check start();
 
   // The servo's thread.
-  bool open(const Packet& packet, std::span<std::byte> message) noexcept;
+  bool open(const Received& packet, std::span<std::byte> message) noexcept;
   bool send(std::span<const std::byte> message) noexcept;
   [[nodiscard]] bool established() const noexcept { return current_ != nullptr; }
   [[nodiscard]] Counters counters() const noexcept { return counters_; }
 
  private:
-  bool open_message(const Packet& packet, std::span<std::byte> message) noexcept;
-  void take_frame(const Packet& packet) noexcept;
+  bool open_message(const Received& packet, std::span<std::byte> message) noexcept;
+  void take_frame(const Received& packet) noexcept;
   void adopt() noexcept;
 
   // The thread of the hand-shakes.
@@ -106,7 +106,7 @@ Check SecureChannel::Implementation::start() {
   return std::nullopt;
 }
 
-bool SecureChannel::Implementation::open(const Packet& packet, std::span<std::byte> message) noexcept {
+bool SecureChannel::Implementation::open(const Received& packet, std::span<std::byte> message) noexcept {
   adopt();
   const bool record = packet.size == message_bytes_ + overhead_bytes && packet.data[0] == message_record &&
                       packet.data[1] == std::byte{0xfe} && packet.data[2] == std::byte{0xfd};
@@ -115,7 +115,7 @@ bool SecureChannel::Implementation::open(const Packet& packet, std::span<std::by
   return false;
 }
 
-bool SecureChannel::Implementation::open_message(const Packet& packet, std::span<std::byte> message) noexcept {
+bool SecureChannel::Implementation::open_message(const Received& packet, std::span<std::byte> message) noexcept {
   const std::uint64_t number = number_of(packet);
   // What OpenSSL would refuse for its number costs less when it is refused here.
   const std::uint64_t newest = newest_.load(std::memory_order_relaxed);
@@ -136,7 +136,7 @@ bool SecureChannel::Implementation::open_message(const Packet& packet, std::span
   return false;
 }
 
-void SecureChannel::Implementation::take_frame(const Packet& packet) noexcept {
+void SecureChannel::Implementation::take_frame(const Received& packet) noexcept {
   HandshakeFrame frame;
   const auto verdict = tags_.read(packet.bytes(), frame);
   if (verdict == FrameTags::Verdict::version) counters_.other_version = frame.version;
@@ -218,7 +218,7 @@ Result<SecureChannel> SecureChannel::make(SiteRole own_site, const Key& key, con
   return SecureChannel(std::move(implementation));
 }
 
-bool SecureChannel::open(const Packet& packet, std::span<std::byte> message) noexcept {
+bool SecureChannel::open(const Received& packet, std::span<std::byte> message) noexcept {
   return implementation_->open(packet, message);
 }
 bool SecureChannel::send(std::span<const std::byte> message) noexcept { return implementation_->send(message); }

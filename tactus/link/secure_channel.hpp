@@ -47,7 +47,7 @@ class SecureChannel {
 
   /// Opens one packet into `message`, which has room for `message_bytes`. True where it was an authentic message that
   /// had not come before. Real-time safe.
-  bool open(const Packet& packet, std::span<std::byte> message) noexcept;
+  bool open(const Received& packet, std::span<std::byte> message) noexcept;
   /// Encrypts a message and sends it. False where there are no keys yet or the kernel did not take it. Real-time safe.
   bool send(std::span<const std::byte> message) noexcept;
   /// Whether both sides have proved that they know the key.

@@ -159,13 +159,13 @@ Result<Socket> Socket::open(const Address& local, const Address& peer) {
   return made;
 }
 
-std::span<const Packet> Socket::receive() noexcept {
+std::span<const Received> Socket::receive() noexcept {
   std::size_t taken = 0;
   for (; taken < packets_at_once; ++taken) {
-    Packet& packet = (*packets_)[taken];
-    const ssize_t size = recv(descriptor_, packet.data.data(), Packet::longest, MSG_DONTWAIT | MSG_TRUNC);
+    Received& packet = (*packets_)[taken];
+    const ssize_t size = recv(descriptor_, packet.data.data(), Received::longest, MSG_DONTWAIT | MSG_TRUNC);
     if (size < 0) break;
-    packet.size = static_cast<std::size_t>(size) <= Packet::longest ? static_cast<std::size_t>(size) : 0;
+    packet.size = static_cast<std::size_t>(size) <= Received::longest ? static_cast<std::size_t>(size) : 0;
   }
   return {packets_->data(), taken};
 }

@@ -37,7 +37,7 @@ class Address {
 };
 
 /// A datagram as it came from the network.
-struct Packet {
+struct Received {
   static constexpr std::size_t longest = 1500;
   std::array<std::byte, longest> data;
   std::size_t size = 0;
@@ -59,7 +59,7 @@ class Socket {
   /// Takes up to `packets_at_once` waiting datagrams. What is longer than a packet shows as one of size 0. Good until
   /// the next call. Real-time safe: a system call for each and one that finds nothing, which together take less time
   /// than `recvmmsg` does for one.
-  std::span<const Packet> receive() noexcept;
+  std::span<const Received> receive() noexcept;
   /// Hands one datagram to the kernel. False where it did not take it; that is a loss like any other. Real-time safe.
   bool send(std::span<const std::byte> bytes) const noexcept;
   /// Datagrams to this socket that the kernel dropped so far: refused by a filter, or no room. A system call.
@@ -72,7 +72,7 @@ class Socket {
   [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
 
  private:
-  using Packets = std::array<Packet, packets_at_once>;
+  using Packets = std::array<Received, packets_at_once>;
   Socket(int descriptor, bool on_loopback);
 
   int descriptor_ = -1;

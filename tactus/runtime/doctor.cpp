@@ -13,7 +13,7 @@ constexpr double micro = 1e-3;  ///< from ns to us
 Finding unknown(std::string name, std::string means) {
   return {.name = std::move(name),
           .found = "not told",
-          .verdict = Verdict::unknown,
+          .verdict = Fitness::unknown,
           .means = std::move(means),
           .remedy = {}};
 }
@@ -24,23 +24,23 @@ Finding scheduler(const MachineFacts& facts) {
   if (right.held) {
     return {"scheduler",
             right.what + " granted" + limit,
-            Verdict::good,
+            Fitness::good,
             "no program of ordinary priority can hold a tick up",
             {}};
   }
-  return {"scheduler", right.what + " refused: " + right.why + limit, Verdict::bad, right.means, right.remedy};
+  return {"scheduler", right.what + " refused: " + right.why + limit, Fitness::bad, right.means, right.remedy};
 }
 
 Finding group_budget(const MachineFacts& facts) {
   const std::string name = "budget of the control group";
   if (!facts.group_budget_us) {
-    return {name, "none", Verdict::good, "no control group limits real-time threads", {}};
+    return {name, "none", Fitness::good, "no control group limits real-time threads", {}};
   }
   const std::string found = std::to_string(*facts.group_budget_us) + " us in group " + facts.group;
   if (*facts.group_budget_us != 0) {
-    return {name, found, Verdict::good, "the group's real-time threads may use this much of each period", {}};
+    return {name, found, Fitness::good, "the group's real-time threads may use this much of each period", {}};
   }
-  return {name, found, Verdict::bad, "the group may not have real-time threads, whoever asks",
+  return {name, found, Fitness::bad, "the group may not have real-time threads, whoever asks",
           "echo 950000 | sudo tee /sys/fs/cgroup/cpu" + facts.group + "/cpu.rt_runtime_us"};
 }
 
@@ -50,14 +50,14 @@ Finding throttling(const MachineFacts& facts) {
     return unknown(name, "how long real-time threads may hold a core is not known");
   }
   if (*facts.budget_us < 0) {
-    return {name, "off", Verdict::good, "a real-time thread that never sleeps would lock its core up for good", {}};
+    return {name, "off", Fitness::good, "a real-time thread that never sleeps would lock its core up for good", {}};
   }
   const double share = static_cast<double>(*facts.budget_us) / static_cast<double>(*facts.budget_period_us);
   const std::string found = report::number(100.0 * share, 3) + " % of " +
                             report::number(micro * static_cast<double>(*facts.budget_period_us), 3) + " ms";
   const std::string means = "real-time threads that use more are stopped for the rest of the period";
-  if (share >= 0.6) return {name, found, Verdict::good, means + "; a servo thread never holds a core that long", {}};
-  return {name, found, Verdict::bad, means, "echo 950000 | sudo tee /proc/sys/kernel/sched_rt_runtime_us"};
+  if (share >= 0.6) return {name, found, Fitness::good, means + "; a servo thread never holds a core that long", {}};
+  return {name, found, Fitness::bad, means, "echo 950000 | sudo tee /proc/sys/kernel/sched_rt_runtime_us"};
 }
 
 Finding locked_memory(const MachineFacts& facts) {
@@ -66,11 +66,11 @@ Finding locked_memory(const MachineFacts& facts) {
   if (*facts.locked_limit_bytes < 0 || facts.superuser) {
     return {name,
             facts.superuser ? "no limit for the superuser" : "no limit",
-            Verdict::good,
+            Fitness::good,
             "no page of the loop can go to disk",
             {}};
   }
-  return {name, report::number(static_cast<double>(*facts.locked_limit_bytes) / 1048576.0, 3) + " MiB", Verdict::poor,
+  return {name, report::number(static_cast<double>(*facts.locked_limit_bytes) / 1048576.0, 3) + " MiB", Fitness::poor,
           "memory cannot be locked, or only what is there at the start: under pressure a page comes back late",
           "echo '@users - memlock unlimited' | sudo tee -a /etc/security/limits.d/tactus.conf, then log in again"};
 }
@@ -78,8 +78,8 @@ Finding locked_memory(const MachineFacts& facts) {
 Finding kernel(const MachineFacts& facts) {
   const std::string name = "kernel";
   if (facts.kernel.empty()) return unknown(name, "which kernel runs is not known");
-  if (facts.preempt_rt) return {name, facts.kernel, Verdict::good, "PREEMPT_RT bounds the time to wake a thread", {}};
-  return {name, facts.kernel, Verdict::poor,
+  if (facts.preempt_rt) return {name, facts.kernel, Fitness::good, "PREEMPT_RT bounds the time to wake a thread", {}};
+  return {name, facts.kernel, Fitness::poor,
           "without PREEMPT_RT the kernel finishes what it does before it wakes a thread: usually tens of microseconds, "
           "now and then milliseconds",
           "sudo apt install linux-image-rt-amd64, then boot it"};
@@ -92,8 +92,8 @@ Finding governor(const MachineFacts& facts) {
   }
   std::string all;
   for (const std::string& one : facts.governors) all += (all.empty() ? "" : ", ") + one;
-  if (all == "performance") return {name, all, Verdict::good, "the processor does not slow down between ticks", {}};
-  return {name, all, Verdict::poor, "the processor slows down between ticks and takes its time to speed up",
+  if (all == "performance") return {name, all, Fitness::good, "the processor does not slow down between ticks", {}};
+  return {name, all, Fitness::poor, "the processor slows down between ticks and takes its time to speed up",
           "sudo cpupower frequency-set --governor performance"};
 }
 
@@ -107,19 +107,19 @@ Finding timer(const MachineFacts& facts) {
   if (*facts.timer_resolution_ns <= 1000) {
     return {name,
             found,
-            Verdict::good,
+            Fitness::good,
             "deadlines are kept to the nanosecond; a servo thread sets its slack to nothing",
             {}};
   }
-  return {name, found, Verdict::bad, "deadlines are rounded to ticks of the kernel", "boot with highres=on"};
+  return {name, found, Fitness::bad, "deadlines are rounded to ticks of the kernel", "boot with highres=on"};
 }
 
 Finding clock_source(const MachineFacts& facts) {
   const std::string name = "clock";
   if (facts.clock_source.empty()) return unknown(name, "which clock the system reads is not known");
   const bool slow = facts.clock_source == "hpet" || facts.clock_source == "acpi_pm";
-  if (!slow) return {name, facts.clock_source, Verdict::good, "the time is read in tens of nanoseconds", {}};
-  return {name, facts.clock_source, Verdict::poor, "the time is read from a slow device, about 1 us each time",
+  if (!slow) return {name, facts.clock_source, Fitness::good, "the time is read in tens of nanoseconds", {}};
+  return {name, facts.clock_source, Fitness::poor, "the time is read from a slow device, about 1 us each time",
           "boot with clocksource=tsc tsc=reliable, where the processor's counter is steady"};
 }
 
@@ -130,24 +130,24 @@ Finding cores(const MachineFacts& facts) {
   if (facts.cores > 1) {
     return {name,
             found,
-            Verdict::good,
+            Fitness::good,
             facts.isolated.empty() ? "the log has a core beside the servo thread's; isolating one keeps others off it"
                                    : "choose an isolated core with --core",
             {}};
   }
-  return {name, found, Verdict::poor, "log, person and servo thread share one core", "taskset -c 0-1 tactus ..."};
+  return {name, found, Fitness::poor, "log, person and servo thread share one core", "taskset -c 0-1 tactus ..."};
 }
 
 Finding hypervisor(const MachineFacts& facts, const Measurement& measurement) {
   const std::string name = "hypervisor";
   const double stolen = measurement.stolen_fraction.value_or(0.0);
   if (!facts.hypervisor && stolen == 0.0) {
-    return {name, "none", Verdict::good, "nobody takes the processor away", {}};
+    return {name, "none", Fitness::good, "nobody takes the processor away", {}};
   }
   const std::string found =
       measurement.stolen_fraction ? "took " + report::number(100.0 * stolen, 2) + " % while measuring" : "one is there";
   constexpr double tolerable = 0.05;
-  return {name, found, stolen > tolerable ? Verdict::bad : Verdict::poor,
+  return {name, found, stolen > tolerable ? Fitness::bad : Fitness::poor,
           "a hypervisor takes the processor away for milliseconds when it likes: no deadline is sure here",
           "run on a machine of your own"};
 }
@@ -161,17 +161,17 @@ Finding lateness(const Measurement& measurement) {
                            report::number(quantile_us(0.99), 3) + ", p99.9 " + report::number(quantile_us(0.999), 3) +
                            ", worst " + report::number(quantile_us(1.0), 3) + " us; " + std::to_string(report.missed) +
                            " of " + std::to_string(report.ticks + report.missed) + " ticks missed",
-                  .verdict = Verdict::good,
+                  .verdict = Fitness::good,
                   .means = "a tick begins this long after it is due, of " + report::number(period_us, 3) + " us",
                   .remedy = {}};
   const double missed =
       static_cast<double>(report.missed) / static_cast<double>(std::max<std::int64_t>(report.ticks, 1));
   constexpr double tolerable = 1e-3;
   if (missed > tolerable) {
-    finding.verdict = Verdict::bad;
+    finding.verdict = Fitness::bad;
     finding.remedy = "mend what stands above, or lower servo.rate_Hz";
   } else if (report.missed > 0 || quantile_us(0.999) > 0.25 * period_us) {
-    finding.verdict = Verdict::poor;
+    finding.verdict = Fitness::poor;
     finding.remedy = "mend what stands above";
   }
   return finding;
@@ -204,7 +204,7 @@ std::vector<Finding> diagnose(const MachineFacts& facts, const Measurement& meas
 
 bool can_keep_time(const std::vector<Finding>& findings) {
   return std::none_of(findings.begin(), findings.end(),
-                      [](const Finding& finding) { return finding.verdict == Verdict::bad; });
+                      [](const Finding& finding) { return finding.verdict == Fitness::bad; });
 }
 
 }  // namespace tactus::runtime

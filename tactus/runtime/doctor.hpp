@@ -10,22 +10,22 @@
 namespace tactus::runtime {
 
 /// What a finding means for a loop with a deadline.
-enum class Verdict {
+enum class Fitness {
   good,
   unknown,  ///< the system does not tell
   poor,     ///< the loop runs, later or less surely than it could
   bad       ///< ticks will be late
 };
-constexpr auto enumerators(Verdict) {
-  return std::array{Enumerator{Verdict::good, "good"}, Enumerator{Verdict::unknown, "unknown"},
-                    Enumerator{Verdict::poor, "poor"}, Enumerator{Verdict::bad, "bad"}};
+constexpr auto enumerators(Fitness) {
+  return std::array{Enumerator{Fitness::good, "good"}, Enumerator{Fitness::unknown, "unknown"},
+                    Enumerator{Fitness::poor, "poor"}, Enumerator{Fitness::bad, "bad"}};
 }
 
 /// One thing that was looked at.
 struct Finding {
   std::string name;   ///< `scheduler`
   std::string found;  ///< `SCHED_FIFO priority 80 granted`
-  Verdict verdict = Verdict::unknown;
+  Fitness verdict = Fitness::unknown;
   std::string means;   ///< one sentence
   std::string remedy;  ///< command that mends it; empty where nothing is to be mended
 };

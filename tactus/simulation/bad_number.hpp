@@ -4,16 +4,23 @@
 #include <tactus/station/device.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 
 namespace tactus::simulation {
 
 /// One input, one value, one state of the site that reads it.
 struct BadNumber {
-  enum class Input { position, force, grip, told_position, told_velocity, told_force, told_wave, told_energy, age };
-  static constexpr std::int64_t master_inputs = 9;
-  static constexpr std::int64_t slave_inputs = 8;  ///< no grip
+  /// What a device reads. After these the inputs are each number of a message, and last the age of its packet.
+  static constexpr std::array read{&station::DeviceReading::position_m, &station::DeviceReading::force_N,
+                                   &station::DeviceReading::grip};
+  static constexpr std::int64_t grip = 2;  ///< which a slave has not
+  static constexpr std::int64_t first_told = read.size();
+  static constexpr std::int64_t age = first_told + std::tuple_size_v<decltype(control::Message::signals())>;
+  static constexpr std::int64_t master_inputs = age + 1;
+  static constexpr std::int64_t slave_inputs = master_inputs - 1;
   static constexpr std::array values{std::numeric_limits<double>::quiet_NaN(),
                                      std::numeric_limits<double>::infinity(),
                                      -std::numeric_limits<double>::infinity(),
@@ -27,7 +34,7 @@ struct BadNumber {
       (master_inputs + slave_inputs) * static_cast<std::int64_t>(values.size() * states.size());
 
   bool at_master = true;
-  Input input = Input::position;
+  std::int64_t input = 0;  ///< its number
   double value = 0.0;
   control::SiteState state = control::SiteState::active;
 
@@ -44,23 +51,19 @@ struct BadNumber {
     const std::int64_t input = take(master_inputs + slave_inputs);
     bad.at_master = input < master_inputs;
     const std::int64_t of_slave = input - master_inputs;
-    const std::int64_t skipped = of_slave >= static_cast<std::int64_t>(Input::grip) ? 1 : 0;
-    bad.input = static_cast<Input>(bad.at_master ? input : of_slave + skipped);
+    bad.input = bad.at_master ? input : of_slave + (of_slave >= grip ? 1 : 0);
     return bad;
   }
 
   void spoil(station::DeviceReading& reading) const {
-    if (input == Input::position) reading.position_m = value;
-    if (input == Input::force) reading.force_N = value;
-    if (input == Input::grip) reading.grip = value;
+    if (input < first_told) reading.*read[static_cast<std::size_t>(input)] = value;
   }
   void spoil(control::Packet& packet) const {
-    if (input == Input::told_position) packet.message.position_m = value;
-    if (input == Input::told_velocity) packet.message.velocity_m_per_s = value;
-    if (input == Input::told_force) packet.message.force_N = value;
-    if (input == Input::told_wave) packet.message.wave = value;
-    if (input == Input::told_energy) packet.message.energy_J = value;
-    if (input == Input::age) packet.age_s = value;
+    if (input == age) packet.age_s = value;
+    std::int64_t number = first_told;
+    for_each_signal<control::Message>([&](const auto& each) {
+      if (number++ == input) packet.message.*each.member = value;
+    });
   }
 };
 

@@ -29,12 +29,12 @@ class Between {
 
   /// Passes on what both sites have sent; the attacker hears it.
   void pass_on() {
-    for (const Packet& packet : master_side_->receive()) {
+    for (const Received& packet : master_side_->receive()) {
       attacker.hear(packet.bytes());
       slave_side_->send(packet.bytes());
       if (packet.data[0] == std::byte{23}) ++passed_to_slave;
     }
-    for (const Packet& packet : slave_side_->receive()) {
+    for (const Received& packet : slave_side_->receive()) {
       attacker.hear(packet.bytes());
       master_side_->send(packet.bytes());
     }

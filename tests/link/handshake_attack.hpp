@@ -79,7 +79,7 @@ class HandshakeAttack {
   };
 
   static void pass_on(Socket& from, Socket& to, Recording& recording) {
-    for (const Packet& packet : from.receive()) {
+    for (const Received& packet : from.receive()) {
       if (packet.data[0] != std::byte{23}) recording.hear(packet.bytes());
       to.send(packet.bytes());
     }

@@ -20,7 +20,7 @@ class Attacker {
 
   /// All memory is taken here, so that what grows later is not the attacker's.
   explicit Attacker(std::uint64_t seed) : random_(seed), heard_(4096, std::vector<std::byte>(256)) {
-    packet_.reserve(2 * Packet::longest);
+    packet_.reserve(2 * Received::longest);
   }
 
   void hear(std::span<const std::byte> packet) { heard_[next_++ % heard_.size()].assign(packet.begin(), packet.end()); }
@@ -58,7 +58,7 @@ class Attacker {
         break;
       }
       default:  // noise, some of it with the head of a record
-        packet_.resize(1 + below(Packet::longest));
+        packet_.resize(1 + below(Received::longest));
         noise(0, packet_.size());
         if (below(2) == 0 && packet_.size() > 13) {
           packet_[0] = static_cast<std::byte>(20 + below(5));

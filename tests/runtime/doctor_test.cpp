@@ -48,17 +48,17 @@ Measurement kept(std::int64_t late_ns, std::int64_t ticks = 10'000, std::int64_t
   return measurement;
 }
 
-Verdict verdict_of(const std::string& name, const std::vector<Finding>& findings) {
+Fitness verdict_of(const std::string& name, const std::vector<Finding>& findings) {
   for (const Finding& finding : findings) {
     if (finding.name == name) return finding.verdict;
   }
   ADD_FAILURE() << "nothing is said of " << name;
-  return Verdict::unknown;
+  return Fitness::unknown;
 }
 
 TEST(Doctor, ASoundMachineIsGoodInEveryRespect) {
   for (const Finding& finding : diagnose(sound(), kept(10'000))) {
-    EXPECT_EQ(finding.verdict, Verdict::good) << finding.name << ": " << finding.found;
+    EXPECT_EQ(finding.verdict, Fitness::good) << finding.name << ": " << finding.found;
     EXPECT_TRUE(finding.remedy.empty()) << finding.name;
     EXPECT_FALSE(finding.means.empty()) << finding.name;
   }
@@ -68,27 +68,27 @@ TEST(Doctor, EachFaultIsFoundWhereItIsAndNowhereElse) {
   struct Fault {
     const char* name;
     void (*put)(MachineFacts&);
-    Verdict verdict;
+    Fitness verdict;
   };
   const Fault faults[] = {
       {"scheduler",
        [](MachineFacts& f) {
          f.real_time = {.what = "SCHED_FIFO", .held = false, .why = "no", .means = "late", .remedy = "ulimit"};
        },
-       Verdict::bad},
-      {"budget of the control group", [](MachineFacts& f) { f.group_budget_us = 0; }, Verdict::bad},
-      {"throttling", [](MachineFacts& f) { f.budget_us = 100'000; }, Verdict::bad},
-      {"locked memory", [](MachineFacts& f) { f.locked_limit_bytes = 8 << 20; }, Verdict::poor},
-      {"timer", [](MachineFacts& f) { f.timer_resolution_ns = 4'000'000; }, Verdict::bad},
-      {"clock", [](MachineFacts& f) { f.clock_source = "hpet"; }, Verdict::poor},
-      {"kernel", [](MachineFacts& f) { f.preempt_rt = false; }, Verdict::poor},
+       Fitness::bad},
+      {"budget of the control group", [](MachineFacts& f) { f.group_budget_us = 0; }, Fitness::bad},
+      {"throttling", [](MachineFacts& f) { f.budget_us = 100'000; }, Fitness::bad},
+      {"locked memory", [](MachineFacts& f) { f.locked_limit_bytes = 8 << 20; }, Fitness::poor},
+      {"timer", [](MachineFacts& f) { f.timer_resolution_ns = 4'000'000; }, Fitness::bad},
+      {"clock", [](MachineFacts& f) { f.clock_source = "hpet"; }, Fitness::poor},
+      {"kernel", [](MachineFacts& f) { f.preempt_rt = false; }, Fitness::poor},
       {"frequency governor",
        [](MachineFacts& f) {
          f.governors = {"performance", "powersave"};
        },
-       Verdict::poor},
-      {"cores", [](MachineFacts& f) { f.cores = 1; }, Verdict::poor},
-      {"hypervisor", [](MachineFacts& f) { f.hypervisor = true; }, Verdict::poor},
+       Fitness::poor},
+      {"cores", [](MachineFacts& f) { f.cores = 1; }, Fitness::poor},
+      {"hypervisor", [](MachineFacts& f) { f.hypervisor = true; }, Fitness::poor},
   };
   for (const Fault& fault : faults) {
     MachineFacts facts = sound();
@@ -96,10 +96,10 @@ TEST(Doctor, EachFaultIsFoundWhereItIsAndNowhereElse) {
     const auto findings = diagnose(facts, kept(10'000));
     for (const Finding& finding : findings) {
       const bool here = finding.name == fault.name;
-      EXPECT_EQ(finding.verdict, here ? fault.verdict : Verdict::good) << fault.name << " at " << finding.name;
+      EXPECT_EQ(finding.verdict, here ? fault.verdict : Fitness::good) << fault.name << " at " << finding.name;
       EXPECT_EQ(finding.remedy.empty(), !here) << fault.name << " at " << finding.name;
     }
-    EXPECT_EQ(can_keep_time(findings), fault.verdict != Verdict::bad) << fault.name;
+    EXPECT_EQ(can_keep_time(findings), fault.verdict != Fitness::bad) << fault.name;
   }
 }
 
@@ -108,14 +108,14 @@ TEST(Doctor, AHypervisorThatTakesATwentiethOfTheTimeIsBad) {
   facts.hypervisor = true;
   Measurement measurement = kept(10'000);
   measurement.stolen_fraction = 0.2;
-  EXPECT_EQ(verdict_of("hypervisor", diagnose(facts, measurement)), Verdict::bad);
+  EXPECT_EQ(verdict_of("hypervisor", diagnose(facts, measurement)), Fitness::bad);
 }
 
 TEST(Doctor, LatenessIsJudgedByTheTickAndByWhatWasMissed) {
-  EXPECT_EQ(verdict_of("lateness", diagnose(sound(), kept(40'000))), Verdict::good);
-  EXPECT_EQ(verdict_of("lateness", diagnose(sound(), kept(60'000))), Verdict::poor);
-  EXPECT_EQ(verdict_of("lateness", diagnose(sound(), kept(10'000, 10'000, 5))), Verdict::poor);
-  EXPECT_EQ(verdict_of("lateness", diagnose(sound(), kept(10'000, 10'000, 50))), Verdict::bad);
+  EXPECT_EQ(verdict_of("lateness", diagnose(sound(), kept(40'000))), Fitness::good);
+  EXPECT_EQ(verdict_of("lateness", diagnose(sound(), kept(60'000))), Fitness::poor);
+  EXPECT_EQ(verdict_of("lateness", diagnose(sound(), kept(10'000, 10'000, 5))), Fitness::poor);
+  EXPECT_EQ(verdict_of("lateness", diagnose(sound(), kept(10'000, 10'000, 50))), Fitness::bad);
 }
 
 TEST(Doctor, WhatTheSystemDoesNotTellIsNoFault) {
@@ -125,7 +125,7 @@ TEST(Doctor, WhatTheSystemDoesNotTellIsNoFault) {
   const auto findings = diagnose(facts, kept(10'000));
   EXPECT_TRUE(can_keep_time(findings));
   for (const char* name : {"throttling", "locked memory", "timer", "clock", "kernel", "frequency governor"}) {
-    EXPECT_EQ(verdict_of(name, findings), Verdict::unknown) << name;
+    EXPECT_EQ(verdict_of(name, findings), Fitness::unknown) << name;
   }
 }
 
