@@ -1,6 +1,8 @@
 #include <tactus/control/agreed_parameters.hpp>
 #include <tactus/station/site_pair.hpp>
 
+#include <string>
+
 namespace tactus::station {
 
 namespace {
@@ -42,6 +44,13 @@ Payload first_said(const Lengths& slave_start_m) {
 template <class Master, class Slave>
 Result<SitePair<Master, Slave>> SitePair<Master, Slave>::make(const Params& control, const LinkParams& channel,
                                                               Seconds tick, const Lengths& slave_start_m) {
+  if (joints_of(slave_start_m) != joints_of(control)) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "slave_start_m",
+                 .message = "is of " + std::to_string(joints_of(slave_start_m)) +
+                            " joints, and the parameters are of " + std::to_string(joints_of(control)),
+                 .place = {}};
+  }
   auto sites = make_pair<Master, Slave>(control, tick);
   if (!sites) return under("control", sites.error());
   const auto first = first_said<Payload>(slave_start_m);
@@ -53,12 +62,14 @@ Result<SitePair<Master, Slave>> SitePair<Master, Slave>::make(const Params& cont
                   first_said<Payload>(same_for_each(slave_start_m, 0.0)));
 }
 
-template Result<SupervisedPair> SupervisedPair::make(const control::ControlParams&, const LinkParams&, Seconds,
-                                                     const double&);
-template Result<BarePair> BarePair::make(const control::ControlParams&, const LinkParams&, Seconds, const double&);
-template Result<JointSupervisedPair> JointSupervisedPair::make(const Joints<control::ControlParams>&, const LinkParams&,
-                                                               Seconds, const Joints<double>&);
-template Result<JointBarePair> JointBarePair::make(const Joints<control::ControlParams>&, const LinkParams&, Seconds,
-                                                   const Joints<double>&);
+template Result<SupervisedPair> SitePair<control::SupervisedMaster, control::SupervisedSlave>::make(
+    const control::ControlParams&, const LinkParams&, Seconds, const double&);
+template Result<BarePair> SitePair<control::MasterSite, control::SlaveSite>::make(const control::ControlParams&,
+                                                                                  const LinkParams&, Seconds,
+                                                                                  const double&);
+template Result<JointSupervisedPair> SitePair<control::JointSupervisedMaster, control::JointSupervisedSlave>::make(
+    const Joints<control::ControlParams>&, const LinkParams&, Seconds, const Joints<double>&);
+template Result<JointBarePair> SitePair<control::JointMasterSite, control::JointSlaveSite>::make(
+    const Joints<control::ControlParams>&, const LinkParams&, Seconds, const Joints<double>&);
 
 }  // namespace tactus::station

@@ -239,6 +239,7 @@ TEST(SeveralJoints, WhatDoesNotFitIsRefusedByTheJointsName) {
   EXPECT_EQ(refused_for(control, real), "nothing");
   control[1].slave_gate = {};
   EXPECT_EQ(refused_for(control, real), "control.joint_2.slave_gate.force_limit_N");
+  EXPECT_EQ(JointSupervisedPair::make(of_joints(3), {}, period, Joints<double>(2)).error().parameter, "slave_start_m");
   control = of_joints(3);
   for (auto& joint : control) {
     joint.supervision.probe.force_N = 0.5;
