@@ -276,6 +276,27 @@ FoundParameter BenchKnowledge::found(BenchVariable variable) const {
   return parameter;
 }
 
+std::vector<double> BenchKnowledge::correlation(std::span<const FoundParameter> parameters) const {
+  const auto covariance_of = [&](const FoundParameter& one, const FoundParameter& other) {
+    const auto index_of = [](const FoundParameter& parameter) {
+      return static_cast<std::size_t>(
+          std::find_if(descriptions.begin(), descriptions.end(),
+                       [&parameter](const Description& description) { return description.name == parameter.name; }) -
+          descriptions.begin());
+    };
+    const std::size_t a = index_of(one), b = index_of(other);
+    return a < bench_variables && b < bench_variables ? covariance_[a * bench_variables + b] : 0.0;
+  };
+  std::vector<double> matrix;
+  for (const FoundParameter& row : parameters) {
+    for (const FoundParameter& column : parameters) {
+      const double scale = std::sqrt(covariance_of(row, row) * covariance_of(column, column));
+      matrix.push_back(&row == &column ? 1.0 : scale > 0.0 ? covariance_of(row, column) / scale : 0.0);
+    }
+  }
+  return matrix;
+}
+
 FoundParameter BenchKnowledge::loop_area() const {
   constexpr std::array shape{BenchVariable::linkage_stiffness, BenchVariable::linkage_hysteretic_fraction,
                              BenchVariable::linkage_slip_deflection};

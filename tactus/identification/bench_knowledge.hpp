@@ -98,6 +98,9 @@ class BenchKnowledge {
 
   /// What is not known reaches from 0 to the largest number there is.
   [[nodiscard]] FoundParameter found(BenchVariable variable) const;
+  /// Correlation matrix of these parameters, row by row, in the variables of a fit. What is no variable, as an area, or
+  /// is not known goes with nothing.
+  [[nodiscard]] std::vector<double> correlation(std::span<const FoundParameter> parameters) const;
   /// Energy that the linkage loses in a closed loop of its reference deflection, in J.
   [[nodiscard]] FoundParameter loop_area() const;
 

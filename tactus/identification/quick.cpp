@@ -170,6 +170,7 @@ class Quick {
       if (!knowledge_.knows(variable) || variable == operator_sight) continue;
       isolation.parameters.push_back(knowledge_.found(variable));
     }
+    isolation.correlation = knowledge_.correlation(isolation.parameters);
     isolation.found = knowledge_.params();
     for (auto* runs : {&fast_, &slow_}) {
       IsolationStage stage;
