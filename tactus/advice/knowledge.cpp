@@ -5,7 +5,6 @@
 #include <cmath>
 #include <fstream>
 #include <numbers>
-#include <sstream>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
@@ -160,11 +159,10 @@ Knowledge Knowledge::identified(std::span<const identification::FoundParameter> 
 Result<Knowledge> Knowledge::read(const std::filesystem::path& results, const Conditions& given) {
   using Json = nlohmann::json;
   std::ifstream stream(results, std::ios::binary);
-  std::ostringstream text;
-  if (!(text << stream.rdbuf())) {
+  if (!stream) {
     return Error{ErrorCode::missing, {}, "the file cannot be read: check its permissions", results.string()};
   }
-  const Json document = Json::parse(text.str(), nullptr, false);
+  const Json document = Json::parse(stream, nullptr, false);
   const auto refuse = [&results](std::string why) {
     return Error{ErrorCode::syntax, {}, std::move(why), results.string()};
   };

@@ -175,6 +175,8 @@ void BenchKnowledge::suppose(BenchVariable variable, double share) {
   prior_[i] = {.middle = to_variable(descriptions[i], get(params_, descriptions[i])), .deviation = share};
 }
 
+void BenchKnowledge::start_from(BenchVariable variable, double value) { describe(variable).of(params_) = value; }
+
 std::vector<double> BenchKnowledge::left_m(const BenchExperiment& experiment) const {
   return difference_m(params_, experiment);
 }
