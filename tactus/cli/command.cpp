@@ -63,6 +63,7 @@ int run(int argc, char** argv) {
   // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
   app.require_subcommand(0, 1);
   add_run(app, command, status);
+  add_advise(app, command, status);
   add_estimate(app, command, status);
   add_identify(app, command, status);
   add_export(app, status);

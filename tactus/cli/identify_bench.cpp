@@ -15,6 +15,7 @@
 #include <tactus/report/text.hpp>
 #include <tactus/simulation/simulated_rig.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -111,6 +112,12 @@ std::string json_of(const Isolation& isolation, const ImpactCheck& check, const 
                {"determined", parameter.determined}};
     if (const auto truth = rig.truth(parameter.name)) entry["truth"] = *truth;
     document["parameters"].push_back(std::move(entry));
+  }
+  document["correlation"] = Json::array();
+  for (std::size_t i = 0; i < isolation.parameters.size(); ++i) {
+    const auto row = isolation.correlation.begin() + static_cast<std::ptrdiff_t>(i * isolation.parameters.size());
+    document["correlation"].push_back(
+        std::vector<double>(row, row + static_cast<std::ptrdiff_t>(isolation.parameters.size())));
   }
   document["stages"] = Json::array();
   for (const auto& stage : isolation.stages) {

@@ -191,6 +191,14 @@ Check Document::read(std::span<const Binding> bindings) const {
   return {};
 }
 
+std::vector<std::string> Document::keys() const {
+  std::vector<std::string> found;
+  for (const Entry& entry : entries_) {
+    if (!std::holds_alternative<Table>(entry.value)) found.push_back(entry.path);
+  }
+  return found;
+}
+
 Result<std::string> Document::text_at(std::string_view path) const {
   const Entry* entry = find(path);
   if (entry == nullptr) {

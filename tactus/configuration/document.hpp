@@ -63,6 +63,9 @@ class Document {
   /// but no key. After an error some of the values are assigned and some are not.
   Check read(std::span<const Binding> bindings) const;
 
+  /// The keys that hold a value, dotted, in the order written.
+  [[nodiscard]] std::vector<std::string> keys() const;
+
   /// One text, before it is known what the rest of the document describes: `text_at("task.kind")`.
   ///
   /// Errors: `missing`, `wrong_type`.

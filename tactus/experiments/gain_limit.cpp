@@ -6,7 +6,8 @@
 
 namespace tactus::experiments {
 
-GainLimit find_gain_limit(double lowest, double highest, const std::function<bool(double gain)>& settles) {
+GainLimit find_gain_limit(double lowest, double highest, const std::function<bool(double gain)>& settles,
+                          double resolution) {
   double settled = std::clamp(1.0, lowest, highest);
   double failed = settled;
   if (settles(settled)) {
@@ -22,7 +23,7 @@ GainLimit find_gain_limit(double lowest, double highest, const std::function<boo
       (settles(next) ? settled : failed) = next;
     }
   }
-  while (failed > settled * gain_resolution) {
+  while (failed > settled * resolution) {
     const double middle = std::sqrt(settled * failed);
     (settles(middle) ? settled : failed) = middle;
   }

@@ -175,6 +175,8 @@ void BenchKnowledge::suppose(BenchVariable variable, double share) {
   prior_[i] = {.middle = to_variable(descriptions[i], get(params_, descriptions[i])), .deviation = share};
 }
 
+void BenchKnowledge::start_from(BenchVariable variable, double value) { describe(variable).of(params_) = value; }
+
 std::vector<double> BenchKnowledge::left_m(const BenchExperiment& experiment) const {
   return difference_m(params_, experiment);
 }
@@ -274,6 +276,27 @@ FoundParameter BenchKnowledge::found(BenchVariable variable) const {
     parameter.determined = half <= told_within * std::fabs(parameter.value);
   }
   return parameter;
+}
+
+std::vector<double> BenchKnowledge::correlation(std::span<const FoundParameter> parameters) const {
+  const auto covariance_of = [&](const FoundParameter& one, const FoundParameter& other) {
+    const auto index_of = [](const FoundParameter& parameter) {
+      return static_cast<std::size_t>(
+          std::find_if(descriptions.begin(), descriptions.end(),
+                       [&parameter](const Description& description) { return description.name == parameter.name; }) -
+          descriptions.begin());
+    };
+    const std::size_t a = index_of(one), b = index_of(other);
+    return a < bench_variables && b < bench_variables ? covariance_[a * bench_variables + b] : 0.0;
+  };
+  std::vector<double> matrix;
+  for (const FoundParameter& row : parameters) {
+    for (const FoundParameter& column : parameters) {
+      const double scale = std::sqrt(covariance_of(row, row) * covariance_of(column, column));
+      matrix.push_back(&row == &column ? 1.0 : scale > 0.0 ? covariance_of(row, column) / scale : 0.0);
+    }
+  }
+  return matrix;
 }
 
 FoundParameter BenchKnowledge::loop_area() const {

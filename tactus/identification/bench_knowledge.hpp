@@ -83,6 +83,8 @@ class BenchKnowledge {
   /// deviation (a linear variable: to `share` of its unit scale). Positions must then be weighed by what they are
   /// really off.
   void suppose(BenchVariable variable, double share);
+  /// Fits of this variable start from `value` from now on, above 0; what is known or supposed of it stays.
+  void start_from(BenchVariable variable, double value);
   /// Takes the linkage for a linear spring from now on, without knowing it.
   void assume_no_hysteresis() { params_.master.linkage.hysteretic_fraction = 0.0; }
 
@@ -98,6 +100,9 @@ class BenchKnowledge {
 
   /// What is not known reaches from 0 to the largest number there is.
   [[nodiscard]] FoundParameter found(BenchVariable variable) const;
+  /// Correlation matrix of these parameters, row by row, in the variables of a fit. What is no variable, as an area, or
+  /// is not known goes with nothing.
+  [[nodiscard]] std::vector<double> correlation(std::span<const FoundParameter> parameters) const;
   /// Energy that the linkage loses in a closed loop of its reference deflection, in J.
   [[nodiscard]] FoundParameter loop_area() const;
 

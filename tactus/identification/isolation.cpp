@@ -39,6 +39,7 @@ class Isolator {
       result_.parameters.push_back(knowledge_.found(static_cast<BenchVariable>(i)));
       if (static_cast<BenchVariable>(i) == linkage_damping) result_.parameters.push_back(knowledge_.loop_area());
     }
+    result_.correlation = knowledge_.correlation(result_.parameters);
     result_.found = knowledge_.params();
     return std::move(result_);
   }

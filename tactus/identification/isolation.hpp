@@ -29,6 +29,7 @@ struct IsolationStage {
 
 struct Isolation {
   std::vector<FoundParameter> parameters;
+  std::vector<double> correlation;  ///< matrix of `parameters`, row by row (`BenchKnowledge::correlation`)
   std::vector<IsolationStage> stages;
   BenchParams found;
 };

@@ -18,12 +18,6 @@ double round_trip_s(const simulation::Teleoperator::Params& params) {
   return params.channel.to_slave.delay_s + params.channel.to_master.delay_s;
 }
 
-/// From the start of the run on, so that a grip sensor tells it and an estimate has the approach to learn it.
-TappingParams with_grip(TappingParams params, double factor) {
-  params.person.grip_change = {.factor = factor, .start_s = 0.0, .duration_s = 0.0};
-  return params;
-}
-
 /// What the hand should feel and what it feels, over the taps that touched.
 std::optional<double> hand_error(const TappingParams& params,
                                  const std::vector<simulation::Teleoperator::Record>& trace, double first_touch_s) {
@@ -71,6 +65,11 @@ TappingParams tapping_of(const simulation::Teleoperator::Params& teleoperator, c
 
 TappingParams with_display(TappingParams params, double force_limit_N) {
   params.control.force_limit_N = force_limit_N;
+  return params;
+}
+
+TappingParams with_grip(TappingParams params, double factor) {
+  params.person.grip_change = {.factor = factor, .start_s = 0.0, .duration_s = 0.0};
   return params;
 }
 

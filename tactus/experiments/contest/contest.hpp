@@ -105,6 +105,9 @@ struct MethodScore {
 TappingParams tapping_of(const simulation::Teleoperator::Params& teleoperator, const TapSeries& taps);
 /// With a display that saturates at `force_limit_N`.
 TappingParams with_display(TappingParams params, double force_limit_N);
+/// In a hand that holds `factor` times as firmly, from the start of the run on, so that a grip sensor tells it and an
+/// estimate has the approach to learn it.
+TappingParams with_grip(TappingParams params, double factor);
 /// With this delay in both directions, and five round trips longer observed, for a contact over a delay takes that long
 /// to tell whether it calms down.
 TappingParams with_delay(TappingParams params, double each_way_s);

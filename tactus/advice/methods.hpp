@@ -1,0 +1,48 @@
+#pragma once
+
+#include <tactus/control/model/induced_motion_model.hpp>
+#include <tactus/experiments/experiment.hpp>
+
+#include <string>
+#include <vector>
+
+/// What can be set against contact that rings.
+namespace tactus::advice {
+
+/// One way to have a thing, such as a notch in the command.
+struct Choice {
+  experiments::Settings settings;
+  std::string words = {};  ///< for a person: `a notch in the command at {} Hz`, {} for the number; empty for without
+  std::string tuned = {};  ///< key whose number is the one in the words and may be moved; empty for none
+  bool operator==(const Choice&) const = default;
+};
+
+/// Choices of which a configuration has exactly one.
+using Dimension = std::vector<Choice>;
+
+/// A configuration: one choice of each dimension.
+struct Method {
+  std::vector<Choice> choices;
+  [[nodiscard]] experiments::Settings settings() const;
+  /// For a person, `cancellation and local damping of 5 N s/m`; `no stage` for none.
+  [[nodiscard]] std::string words() const;
+  bool operator==(const Method&) const = default;
+};
+
+/// The dimensions of position-force control that are searched: cancellation, local damping, hand compensation, filter
+/// of the command, filter of the force. Notches stand at the master's mode in the hand as `model` has it.
+std::vector<Dimension> position_force_dimensions(const control::MasterModel& model);
+/// Other architectures, for where position-force control settles at no gain. They reflect less of the force.
+std::vector<Dimension> other_dimensions();
+
+/// Every combination with at most `stages` choices that are more than "without", cancellation not counted, and no two
+/// filters; those with fewer first.
+std::vector<Method> combine(const std::vector<Dimension>& dimensions, std::size_t stages);
+
+/// The method with each of its tuned numbers at a factor of 0.7 and of 1.4, one at a time.
+std::vector<Method> retuned(const Method& method);
+
+/// A number with three digits.
+double rounded(double value);
+
+}  // namespace tactus::advice

@@ -1,0 +1,63 @@
+#include <tactus/advice/presentation.hpp>
+#include <tactus/cli/experiment_options.hpp>
+#include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/verbs.hpp>
+
+#include <iostream>
+#include <memory>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+struct AdviseOptions {
+  ExperimentOptions experiment;
+  OutputOptions output;
+};
+
+Check advise(const AdviseOptions& options, const std::string& command) {
+  auto document = load_experiment(options.experiment);
+  if (!document) return document.error();
+  auto bench = advice::make_bench(*std::move(document), options.experiment.with, options.experiment.set);
+  if (!bench) return bench.error();
+  auto output = OutputFolder::open(options.output);
+  if (!output) return output.error();
+  const experiments::Request request{.document = bench->document,
+                                     .variations = {},
+                                     .name = experiment_name(options.experiment.file),
+                                     .command = command};
+  const auto advice = [&] {
+    ProgressLine line(request.name);
+    return advice::advise(*bench, [&line](double done) { line.update(done); });
+  }();
+  if (!advice) return advice.error();
+  const auto outcome = advice::present(*bench, *advice, request);
+  if (!outcome) return outcome.error();
+  if (output->wanted() && advice->start) {
+    if (auto error = output->write("advice.toml", advice::advice_toml(*bench, *advice, command))) return error;
+  }
+  return write_outcome(*output, *outcome);
+}
+
+}  // namespace
+
+void add_advise(CLI::App& app, const std::string& command, int& status) {
+  auto options = std::make_shared<AdviseOptions>();
+  CLI::App* verb =
+      app.add_subcommand("advise", "Say which method and force gain to start with, what limits it, what to measure");
+  add_experiment_options(*verb, options->experiment);
+  options->output.own_files = {"advice.toml"};
+  add_output_options(*verb, options->output, "Folder for report.html, results.json and advice.toml, for run --with");
+  verb->callback([options, &app, &command, &status] {
+    if (const auto error = advise(*options, command)) {
+      std::cerr << app.get_name() << ": " << describe(*error) << "\n";
+      status = exit_status(*error);
+    }
+  });
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,99 @@
+#include <string>
+#include <vector>
+
+#include "tests/cli/command.hpp"
+#include <nlohmann/json.hpp>
+
+namespace tactus::cli {
+namespace {
+
+using AdviseVerb = Command;
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+/// A quick experiment with next to nothing to choose from.
+Words narrow(const std::string& file) {
+  Words words{"advise", file};
+  for (const char* given : {"control.command_filter.kind=none", "control.force_filter.kind=none",
+                            "control.damping.damping_N_s_per_m=0", "control.hand_compensation_Hz=0"}) {
+    words.insert(words.end(), {"--set", given});
+  }
+  return words;
+}
+
+Words operator+(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST_F(AdviseVerb, TheAdviceIsASentenceFirstAndAFileThatRunLoads) {
+  const Outcome outcome = tactus(narrow(quick_experiment()) + Words{"--json", "--out", "advice"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json found = Json::parse(outcome.out);
+  Words members;
+  for (const auto& [key, value] : found.items()) members.push_back(key);
+  for (const char* key :
+       {"advice", "set", "force_gain", "first_gain", "expected", "limited_by", "next_measurement", "alternatives"}) {
+    EXPECT_TRUE(found.contains(key)) << key;
+  }
+  EXPECT_TRUE(found["limited_by"].contains("parameter"));
+  EXPECT_TRUE(found["limited_by"].contains("unit"));
+  EXPECT_EQ(found["set"]["control.force_gain"], found["force_gain"]);
+  EXPECT_EQ(found["set"]["control.hand_compensation_Hz"], 0) << "what was given stays";
+  for (const Json& other : found["alternatives"]) EXPECT_TRUE(other.contains("set") && other.contains("force_gain"));
+  EXPECT_EQ(content("advice/results.json"), outcome.out);
+  EXPECT_NE(content("advice/report.html").find(found["advice"].get<std::string>().substr(0, 20)), std::string::npos);
+
+  const Outcome run = tactus({"run", "quick.toml", "--with", "advice/advice.toml", "--json"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  Words set{"run", "quick.toml", "--json"};
+  for (const auto& [key, value] : found["set"].items()) {
+    set.insert(set.end(), {"--set", key + "=" + (value.is_string() ? value.get<std::string>() : value.dump())});
+  }
+  EXPECT_EQ(tactus(set).out, run.out) << "the file says what `set` says";
+
+  const Outcome text = tactus(narrow("quick.toml"));
+  EXPECT_TRUE(text.out.starts_with(found["advice"].get<std::string>() + "\n")) << text.out;
+  EXPECT_EQ(text.err, "");
+  const Outcome again = tactus(narrow("quick.toml") + Words{"--out", "advice"});
+  EXPECT_EQ(again.status, 2);
+  EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
+}
+
+TEST_F(AdviseVerb, AWrongRequestIsAnsweredAtOnceAndLeavesNothing) {
+  const std::string file = quick_experiment();
+  write("contest.toml", "[task]\nkind = \"contest\"\n");
+  write("model.toml", "[control.model.linkage]\nstiffness_N_per_m = 9000.0\n");
+  struct Wrong {
+    Words words;
+    const char* told;
+  };
+  const Words before = files();
+  for (const Wrong& wrong :
+       {Wrong{{"advise", "contest.toml"},
+              "contest.toml:2:8: task.kind: advice is given on experiments of the kind tapping"},
+        Wrong{{"advise", file, "--set", "control.cancelation=on"}, "did you mean cancellation?"},
+        Wrong{{"advise", file, "--set", "control.force_gain=-1"}, "--set control.force_gain=-1"},
+        Wrong{{"advise", file, "--with", "none.toml"}, "none.toml"},
+        Wrong{{"advise", file, "--with", "model.toml"}, "model.toml:2:"}, Wrong{{"advise", "none.toml"}, "none.toml"},
+        Wrong{{"advise", file, "--vary", "control.force_gain=1,2"}, "--vary"}, Wrong{{"advise"}, "EXPERIMENT"}}) {
+    const Outcome outcome = tactus(wrong.words + Words{"--out", "advice"});
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(wrong.told), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(files(), before);
+}
+
+TEST_F(AdviseVerb, ResultsOfAnotherVerbBesideAModelAreNoIntervals) {
+  make_folder("found");
+  write("found/model.toml", "[control.model.linkage]\nstiffness_N_per_m = 3950.0\n");
+  write("found/results.json", "{\"experiment\": \"tapping\"}");
+  const Outcome outcome = tactus({"advise", quick_experiment(), "--with", "found/model.toml"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("found/results.json: this is no result of tactus identify"), std::string::npos)
+      << outcome.err;
+}
+
+}  // namespace
+}  // namespace tactus::cli
