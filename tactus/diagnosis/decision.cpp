@@ -14,7 +14,7 @@ namespace {
 constexpr double untested = 0.5;
 constexpr double least_score = 0.55;  ///< more than untested
 constexpr double least_lead = 0.25;
-constexpr double usual_tremor_m = 1e-4, usual_tremor_rad = 2e-3;
+constexpr double usual_tremor_m = 1.5e-4, usual_tremor_rad = 3e-3;
 constexpr double deliberate_below_Hz = 3.0;
 
 /// 0 at `from`, 1 at `to`, a straight line between; either may be the larger.
@@ -41,17 +41,20 @@ struct Scored {
 
 /// What the tests of all mechanisms share, each 0 to 1.
 struct Shown {
-  std::optional<double> slave_alone, few_slave_steps, few_master_steps, standstill, contact, delayed, hand, actuator;
+  std::optional<double> slave_alone, slave_part, leads_itself, few_slave_steps, few_master_steps, standstill, contact,
+      delayed, hand, actuator;
   double steady, tremor_band, slow_enough_to_stick;
 };
 
 Shown shown_by(const Oscillation& oscillation, const Evidence& evidence) {
   const double f_Hz = oscillation.frequency_Hz;
   Shown shown{.slave_alone = ramp(evidence.master_part, 0.35, 0.12),
+              .slave_part = ramp(evidence.master_part, 10.0, 4.0),
+              .leads_itself = ramp(evidence.follows, 0.9, 0.6),
               .few_slave_steps = ramp(evidence.slave_steps, 5.0, 3.0),
               .few_master_steps = ramp(evidence.master_steps, 5.0, 3.0),
               .standstill = ramp(evidence.standstill, 0.25, 0.45),
-              .contact = ramp(evidence.contact, 0.1, 0.35),
+              .contact = ramp(evidence.contact, 0.1, 0.3),
               .delayed = {},
               .hand = {},
               .actuator = {},
@@ -60,21 +63,24 @@ Shown shown_by(const Oscillation& oscillation, const Evidence& evidence) {
               .slow_enough_to_stick = ramp(f_Hz, 40.0, 25.0)};
   if (evidence.delay_there_s || evidence.delay_back_s) {
     const double round_trip_s = evidence.delay_there_s.value_or(0.0) + evidence.delay_back_s.value_or(0.0);
-    shown.delayed = ramp(2.0 * std::numbers::pi * f_Hz * round_trip_s, 0.1, 0.3);
+    shown.delayed = ramp(2.0 * std::numbers::pi * f_Hz * round_trip_s, 0.3, 0.8);
   }
-  // No hand shakes faster than a tremor; below, it is the hand or the actuator that gives the energy.
+  // No hand shakes faster than a tremor. Below, it is the hand or the loop that gives the energy. A measured hand force
+  // says which. So does the displayed one; but a contact that is felt late gives some energy back to any hand that
+  // shakes it, so in contact more is asked of it.
   const double beyond_a_hand = ramp(f_Hz, 14.0, 20.0);
-  const std::optional<double> driven = ramp(evidence.actuator_gives, 0.05, 0.3);
-  shown.actuator =
-      driven || beyond_a_hand > 0.0 ? std::optional(std::max(driven.value_or(untested), beyond_a_hand)) : std::nullopt;
-  const std::optional<double> hand_works = ramp(evidence.hand_gives, -0.1, 0.15);
-  if (hand_works || driven) {
-    // A limit cycle keeps its size, a tremor wanders.
-    const double wanders = ramp(evidence.wander, 0.25, 0.45);
-    const double works = hand_works && driven ? std::max(*hand_works, 1.0 - *driven)
-                                              : hand_works.value_or(1.0 - driven.value_or(untested));
-    shown.hand = std::max(works, wanders);
+  std::optional<double> loop;
+  if (evidence.hand_gives) {
+    loop = ramp(*evidence.hand_gives, 0.15, -0.1);
+    shown.hand = 1.0 - *loop;
+  } else if (evidence.actuator_gives) {
+    const double in_contact = shown.contact.value_or(untested);
+    loop = ramp(*evidence.actuator_gives, 0.35 * in_contact, 0.15 + 0.55 * in_contact);
+    // A limit cycle keeps its size, a tremor wanders: this counts where the force is in line by half or less.
+    const double wanders = ramp(evidence.wander, 0.25, 0.45) * ramp(*evidence.actuator_gives, 0.8, 0.5);
+    shown.hand = std::max(1.0 - *loop, wanders);
   }
+  if (loop || beyond_a_hand > 0.0) shown.actuator = std::max(loop.value_or(untested), beyond_a_hand);
   return shown;
 }
 
@@ -91,11 +97,13 @@ std::vector<Scored> scores(const Shown& s) {
                     .must(s.steady));
   all.push_back(Scored{Mechanism::slave_servo}
                     .must(s.slave_alone, {master_position, slave_position})
+                    .must(s.leads_itself, {master_position, slave_position})
                     .must(many_slave_steps, {slave_position})
                     .must(moves, {slave_position})
                     .must(s.steady));
   all.push_back(Scored{Mechanism::delay}
                     .must(both, {master_position, slave_position})
+                    .must(s.slave_part, {master_position, slave_position})
                     .must(s.actuator, {displayed_force})
                     .must(opposite(s.contact), {tip_force})
                     .must(s.delayed, {slave_force, displayed_force})
@@ -105,13 +113,15 @@ std::vector<Scored> scores(const Shown& s) {
   const auto at_master = s.few_master_steps && both && s.actuator
                              ? std::optional(std::min({*s.few_master_steps, *both, *s.actuator}))
                              : std::nullopt;
-  const auto at_slave =
-      s.few_slave_steps && s.slave_alone ? std::optional(std::min(*s.few_slave_steps, *s.slave_alone)) : std::nullopt;
+  const auto at_slave = s.few_slave_steps && s.slave_alone
+                            ? std::optional(std::min({*s.few_slave_steps, *s.slave_alone, *s.leads_itself}))
+                            : std::nullopt;
   all.push_back(Scored{Mechanism::quantisation}.must(
       at_master || at_slave ? std::optional(std::max(at_master.value_or(0.0), at_slave.value_or(0.0))) : std::nullopt,
       {master_position, slave_position}));
   all.push_back(Scored{Mechanism::stick_slip}
                     .must(s.slave_alone, {master_position, slave_position})
+                    .must(s.leads_itself, {master_position, slave_position})
                     .must(many_slave_steps, {slave_position})
                     .must(s.standstill, {slave_position})
                     .must(s.slow_enough_to_stick));
@@ -153,8 +163,8 @@ std::vector<std::string> sentences(const Signals& signals, const Oscillation& os
   if (evidence.contact) {
     told.push_back(*evidence.contact > 0.2
                        ? "the tip force takes part (" + text(*evidence.contact) +
-                             " of the largest force): the slave is in contact"
-                       : "the tip force does not take part (" + text(*evidence.contact) + " of the largest force)");
+                             " of the motor's force): the slave is in contact"
+                       : "the tip force does not take part (" + text(*evidence.contact) + " of the motor's force)");
   }
   if (evidence.delay_there_s || evidence.delay_back_s) {
     std::string delays;

@@ -12,6 +12,7 @@ namespace tactus::diagnosis {
 namespace {
 
 constexpr double slow_rate_Hz = 400.0;
+constexpr double longest_break_s = 3.0;
 
 /// The loop gain from the force of the loop that was found.
 std::optional<identification::Estimate> loop_gain_of(const Signals& signals, const Oscillation& oscillation,
@@ -23,6 +24,14 @@ std::optional<identification::Estimate> loop_gain_of(const Signals& signals, con
   const auto from = static_cast<std::size_t>(oscillation.from_s / signals.sample_time.value);
   const auto to = std::min(static_cast<std::size_t>(oscillation.to_s / signals.sample_time.value), signals.samples);
   return loop_gain(std::span(force->values).subspan(from, to - from), induced);
+}
+
+/// What grows may change its frequency: one loop that makes several lines in turn is told once, by the strongest.
+bool goes_on(const Finding& strong, const Finding& weak) {
+  const double gap_s = std::max(strong.oscillation.from_s, weak.oscillation.from_s) -
+                       std::min(strong.oscillation.to_s, weak.oscillation.to_s);
+  return strong.decision.mechanism == weak.decision.mechanism && strong.decision.mechanism != Mechanism::unknown &&
+         gap_s < longest_break_s;
 }
 
 std::string when(const Signals& signals, const Oscillation& oscillation) {
@@ -55,7 +64,7 @@ std::string verdict_of(const Signals& signals, const std::vector<Finding>& findi
   if (first.loop_gain) {
     text += " At this amplitude the loop gain for small motion is " + report::number(first.loop_gain->value, 2) + " (" +
             report::number(first.loop_gain->lower, 2) + " to " + report::number(first.loop_gain->upper, 2) +
-            "): turned down by that factor it cannot go on, and less may do.";
+            "), an estimate: turn it down by at least as much.";
   }
   return text;
 }
@@ -114,6 +123,17 @@ Diagnosis diagnose(const Signals& signals) {
     finding.evidence = measure(signals, finding.oscillation);
     finding.decision = decide(signals, finding.oscillation, finding.evidence);
     if (finding.decision.harmless) continue;
+    const auto told = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                                   [&](const Finding& before) { return goes_on(before, finding); });
+    if (told != diagnosis.findings.end()) {
+      told->decision.evidence.push_back("the same loop shows at " +
+                                        report::number(finding.oscillation.frequency_Hz, 3) + " Hz from " +
+                                        report::number(finding.oscillation.from_s, 3) + " s to " +
+                                        report::number(finding.oscillation.to_s, 3) + " s");
+      told->oscillation.from_s = std::min(told->oscillation.from_s, finding.oscillation.from_s);
+      told->oscillation.to_s = std::max(told->oscillation.to_s, finding.oscillation.to_s);
+      continue;
+    }
     finding.loop_gain = loop_gain_of(signals, finding.oscillation, finding.decision.mechanism);
     diagnosis.findings.push_back(std::move(finding));
   }

@@ -56,8 +56,10 @@ double wander_of(std::span<const double> values, double frequency_Hz, Seconds dt
   return std::sqrt(std::max(0.0, vy - vty * vty / vt)) / (sy / n);
 }
 
-/// Cosine of the angle between a force and the velocity that belongs to a position.
-double gives(const std::vector<Complex>& force, double sign, const std::vector<Complex>& position) {
+/// Cosine of the angle between a force and the velocity that belongs to a position; 0 for a force that is less than the
+/// steps of its column tell.
+double gives(const std::vector<Complex>& force, double sign, double step, const std::vector<Complex>& position) {
+  if (usual_size(force) < step) return 0.0;
   std::vector<Complex> velocity(position.size());
   std::transform(position.begin(), position.end(), velocity.begin(),
                  [](const Complex& x) { return Complex(0.0, 1.0) * x; });
@@ -145,7 +147,7 @@ Evidence measure(const Signals& signals, const Oscillation& oscillation) {
     const auto index = static_cast<std::size_t>(role);
     if (signals.find(role) == nullptr) continue;
     blocks[index] = line_in_blocks(part(role), block_samples, f_Hz, dt);
-    found.amplitude[index] = rms(blocks[index]);
+    found.amplitude[index] = usual_size(blocks[index]);
   }
   const auto of = [&](Role role) -> const std::vector<Complex>& { return blocks[static_cast<std::size_t>(role)]; };
   const auto has = [&](Role role) { return signals.find(role) != nullptr; };
@@ -153,6 +155,10 @@ Evidence measure(const Signals& signals, const Oscillation& oscillation) {
   if (has(Role::master_position) && has(Role::slave_position) && *found.of(Role::slave_position) > 0.0) {
     found.master_part =
         std::abs(position_scale(signals)) * *found.of(Role::master_position) / *found.of(Role::slave_position);
+  }
+  if (const Channel* master = signals.find(Role::master_position); master != nullptr && has(Role::slave_position)) {
+    const double coherence = relation(of(Role::master_position), of(Role::slave_position)).coherence;
+    found.follows = *found.of(Role::master_position) > 0.7 * master->step ? coherence : 0.0;
   }
   if (const Channel* master = signals.find(Role::master_position); master != nullptr && !master->constant()) {
     found.master_steps = steps_within_a_period(part(Role::master_position), f_Hz, master->step, dt);
@@ -162,22 +168,25 @@ Evidence measure(const Signals& signals, const Oscillation& oscillation) {
     found.standstill = share_of_standstill(part(Role::slave_position), f_Hz, slave->step, dt);
   }
   if (has(Role::master_position) && has(Role::displayed_force)) {
-    found.actuator_gives = gives(of(Role::displayed_force), -1.0, of(Role::master_position));
+    found.actuator_gives =
+        gives(of(Role::displayed_force), -1.0, signals.find(Role::displayed_force)->step, of(Role::master_position));
   }
   if (has(Role::master_position) && has(Role::hand_force)) {
-    found.hand_gives = gives(of(Role::hand_force), 1.0, of(Role::master_position));
+    found.hand_gives =
+        gives(of(Role::hand_force), 1.0, signals.find(Role::hand_force)->step, of(Role::master_position));
   }
   if (has(Role::slave_position) && has(Role::slave_force)) {
-    found.drive_gives = gives(of(Role::slave_force), 1.0, of(Role::slave_position));
+    found.drive_gives =
+        gives(of(Role::slave_force), 1.0, signals.find(Role::slave_force)->step, of(Role::slave_position));
   }
   if (has(Role::tip_force)) {
-    double largest = 0.0;
-    for (const Role role : {Role::displayed_force, Role::slave_force, Role::tip_force}) {
-      if (has(role)) largest = std::max(largest, *found.of(role));
-    }
     const Role motion = has(Role::slave_position) ? Role::slave_position : Role::master_position;
-    const double coherence = relation(of(motion), of(Role::tip_force)).coherence;
-    found.contact = largest > 0.0 ? std::sqrt(coherence) * *found.of(Role::tip_force) / largest : 0.0;
+    const double together = std::sqrt(relation(of(motion), of(Role::tip_force)).coherence);
+    const double size = *found.of(Role::tip_force);
+    // Against what moves the slave. Where that was not recorded, against the least that the sensor tells.
+    const double against =
+        has(Role::slave_force) ? *found.of(Role::slave_force) : 10.0 * signals.find(Role::tip_force)->step;
+    found.contact = against > 0.0 ? together * std::min(1.0, size / against) : 0.0;
   }
   if (has(Role::master_position) && has(Role::slave_position)) {
     // The stretch about the oscillation, for a coupling may change.

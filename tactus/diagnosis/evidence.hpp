@@ -12,10 +12,12 @@ namespace tactus::diagnosis {
 
 /// What the signals show of one oscillation. Each is empty where its signals were not recorded.
 struct Evidence {
-  /// Amplitudes of the line, root mean square over the blocks. [m or rad, N or N m]
+  /// Amplitudes of the line, the median over the blocks. [m or rad, N or N m]
   std::array<std::optional<double>, role_count> amplitude = {};
   /// The master's part: amplitude of its scaled position over that of the slave's.
   std::optional<double> master_part;
+  /// 0 to 1: whether the slave keeps a phase to a master that moves by more than its own steps: it may follow it.
+  std::optional<double> follows;
   /// Peak to peak within a period, in steps of the position's own column; the median over the blocks.
   std::optional<double> master_steps, slave_steps;
   /// Share of the time in which the slave stands: slower than a tenth of what it reaches.
@@ -24,8 +26,8 @@ struct Evidence {
   /// frequency. Of the master's actuator on the master, of the hand on the master, of the slave's actuator on the
   /// slave.
   std::optional<double> actuator_gives, hand_gives, drive_gives;
-  /// 0 to 1: part of the tip force in the largest of the forces at this frequency, coherence with the motion counted
-  /// in.
+  /// 0 to 1: tip force over the force of the slave's motor at this frequency (where that is missing, over ten steps of
+  /// the sensor), coherence with the motion counted in.
   std::optional<double> contact;
   /// Transport delay on the way to the slave and on the way back, where a coupling by position explains the force.
   std::optional<double> delay_there_s, delay_back_s;

@@ -85,23 +85,25 @@ std::vector<Complex> line_in_blocks(std::span<const double> samples, std::size_t
 }
 
 Relation relation(std::span<const Complex> from, std::span<const Complex> to) {
-  Complex cross{};
-  double from_power = 0.0, to_power = 0.0;
+  Complex sum{};
+  double count = 0.0;
   for (std::size_t i = 0; i < std::min(from.size(), to.size()); ++i) {
-    cross += std::conj(from[i]) * to[i];
-    from_power += std::norm(from[i]);
-    to_power += std::norm(to[i]);
+    const Complex cross = std::conj(from[i]) * to[i];
+    if (std::abs(cross) > 0.0) sum += cross / std::abs(cross);
+    count += 1.0;
   }
-  if (!(from_power > 0.0) || !(to_power > 0.0)) return {};
-  return {.coherence = std::norm(cross) / (from_power * to_power),
-          .ratio = cross / from_power,
-          .alignment = cross.real() / std::sqrt(from_power * to_power)};
+  if (count == 0.0) return {};
+  const Complex mean = sum / count;
+  return {.coherence = std::norm(mean), .angle_rad = std::arg(mean), .alignment = mean.real()};
 }
 
-double rms(std::span<const Complex> blocks) {
-  double power = 0.0;
-  for (const Complex& block : blocks) power += std::norm(block);
-  return blocks.empty() ? 0.0 : std::sqrt(power / static_cast<double>(blocks.size()));
+double usual_size(std::span<const Complex> blocks) {
+  if (blocks.empty()) return 0.0;
+  std::vector<double> sizes(blocks.size());
+  std::transform(blocks.begin(), blocks.end(), sizes.begin(), [](const Complex& block) { return std::abs(block); });
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle;
 }
 
 Spectrogram spectrogram(std::span<const double> samples, std::size_t frame, std::size_t hop, Seconds dt) {

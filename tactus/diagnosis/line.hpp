@@ -26,16 +26,17 @@ std::vector<Complex> demodulate(std::span<const double> samples, double frequenc
 std::vector<Complex> line_in_blocks(std::span<const double> samples, std::size_t block, double frequency_Hz,
                                     Seconds dt);
 
-/// What blocks of two signals have in common.
+/// What blocks of two signals have in common. Each block counts alike, however large it is, so that a few in which
+/// something else moved change little.
 struct Relation {
-  double coherence = 0;  ///< 0 to 1: the square of the normalised cross spectrum
-  Complex ratio{};       ///< of the second to the first, least squares
-  double alignment = 0;  ///< -1 to 1: the cosine of the angle between them, coherence counted in
+  double coherence = 0;  ///< 0 to 1: the square of the mean of the unit vectors between them
+  double angle_rad = 0;  ///< by which the second leads the first
+  double alignment = 0;  ///< -1 to 1: the mean cosine of the angle between them
 };
 Relation relation(std::span<const Complex> from, std::span<const Complex> to);
 
-/// Root mean square of the magnitudes.
-double rms(std::span<const Complex> blocks);
+/// The median of the magnitudes.
+double usual_size(std::span<const Complex> blocks);
 
 /// Power of frames of samples over time and frequency, for detection and for a picture.
 struct Spectrogram {

@@ -18,7 +18,7 @@ namespace tactus::diagnosis {
 double describing_gain(double below, double above);
 
 /// The loop gain at an oscillation, for small motion, from the force that ends its growth: what sustains itself has the
-/// gain 1 with its limits in it, so without them 1 / N. By how much the loop must be turned down to be still.
+/// gain 1 with its limits in it, so without them 1 / N: about by how much the loop must be turned down.
 ///
 /// `force` is that of the oscillation alone. With `one_sided` its lower end is where it is zero (a contact that is
 /// lost), else the other limit. Empty where it stays less than 3 % of the time at either end: nothing of this force

@@ -14,15 +14,22 @@ namespace {
 
 /// Frames of one length look for one band.
 struct Level {
-  double frame_s, lower_Hz, upper_Hz, fewest_cycles;
+  double frame_s, lower_Hz, upper_Hz;
+  double fewest_periods;
+  double longest_gap;   ///< periods for which the envelope may be down: a tremor's is, now and then
+  double lasting;       ///< share of the time in which it must be up
+  double concentrated;  ///< least share of a frame's power in the line and its harmonics
+  double share;         ///< the same over the whole oscillation; reaches of a hand have up to a third in some line
 };
-constexpr std::array<Level, 3> levels{{{0.5, 10.0, 1e9, 20.0}, {2.0, 2.5, 10.0, 10.0}, {4.0, 1.25, 2.5, 4.0}}};
-constexpr double concentrated = 0.5;
+constexpr std::array<Level, 3> levels{{{0.5, 10.0, 1e9, 20.0, 3.0, 0.8, 0.4, 0.3},
+                                       {2.0, 2.5, 10.0, 12.0, 6.0, 0.6, 0.5, 0.4},
+                                       {4.0, 1.25, 2.5, 4.0, 1.5, 0.6, 0.5, 0.4}}};
 constexpr double envelope_floor = 0.4;
-constexpr double lasting = 0.6;
-constexpr double smallest_share = 0.4;
-constexpr double longest_break_s = 1.0;
+constexpr double same_line_break_s = 2.0;
+constexpr double shortest_s = 1.0;
+constexpr double fades = 0.6;  ///< from the first to the last quarter
 constexpr std::size_t harmonics = 6;
+constexpr double highest_of_a_tremor_Hz = 16.0;
 constexpr std::size_t reach = 2;  ///< lines on either side that belong to one under a Hann window
 
 struct Candidate {
@@ -61,14 +68,14 @@ double power_about(const std::vector<double>& power, std::size_t k) {
 }
 
 /// The fundamental of the line that stands out of a frame, none if nothing does.
-std::optional<std::size_t> line_of(std::vector<double> power, const std::vector<double>& frequency_Hz, double lower_Hz,
-                                   double upper_Hz, const Candidate& candidate) {
+std::optional<std::size_t> line_of(std::vector<double> power, const std::vector<double>& frequency_Hz,
+                                   const Level& level, double upper_Hz, const Candidate& candidate) {
   const auto at = [&](double f_Hz) {
     return std::min(static_cast<std::size_t>(std::llround(f_Hz / frequency_Hz[1])), power.size() - 1);
   };
   std::vector<double> plain = power;
   for (std::size_t k = 0; k < power.size(); ++k) power[k] *= std::pow(frequency_Hz[k], candidate.exponent);
-  const auto first = static_cast<std::ptrdiff_t>(at(lower_Hz)), last = static_cast<std::ptrdiff_t>(at(upper_Hz));
+  const auto first = static_cast<std::ptrdiff_t>(at(level.lower_Hz)), last = static_cast<std::ptrdiff_t>(at(upper_Hz));
   if (first >= last) return std::nullopt;
   auto k = static_cast<std::size_t>(std::max_element(power.begin() + first, power.begin() + last) - power.begin());
   if (static_cast<std::ptrdiff_t>(k) == first && k > 0 && power[k - 1] > power[k]) return std::nullopt;
@@ -86,7 +93,7 @@ std::optional<std::size_t> line_of(std::vector<double> power, const std::vector<
   for (std::size_t h = 1; h <= harmonics && h * k + reach < power.size(); ++h) in_lines += power_about(power, h * k);
   const std::size_t end = std::min(8 * k, power.size() - 1);
   for (std::size_t i = std::max<std::size_t>(1, (6 * k) / 10); i <= end; ++i) all += power[i];
-  if (in_lines < concentrated * all) return std::nullopt;
+  if (in_lines < level.concentrated * all) return std::nullopt;
   if (std::sqrt(2.0 * power_about(plain, k)) < candidate.least) return std::nullopt;
   return k;
 }
@@ -100,7 +107,7 @@ std::vector<Track> tracks_of(const Spectrogram& frames, const Level& level, doub
                              const Candidate& candidate) {
   std::vector<Track> tracks;
   for (std::size_t i = 0; i < frames.power.size(); ++i) {
-    const auto k = line_of(frames.power[i], frames.frequency_Hz, level.lower_Hz, upper_Hz, candidate);
+    const auto k = line_of(frames.power[i], frames.frequency_Hz, level, upper_Hz, candidate);
     if (!k) continue;
     const double f_Hz = frames.frequency_Hz[*k];
     const double width_Hz = std::max(0.08 * f_Hz, 1.5 * frames.frequency_Hz[1]);
@@ -134,7 +141,7 @@ std::optional<Oscillation> lasting_part(const Track& track, const Level& level, 
   std::nth_element(sorted.begin(), usual, sorted.end());
   const double floor = envelope_floor * *usual;
 
-  const auto longest_gap = static_cast<std::size_t>(3.0 / (track.frequency_Hz * dt.value));
+  const auto longest_gap = static_cast<std::size_t>(level.longest_gap / (track.frequency_Hz * dt.value));
   std::size_t best_first = 0, best_end = 0, first = 0, end = 0, above = 0, best_above = 0;
   bool open = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -145,9 +152,18 @@ std::optional<Oscillation> lasting_part(const Track& track, const Level& level, 
     if (end - first > best_end - best_first) best_first = first, best_end = end, best_above = above;
   }
   const double length_s = static_cast<double>(best_end - best_first) * dt.value;
-  if (length_s * track.frequency_Hz < level.fewest_cycles) return std::nullopt;
-  if (static_cast<double>(best_above) < lasting * static_cast<double>(best_end - best_first)) return std::nullopt;
+  if (length_s * track.frequency_Hz < level.fewest_periods || length_s < shortest_s) return std::nullopt;
+  if (static_cast<double>(best_above) < level.lasting * static_cast<double>(best_end - best_first)) return std::nullopt;
 
+  const auto mean_size = [&](std::size_t begin, std::size_t finish) {
+    double sum = 0.0;
+    for (std::size_t i = begin; i < finish; ++i) sum += std::abs(line[i]);
+    return sum / static_cast<double>(finish - begin);
+  };
+  const std::size_t quarter = (best_end - best_first) / 4;
+  const bool short_lived = length_s * track.frequency_Hz < 2.0 * level.fewest_periods;
+  if (short_lived && mean_size(best_end - quarter, best_end) < fades * mean_size(best_first, best_first + quarter))
+    return std::nullopt;
   Complex turn{};
   double line_power = 0.0, power = 0.0;
   const std::vector<double> fast = without_slow(part, track.frequency_Hz, dt);
@@ -156,7 +172,14 @@ std::optional<Oscillation> lasting_part(const Track& track, const Level& level, 
     line_power += 0.5 * std::norm(line[i]);
     power += fast[i] * fast[i];
   }
-  if (line_power < smallest_share * power) return std::nullopt;
+  // A force in pulses has most of its power in harmonics.
+  if (level.upper_Hz > highest_of_a_tremor_Hz) {
+    for (double h = 2.0; h <= 4.0 && h * track.frequency_Hz < 0.45 / dt.value; h += 1.0) {
+      const std::vector<Complex> harmonic = demodulate(part, h * track.frequency_Hz, dt);
+      for (std::size_t i = best_first; i < best_end; ++i) line_power += 0.5 * std::norm(harmonic[i]);
+    }
+  }
+  if (line_power < level.share * power) return std::nullopt;
   const double off_Hz = std::arg(turn) / (2.0 * std::numbers::pi * dt.value);
   const double begins_s = static_cast<double>(from) * dt.value;
   return Oscillation{.frequency_Hz = track.frequency_Hz + off_Hz,
@@ -172,7 +195,7 @@ double gap_s(const Oscillation& a, const Oscillation& b) {
 }
 
 bool of_one_frequency(const Oscillation& a, const Oscillation& b) {
-  return std::abs(b.frequency_Hz / a.frequency_Hz - 1.0) < 0.1 && gap_s(a, b) < longest_break_s;
+  return std::abs(b.frequency_Hz / a.frequency_Hz - 1.0) < 0.1 && gap_s(a, b) < same_line_break_s;
 }
 
 /// Is `b` a multiple of `a`, for at least a third of its time?

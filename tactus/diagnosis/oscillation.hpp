@@ -29,10 +29,10 @@ std::vector<double> following_error(const Signals& signals);
 /// rate, the strongest first.
 ///
 /// Frames of four, two and a half seconds are looked through, each for frequencies of which it holds five to twenty
-/// periods and more. A line counts where it and its harmonics hold more than half of the power between 0.6 and eight
-/// times its frequency, and it is an oscillation where its envelope stays above two fifths of its usual size for twenty
-/// periods (ten below 10 Hz, four below 2.5 Hz): a ringing that fades is none. What has the same frequency or a
-/// multiple of it at the same time is one oscillation. Not real-time safe.
+/// periods and more. A line counts where it and its harmonics hold more than two fifths of the power between 0.6 and
+/// eight times its frequency, and it is an oscillation where its envelope stays above two fifths of its usual size for
+/// twenty periods (twelve below 10 Hz, four below 2.5 Hz) and for a second without fading: a ringing that fades is
+/// none. What has the same frequency or a multiple of it at the same time is one oscillation. Not real-time safe.
 std::vector<Oscillation> find_oscillations(const Signals& signals);
 
 }  // namespace tactus::diagnosis

@@ -221,10 +221,10 @@ std::string loop_of(const Signals& signals, const Finding& finding) {
     const std::vector<Complex> blocks = blocks_of(role);
     const Relation with = relation(reference, blocks);
     const std::string size =
-        report::number(rms(blocks) * (is_position(role) ? 1e3 : 1.0), 3) + " " + unit_of(signals, role);
+        report::number(usual_size(blocks) * (is_position(role) ? 1e3 : 1.0), 3) + " " + unit_of(signals, role);
     if (role == zero) return size + ", 0°";
     if (with.coherence < 0.3) return size + ", no fixed phase";
-    return size + ", " + report::number(std::arg(with.ratio) * 180.0 / std::numbers::pi, 3) + "°";
+    return size + ", " + report::number(with.angle_rad * 180.0 / std::numbers::pi, 3) + "°";
   };
   const auto mark = [&](std::initializer_list<Mechanism> mechanisms) {
     return std::find(mechanisms.begin(), mechanisms.end(), finding.decision.mechanism) != mechanisms.end()

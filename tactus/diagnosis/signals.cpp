@@ -340,9 +340,9 @@ double step_of(std::vector<double> values) {
   if (values.size() < 2) return 0.0;
   std::vector<double> steps;
   for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  const auto small = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 10);
+  std::nth_element(steps.begin(), small, steps.end());
+  return *small;
 }
 
 Result<Signals> read_signals(const SignalRoles& roles) {

@@ -82,7 +82,8 @@ struct Signals {
 /// than 200 samples or less than half a second, or in which nothing changes. Not real-time safe.
 Result<Signals> read_signals(const SignalRoles& roles);
 
-/// The distance between neighbouring values that occur, the median over all of them; 0 for a constant.
+/// The distance between neighbouring values that occur, 0 for a constant: of all distances the tenth percentile, for in
+/// fast motion counts are passed over, and a file rounds.
 double step_of(std::vector<double> values);
 
 }  // namespace tactus::diagnosis

@@ -147,8 +147,15 @@ struct Scenario {
 /// To the nearest of what a converter or a file with so many digits tells.
 double counted(double value, double step) { return std::round(value / step) * step; }
 
+/// What was recorded, and how often the slave turned back and forth in the last three seconds, seen at every tick: what
+/// is too fast for 1 kHz is left out.
+struct Run {
+  std::vector<Row> rows;
+  double turns_Hz = 0.0;
+};
+
 template <class Slave>
-Result<std::vector<Row>> run(const Scenario& scenario, Slave slave, const simulation::Clock& clock) {
+Result<Run> run(const Scenario& scenario, Slave slave, const simulation::Clock& clock) {
   constexpr double force_step_N = 2e-3;
   const Rig& rig = scenario.rig;
   auto master = simulation::MasterPlant::make(rig.master, rig.person, clock, scenario.path.start_m());
@@ -159,11 +166,17 @@ Result<std::vector<Row>> run(const Scenario& scenario, Slave slave, const simula
   Tremor tremor(scenario.tremor_Hz, 0.8, scenario.tremor_rms_m, clock.tick_s, scenario.seed + 77);
   const auto ticks = static_cast<std::int64_t>(duration_s / clock.tick_s);
   const auto each = static_cast<std::int64_t>(std::llround(1e-3 / clock.tick_s));
-  std::vector<Row> rows;
+  Run run;
+  std::vector<Row>& rows = run.rows;
+  double before_m = 0.0, direction = 0.0;
   double path_m = scenario.path.start_m() + tremor.next();
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     const double time_s = static_cast<double>(tick) * clock.tick_s;
     const auto output = sites->step(*master, slave, {.number = tick}, 1.0);
+    const double moved_m = output.slave.reading.position_m - before_m;
+    before_m = output.slave.reading.position_m;
+    if (moved_m * direction < 0.0 && time_s > duration_s - 3.0) run.turns_Hz += 1.0 / 6.0;
+    if (moved_m != 0.0) direction = moved_m;
     if (tick % each == 0) {
       rows.push_back({.time_s = time_s,
                       .master_m = output.master.reading.position_m,
@@ -183,10 +196,10 @@ Result<std::vector<Row>> run(const Scenario& scenario, Slave slave, const simula
     path_m = next_m;
   }
   if (!sites->healthy()) return Error{ErrorCode::failed, {}, "a safety gate let go", {}};
-  return rows;
+  return run;
 }
 
-Result<std::vector<Row>> simulate(const Scenario& scenario) {
+Result<Run> simulate(const Scenario& scenario) {
   const Rig& rig = scenario.rig;
   const auto clock = simulation::Clock::make(rig.servo, rig.plant);
   if (!clock) return clock.error();
@@ -212,30 +225,34 @@ double spread(std::span<const Row> rows, double Row::*column, double from_s, dou
   return std::sqrt(std::max(square / count - sum * sum / (count * count), 0.0));
 }
 
-/// How often a column crosses its mean over 0.6 s upward in the last three seconds, in Hz; less than half of its usual
-/// size is no crossing.
-double crossings_Hz(std::span<const Row> rows, double Row::*column) {
+/// How a column crosses its mean over 0.6 s upward in the last three seconds; less than half of its usual size is no
+/// crossing.
+struct Crossings {
+  double per_s = 0.0;
+  double irregular = 0.0;  ///< standard deviation of the time between two over its mean
+};
+
+Crossings crossings(std::span<const Row> rows, double Row::*column) {
   constexpr std::size_t half = 300;
   const double band = 0.5 * spread(rows, column, duration_s - 3.0, duration_s);
   bool below = false;
-  double count = 0.0;
+  double count = 0.0, last_s = 0.0, sum = 0.0, square = 0.0;
   for (std::size_t i = half; i + half < rows.size(); ++i) {
     if (rows[i].time_s < duration_s - 3.0) continue;
     double mean = 0.0;
     for (std::size_t k = i - half; k <= i + half; ++k) mean += rows[k].*column / (2.0 * half + 1.0);
     const double fast = rows[i].*column - mean;
-    if (below && fast > band) below = false, count += 1.0;
+    if (below && fast > band) {
+      below = false;
+      count += 1.0;
+      if (count > 1.0) sum += rows[i].time_s - last_s, square += (rows[i].time_s - last_s) * (rows[i].time_s - last_s);
+      last_s = rows[i].time_s;
+    }
     if (fast < -band) below = true;
   }
-  return count / 2.7;
-}
-
-/// Does it shake until the end? What moves more than `threshold` in the last second, does not fade and comes often
-/// enough.
-bool shakes(std::span<const Row> rows, double Row::*column, double threshold) {
-  const double before = spread(rows, column, duration_s - 3.0, duration_s - 1.5);
-  const double last = spread(rows, column, duration_s - 1.5, duration_s);
-  return last > threshold && last > 0.7 * before && crossings_Hz(rows, column) > 1.4;
+  if (count < 3.0) return {.per_s = count / 2.7};
+  const double mean = sum / (count - 1.0);
+  return {.per_s = count / 2.7, .irregular = std::sqrt(std::max(0.0, square / (count - 1.0) - mean * mean)) / mean};
 }
 
 /// One reason to shake: what raises it, within which bounds, and how the same rig is rid of it.
@@ -246,7 +263,22 @@ struct Reason {
   void (*take_away)(Scenario&);
   double Row::*column;
   double threshold;
+  double most_irregular = 1e9;  ///< of its crossings
+  double most_quiet = 1e9;      ///< a value that shakes nobody
 };
+
+/// Does it shake until the end? What moves more than `threshold` in the last second, does not fade and comes often
+/// enough.
+bool shakes(const Run& run, const Reason& reason) {
+  const std::span<const Row> rows = run.rows;
+  const double before = spread(rows, reason.column, duration_s - 3.0, duration_s - 1.5);
+  const double last = spread(rows, reason.column, duration_s - 1.5, duration_s);
+  const Crossings crossed = crossings(rows, reason.column);
+  const bool in_reach =
+      std::all_of(rows.begin(), rows.end(), [](const Row& row) { return std::abs(row.slave_m) < 0.1; });
+  return last > reason.threshold && last > 0.7 * before && in_reach && crossed.per_s > 1.4 && crossed.per_s < 350.0 &&
+         crossed.irregular < reason.most_irregular && run.turns_Hz < 400.0;
+}
 
 /// A rig like that of experiments/tapping.toml, each value drawn.
 Scenario drawn_rig(signal::Random& random, std::uint64_t seed) {
@@ -345,23 +377,33 @@ Reason delay_the_way(Scenario& scenario, signal::Random& random) {
           .threshold = 2e-4};
 }
 
+/// A rigid carriage: a chain on a cable chatters at a tick or two for each count, without a period.
 Reason coarsen_the_encoder(Scenario& scenario, signal::Random& random) {
   Rig& rig = scenario.rig;
   scenario.path.start_at(-0.03);
   move_about(scenario.path, random, 0.0);
   scenario.path.reach(-random.uniform(0.01, 0.02), 0.08, 0.0);
-  rig.environment.position_m = 0.5;
-  rig.control.slave.proportional_N_per_m = random.uniform(300.0, 900.0);
-  rig.control.slave.derivative_N_s_per_m = random.uniform(1.5, 4.0);
+  const double friction_N = random.uniform(0.02, 0.1);
+  scenario.carriage = StickingCarriage::Params{.mass_kg = random.uniform(0.05, 0.3),
+                                               .static_N = friction_N,
+                                               .coulomb_N = friction_N,
+                                               .stribeck_m_per_s = 0.005,
+                                               .viscous_N_s_per_m = random.uniform(0.0, 0.2)};
+  ServoPd::Params& servo = rig.control.slave;
+  servo.proportional_N_per_m = random.uniform(400.0, 1500.0);
+  servo.derivative_N_s_per_m =
+      random.uniform(0.3, 0.8) * std::sqrt(servo.proportional_N_per_m * scenario.carriage->mass_kg);
+  servo.velocity.cutoff_Hz = random.uniform(30.0, 150.0);
   rig.servo.rate_Hz = random.uniform() < 0.5 ? 1000.0 : 2000.0;
-  rig.servo.computation_delay_s = random.uniform(0.1, 0.5) / rig.servo.rate_Hz;
+  rig.servo.computation_delay_s = random.uniform(0.1, 0.9) / rig.servo.rate_Hz;
   return {.parameter = "step of the slave's encoder",
           .lowest = 1e-5,
-          .highest = 2e-3,
-          .set = [](Scenario& s, double step_m) { s.rig.slave.encoder.resolution_m = step_m; },
-          .take_away = [](Scenario& s) { s.rig.slave.encoder.resolution_m = 1e-6; },
+          .highest = 4e-3,
+          .set = [](Scenario& s, double step_m) { s.carriage->resolution_m = step_m; },
+          .take_away = [](Scenario& s) { s.carriage->resolution_m = 1e-6; },
           .column = &Row::drive_N,
-          .threshold = 0.01};
+          .threshold = 0.01,
+          .most_irregular = 0.15};
 }
 
 Reason stick_and_slip(Scenario& scenario, signal::Random& random) {
@@ -423,7 +465,8 @@ Reason tremble(Scenario& scenario, signal::Random& random) {
               },
           .take_away = [](Scenario& s) { s.rig.person.tremor_amplitude_m = s.tremor_rms_m = 0.0; },
           .column = &Row::master_m,
-          .threshold = 1.4e-4};
+          .threshold = 1.4e-4,
+          .most_quiet = 1e-4};
 }
 
 Reason reason_of(Cause cause, Scenario& scenario, signal::Random& random) {
@@ -461,7 +504,7 @@ Result<std::optional<Recording>> attempt(Cause cause, Strength strength, std::ui
   for (;;) {
     const auto rows = rows_at(high);
     if (!rows) return none;
-    if (shakes(*rows, reason.column, reason.threshold)) break;
+    if (shakes(*rows, reason)) break;
     low = high;
     high *= step;
     if (high > 1.001 * reason.highest) return none;
@@ -471,7 +514,7 @@ Result<std::optional<Recording>> attempt(Cause cause, Strength strength, std::ui
     const double middle = std::sqrt(low * high);
     const auto rows = rows_at(middle);
     if (!rows) return none;
-    (shakes(*rows, reason.column, reason.threshold) ? high : low) = middle;
+    (shakes(*rows, reason) ? high : low) = middle;
   }
   const double over = strength == Strength::quiet  ? random.uniform(0.33, 0.6)
                       : strength == Strength::near ? random.uniform(1.0, 1.2)
@@ -479,13 +522,18 @@ Result<std::optional<Recording>> attempt(Cause cause, Strength strength, std::ui
   Recording recording{
       .rows = {}, .with_hand_force = seed % 2 == 0, .strength = over, .parameter = reason.parameter, .onset = high};
   Scenario chosen = scenario;
-  reason.set(chosen, over * high);
+  const double value = strength == Strength::quiet ? std::min(over * high, reason.most_quiet) : over * high;
+  reason.set(chosen, value);
   auto rows = simulate(chosen);
-  if (!rows || shakes(*rows, reason.column, reason.threshold) != (strength != Strength::quiet)) return none;
-  recording.rows = *std::move(rows);
+  if (!rows || shakes(*rows, reason) != (strength != Strength::quiet)) return none;
+  if (strength == Strength::quiet &&
+      spread(rows->rows, reason.column, held_from_s + 1.0, duration_s) > reason.threshold) {
+    return none;  // it shook for a while
+  }
+  recording.rows = std::move(rows->rows);
   reason.take_away(chosen);
   const auto without = simulate(chosen);
-  if (!without || shakes(*without, reason.column, reason.threshold)) return none;
+  if (!without || shakes(*without, reason)) return none;
   return std::optional(std::move(recording));
 }
 
