@@ -73,6 +73,8 @@ Shown shown_by(const Oscillation& oscillation, const Evidence& evidence) {
   if (evidence.hand_gives) {
     loop = ramp(*evidence.hand_gives, 0.15, -0.1);
     shown.hand = 1.0 - *loop;
+    // Somebody must give it: where both take, a sign is wrong.
+    if (*evidence.hand_gives < 0.0 && evidence.actuator_gives.value_or(0.0) < -0.2) shown.hand = loop = untested;
   } else if (evidence.actuator_gives) {
     const double in_contact = shown.contact.value_or(untested);
     loop = ramp(*evidence.actuator_gives, 0.35 * in_contact, 0.15 + 0.55 * in_contact);

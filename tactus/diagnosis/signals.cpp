@@ -109,9 +109,7 @@ void fill_in(SignalRoles& roles, const std::vector<Entry>& entries) {
                                                         "scope.signals(3).values:1", "scope.signals(2).values:2",
                                                         "scope.signals(2).values:1", "scope.signals(3).values:2"};
     for (std::size_t i = 0; i < role_count; ++i) {
-      if (!roles.names[i].empty()) continue;
-      roles.names[i] = names[i];
-      if (all_roles[i] == Role::hand_force) roles.signs[i] = -roles.signs[i];
+      if (roles.names[i].empty()) roles.names[i] = names[i];
     }
     return;
   }

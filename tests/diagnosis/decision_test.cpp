@@ -79,6 +79,13 @@ TEST(Decide, AHandThatTakesEnergyHasNoTremorAndOneThatGivesItHas) {
   EXPECT_EQ(named(evidence, 8.0), Mechanism::tremor);
 }
 
+TEST(Decide, WhereHandAndActuatorBothTakeEnergyNoneIsNamed) {
+  Evidence evidence = in_contact();
+  evidence.actuator_gives = -0.5;
+  evidence.hand_gives = -0.9;
+  EXPECT_EQ(named(evidence, 8.0), Mechanism::unknown);
+}
+
 TEST(Decide, WhatTwoExplainAlikeIsUnknownAndTheMissingSignalIsNamed) {
   Evidence evidence = in_contact();
   evidence.contact.reset();
