@@ -158,7 +158,8 @@ Evidence measure(const Signals& signals, const Oscillation& oscillation) {
   }
   if (const Channel* master = signals.find(Role::master_position); master != nullptr && has(Role::slave_position)) {
     const double coherence = relation(of(Role::master_position), of(Role::slave_position)).coherence;
-    found.follows = *found.of(Role::master_position) > 0.7 * master->step ? coherence : 0.0;
+    const bool moves = !master->constant() && *found.of(Role::master_position) > 0.7 * master->step;
+    found.follows = moves ? coherence : 0.0;
   }
   if (const Channel* master = signals.find(Role::master_position); master != nullptr && !master->constant()) {
     found.master_steps = steps_within_a_period(part(Role::master_position), f_Hz, master->step, dt);

@@ -52,7 +52,7 @@ TEST_F(Diagnose, the_verdict_comes_first_and_the_report_holds_spectrogram_and_lo
   EXPECT_NE(page.find("displayed force"), std::string::npos);
   EXPECT_NE(page.find("here"), std::string::npos);
   EXPECT_FALSE(Json::parse(content("results/results.json"), nullptr, false).is_discarded());
-  EXPECT_EQ(tactus({"diagnose", shipped, "--out", "results"}).status, 1);
+  EXPECT_EQ(tactus({"diagnose", shipped, "--out", "results"}).status, 2);
   EXPECT_EQ(tactus({"diagnose", shipped, "--out", "results", "--overwrite"}).status, 0);
 }
 
