@@ -1,214 +1,21 @@
 #include "tests/diagnosis/known_cause.hpp"
 
-#include <tactus/control/architecture.hpp>
-#include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/signal/random.hpp>
-#include <tactus/simulation/teleoperator.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
-#include <numbers>
 #include <span>
+#include <string>
 #include <utility>
 
-#include "tests/diagnosis/sticking_carriage.hpp"
+#include "tests/diagnosis/scenario.hpp"
 
 namespace tactus::known {
 namespace {
 
 using control::ServoPd;
 using Rig = simulation::Teleoperator::Params;
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double duration_s = 10.0;
-constexpr double held_from_s = 3.5;  ///< until then the person moves about
-
-/// The slave's servo with an integral of the error: what hunts about a place where friction holds it.
-struct IntegralParams {
-  double integral_N_per_m_s = 0.0;
-  static constexpr auto fields() {
-    return std::tuple{field("integral_N_per_m_s", &IntegralParams::integral_N_per_m_s, units::none, between(0.0, 1e6),
-                            "Force per integral of the position error, in N/(m s).")};
-  }
-};
-
-class IntegralSlave {
- public:
-  using Input = control::SlaveInput;
-  using Output = control::SlaveOutput;
-  IntegralSlave(const ServoPd& servo, double per_tick) : servo_(servo), per_tick_(per_tick) {}
-  Output respond(const Input& input) noexcept {
-    const double error_m = input.arrival.message.position_m - input.motor_position_m;
-    sum_N_ += per_tick_ * error_m;
-    return {.motor_force_N = servo_.step(error_m) + sum_N_, .message = {.force_N = input.tip_force_N}};
-  }
-  void reset() noexcept {
-    servo_.reset();
-    sum_N_ = 0.0;
-  }
-
- private:
-  ServoPd servo_;
-  double per_tick_;
-  double sum_N_ = 0.0;
-};
-
-Result<control::Controllers> make_integral(const control::ControlParams& params, Seconds dt) {
-  const auto master = control::PositionForceMaster::make(params, dt);
-  if (!master) return master.error();
-  const auto servo = ServoPd::make(params.slave, dt);
-  if (!servo) return servo.error();
-  const IntegralSlave slave(*servo, params.own<IntegralParams>().integral_N_per_m_s * dt.value);
-  return control::Controllers{control::master_controller(*master), control::slave_controller(slave)};
-}
-
-void register_integral() {
-  static const Check refused = control::register_architecture(
-      {.name = "integral",
-       .summary = "position-force whose slave integrates the error",
-       .make = make_integral,
-       .keys = control::own_keys<IntegralParams>("integral", "The integral of the slave's servo.")});
-  (void)refused;
-}
-
-/// Where the person wants the hand: reaches one after the other, rests between, and a tremor whose size wanders.
-class Path {
- public:
-  void reach(double to_m, double speed_m_per_s, double rest_s) {
-    const double stroke_m = std::abs(to_m - at_m_);
-    if (stroke_m > 0.0) {
-      const double takes_s = mechanics::MinimumJerk::duration_for(stroke_m, speed_m_per_s);
-      reaches_.push_back({.start_m = at_m_, .end_m = to_m, .start_time_s = until_s_, .duration_s = takes_s});
-      until_s_ += takes_s;
-    }
-    at_m_ = to_m;
-    until_s_ += rest_s;
-  }
-  void glide(double to_m, double speed_m_per_s) {
-    glides_.push_back({until_s_, at_m_, to_m, std::abs(to_m - at_m_) / speed_m_per_s});
-    until_s_ += glides_.back().takes_s;
-    at_m_ = to_m;
-  }
-  void start_at(double start_m) { at_m_ = start_m_ = start_m; }
-  void rest_until(double time_s) { until_s_ = std::max(until_s_, time_s); }
-  [[nodiscard]] double until_s() const { return until_s_; }
-  [[nodiscard]] double start_m() const { return start_m_; }
-  [[nodiscard]] double at(double time_s) const {
-    double position_m = start_m_;
-    for (const auto& reach : reaches_) position_m += reach.position_m(time_s) - reach.start_m;
-    for (const Glide& glide : glides_) {
-      position_m += (glide.to_m - glide.from_m) * std::clamp((time_s - glide.begins_s) / glide.takes_s, 0.0, 1.0);
-    }
-    return position_m;
-  }
-
- private:
-  struct Glide {
-    double begins_s, from_m, to_m, takes_s;
-  };
-  std::vector<mechanics::MinimumJerk> reaches_;
-  std::vector<Glide> glides_;
-  double start_m_ = 0.0, at_m_ = 0.0, until_s_ = 0.3;
-};
-
-/// Tremor that is nobody's sine: white noise through a resonance, of this standard deviation.
-class Tremor {
- public:
-  Tremor(double frequency_Hz, double bandwidth_Hz, double rms_m, double tick_s, std::uint64_t seed) : random_(seed) {
-    const double radius = std::exp(-std::numbers::pi * bandwidth_Hz * tick_s);
-    a1_ = 2.0 * radius * std::cos(two_pi * frequency_Hz * tick_s);
-    a2_ = -radius * radius;
-    const double variance = (1.0 - a2_) / ((1.0 + a2_) * ((1.0 - a2_) * (1.0 - a2_) - a1_ * a1_));
-    gain_ = rms_m / std::sqrt(variance);
-    for (int i = 0; i < static_cast<int>(2.0 / tick_s); ++i) next();
-  }
-  double next() {
-    const double y = a1_ * y1_ + a2_ * y2_ + gain_ * random_.normal();
-    y2_ = y1_;
-    return y1_ = y;
-  }
-
- private:
-  signal::Random random_;
-  double a1_, a2_, gain_, y1_ = 0.0, y2_ = 0.0;
-};
-
-struct Scenario {
-  Rig rig;
-  Path path;
-  std::optional<StickingCarriage::Params> carriage;
-  double tremor_Hz = 9.0;
-  double tremor_rms_m = 1e-5;
-  std::uint64_t seed = 0;
-};
-
-/// To the nearest of what a converter or a file with so many digits tells.
-double counted(double value, double step) { return std::round(value / step) * step; }
-
-/// What was recorded, and how often the slave turned back and forth in the last three seconds, seen at every tick: what
-/// is too fast for 1 kHz is left out.
-struct Run {
-  std::vector<Row> rows;
-  double turns_Hz = 0.0;
-};
-
-template <class Slave>
-Result<Run> run(const Scenario& scenario, Slave slave, const simulation::Clock& clock) {
-  constexpr double force_step_N = 2e-3;
-  const Rig& rig = scenario.rig;
-  auto master = simulation::MasterPlant::make(rig.master, rig.person, clock, scenario.path.start_m());
-  if (!master) return master.error();
-  auto sites = station::BarePair::make(rig.control, rig.channel, Seconds{clock.tick_s},
-                                       rig.control.position_scale * scenario.path.start_m());
-  if (!sites) return sites.error();
-  Tremor tremor(scenario.tremor_Hz, 0.8, scenario.tremor_rms_m, clock.tick_s, scenario.seed + 77);
-  const auto ticks = static_cast<std::int64_t>(duration_s / clock.tick_s);
-  const auto each = static_cast<std::int64_t>(std::llround(1e-3 / clock.tick_s));
-  Run run;
-  std::vector<Row>& rows = run.rows;
-  double before_m = 0.0, direction = 0.0;
-  double path_m = scenario.path.start_m() + tremor.next();
-  for (std::int64_t tick = 0; tick < ticks; ++tick) {
-    const double time_s = static_cast<double>(tick) * clock.tick_s;
-    const auto output = sites->step(*master, slave, {.number = tick}, 1.0);
-    const double moved_m = output.slave.reading.position_m - before_m;
-    before_m = output.slave.reading.position_m;
-    if (moved_m * direction < 0.0 && time_s > duration_s - 3.0) run.turns_Hz += 1.0 / 6.0;
-    if (moved_m != 0.0) direction = moved_m;
-    if (tick % each == 0) {
-      rows.push_back({.time_s = time_s,
-                      .master_m = output.master.reading.position_m,
-                      .slave_m = output.slave.reading.position_m,
-                      .displayed_N = counted(-output.master.output.motor_force_N, force_step_N),
-                      .tip_N = counted(output.slave.reading.force_N, force_step_N),
-                      .hand_N = counted(output.master.reading.force_N, force_step_N),
-                      .drive_N = counted(output.slave.output.motor_force_N, force_step_N)});
-    }
-    const double next_m = scenario.path.at(time_s + clock.tick_s) + tremor.next();
-    master->begin_tick(path_m, next_m);
-    slave.begin_tick();
-    for (int i = 0; i < clock.substeps; ++i) {
-      master->substep(i);
-      slave.substep(i);
-    }
-    path_m = next_m;
-  }
-  if (!sites->healthy()) return Error{ErrorCode::failed, {}, "a safety gate let go", {}};
-  return run;
-}
-
-Result<Run> simulate(const Scenario& scenario) {
-  const Rig& rig = scenario.rig;
-  const auto clock = simulation::Clock::make(rig.servo, rig.plant);
-  if (!clock) return clock.error();
-  const double start_m = rig.control.position_scale * scenario.path.start_m();
-  if (scenario.carriage) return run(scenario, StickingCarriage(*scenario.carriage, *clock, start_m), *clock);
-  auto slave = simulation::SlavePlant::make(rig.slave, rig.environment, *clock, start_m);
-  if (!slave) return slave.error();
-  return run(scenario, *slave, *clock);
-}
 
 /// How much a column moves in a stretch of time that is faster than 1.5 Hz: the standard deviation about the mean over
 /// 0.6 s.
