@@ -64,7 +64,7 @@ std::string verdict_of(const Signals& signals, const std::vector<Finding>& findi
   if (first.loop_gain) {
     text += " At this amplitude the loop gain for small motion is " + report::number(first.loop_gain->value, 2) + " (" +
             report::number(first.loop_gain->lower, 2) + " to " + report::number(first.loop_gain->upper, 2) +
-            "), an estimate: turn it down by at least as much.";
+            "): turn it down step by step; by as much is nearly always enough.";
   }
   return text;
 }
