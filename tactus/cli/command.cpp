@@ -66,6 +66,7 @@ int run(int argc, char** argv) {
   add_advise(app, command, status);
   add_estimate(app, command, status);
   add_identify(app, command, status);
+  add_diagnose(app, command, status);
   add_export(app, status);
   add_key(app, status);
   add_plant(app, status);

@@ -1,4 +1,5 @@
 #include <tactus/identification/axis_recording.hpp>
+#include <tactus/identification/axis_units.hpp>
 #include <tactus/recording/names.hpp>
 #include <tactus/recording/recording.hpp>
 
@@ -15,19 +16,6 @@ namespace tactus::identification {
 namespace {
 
 using recording::Entry;
-
-struct KnownUnit {
-  std::string_view symbol;
-  double factor;
-  bool rotary;
-};
-constexpr std::array position_units{KnownUnit{"m", 1.0, false}, KnownUnit{"mm", 1e-3, false},
-                                    KnownUnit{"rad", 1.0, true}, KnownUnit{"deg", 0.017453292519943295, true}};
-constexpr std::array force_units{KnownUnit{"N", 1.0, false},    KnownUnit{"mN", 1e-3, false},
-                                 KnownUnit{"kN", 1e3, false},   KnownUnit{"N m", 1.0, true},
-                                 KnownUnit{"Nm", 1.0, true},    KnownUnit{"N*m", 1.0, true},
-                                 KnownUnit{"N·m", 1.0, true},   KnownUnit{"N.m", 1.0, true},
-                                 KnownUnit{"mN m", 1e-3, true}, KnownUnit{"mNm", 1e-3, true}};
 
 constexpr std::array<std::string_view, 13> position_names{"position",
                                                           "pos",
@@ -67,18 +55,13 @@ bool mentions(std::string_view name, std::span<const std::string_view> words) {
                      [&](std::string_view word) { return text.find(word) != std::string::npos; });
 }
 
-const KnownUnit* known(std::span<const KnownUnit> units, std::string_view symbol) {
-  const auto found = std::find_if(units.begin(), units.end(), [&](const KnownUnit& u) { return u.symbol == symbol; });
-  return found == units.end() ? nullptr : &*found;
-}
-
 /// The entries that may play a role: those with a fitting unit, or where there are none, those without a unit whose
 /// name fits.
 std::vector<const Entry*> candidates(const std::vector<Entry>& entries, std::span<const KnownUnit> units,
                                      std::span<const std::string_view> names) {
   std::vector<const Entry*> result;
   for (const Entry& entry : entries) {
-    if (entry.readable && known(units, entry.unit) != nullptr) result.push_back(&entry);
+    if (entry.readable && find_unit(units, entry.unit) != nullptr) result.push_back(&entry);
   }
   if (!result.empty()) return result;
   for (const Entry& entry : entries) {
@@ -111,17 +94,6 @@ std::vector<const Entry*> told_by_name(std::vector<const Entry*> found, std::spa
     std::erase_if(kept, [&](const Entry* e) { return mentions(e->name, unwanted); });
   }
   return kept.empty() ? found : kept;
-}
-
-/// Does the file hold a teleoperator's scope?
-bool is_teleoperator_scope(const std::vector<Entry>& entries) {
-  int found = 0;
-  for (const Entry& entry : entries) {
-    for (const char* name : {"scope.signals(1).values", "scope.signals(2).values", "scope.signals(3).values"}) {
-      if (entry.readable && entry.name == name && entry.columns == 2 && entry.rows > 2) ++found;
-    }
-  }
-  return found == 3;
 }
 
 Check find_columns(AxisRoles& roles, const std::vector<Entry>& entries, bool needs_measured) {
@@ -184,7 +156,7 @@ Result<ReadColumn> read_column(const AxisRoles& roles, const std::string& name, 
                     .rotary = {},
                     .sample_time_s = signal->sample_time_s};
   if (!signal->unit.empty()) {
-    const KnownUnit* unit = known(units, signal->unit);
+    const KnownUnit* unit = find_unit(units, signal->unit);
     if (unit == nullptr) {
       std::string list;
       for (const KnownUnit& u : units) list += (list.empty() ? "" : ", ") + std::string(u.symbol);
@@ -201,6 +173,16 @@ Result<ReadColumn> read_column(const AxisRoles& roles, const std::string& name, 
 }
 
 }  // namespace
+
+bool is_teleoperator_scope(const std::vector<Entry>& entries) {
+  int found = 0;
+  for (const Entry& entry : entries) {
+    for (const char* name : {"scope.signals(1).values", "scope.signals(2).values", "scope.signals(3).values"}) {
+      if (entry.readable && entry.name == name && entry.columns == 2 && entry.rows > 2) ++found;
+    }
+  }
+  return found == 3;
+}
 
 Result<AxisRecording> read_axis(const AxisRoles& wanted, bool needs_measured) {
   AxisRoles roles = wanted;

@@ -2,6 +2,7 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/core/units.hpp>
+#include <tactus/recording/recording.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -47,6 +48,9 @@ struct AxisRecording {
   Seconds sample_time{0.0};
   bool rotary = false;  ///< N m and rad instead of N and m
 };
+
+/// Does a file hold the struct `scope` of a teleoperator that `AxisRoles` tells of?
+bool is_teleoperator_scope(const std::vector<recording::Entry>& entries);
 
 /// Reads one axis. Errors: those of `recording::read`; `missing` when a role is neither named nor found, or found more
 /// than once: the message lists the columns and the option to name one with; no sample time; columns of different

@@ -1,0 +1,82 @@
+#include <tactus/cli/output_folder.hpp>
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/verbs.hpp>
+#include <tactus/core/version.hpp>
+#include <tactus/diagnosis/report.hpp>
+
+#include <iostream>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+struct DiagnoseOptions {
+  std::string file;
+  diagnosis::SignalRoles roles;
+  OutputOptions results;
+};
+
+Check diagnose(const DiagnoseOptions& options, const std::string& command) {
+  auto output = OutputFolder::open(options.results);
+  if (!output) return output.error();
+  diagnosis::SignalRoles roles = options.roles;
+  roles.file = options.file;
+  const auto signals = diagnosis::read_signals(roles);
+  if (!signals) {
+    Error error = signals.error();
+    if (error.place.empty()) error.place = options.file;
+    return error;
+  }
+  const diagnosis::Diagnosis found = diagnosis::diagnose(*signals);
+  const std::string json = diagnosis::to_json(*signals, found, options.file);
+  std::cout << (output->json() ? json : diagnosis::to_text(*signals, found));
+  if (auto error = flush_standard_output()) return error;
+  if (!output->wanted()) return std::nullopt;
+  report::Page page = diagnosis::to_page(*signals, found, options.file);
+  page.footer("tactus " + std::string(version()), command);
+  if (auto error = output->write("results.json", json)) return error;
+  if (auto error = output->write("report.html", page.to_html())) return error;
+  output->announce();
+  return std::nullopt;
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, const std::string& command, int& status) {
+  auto options = std::make_shared<DiagnoseOptions>();
+  CLI::App* verb = app.add_subcommand("diagnose", "Why does it shake? Oscillations in a recording, and their loop");
+  verb->add_option("RECORDING", options->file,
+                   "Recording: .csv, .tsv, .txt, .mat (version 5), or a log of ours (.mcap)")
+      ->required();
+  for (const diagnosis::Role role : diagnosis::all_roles) {
+    const auto index = static_cast<std::size_t>(role);
+    const std::string words(diagnosis::words_of(role));
+    verb->add_option(diagnosis::option_of(role), options->roles.names[index],
+                     "Column of the " + words + "; in a MATLAB file NAME:COLUMN")
+        ->type_name("NAME");
+  }
+  for (const diagnosis::Role role : diagnosis::all_roles) {
+    const auto index = static_cast<std::size_t>(role);
+    verb->add_option(diagnosis::option_of(role) + "-sign", options->roles.signs[index],
+                     "-1 turns the " + std::string(diagnosis::words_of(role)) + " round")
+        ->type_name("SIGN")
+        ->check(CLI::IsMember({-1.0, 1.0}));
+  }
+  verb->add_option("--time", options->roles.time, "Column of the times")->type_name("NAME");
+  verb->add_option("--sample-time-s", options->roles.sample_time_s, "Time between samples, where the file has none")
+      ->type_name("S");
+  add_output_options(*verb, options->results, "Folder for report.html and results.json");
+  verb->callback([options, name = app.get_name(), &command, &status] {
+    if (const auto error = diagnose(*options, command)) {
+      std::cerr << name << ": " << describe(*error) << "\n";
+      status = exit_status(*error);
+    }
+  });
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,380 @@
+#include <tactus/core/parameters.hpp>
+#include <tactus/diagnosis/signals.hpp>
+#include <tactus/identification/axis_recording.hpp>
+#include <tactus/identification/axis_units.hpp>
+#include <tactus/recording/names.hpp>
+#include <tactus/recording/recording.hpp>
+#include <tactus/recording/time_base.hpp>
+#include <tactus/telemetry/log_reader.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <span>
+#include <utility>
+
+namespace tactus::diagnosis {
+
+namespace {
+
+using identification::KnownUnit;
+using recording::Entry;
+using Words = std::vector<std::string_view>;
+
+constexpr std::size_t index_of(Role role) { return static_cast<std::size_t>(role); }
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+/// How the column of a role is recognised: first by a name of its own, then by words of which each group has one in it.
+struct Recognised {
+  Words names;
+  std::vector<Words> groups;
+  Words unlike;
+};
+
+const Recognised& recognised(Role role) {
+  static const Words masters{"master", "leader"}, slaves{"slave", "follower"};
+  static const Words places{"position", "pos", "angle", "theta", "displacement", "_x", "_q", "x_", "q_"};
+  static const Words forces{"force", "torque", "effort", "tau", "current", "_f", "f_"};
+  static const std::array<Recognised, role_count> all{{
+      {{"master_position", "leader_position", "x_m", "xm", "q_m", "theta_m"},
+       {masters, places},
+       {"command", "induced", "intended", "target", "goal", "desired"}},
+      {{"slave_position", "follower_position", "x_s", "xs", "q_s", "theta_s"},
+       {slaves, places},
+       {"command", "target", "goal", "desired"}},
+      {{"displayed_force", "displayed_torque", "feedback_force", "reflected_force", "master_force", "leader_effort"},
+       {{"displayed", "feedback", "reflected", "master", "leader"}, forces},
+       {"hand", "operator", "handle", "position", "tip", "contact", "env"}},
+      {{"tip_force", "told_force", "contact_force", "environment_force", "f_e", "fe", "tip_torque"},
+       {{"tip", "contact", "env", "external", "interaction", "wrench"}, forces},
+       {"hand", "operator", "peak", "master", "leader"}},
+      {{"hand_force", "operator_force", "human_force", "f_h", "fh", "hand_torque"},
+       {{"hand", "operator", "human", "user"}, forces},
+       {"handle", "position"}},
+      {{"slave_force", "slave_motor_force", "slave_torque", "follower_effort", "slave_drive"},
+       {slaves, {"force", "torque", "effort", "tau", "drive", "motor", "actuator", "current"}},
+       {"position", "contact", "env", "tip", "external", "measured", "told"}},
+  }};
+  return all[index_of(role)];
+}
+
+bool mentions(const std::string& text, const Words& words) {
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return text.find(word) != std::string::npos; });
+}
+
+std::span<const KnownUnit> units_of(Role role) {
+  return is_position(role) ? std::span<const KnownUnit>(identification::position_units)
+                           : std::span<const KnownUnit>(identification::force_units);
+}
+
+bool unit_fits(Role role, const std::string& unit) {
+  return unit.empty() || identification::find_unit(units_of(role), unit) != nullptr;
+}
+
+/// The name of the one column that is this; empty for none and for several alike.
+std::string find_column(Role role, const std::vector<Entry>& entries) {
+  const Recognised& how = recognised(role);
+  for (const std::string_view name : how.names) {
+    for (const Entry& entry : entries) {
+      if (entry.readable && lower(entry.name) == name && unit_fits(role, entry.unit)) return entry.name;
+    }
+  }
+  std::string found;
+  for (const Entry& entry : entries) {
+    const std::string name = lower(entry.name);
+    const bool fits =
+        entry.readable && unit_fits(role, entry.unit) && !mentions(name, how.unlike) &&
+        (entry.columns == 1 || entry.rows == 1) &&
+        std::all_of(how.groups.begin(), how.groups.end(), [&](const Words& words) { return mentions(name, words); });
+    if (!fits) continue;
+    if (!found.empty()) return {};
+    found = entry.name;
+  }
+  return found;
+}
+
+/// Columns that are not named are looked for; a column plays one role.
+void fill_in(SignalRoles& roles, const std::vector<Entry>& entries) {
+  if (identification::is_teleoperator_scope(entries)) {
+    constexpr std::array<const char*, role_count> names{"scope.signals(1).values:1", "scope.signals(1).values:2",
+                                                        "scope.signals(3).values:1", "scope.signals(2).values:2",
+                                                        "scope.signals(2).values:1", "scope.signals(3).values:2"};
+    for (std::size_t i = 0; i < role_count; ++i) {
+      if (roles.names[i].empty()) roles.names[i] = names[i];
+    }
+    return;
+  }
+  for (const Role role : all_roles) {
+    std::string& name = roles.names[index_of(role)];
+    if (!name.empty()) continue;
+    std::string found = find_column(role, entries);
+    if (std::find(roles.names.begin(), roles.names.end(), found) == roles.names.end()) name = std::move(found);
+  }
+}
+
+Error refuse(ErrorCode code, const SignalRoles& roles, std::string message) {
+  return {.code = code, .parameter = {}, .message = std::move(message), .place = roles.file.string()};
+}
+
+/// The values of a column in m and N, or rad and N m; says whether the axis is rotary where the unit tells.
+Result<std::optional<bool>> convert(const SignalRoles& roles, Role role, const std::string& unit_name,
+                                    std::vector<double>& values) {
+  double factor = roles.signs[index_of(role)];
+  std::optional<bool> rotary;
+  if (!unit_name.empty()) {
+    const KnownUnit* unit = identification::find_unit(units_of(role), unit_name);
+    if (unit == nullptr) {
+      std::string list;
+      for (const KnownUnit& u : units_of(role)) list += (list.empty() ? "" : ", ") + std::string(u.symbol);
+      return refuse(ErrorCode::inconsistent, roles,
+                    "the column '" + roles.names[index_of(role)] + "' is in " + unit_name + ", which is no unit of a " +
+                        std::string(words_of(role)) + ": it must be one of " + list);
+    }
+    factor *= unit->factor;
+    rotary = unit->rotary;
+  }
+  for (double& value : values) value *= factor;
+  return rotary;
+}
+
+Error no_position(const SignalRoles& roles, const std::vector<Entry>& entries) {
+  return refuse(ErrorCode::missing, roles,
+                "no column is recognised as a position of master or slave: name one with --master-position or "
+                "--slave-position; the file has: " +
+                    recording::enumerate_signals(entries) + " (a column of a matrix is named as NAME:COLUMN)");
+}
+
+bool names_a_position(const SignalRoles& roles) {
+  return !roles.names[index_of(Role::master_position)].empty() || !roles.names[index_of(Role::slave_position)].empty();
+}
+
+/// `NAME` or `NAME:COLUMN`.
+recording::Source source_of(const SignalRoles& roles, const std::string& name) {
+  recording::Source source{
+      .file = roles.file, .variable = name, .time = roles.time, .sample_time_s = roles.sample_time_s};
+  if (const auto colon = name.rfind(':'); colon != std::string::npos) {
+    std::int64_t column = 0;
+    const char* const end = name.data() + name.size();
+    const auto read = std::from_chars(name.data() + colon + 1, end, column);
+    if (read.ec == std::errc{} && read.ptr == end) {
+      source.variable = name.substr(0, colon);
+      source.column = column;
+    }
+  }
+  return source;
+}
+
+/// Channels with what is known of their time.
+struct Found {
+  Signals signals;
+  std::optional<double> sample_time_s;
+  std::optional<bool> rotary;
+};
+
+Check take(Found& found, const SignalRoles& roles, Role role, std::string name, const std::string& unit,
+           std::vector<double> values) {
+  const auto rotary = convert(roles, role, unit, values);
+  if (!rotary) return rotary.error();
+  if (*rotary) {
+    if (found.rotary && *found.rotary != **rotary) {
+      return refuse(ErrorCode::inconsistent, roles,
+                    "'" + name +
+                        "' does not belong to the other columns: some are of a linear axis and some of a "
+                        "rotary one; name columns of one kind");
+    }
+    found.rotary = **rotary;
+  }
+  if (found.signals.samples != 0 && found.signals.samples != values.size()) {
+    return refuse(ErrorCode::inconsistent, roles,
+                  "'" + name + "' has " + std::to_string(values.size()) + " samples where the columns before have " +
+                      std::to_string(found.signals.samples) + "; name columns of one length");
+  }
+  found.signals.samples = values.size();
+  const double step = step_of(values);
+  found.signals.channels[index_of(role)] = Channel{.name = std::move(name), .values = std::move(values), .step = step};
+  return std::nullopt;
+}
+
+Result<Found> read_columns(SignalRoles roles) {
+  const auto entries = recording::contents(roles.file);
+  if (!entries) return entries.error();
+  fill_in(roles, *entries);
+  if (!names_a_position(roles)) return no_position(roles, *entries);
+  Found found;
+  for (const Role role : all_roles) {
+    const std::string& name = roles.names[index_of(role)];
+    if (name.empty()) continue;
+    auto signal = recording::read(source_of(roles, name));
+    if (!signal) return signal.error();
+    found.sample_time_s = signal->sample_time_s;
+    if (auto error = take(found, roles, role, name, signal->unit, std::move(signal->values))) return *std::move(error);
+  }
+  if (identification::is_teleoperator_scope(*entries)) found.rotary = true;
+  return found;
+}
+
+/// The columns of a topic as entries, their names without the unit.
+std::vector<Entry> entries_of(const telemetry::LogTable& table) {
+  std::vector<Entry> entries;
+  for (const auto& column : table.columns) {
+    auto head = recording::split_unit(column.name);
+    entries.push_back({.name = head.unit == column.unit ? head.name : column.name,
+                       .unit = column.unit,
+                       .kind = "column",
+                       .rows = static_cast<std::int64_t>(table.times_ns.size()),
+                       .columns = 1,
+                       .readable = table.times_ns.size() > 1});
+  }
+  return entries;
+}
+
+Result<Found> read_log(const SignalRoles& wanted) {
+  const auto content = telemetry::read_log(wanted.file);
+  if (!content) {
+    Error error = content.error();
+    if (error.code == ErrorCode::wrong_type) {
+      error.message +=
+          "; a bag of other programs is not read: write its columns to a table (time, positions, forces) and name that";
+    }
+    return error;
+  }
+  const telemetry::LogTable* best = nullptr;
+  SignalRoles roles;
+  std::ptrdiff_t most = 0;
+  for (const auto& table : content->tables) {
+    SignalRoles filled = wanted;
+    fill_in(filled, entries_of(table));
+    const auto named =
+        static_cast<std::ptrdiff_t>(role_count) - std::count(filled.names.begin(), filled.names.end(), std::string());
+    if (!names_a_position(filled) || named <= most) continue;
+    most = named, best = &table, roles = filled;
+  }
+  if (best == nullptr) {
+    std::vector<Entry> all;
+    for (const auto& table : content->tables) {
+      for (Entry& entry : entries_of(table)) all.push_back(std::move(entry));
+    }
+    return no_position(wanted, all);
+  }
+  Found found;
+  const std::vector<Entry> entries = entries_of(*best);
+  for (const Role role : all_roles) {
+    const std::string& name = roles.names[index_of(role)];
+    if (name.empty()) continue;
+    const auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.name == name; });
+    if (entry == entries.end()) return recording::no_such_variable(name, wanted.file, entries);
+    std::vector<double> values = best->values[static_cast<std::size_t>(entry - entries.begin())];
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      if (std::isfinite(values[row])) continue;
+      return refuse(ErrorCode::inconsistent, wanted,
+                    "'" + name + "' is not a finite number in message " + std::to_string(row + 1) + " of " +
+                        best->topic + "; export the log and fill in the lost samples");
+    }
+    if (auto error = take(found, roles, role, name, entry->unit, std::move(values))) return *std::move(error);
+  }
+  std::vector<double> times_s;
+  const auto own =
+      std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.name == "time" && e.unit == "s"; });
+  for (std::size_t i = 0; i < best->times_ns.size(); ++i) {
+    times_s.push_back(own != entries.end() ? best->values[static_cast<std::size_t>(own - entries.begin())][i]
+                                           : 1e-9 * static_cast<double>(best->times_ns[i] - best->times_ns[0]));
+  }
+  if (times_s.size() > 1) {
+    const auto sample_time_s = recording::uniform_sample_time(times_s, [&](std::size_t row) {
+      return wanted.file.string() + ", message " + std::to_string(row + 1) + " of " + best->topic;
+    });
+    if (!sample_time_s) return sample_time_s.error();
+    found.sample_time_s = *sample_time_s;
+  }
+  return found;
+}
+
+/// A displayed force that goes against the tip force has the other sign.
+Check doubt_sign(const SignalRoles& roles, const Signals& signals) {
+  const Channel* displayed = signals.find(Role::displayed_force);
+  const Channel* tip = signals.find(Role::tip_force);
+  if (displayed == nullptr || tip == nullptr || displayed->constant() || tip->constant()) return std::nullopt;
+  double d = 0, t = 0, dd = 0, tt = 0, dt = 0;
+  const auto n = static_cast<double>(signals.samples);
+  for (std::size_t i = 0; i < signals.samples; ++i) {
+    const double x = displayed->values[i], y = tip->values[i];
+    d += x, t += y, dd += x * x, tt += y * y, dt += x * y;
+  }
+  const double correlation = (dt - d * t / n) / std::sqrt((dd - d * d / n) * (tt - t * t / n));
+  constexpr double surely_turned = -0.7;
+  if (!(correlation < surely_turned)) return std::nullopt;
+  return refuse(ErrorCode::inconsistent, roles,
+                "displayed force and tip force go against one another (correlation " + format_number(correlation) +
+                    "): both are positive when they push back; turn one round with --displayed-force-sign -1 or "
+                    "--tip-force-sign -1");
+}
+
+}  // namespace
+
+std::string_view words_of(Role role) {
+  constexpr std::array<std::string_view, role_count> words{"master position", "slave position", "displayed force",
+                                                           "tip force",       "hand force",     "slave force"};
+  return words[index_of(role)];
+}
+
+std::string option_of(Role role) {
+  std::string option = "--" + std::string(words_of(role));
+  std::replace(option.begin(), option.end(), ' ', '-');
+  return option;
+}
+
+double step_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  if (values.size() < 2) return 0.0;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
+  const auto small = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 10);
+  std::nth_element(steps.begin(), small, steps.end());
+  return *small;
+}
+
+Result<Signals> read_signals(const SignalRoles& roles) {
+  constexpr std::size_t fewest_samples = 200;
+  constexpr double shortest_s = 0.5;
+  std::error_code ignored;
+  const bool log =
+      std::filesystem::is_directory(roles.file, ignored) || lower(roles.file.extension().string()) == ".mcap";
+  auto found = log ? read_log(roles) : read_columns(roles);
+  if (!found) return found.error();
+  Signals signals = std::move(found->signals);
+  if (!found->sample_time_s) {
+    return refuse(ErrorCode::missing, roles,
+                  "the recording has no times: state the time between samples with --sample-time-s, or name the column "
+                  "of times with --time");
+  }
+  signals.sample_time = Seconds{*found->sample_time_s};
+  signals.rotary = found->rotary.value_or(false);
+  if (signals.samples < fewest_samples || signals.duration_s() < shortest_s) {
+    return refuse(ErrorCode::inconsistent, roles,
+                  "the recording has " + std::to_string(signals.samples) + " samples in " +
+                      format_number(signals.duration_s()) +
+                      " s, too few to tell anything: record at least 200 samples and half a second, better 5 s");
+  }
+  const bool changes = std::any_of(all_roles.begin(), all_roles.end(), [&](Role role) {
+    return is_position(role) && signals.find(role) != nullptr && !signals.find(role)->constant();
+  });
+  if (!changes) {
+    return refuse(ErrorCode::inconsistent, roles,
+                  "no position changes: is it the right column, and was the device on? Name columns with "
+                  "--master-position and --slave-position");
+  }
+  if (auto error = doubt_sign(roles, signals)) return *std::move(error);
+  return signals;
+}
+
+}  // namespace tactus::diagnosis

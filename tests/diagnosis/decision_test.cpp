@@ -1,0 +1,127 @@
+#include <tactus/diagnosis/decision.hpp>
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace tactus::diagnosis {
+namespace {
+
+Oscillation line(double frequency_Hz) {
+  return {.frequency_Hz = frequency_Hz, .from_s = 1.0, .to_s = 8.0, .share = 0.9, .signal = "slave position"};
+}
+
+/// Everything was recorded.
+Signals everything() {
+  Signals signals{.channels = {}, .sample_time = Seconds{1e-3}, .samples = 8000, .rotary = false};
+  for (auto& channel : signals.channels) channel = Channel{.name = "x", .values = {}, .step = 1e-5};
+  return signals;
+}
+
+/// Both sites move in contact, and the displayed force drives the master.
+Evidence in_contact() {
+  Evidence evidence;
+  evidence.amplitude = {1e-3, 5e-4, 1.0, 0.5, 0.3, 0.5};
+  evidence.master_part = 2.0;
+  evidence.follows = 1.0;
+  evidence.master_steps = 200.0;
+  evidence.slave_steps = 100.0;
+  evidence.standstill = 0.1;
+  evidence.actuator_gives = 0.95;
+  evidence.contact = 0.9;
+  return evidence;
+}
+
+Evidence slave_alone() {
+  Evidence evidence = in_contact();
+  evidence.amplitude = {1e-6, 5e-4, 0.0, 0.0, 0.0, 0.5};
+  evidence.master_part = 0.002;
+  evidence.follows = 0.0;
+  evidence.actuator_gives = 0.0;
+  evidence.contact = 0.0;
+  return evidence;
+}
+
+Mechanism named(const Evidence& evidence, double frequency_Hz) {
+  return decide(everything(), line(frequency_Hz), evidence).mechanism;
+}
+
+TEST(Decide, NamesEachMechanismByWhatItMustShow) {
+  EXPECT_EQ(named(in_contact(), 80.0), Mechanism::induced_motion);
+  EXPECT_EQ(named(slave_alone(), 25.0), Mechanism::slave_servo);
+
+  Evidence counts = slave_alone();
+  counts.slave_steps = 1.0;
+  EXPECT_EQ(named(counts, 90.0), Mechanism::quantisation);
+
+  Evidence sticks = slave_alone();
+  sticks.standstill = 0.7;
+  EXPECT_EQ(named(sticks, 3.0), Mechanism::stick_slip);
+
+  Evidence free = in_contact();
+  free.contact = 0.0;
+  free.delay_there_s = free.delay_back_s = 0.04;
+  EXPECT_EQ(named(free, 6.0), Mechanism::delay);
+
+  Evidence hand = in_contact();
+  hand.contact = 0.0;
+  hand.actuator_gives = -0.3;
+  hand.wander = 0.4;
+  EXPECT_EQ(named(hand, 8.0), Mechanism::tremor);
+}
+
+TEST(Decide, AHandThatTakesEnergyHasNoTremorAndOneThatGivesItHas) {
+  Evidence evidence = in_contact();
+  evidence.actuator_gives = 0.5;
+  evidence.hand_gives = -0.9;
+  EXPECT_EQ(named(evidence, 8.0), Mechanism::induced_motion);
+  evidence.hand_gives = 0.9;
+  EXPECT_EQ(named(evidence, 8.0), Mechanism::tremor);
+}
+
+TEST(Decide, WhereHandAndActuatorBothTakeEnergyNoneIsNamed) {
+  Evidence evidence = in_contact();
+  evidence.actuator_gives = -0.5;
+  evidence.hand_gives = -0.9;
+  EXPECT_EQ(named(evidence, 8.0), Mechanism::unknown);
+}
+
+TEST(Decide, WhatTwoExplainAlikeIsUnknownAndTheMissingSignalIsNamed) {
+  Evidence evidence = in_contact();
+  evidence.contact.reset();
+  evidence.delay_there_s = evidence.delay_back_s = 0.04;
+  Signals signals = everything();
+  signals.channels[static_cast<std::size_t>(Role::tip_force)].reset();
+  const Decision decision = decide(signals, line(8.0), evidence);
+  EXPECT_EQ(decision.mechanism, Mechanism::unknown);
+  EXPECT_EQ(decision.missing, std::vector<Role>{Role::tip_force});
+  for (const Mechanism mechanism : {Mechanism::induced_motion, Mechanism::delay}) {
+    EXPECT_NE(std::find(decision.possible.begin(), decision.possible.end(), mechanism), decision.possible.end());
+  }
+}
+
+TEST(Decide, AMasterThatOnlyItsPositionTellsOfNamesNothing) {
+  Signals signals{.channels = {}, .sample_time = Seconds{1e-3}, .samples = 8000, .rotary = false};
+  signals.channels[0] = Channel{.name = "x", .values = {}, .step = 1e-5};
+  Evidence evidence;
+  evidence.amplitude[0] = 1e-3;
+  evidence.master_steps = 200.0;
+  const Decision decision = decide(signals, line(80.0), evidence);
+  EXPECT_EQ(decision.mechanism, Mechanism::unknown);
+  EXPECT_FALSE(decision.missing.empty());
+  EXPECT_EQ(decision.confidence, 0.0);
+}
+
+TEST(Decide, WhatAHandMeansAndWhatEveryHandHasIsHarmless) {
+  Evidence hand = in_contact();
+  hand.contact = 0.0;
+  hand.actuator_gives = 0.0;
+  hand.wander = 0.4;
+  EXPECT_TRUE(decide(everything(), line(1.8), hand).harmless);
+  EXPECT_FALSE(decide(everything(), line(8.0), hand).harmless);
+  hand.amplitude = {5e-5, 5e-5, 0.0, 0.0, 0.0, 0.0};
+  EXPECT_TRUE(decide(everything(), line(8.0), hand).harmless);
+}
+
+}  // namespace
+}  // namespace tactus::diagnosis
