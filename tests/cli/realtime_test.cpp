@@ -93,10 +93,9 @@ TEST_F(RealTime, FaultsRunAtTheRealClockAfterVirtualTime) {
 
 TEST_F(RealTime, AFaultThatIsNotSurvivedSaysWhetherMissedTicksLostIt) {
   // Nothing sees the frozen encoder, so the run is lost whether the clock is kept or not.
-  const Outcome outcome =
-      tactus({"faults", "--realtime", "--seeds", "1", "--only", "encoder-freeze", "--set", "task.real_time_seeds=6",
-              "--set", "control.gate.encoder.frozen_after_s=1", "--set", "control.slave_gate.encoder.frozen_after_s=1",
-              "--priority", "10", "--json"});
+  const Outcome outcome = tactus({"faults", "--realtime", "--seeds", "1", "--only", "encoder-freeze", "--set",
+                                  "task.real_time_seeds=6", "--set", "control.gate.encoder.frozen_after_s=1", "--set",
+                                  "control.slave_gate.encoder.frozen_after_s=1", "--priority", "10", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json document = Json::parse(outcome.out)["real_time"];
   const Json& lost = document["lost"];
