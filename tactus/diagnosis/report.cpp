@@ -138,12 +138,12 @@ report::HeatMap spectrogram_of(const Signals& signals, const Diagnosis& diagnosi
       std::max<std::size_t>(1, static_cast<std::size_t>(static_cast<double>(signals.samples - frame) / frames_wanted));
   const Spectrogram found = spectrogram(signals.values(role), frame, hop, dt);
 
-  report::HeatMap map{.title = "Spectrogram of the " + std::string(words_of(role)),
-                      .x = {.label = "time", .unit = "s", .values = found.time_s},
-                      .y = {.label = "frequency", .unit = "Hz", .values = {}, .logarithmic = true},
-                      .classes = {},
-                      .panels = {{"power, in decades below the largest", {}}},
-                      .lines = {}};
+  report::HeatMap map;
+  map.title = "Spectrogram of the " + std::string(words_of(role));
+  map.x.label = "time", map.x.unit = "s", map.x.values = found.time_s;
+  map.y.label = "frequency", map.y.unit = "Hz", map.y.logarithmic = true;
+  map.panels.resize(1);
+  map.panels[0].title = "power, in decades below the largest";
   for (std::size_t shade = 0; shade < shades; ++shade) {
     const std::string from = std::to_string(shades - 1 - shade);
     map.classes.push_back({shade == 0 ? "more than " + from : from + " to " + std::to_string(shades - shade),
@@ -180,11 +180,11 @@ std::optional<report::Figure> periods_of(const Signals& signals, const Diagnosis
   const double half_s = std::min(6.0 / oscillation.frequency_Hz, 0.5 * (oscillation.to_s - oscillation.from_s));
   const auto from = static_cast<std::size_t>(std::max(0.0, middle_s - half_s) / dt_s);
   const auto to = std::min(signals.samples, static_cast<std::size_t>((middle_s + half_s) / dt_s));
-  report::Figure figure{.title = "A dozen periods",
-                        .caption = "The signals about the middle of the strongest oscillation.",
-                        .columns = 1,
-                        .panels = {},
-                        .share_x = report::Sharing::in_line};
+  report::Figure figure;
+  figure.title = "A dozen periods";
+  figure.caption = "The signals about the middle of the strongest oscillation.";
+  figure.columns = 1;
+  figure.share_x = report::Sharing::in_line;
   for (const Role role : all_roles) {
     const Channel* channel = signals.find(role);
     if (channel == nullptr) continue;
@@ -193,11 +193,11 @@ std::optional<report::Figure> periods_of(const Signals& signals, const Diagnosis
       line.x.push_back(static_cast<double>(i) * dt_s);
       line.y.push_back(channel->values[i] * (is_position(role) ? 1e3 : 1.0));
     }
-    figure.panels.push_back({.title = {},
-                             .x = {.label = "time", .unit = "s"},
-                             .y = {.label = std::string(words_of(role)), .unit = unit_of(signals, role)},
-                             .lines = {std::move(line)},
-                             .rules = {}});
+    report::Panel panel;
+    panel.x.label = "time", panel.x.unit = "s";
+    panel.y.label = std::string(words_of(role)), panel.y.unit = unit_of(signals, role);
+    panel.lines.push_back(std::move(line));
+    figure.panels.push_back(std::move(panel));
   }
   return figure;
 }
