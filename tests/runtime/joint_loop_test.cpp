@@ -53,6 +53,7 @@ std::vector<double> column(const telemetry::LogTable& table, const std::string& 
 TEST(SeveralJoints, EightRunAtOneKilohertzInRealTimeAndLeaveEveryTickInALog) {
   experiments::TappingParams params;
   params.servo.rate_Hz = 1000.0;
+  params.plant.longest_step_s = 4e-5;  // sixteen plants, under sanitizers too
   params.control.force_gain = 1.0;
   params.control.supervision.overload.missed_share = 0.9;
   params.control.supervision.longest_stall_s = 1.0;
