@@ -1,7 +1,6 @@
 #include <tactus/runtime/joint_streams.hpp>
-#include <tactus/runtime/site_device.hpp>
+#include <tactus/runtime/servo_thread.hpp>
 #include <tactus/runtime/site_log.hpp>
-#include <tactus/runtime/site_parts.hpp>
 #include <tactus/station/joined_devices.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
@@ -13,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <examples/own-device/spring_carriage.hpp>
 #include <gtest/gtest.h>
 #include <tests/allocation_counter.hpp>
 #include <tests/sanitizers.hpp>
@@ -26,21 +26,14 @@ using control::SiteState;
 
 constexpr std::size_t joints = 8;
 
-/// One device of eight simulated ones of an experiment, and the persons who hold its handles.
-struct Simulated {
-  std::unique_ptr<station::JoinedDevices> device;
-  std::vector<PatientPerson*> persons;
-
-  Simulated(const experiments::TappingParams& params, SiteRole role) {
-    std::vector<std::unique_ptr<station::Device>> owned;
-    for (std::size_t joint = 0; joint < joints; ++joint) {
-      SiteDevice one = simulated_device(params, role).value();
-      if (one.person != nullptr) persons.push_back(one.person);
-      owned.push_back(std::move(one.device));
-    }
-    device = std::make_unique<station::JoinedDevices>(std::move(owned));
+/// One device of eight carriages, each with a hand or a wall of its own.
+std::unique_ptr<station::JoinedDevices> carriages(SiteRole role) {
+  std::vector<std::unique_ptr<station::Device>> owned;
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    owned.push_back(std::make_unique<SpringCarriage>(role == SiteRole::master, 1e-3));
   }
-};
+  return std::make_unique<station::JoinedDevices>(std::move(owned));
+}
 
 std::vector<double> column(const telemetry::LogTable& table, const std::string& name) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -51,18 +44,14 @@ std::vector<double> column(const telemetry::LogTable& table, const std::string& 
 }
 
 TEST(SeveralJoints, EightRunAtOneKilohertzInRealTimeAndLeaveEveryTickInALog) {
-  experiments::TappingParams params;
-  params.servo.rate_Hz = 1000.0;
-  params.plant.longest_step_s = 4e-5;  // sixteen plants, under sanitizers too
-  params.control.force_gain = 1.0;
-  params.control.supervision.overload.missed_share = 0.9;
-  params.control.supervision.longest_stall_s = 1.0;
-  params.control.supervision.watchdog.timeout_s = 1.0;
-  const Seconds tick_s{1e-3};
-  Simulated master(params, SiteRole::master), slave(params, SiteRole::slave);
-  const Joints<control::ControlParams> control(joints, control_of(params));
-  auto made = station::JointLocalTeleoperator::make(control, params.channel, tick_s, Joints<double>(joints, 0.0),
-                                                    *master.device, *slave.device);
+  control::ControlParams of_joint;
+  of_joint.force_gain = 1.0;
+  of_joint.supervision.overload.missed_share = 0.9;
+  of_joint.supervision.longest_stall_s = 1.0;
+  of_joint.supervision.watchdog.timeout_s = 1.0;
+  const auto master = carriages(SiteRole::master), slave = carriages(SiteRole::slave);
+  auto made = station::JointLocalTeleoperator::make(Joints<control::ControlParams>(joints, of_joint), {}, Seconds{1e-3},
+                                                    Joints<double>(joints, 0.0), *master, *slave);
   ASSERT_TRUE(made) << describe(made.error());
   station::JointLocalTeleoperator& sites = *made;
 
@@ -79,8 +68,6 @@ TEST(SeveralJoints, EightRunAtOneKilohertzInRealTimeAndLeaveEveryTickInALog) {
         .align = steps > 100, .arm = steps > 200, .dead_man = steps > 400 && steps < 2600};
     const auto done = sites.step(tick, pressed);
     streams.push(tick, pressed, sites, done);
-    const bool follows = sites.sites().master().state() == SiteState::active;
-    for (PatientPerson* person : master.persons) person->follow(follows);
     allocations += laws::own_allocation_count() - before;
     return ++steps < 3000;
   });
@@ -90,7 +77,7 @@ TEST(SeveralJoints, EightRunAtOneKilohertzInRealTimeAndLeaveEveryTickInALog) {
   EXPECT_EQ(allocations, 0U);
   EXPECT_EQ(report->ticks, 3000);
 #if !TACTUS_UNDER_ADDRESS_SANITIZER && !TACTUS_UNDER_THREAD_SANITIZER
-  EXPECT_LT(report->duration.quantile_ns(0.5), 500'000) << "half of a tick, for sixteen simulated plants too";
+  EXPECT_LT(report->duration.quantile_ns(0.5), 500'000) << "half of a tick";
 #endif
 
   for (const std::string site : {"/master/", "/slave/"}) {
