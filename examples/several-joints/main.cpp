@@ -23,12 +23,12 @@ constexpr std::size_t joints = 3;
 constexpr double rate_Hz = 1000.0;
 
 /// Three motors that have nothing in common. A device whose joints share a bus derives from `station::JointDevice`.
-std::unique_ptr<station::JointDevice> open_device(control::SiteRole role) {
+Result<std::unique_ptr<station::JoinedDevices>> open_device(control::SiteRole role) {
   std::vector<std::unique_ptr<station::Device>> motors;
   for (std::size_t joint = 0; joint < joints; ++joint) {
     motors.push_back(std::make_unique<SpringCarriage>(role == control::SiteRole::master, 1.0 / rate_Hz));
   }
-  return std::make_unique<station::JoinedDevices>(std::move(motors));
+  return station::JoinedDevices::make(std::move(motors));
 }
 
 /// What would be read of buttons: the person aligns, arms, holds the dead-man switch for two seconds and lets go.
@@ -54,8 +54,10 @@ int main(int count, char** arguments) {
   control[2].force_gain = 0.5;
 
   const auto leader = open_device(control::SiteRole::master), follower = open_device(control::SiteRole::slave);
+  if (!leader) return fail(leader.error());
+  if (!follower) return fail(follower.error());
   auto sites = station::JointLocalTeleoperator::make(control, {}, Seconds{1.0 / rate_Hz}, Joints<double>(joints, 0.0),
-                                                     *leader, *follower);
+                                                     **leader, **follower);
   if (!sites) return fail(sites.error());
   runtime::JointStreams streams(joints);
   auto log = runtime::SiteLog::create(arguments[1], streams, {});

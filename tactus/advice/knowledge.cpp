@@ -16,7 +16,6 @@ namespace {
 
 using experiments::TappingParams;
 
-constexpr double normal_95 = 1.96;
 /// The slip deflections of the two laws of hysteresis at which their loops have the same area (`BoucWenSpring`).
 constexpr double bouc_wen_over_elasto_slip = 0.65;
 constexpr double most_hysteretic = 0.98;
@@ -142,7 +141,7 @@ Knowledge Knowledge::identified(std::span<const identification::FoundParameter> 
       if (place->scale == Scale::linear) return value;
       return place->scale == Scale::odds ? std::log(value / (1.0 - value)) : std::log(value);
     };
-    const double deviation = 0.5 * (in_scale(upper) - in_scale(lower)) / normal_95;
+    const double deviation = 0.5 * (in_scale(upper) - in_scale(lower)) / identification::normal_95;
     if (!std::isfinite(deviation)) continue;
     knowledge.add(*place, {.name = one.name, .unit = one.unit, .value = one.value, .interval_95 = one.interval_95},
                   deviation);

@@ -1,6 +1,7 @@
 #include <tactus/advice/presentation.hpp>
 #include <tactus/configuration/text.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/experiments/tapping/presentation.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -146,15 +147,7 @@ Json limited_by_json(const Advice& advice) {
 
 Json expected_json(const Advice& advice) {
   if (!advice.start) return Json::object();
-  const experiments::TappingMetrics& m = advice.expected;
-  Json object{{"taps", m.taps},
-              {"settled_fraction", m.settled_fraction},
-              {"settling_time_median_s", m.settling_time_median_s},
-              {"settling_time_p90_s", m.settling_time_p90_s},
-              {"contacts_median", m.contacts_median},
-              {"peak_force_N", m.peak_force_N},
-              {"residual_rms_N", m.residual_rms_N},
-              {"verdict", name_of(m.verdict)}};
+  Json object = Json::parse(experiments::metrics_json(advice.expected));
   add_costs(object, *advice.start);
   return object;
 }

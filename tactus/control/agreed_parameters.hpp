@@ -55,7 +55,8 @@ struct AgreedParams {
 
 /// Of the `[control]` section of an experiment at a sample time. Allocates.
 Agreement agreement_of(const ControlParams& params, Seconds dt);
-/// Of all joints of a device: a cell for each, which holds the digest of what is agreed for it. Allocates.
+/// Of all joints of a device: a cell for each, which holds the digest of what is agreed for it. So the first cell that
+/// differs (`SiteRecord::differs`) is the number of the joint; `first_disagreement` is for one axis. Allocates.
 Agreement agreement_of(const JointParams auto& params, Seconds dt);
 
 /// One key with both values, as a person writes them.

@@ -97,6 +97,11 @@ bool is_finite(const Joints<T>& joints) noexcept {
   return finite;
 }
 
+/// What the force sensor says that pushes back against the motor, in N: the hand, or what is at the tip. Real-time
+/// safe.
+inline double resisting_N(const MasterInput& input) noexcept { return -input.hand_force_N; }
+inline double resisting_N(const SlaveInput& input) noexcept { return input.tip_force_N; }
+
 /// Puts what was read last in the place of each number that is none. Real-time safe.
 inline void mend(double& value, double last) noexcept {
   if (!std::isfinite(value)) value = last;
@@ -184,7 +189,7 @@ class MasterGates {
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// The position in m to believe, as `SafetyGate` says. Real-time safe.
   double believe(const MasterInput& read, std::int64_t elapsed_ticks) noexcept {
-    return motor_.believe(read.motor_position_m, elapsed_ticks, -read.hand_force_N);
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read));
   }
   /// Puts what may reach the actuators in place of what was commanded. Real-time safe.
   void pass(MasterOutput& output) noexcept {
@@ -218,7 +223,7 @@ class SlaveGates {
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// The position in m to believe, as `SafetyGate` says. Real-time safe.
   double believe(const SlaveInput& read, std::int64_t elapsed_ticks) noexcept {
-    return motor_.believe(read.motor_position_m, elapsed_ticks, read.tip_force_N);
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read));
   }
   /// Puts what may reach the motor in place of what was commanded. Real-time safe.
   void pass(SlaveOutput& output) noexcept { output.motor_force_N = motor_.pass(output.motor_force_N); }

@@ -25,30 +25,44 @@ Sensors with(Sensors sensors, const Each<Sensors, Arrival>& arrivals) noexcept {
   return sensors;
 }
 
-}  // namespace
-
 /// Whether motor and force sensor contradict one another, at any joint.
-template <class Gated>
-bool SupervisedMasterOf<Gated>::contradicted(const Input& input) noexcept {
+template <class Checks, class Gates, class Sensors>
+bool contradict(Checks& checks, const Gates& gates, const Sensors& sensors, std::int64_t elapsed_ticks) noexcept {
   bool found = false;
   for_each_joint(
-      [&](ForceSensorCheck& check, const MasterGates& gates, const MasterInput& sensors) noexcept {
-        const bool contradicts =
-            std::isfinite(sensors.hand_force_N) && check.step({.acted_N = gates.motor().passed_N(),
-                                                               .tip_force_N = -sensors.hand_force_N,
-                                                               .elapsed_ticks = input.elapsed_ticks});
+      [&](ForceSensorCheck& check, const JointOf<Gates>& joint, const JointOf<Sensors>& read) noexcept {
+        const double tip_force_N = resisting_N(read);
+        const bool contradicts = std::isfinite(tip_force_N) && check.step({.acted_N = joint.motor().passed_N(),
+                                                                           .tip_force_N = tip_force_N,
+                                                                           .elapsed_ticks = elapsed_ticks});
         found = found || contradicts;
       },
-      hand_sensor_, site_.gates(), input.sensors);
+      checks, gates, sensors);
   return found;
 }
 
+/// A gated site under the supervision that `params` describe. `checked` says when its force sensor cannot be right.
+template <template <class> class Supervised, class Gated, class Params>
+Result<Supervised<Gated>> supervise(Gated site, const Params& params, SiteRole role, std::int64_t session, Seconds dt,
+                                    const Agreement& agreement, ForceSensorCheck::Params SupervisionParams::*checked,
+                                    const char* group) {
+  const auto settings = member_of_each(params, &ControlParams::supervision);
+  const auto supervision = SupervisionOf<Each<Params, Message>>::make(settings, role, session, dt, agreement);
+  if (!supervision) return under("supervision", supervision.error());
+  const auto check = make_each<ForceSensorCheck>(member_of_each(settings, checked), dt);
+  if (!check) return under("supervision", under(group, check.error()));
+  return Supervised<Gated>(std::move(site), *supervision, *check);
+}
+
+}  // namespace
+
 template <class Gated>
 typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const Input& input) noexcept {
-  const SiteState state = supervision_.decide({.requests = input.requests,
-                                               .elapsed_ticks = input.elapsed_ticks,
-                                               .fault = site_.fault(),
-                                               .force_sensor = contradicted(input)});
+  const SiteState state = supervision_.decide(
+      {.requests = input.requests,
+       .elapsed_ticks = input.elapsed_ticks,
+       .fault = site_.fault(),
+       .force_sensor = contradict(hand_sensor_, site_.gates(), input.sensors, input.elapsed_ticks)});
   if (supervision_.rearms()) {
     site_.rearm();
     for_each_joint([](ForceSensorCheck& check) noexcept { check.reset(); }, hand_sensor_);
@@ -80,26 +94,12 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
 }
 
 template <class Gated>
-bool SupervisedSlaveOf<Gated>::contradicted(const Input& input) noexcept {
-  bool found = false;
-  for_each_joint(
-      [&](ForceSensorCheck& check, const SlaveGates& gates, const SlaveInput& sensors) noexcept {
-        const bool contradicts =
-            std::isfinite(sensors.tip_force_N) && check.step({.acted_N = gates.motor().passed_N(),
-                                                              .tip_force_N = sensors.tip_force_N,
-                                                              .elapsed_ticks = input.elapsed_ticks});
-        found = found || contradicts;
-      },
-      force_sensor_, site_.gates(), input.sensors);
-  return found;
-}
-
-template <class Gated>
 typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const Input& input) noexcept {
-  const SiteState state = supervision_.decide({.requests = input.requests,
-                                               .elapsed_ticks = input.elapsed_ticks,
-                                               .fault = site_.fault(),
-                                               .force_sensor = contradicted(input)});
+  const SiteState state = supervision_.decide(
+      {.requests = input.requests,
+       .elapsed_ticks = input.elapsed_ticks,
+       .fault = site_.fault(),
+       .force_sensor = contradict(force_sensor_, site_.gates(), input.sensors, input.elapsed_ticks)});
   const auto here_m = member_of_each(input.sensors, &SlaveInput::motor_position_m);
   if (supervision_.rearms()) {
     site_.rearm();
@@ -138,13 +138,8 @@ auto supervised_master(const Params& params, std::int64_t session, Seconds dt, c
     -> Result<SupervisedMasterOf<decltype(make_sites(params, dt)->master)>> {
   auto sites = make_sites(params, dt);
   if (!sites) return sites.error();
-  const auto settings = member_of_each(params, &ControlParams::supervision);
-  const auto supervision =
-      SupervisionOf<Each<Params, Message>>::make(settings, SiteRole::master, session, dt, agreement);
-  if (!supervision) return under("supervision", supervision.error());
-  const auto hand_sensor = make_each<ForceSensorCheck>(member_of_each(settings, &SupervisionParams::hand_sensor), dt);
-  if (!hand_sensor) return under("supervision.hand_sensor", hand_sensor.error());
-  return SupervisedMasterOf(std::move(sites->master), *supervision, *hand_sensor);
+  return supervise<SupervisedMasterOf>(std::move(sites->master), params, SiteRole::master, session, dt, agreement,
+                                       &SupervisionParams::hand_sensor, "hand_sensor");
 }
 
 template <class Params>
@@ -152,13 +147,8 @@ auto supervised_slave(const Params& params, std::int64_t session, Seconds dt, co
     -> Result<SupervisedSlaveOf<decltype(make_sites(params, dt)->slave)>> {
   auto sites = make_sites(params, dt);
   if (!sites) return sites.error();
-  const auto settings = member_of_each(params, &ControlParams::supervision);
-  const auto supervision =
-      SupervisionOf<Each<Params, Message>>::make(settings, SiteRole::slave, session, dt, agreement);
-  if (!supervision) return under("supervision", supervision.error());
-  const auto force_sensor = make_each<ForceSensorCheck>(member_of_each(settings, &SupervisionParams::force_sensor), dt);
-  if (!force_sensor) return under("supervision.force_sensor", force_sensor.error());
-  return SupervisedSlaveOf(std::move(sites->slave), *supervision, *force_sensor);
+  return supervise<SupervisedSlaveOf>(std::move(sites->slave), params, SiteRole::slave, session, dt, agreement,
+                                      &SupervisionParams::force_sensor, "force_sensor");
 }
 
 }  // namespace

@@ -50,8 +50,6 @@ class SupervisedMasterOf {
   [[nodiscard]] const Gated& site() const noexcept { return site_; }
 
  private:
-  [[nodiscard]] bool contradicted(const Input& input) noexcept;
-
   Gated site_;
   SupervisionOf<Payload> supervision_;
   Each<Sensors, ForceSensorCheck> hand_sensor_;  ///< the hand resists the motor as a wall does a slave
@@ -95,8 +93,6 @@ class SupervisedSlaveOf {
   [[nodiscard]] const Gated& site() const noexcept { return site_; }
 
  private:
-  [[nodiscard]] bool contradicted(const Input& input) noexcept;
-
   Gated site_;
   SupervisionOf<Payload> supervision_;
   Each<Sensors, ForceSensorCheck> force_sensor_;

@@ -214,7 +214,11 @@ Result<Found> read_columns(SignalRoles roles) {
     const std::string& name = roles.names[index_of(role)];
     if (name.empty()) continue;
     auto signal = recording::read(source_of(roles, name));
-    if (!signal) return signal.error();
+    if (!signal) {
+      Error error = signal.error();
+      if (error.parameter == "variable") error.parameter = option_of(role);
+      return error;
+    }
     found.sample_time_s = signal->sample_time_s;
     if (auto error = take(found, roles, role, name, signal->unit, std::move(signal->values))) return *std::move(error);
   }

@@ -14,7 +14,6 @@ namespace tactus::identification {
 
 namespace {
 
-constexpr double normal_95 = 1.96;
 /// A parameter counts as told when its interval reaches no further than this part of it.
 constexpr double told_within = 0.1;
 /// What the model's laws and steps are off themselves, as a standard deviation in proportion: the integrator places a

@@ -37,6 +37,9 @@ enum class BenchVariable {
 };
 inline constexpr std::size_t bench_variables = 20;
 
+/// Half of an `interval_95` in standard deviations.
+inline constexpr double normal_95 = 1.96;
+
 /// A parameter as a person reads it.
 struct FoundParameter {
   std::string name;  ///< dotted, with the suffix of its unit: `motor.mass_kg`

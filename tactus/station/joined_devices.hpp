@@ -13,8 +13,13 @@ namespace tactus::station {
 /// they move. They are read and written in order. Real-time safe as far as they are.
 class JoinedDevices final : public JointDevice {
  public:
-  /// 1 to `most_joints` of them.
-  explicit JoinedDevices(std::vector<std::unique_ptr<Device>> joints) : joints_(std::move(joints)) {}
+  /// Errors: `out_of_bounds` for none of them, or for more than `most_joints`.
+  static Result<std::unique_ptr<JoinedDevices>> make(std::vector<std::unique_ptr<Device>> joints) {
+    if (joints.empty() || joints.size() > most_joints) {
+      return out_of_bounds("joints", static_cast<double>(joints.size()), between(1.0, most_joints), units::none);
+    }
+    return std::unique_ptr<JoinedDevices>(new JoinedDevices(std::move(joints)));
+  }
 
   [[nodiscard]] Joints<DeviceLimits> limits() const override {
     Joints<DeviceLimits> limits(joints_.size());
@@ -43,6 +48,7 @@ class JoinedDevices final : public JointDevice {
   }
 
  private:
+  explicit JoinedDevices(std::vector<std::unique_ptr<Device>> joints) : joints_(std::move(joints)) {}
   static DeviceHealth worse(DeviceHealth one, DeviceHealth other) noexcept { return one > other ? one : other; }
 
   std::vector<std::unique_ptr<Device>> joints_;

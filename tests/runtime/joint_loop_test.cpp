@@ -32,7 +32,7 @@ std::unique_ptr<station::JoinedDevices> carriages(SiteRole role) {
   for (std::size_t joint = 0; joint < joints; ++joint) {
     owned.push_back(std::make_unique<SpringCarriage>(role == SiteRole::master, 1e-3));
   }
-  return std::make_unique<station::JoinedDevices>(std::move(owned));
+  return station::JoinedDevices::make(std::move(owned)).value();
 }
 
 std::vector<double> column(const telemetry::LogTable& table, const std::string& name) {

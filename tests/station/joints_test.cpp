@@ -30,7 +30,7 @@ struct Arm {
       joints.push_back(carriage.get());
       owned.push_back(std::move(carriage));
     }
-    device = std::make_unique<JoinedDevices>(std::move(owned));
+    device = JoinedDevices::make(std::move(owned)).value();
   }
 };
 
@@ -169,6 +169,57 @@ TEST(SeveralJoints, AFaultOfOneLetsAllGoAndClearingItBringsAllBack) {
     EXPECT_EQ(joint->command.force_N, 0.0);
     EXPECT_FALSE(joint->command.enabled);
   }
+}
+
+/// Without supervision nothing but the site itself lets the others go.
+TEST(SeveralJoints, AFaultOfOneLetsAllGoWithoutSupervisionToo) {
+  Arm master(3, true), slave(3, true);
+  auto loop =
+      JointBareTeleoperator::make(of_joints(3), {}, period, Joints<double>(3, 0.0), *master.device, *slave.device)
+          .value();
+  std::int64_t number = 0;
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) loop.step(tick(number++), 1.0);
+  };
+  for (std::size_t joint = 0; joint < 3; ++joint) {
+    set_up(*master.joints[joint], *slave.joints[joint], joint);
+    master.joints[joint]->hand_m = 0.02;
+  }
+  run(2000);
+  for (const Carriage* joint : slave.joints) ASSERT_GT(std::fabs(joint->command.force_N), 0.05);
+  slave.joints[1]->carry_to(std::nan(""));
+  run(500);
+  for (const Carriage* joint : slave.joints) EXPECT_EQ(joint->command.force_N, 0.0);
+  EXPECT_FALSE(loop.healthy());
+}
+
+TEST(SeveralJoints, AreOneToEight) {
+  for (const std::size_t count : {0U, 9U}) {
+    std::vector<std::unique_ptr<Device>> motors;
+    for (std::size_t i = 0; i < count; ++i) motors.push_back(std::make_unique<Carriage>(limits));
+    const auto made = JoinedDevices::make(std::move(motors));
+    ASSERT_FALSE(made) << count;
+    EXPECT_EQ(made.error().parameter, "joints");
+  }
+}
+
+TEST(SeveralJoints, APacketOfAnotherNumberOfThemOrWithOneBadNumberIsRefused) {
+  auto judge =
+      control::PacketJudgeOf<Joints<control::Message>>::make(Joints<control::PacketJudgeParams>(3), period).value();
+  control::JointPacket packet{.session = 5, .sequence = 1, .message = Joints<control::Message>(3)};
+  EXPECT_EQ(judge.step(packet), control::PacketVerdict::applied);
+  for (const std::size_t count : {0U, 2U, 4U}) {
+    EXPECT_EQ(judge.step({.session = 5, .sequence = 2, .message = Joints<control::Message>(count)}),
+              control::PacketVerdict::implausible)
+        << count;
+  }
+  packet.sequence = 2;
+  packet.message[2].force_N = std::nan("");
+  EXPECT_EQ(judge.step(packet), control::PacketVerdict::not_finite);
+  packet.message[2].force_N = 1e4;
+  EXPECT_EQ(judge.step(packet), control::PacketVerdict::implausible);
+  packet.message[2].force_N = 1.0;
+  EXPECT_EQ(judge.step(packet), control::PacketVerdict::applied);
 }
 
 TEST(SeveralJoints, OneThatIsBeyondWhatItsDeviceAllowsHasTheWallLetAllGo) {

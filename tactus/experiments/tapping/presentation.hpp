@@ -13,6 +13,9 @@ namespace tactus::experiments {
 /// A row for each run; there may be none.
 report::Table tapping_table(const std::vector<TappingRun>& runs);
 
+/// `{"taps": ..., "settled_fraction": ...}`: what is counted over the taps of a run.
+std::string metrics_json(const TappingMetrics& metrics);
+
 /// `{"experiment": ..., "runs": [{"set": ..., "metrics": ...}]}`
 std::string tapping_json(const Request& request, const std::vector<TappingRun>& runs);
 
