@@ -1,0 +1,86 @@
+#pragma once
+
+#include <tactus/core/parameters.hpp>
+#include <tactus/core/result.hpp>
+#include <tactus/wire/wire_end.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+/// Motors and handles that people own: what is said to them, and what their answers mean.
+namespace tactus::devices {
+
+/// What stands between a motor and a force.
+enum class MotorFault : std::int64_t {
+  none,
+  silent,       ///< it did not answer for longer than the bus allows
+  voltage,      ///< too high or too low
+  current,      ///< too high
+  hot,          ///< the drive or the winding
+  lost_master,  ///< the motor's own watchdog: it did not hear from us
+  overload,     ///< too much torque for too long, or a shock
+  encoder,      ///< it does not know where it is
+  refused       ///< it refused what was asked of it
+};
+constexpr auto enumerators(MotorFault) {
+  return std::array{Enumerator{MotorFault::none, "none"},         Enumerator{MotorFault::silent, "silent"},
+                    Enumerator{MotorFault::voltage, "voltage"},   Enumerator{MotorFault::current, "current"},
+                    Enumerator{MotorFault::hot, "hot"},           Enumerator{MotorFault::lost_master, "lost-master"},
+                    Enumerator{MotorFault::overload, "overload"}, Enumerator{MotorFault::encoder, "encoder"},
+                    Enumerator{MotorFault::refused, "refused"}};
+}
+
+/// What a motor said last, in its own sense of turning, at the output of its gear. Positions go on where the wire's
+/// number wraps. Trivially copyable: it crosses from the bus thread to the tick.
+struct MotorReading {
+  double position_rad = 0.0;
+  double velocity_rad_per_s = 0.0;
+  double torque_Nm = 0.0;  ///< from the current; not of a sensor
+  double temperature_C =
+      std::numeric_limits<double>::quiet_NaN();  ///< the hotter of those that it tells; NaN: not told
+  MotorFault fault = MotorFault::none;
+  std::int64_t enabled = 0;    ///< 1 where the drive has power
+  std::int64_t heard_ns = -1;  ///< when its last good answer arrived; negative: never
+  std::int64_t answers = 0;    ///< good ones, since the start
+};
+
+/// What a motor is asked for.
+struct MotorCommand {
+  double torque_Nm = 0.0;    ///< at the output of the gear
+  std::int64_t enabled = 0;  ///< 0: no power
+};
+
+/// How far a bus is with its motors.
+enum class BusState : std::int64_t {
+  asking,  ///< who is there, and whether they are what the file says; no motor has power
+  ready,   ///< one cycle after another; power where a command enables it
+  refused  ///< something is wrong, see `MotorBus::problem`; no motor has power
+};
+constexpr auto enumerators(BusState) {
+  return std::array{Enumerator{BusState::asking, "asking"}, Enumerator{BusState::ready, "ready"},
+                    Enumerator{BusState::refused, "refused"}};
+}
+
+/// The driver of all motors behind one wire. As soon as it is driven, it asks who is there and checks what they say,
+/// then it runs cycles: commands to all motors at once, answers collected until all are there or a deadline passed, and
+/// the next. A motor that is silent costs no other its data.
+///
+/// Real-time safe but for `problem`. Thread: that of the wire; `tactus/devices/bus_thread.hpp` exchanges with a tick.
+class MotorBus : public wire::WireEnd {
+ public:
+  [[nodiscard]] virtual std::size_t motors() const noexcept = 0;
+  [[nodiscard]] virtual BusState state() const noexcept = 0;
+  /// Why it is `refused`, with the motor and the remedy. Not real-time safe.
+  [[nodiscard]] virtual Check problem() const = 0;
+  /// Of a motor below `motors()`.
+  [[nodiscard]] virtual const MotorReading& reading(std::size_t motor) const noexcept = 0;
+  /// From the next cycle on. A torque that is no number, or beyond what the motor takes, is never sent: it counts as no
+  /// power, respectively as the limit.
+  virtual void command(std::size_t motor, const MotorCommand& wanted) noexcept = 0;
+  /// Cycles that ended, whether or not all motors answered.
+  [[nodiscard]] virtual std::int64_t cycles() const noexcept = 0;
+};
+
+}  // namespace tactus::devices
