@@ -18,8 +18,8 @@ struct Everything {
   simulation::Impairment link{};
   std::string text = "text";
   static constexpr auto fields() {
-    return std::tuple{field("plan", &Everything::plan, "A plan."), field("link", &Everything::link, "A link."),
-                      field("text", &Everything::text, "A text.")};
+    return List{field("plan", &Everything::plan, "A plan."), field("link", &Everything::link, "A link."),
+                field("text", &Everything::text, "A text.")};
   }
 };
 

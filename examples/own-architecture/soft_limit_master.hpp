@@ -11,9 +11,9 @@
 struct SoftLimitParams {
   double linear_fraction = 0.5;
   static constexpr auto fields() {
-    return std::tuple{tactus::field("linear_fraction", &SoftLimitParams::linear_fraction, tactus::units::none,
-                                    tactus::between(0.1, 0.9),
-                                    "Share of the force limit up to which the force is displayed as it is.")};
+    return tactus::List{tactus::field("linear_fraction", &SoftLimitParams::linear_fraction, tactus::units::none,
+                                      tactus::between(0.1, 0.9),
+                                      "Share of the force limit up to which the force is displayed as it is.")};
   }
 };
 
@@ -32,8 +32,8 @@ class SoftLimitMaster {
     tactus::control::PositionForceMaster::Params site;
     SoftLimitParams soft_limit;
     static constexpr auto fields() {
-      return std::tuple{tactus::field("site", &Params::site, "The position-force site behind the bend."),
-                        tactus::field("soft_limit", &Params::soft_limit, "Where the bend begins.")};
+      return tactus::List{tactus::field("site", &Params::site, "The position-force site behind the bend."),
+                          tactus::field("soft_limit", &Params::soft_limit, "Where the bend begins.")};
     }
   };
   using Input = tactus::control::MasterInput;

@@ -9,7 +9,6 @@
 #include <tactus/simulation/clock.hpp>
 
 #include <array>
-#include <tuple>
 #include <vector>
 
 /// The word that chooses this experiment in a file: task.kind = "virtual-wall".
@@ -28,7 +27,7 @@ struct VirtualWallTask {
   static constexpr auto fields() {
     using T = VirtualWallTask;
     using namespace tactus;
-    return std::tuple{
+    return List{
         field("kind", &T::kind, "Which experiment this is."),
         field("press_m", &T::press_m, units::metre, between(0.001, 0.1),
               "How far beyond the wall the person means to go."),
@@ -46,9 +45,9 @@ struct WallDamper {
   tactus::signal::FilteredDerivative::Params velocity;
   static constexpr auto fields() {
     using namespace tactus;
-    return std::tuple{field("damping_N_s_per_m", &WallDamper::damping_N_s_per_m, units::newton_second_per_metre,
-                            non_negative, "Force against motion within the wall."),
-                      field("velocity", &WallDamper::velocity, "The filter of the velocity.")};
+    return List{field("damping_N_s_per_m", &WallDamper::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
+                      "Force against motion within the wall."),
+                field("velocity", &WallDamper::velocity, "The filter of the velocity.")};
   }
 };
 
@@ -63,12 +62,12 @@ struct VirtualWallParams {
   static constexpr auto fields() {
     using P = VirtualWallParams;
     using namespace tactus;
-    return std::tuple{field("master", &P::master, "The device that renders the wall."),
-                      field("operator", &P::person, "The person who holds it."),
-                      field("servo", &P::servo, "The servo clock."),
-                      field("plant", &P::plant, "The clock of the simulated device."),
-                      field("wall", &P::wall, "What the wall is besides stiff."),
-                      field("task", &P::task, "The press and the search.")};
+    return List{field("master", &P::master, "The device that renders the wall."),
+                field("operator", &P::person, "The person who holds it."),
+                field("servo", &P::servo, "The servo clock."),
+                field("plant", &P::plant, "The clock of the simulated device."),
+                field("wall", &P::wall, "What the wall is besides stiff."),
+                field("task", &P::task, "The press and the search.")};
   }
 };
 

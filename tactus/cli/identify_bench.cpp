@@ -74,10 +74,10 @@ struct BenchOptions {
 struct ModelFile {
   struct Control {
     control::MasterModel model;
-    static constexpr auto fields() { return std::tuple{field("model", &Control::model, "The controller's model.")}; }
+    static constexpr auto fields() { return List{field("model", &Control::model, "The controller's model.")}; }
   };
   Control control;
-  static constexpr auto fields() { return std::tuple{field("control", &ModelFile::control, "The controllers.")}; }
+  static constexpr auto fields() { return List{field("control", &ModelFile::control, "The controllers.")}; }
 };
 
 /// Asks for the mechanical steps, one at a time: here of a rig that takes them by itself.

@@ -33,7 +33,7 @@ struct AgreedParams {
   double blend_s = 0.0;
   static constexpr auto fields() {
     using P = AgreedParams;
-    return std::tuple{
+    return List{
         field("control.architecture", &P::architecture, "Each site takes the other to be its half."),
         field("servo.rate_Hz", &P::rate_Hz, units::hertz, positive, "Ticks count at both sites."),
         field("control.position_scale", &P::position_scale, units::none, positive, "The master commands by it."),

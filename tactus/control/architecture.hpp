@@ -28,21 +28,20 @@ struct ControlParams : PositionForceMaster::Params {
   OwnParams groups;
   SupervisionParams supervision;
   static constexpr auto fields() {
-    return std::tuple_cat(
-        std::tuple{
-            field("architecture", &ControlParams::architecture,
-                  "How the sites work together; the architecture's page tells which of the keys below it uses.")},
+    return joined(
+        List{field("architecture", &ControlParams::architecture,
+                   "How the sites work together; the architecture's page tells which of the keys below it uses.")},
         PositionForceMaster::Params::fields(),
-        std::tuple{field("slave", &ControlParams::slave, "The slave's position controller."),
-                   field("slave_force", &ControlParams::slave_force, "Where the slave's tip force comes from."),
-                   field("gate", &ControlParams::gate, "Last limits before the master's motor."),
-                   field("handle_gate", &ControlParams::handle_gate,
-                         "Last limits before the actuator on the master's handle."),
-                   field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
-                   field("", &ControlParams::groups, "The groups of the architectures."),
-                   field("supervision", &ControlParams::supervision,
-                         "States, watchdogs and what a site believes of the other; used where sites are supervised: by "
-                         "`tactus faults` and `tactus run --site`.")});
+        List{field("slave", &ControlParams::slave, "The slave's position controller."),
+             field("slave_force", &ControlParams::slave_force, "Where the slave's tip force comes from."),
+             field("gate", &ControlParams::gate, "Last limits before the master's motor."),
+             field("handle_gate", &ControlParams::handle_gate,
+                   "Last limits before the actuator on the master's handle."),
+             field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
+             field("", &ControlParams::groups, "The groups of the architectures."),
+             field("supervision", &ControlParams::supervision,
+                   "States, watchdogs and what a site believes of the other; used where sites are supervised: by "
+                   "`tactus faults` and `tactus run --site`.")});
   }
 
   /// The parameters that an architecture has of its own, by their type: its defaults where nobody has set them.

@@ -41,7 +41,7 @@ class EncoderCheck {
     double unbalanced_force_N = 200.0;
     double frozen_after_s = 0.01;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
                 "Fastest motion that can be true; a reading farther from the one before is a jump."),
           field("frozen_force_N", &Params::frozen_force_N, units::newton, positive_up_to(200.0),

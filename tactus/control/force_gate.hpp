@@ -45,10 +45,10 @@ class ForceGate {
     double force_limit_N = 10.0;
     double rate_limit_N_per_s = 1e5;
     static constexpr auto fields() {
-      return std::tuple{field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
-                              "Largest force either way that reaches the motor."),
-                        field("rate_limit_N_per_s", &Params::rate_limit_N_per_s, units::newton_per_second,
-                              positive_up_to(1e6), "Fastest change of the force that reaches the motor.")};
+      return List{field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
+                        "Largest force either way that reaches the motor."),
+                  field("rate_limit_N_per_s", &Params::rate_limit_N_per_s, units::newton_per_second,
+                        positive_up_to(1e6), "Fastest change of the force that reaches the motor.")};
     }
   };
   using Input = double;

@@ -28,10 +28,10 @@ class ForceSensorCheck {
     double residual_limit_N = 20.0;
     double cutoff_Hz = 8.0;
     static constexpr auto fields() {
-      return std::tuple{field("residual_limit_N", &Params::residual_limit_N, units::newton, positive_up_to(200.0),
-                              "Largest difference between the motor's force and the sensor's, slowly."),
-                        field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, between(0.1, 200.0),
-                              "What slowly means: the corner of the low-pass on the difference.")};
+      return List{field("residual_limit_N", &Params::residual_limit_N, units::newton, positive_up_to(200.0),
+                        "Largest difference between the motor's force and the sensor's, slowly."),
+                  field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, between(0.1, 200.0),
+                        "What slowly means: the corner of the low-pass on the difference.")};
     }
   };
   struct Input {

@@ -23,10 +23,10 @@ class OverloadCheck {
     double missed_share = 0.2;
     double window_s = 0.5;
     static constexpr auto fields() {
-      return std::tuple{field("missed_share", &Params::missed_share, units::none, positive_up_to(0.9),
-                              "Share of missed ticks from which on the site holds."),
-                        field("window_s", &Params::window_s, units::second, positive_up_to(10.0),
-                              "Time constant with which the share forgets.")};
+      return List{field("missed_share", &Params::missed_share, units::none, positive_up_to(0.9),
+                        "Share of missed ticks from which on the site holds."),
+                  field("window_s", &Params::window_s, units::second, positive_up_to(10.0),
+                        "Time constant with which the share forgets.")};
     }
   };
   struct Input {

@@ -26,11 +26,10 @@ class PaceCheck {
     double slack_s = 0.3;
     double tolerance_share = 0.25;
     static constexpr auto fields() {
-      return std::tuple{
-          field("slack_s", &Params::slack_s, units::second, positive_up_to(30.0),
-                "Lag that says nothing: the oldest packet that counts and the longest silence together."),
-          field("tolerance_share", &Params::tolerance_share, units::none, positive_up_to(0.9),
-                "Difference of the rates that says nothing; above what the other site may miss of its ticks.")};
+      return List{field("slack_s", &Params::slack_s, units::second, positive_up_to(30.0),
+                        "Lag that says nothing: the oldest packet that counts and the longest silence together."),
+                  field("tolerance_share", &Params::tolerance_share, units::none, positive_up_to(0.9),
+                        "Difference of the rates that says nothing; above what the other site may miss of its ticks.")};
     }
   };
   struct Input {

@@ -32,7 +32,7 @@ class PassivityMonitor {
     double drain_W = 10.0;
     double damping_N_s_per_m = 3.0;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("damp_above_J", &Params::damp_above_J, units::joule, positive_up_to(100.0),
                 "Energy given beyond which the motor is damped."),
           field("hold_above_J", &Params::hold_above_J, units::joule, positive_up_to(200.0),

@@ -29,7 +29,7 @@ class ReversalCheck {
     double gained_m_per_s = 0.1;
     double lasting_s = 0.01;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("force_N", &Params::force_N, units::newton, positive_up_to(200.0),
                 "Least force, of the motor less what a sensor says resists it, against which no speed may be gained; "
                 "above friction and the error of the sensor."),

@@ -43,7 +43,7 @@ class SafetyGate {
     ReversalCheck::Params reversal{};
     ThermalLimit::Params thermal{};
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("force_limit_N", &Params::force_limit_N, units::newton, positive_up_to(100.0),
                 "Largest force either way that reaches the motor."),
           field("rate_limit_N_per_s", &Params::rate_limit_N_per_s, units::newton_per_second, positive_up_to(1e6),

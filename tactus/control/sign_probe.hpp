@@ -40,7 +40,7 @@ class SignProbe {
     double least_m = 1e-4;
     double most_m = 0.01;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("force_N", &Params::force_N, units::newton, between(0.0, 100.0),
                 "Peak of the force with which a motor is tried on arming; more than friction holds; 0 is no trial."),
           field("duration_s", &Params::duration_s, units::second, positive_up_to(5.0),

@@ -8,7 +8,6 @@
 #include <concepts>
 #include <limits>
 #include <memory>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -27,7 +26,7 @@ struct Message {
   double wave = 0.0;
   double energy_J = 0.0;
   static constexpr auto signals() {
-    return std::tuple{
+    return List{
         observed("position_m", &Message::position_m, units::metre, "", "slave", "toward the environment",
                  "Where the other site shall be, or where this one is."),
         observed("velocity_m_per_s", &Message::velocity_m_per_s, units::metre_per_second, "", "slave",

@@ -88,9 +88,7 @@ class SiteSupervisor {
  public:
   struct Params {
     SiteRole role = SiteRole::master;
-    static constexpr auto fields() {
-      return std::tuple{field("role", &Params::role, "Which of the two sites this is.")};
-    }
+    static constexpr auto fields() { return List{field("role", &Params::role, "Which of the two sites this is.")}; }
   };
   struct Input {
     SiteRequests requests{};

@@ -17,8 +17,8 @@ class StoppingBrake {
   struct Params {
     double damping_N_s_per_m = 3.0;
     static constexpr auto fields() {
-      return std::tuple{field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre,
-                              non_negative, "Force over speed; b·T must be well below the moving mass.")};
+      return List{field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
+                        "Force over speed; b·T must be well below the moving mass.")};
     }
   };
   using Input = double;   ///< velocity in m/s, measured

@@ -23,9 +23,9 @@ namespace tactus::control {
 struct HoldParams {
   double release_s = 1.0;
   static constexpr auto fields() {
-    return std::tuple{field("release_s", &HoldParams::release_s, units::second, positive_up_to(60.0),
-                            "Time in which the site's force fades to zero once it holds; a slave that must not sink "
-                            "or swing away needs a brake.")};
+    return List{field("release_s", &HoldParams::release_s, units::second, positive_up_to(60.0),
+                      "Time in which the site's force fades to zero once it holds; a slave that must not sink "
+                      "or swing away needs a brake.")};
   }
 };
 
@@ -44,7 +44,7 @@ struct SupervisionParams {
   double answer_within_s = 1.0;
   double blend_s = 0.1;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("packets", &SupervisionParams::packets, "Which packets of the other site count."),
         field("silence", &SupervisionParams::silence, "What stands in their place when none come."),
         field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
@@ -121,7 +121,7 @@ struct SiteRecord {
   double given_J = 0.0;
   std::int64_t differs = 0;
   static constexpr auto signals() {
-    return std::tuple{
+    return List{
         observed("state", &SiteRecord::state, units::none, "", "", "", state_legend.text),
         observed("cause", &SiteRecord::cause, units::none, "", "", "", cause_legend.text),
         observed("limit", &SiteRecord::limit, units::none, "", "", "", limit_legend.text),

@@ -16,8 +16,8 @@ class Watchdog {
   struct Params {
     double timeout_s = 0.1;
     static constexpr auto fields() {
-      return std::tuple{field("timeout_s", &Params::timeout_s, units::second, positive_up_to(10.0),
-                              "Silence after which the watchdog barks.")};
+      return List{field("timeout_s", &Params::timeout_s, units::second, positive_up_to(10.0),
+                        "Silence after which the watchdog barks.")};
     }
   };
   struct Input {

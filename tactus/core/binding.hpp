@@ -2,7 +2,6 @@
 
 #include <tactus/core/parameters.hpp>
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -57,7 +56,7 @@ concept OpenGroup = CheckedGroup<T> && requires(T& group, std::string_view secti
 namespace detail {
 
 template <NamedEnum E>
-Choice make_choice(E& member) {
+Choice choice_of(E& member) {
   Choice choice{.words = {},
                 .member = &member,
                 .word_of = [](const void* from) -> std::string_view { return name_of(*static_cast<const E*>(from)); },
@@ -65,6 +64,17 @@ Choice make_choice(E& member) {
   for (const auto& entry : enumerators(E{})) choice.words.emplace_back(entry.name);
   return choice;
 }
+
+/// Adds one key below `section`. Out of line, since every key of every struct is added by such a call.
+void append(std::vector<Binding>& bindings, std::string_view section, const Key& key, double* target);
+void append(std::vector<Binding>& bindings, std::string_view section, const Key& key, std::int64_t* target);
+void append(std::vector<Binding>& bindings, std::string_view section, const Key& key, bool* target);
+void append(std::vector<Binding>& bindings, std::string_view section, const Key& key, std::string* target);
+void append(std::vector<Binding>& bindings, std::string_view section, const Key& key, Choice target);
+/// A group, which holds no value of its own.
+void append(std::vector<Binding>& bindings, std::string_view section, const Key& key);
+/// The groups that `section` lies in and itself, the outermost first.
+std::vector<Binding> sections_down_to(std::string_view section, const char* doc);
 
 }  // namespace detail
 
@@ -74,19 +84,15 @@ void append_bindings(T& params, std::string_view section, std::vector<Binding>& 
   for_each_field<T>([&](const auto& f) {
     auto& member = params.*f.member;
     using Value = std::remove_cvref_t<decltype(member)>;
-    Binding binding{join(section, f.name), f.unit, f.bounds, f.doc, Section{}};
     if constexpr (OpenGroup<Value>) {
-      member.append_to(bindings, binding.path);
+      member.append_to(bindings, join(section, f.name));
     } else if constexpr (Described<Value>) {
-      bindings.push_back(binding);
-      append_bindings(member, binding.path, bindings);
+      detail::append(bindings, section, f);
+      append_bindings(member, join(section, f.name), bindings);
+    } else if constexpr (NamedEnum<Value>) {
+      detail::append(bindings, section, f, detail::choice_of(member));
     } else {
-      if constexpr (NamedEnum<Value>) {
-        binding.target = detail::make_choice(member);
-      } else {
-        binding.target = &member;
-      }
-      bindings.push_back(std::move(binding));
+      detail::append(bindings, section, f, &member);
     }
   });
 }
@@ -97,12 +103,7 @@ void append_bindings(T& params, std::string_view section, std::vector<Binding>& 
 /// into `params` and are good only as long as it stays where it is.
 template <Described T>
 std::vector<Binding> bind(T& params, std::string_view section = {}, const char* section_doc = "") {
-  std::vector<Binding> bindings;
-  for (std::size_t end = 0; end < section.size(); ++end) {
-    end = std::min(section.find('.', end), section.size());
-    const char* doc = end == section.size() ? section_doc : "";
-    bindings.push_back({std::string(section.substr(0, end)), units::none, any_finite, doc, Section{}});
-  }
+  std::vector<Binding> bindings = detail::sections_down_to(section, section_doc);
   append_bindings(params, section, bindings);
   return bindings;
 }

@@ -37,4 +37,16 @@ Error out_of_bounds(std::string_view parameter, double value, const Bounds& boun
           .place = {}};
 }
 
+namespace detail {
+
+void check_number(const Key& key, double value, Check& found) {
+  if (!key.bounds.contain(value)) found = out_of_bounds(key.name, value, key.bounds, key.unit);
+}
+
+void found_in(const char* group, Check& found) {
+  if (found) found = under(group, *std::move(found));
+}
+
+}  // namespace detail
+
 }  // namespace tactus

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/core/list.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/core/units.hpp>
 
@@ -10,7 +11,6 @@
 #include <limits>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -23,7 +23,7 @@
 ///     struct Params {
 ///       double stiffness_N_per_m = 3950.0;
 ///       static constexpr auto fields() {
-///         return std::tuple{field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, positive,
+///         return List{field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, positive,
 ///                                 "Average stiffness (paper A, Table I).")};
 ///       }
 ///     };
@@ -48,15 +48,19 @@ inline constexpr Bounds non_negative{.lower = 0.0};
 constexpr Bounds between(double lower, double upper) { return {.lower = lower, .upper = upper}; }
 constexpr Bounds positive_up_to(double upper) { return {.lower = 0.0, .upper = upper, .lower_open = true}; }
 
-/// One member of a parameter struct: its key, unit, bounds and meaning.
-template <class Struct, class Value>
-struct Field {
-  using value_type = Value;
+/// A key: what it is called, what it may hold and what that means.
+struct Key {
   const char* name;
-  Value Struct::*member;
   Unit unit;
   Bounds bounds;
   const char* doc;
+};
+
+/// One member of a parameter struct, and its key.
+template <class Struct, class Value>
+struct Field : Key {
+  using value_type = Value;
+  Value Struct::*member;
 };
 
 /// A parameter struct: default-constructible, with a list of its fields.
@@ -68,18 +72,18 @@ concept Described = std::is_default_constructible_v<T> && requires {
 /// A number with a unit and bounds.
 template <class Struct>
 constexpr auto field(const char* name, double Struct::*member, Unit unit, Bounds bounds, const char* doc) {
-  return Field<Struct, double>{name, member, unit, bounds, doc};
+  return Field<Struct, double>{{name, unit, bounds, doc}, member};
 }
 /// A whole number with bounds.
 template <class Struct>
 constexpr auto field(const char* name, std::int64_t Struct::*member, Bounds bounds, const char* doc) {
-  return Field<Struct, std::int64_t>{name, member, units::none, bounds, doc};
+  return Field<Struct, std::int64_t>{{name, units::none, bounds, doc}, member};
 }
 /// A choice (an enum with `enumerators`), a text, or a group of further fields.
 template <class Struct, class Value>
 constexpr auto field(const char* name, Value Struct::*member, const char* doc) {
   static_assert(!std::is_floating_point_v<Value> && !std::is_same_v<Value, std::int64_t>, "a number needs bounds");
-  return Field<Struct, Value>{name, member, units::none, any_finite, doc};
+  return Field<Struct, Value>{{name, units::none, any_finite, doc}, member};
 }
 
 /// One enumerator and the word that stands for it in a file.
@@ -107,10 +111,14 @@ constexpr const char* name_of(E value) {
   return "?";
 }
 
+/// The fields of `T`, which a program holds once.
+template <Described T>
+inline constexpr auto fields_of = T::fields();
+
 /// Calls `visit(field)` for each field of `T`, in order.
 template <Described T, class Visit>
 constexpr void for_each_field(Visit&& visit) {
-  std::apply([&](const auto&... fields) { (visit(fields), ...); }, T::fields());
+  fields_of<T>.for_each(visit);
 }
 
 /// A number as a person writes it: the shortest text that reads back equal.
@@ -128,6 +136,15 @@ concept CheckedGroup = requires(const T& group) {
   { group.check() } -> std::same_as<Check>;
 };
 
+namespace detail {
+
+/// Puts an error into `found` where `value` is outside of what the key may hold.
+void check_number(const Key& key, double value, Check& found);
+/// Puts what was found in a group under the name of the group.
+void found_in(const char* group, Check& found);
+
+}  // namespace detail
+
 /// Checks every number of `params`, nested groups included. Returns the first that lies outside its bounds.
 template <Described T>
 Check validate(const T& params) {
@@ -138,12 +155,11 @@ Check validate(const T& params) {
     using Value = std::remove_cvref_t<decltype(value)>;
     if constexpr (Described<Value>) {
       found = validate(value);
-      if (found) found = under(f.name, *std::move(found));
+      detail::found_in(f.name, found);
     } else if constexpr (CheckedGroup<Value>) {
       found = value.check();
     } else if constexpr (std::is_same_v<Value, double> || std::is_same_v<Value, std::int64_t>) {
-      const auto number = static_cast<double>(value);
-      if (!f.bounds.contain(number)) found = out_of_bounds(f.name, number, f.bounds, f.unit);
+      detail::check_number(f, static_cast<double>(value), found);
     }
   });
   return found;

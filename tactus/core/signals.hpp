@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/core/list.hpp>
 #include <tactus/core/units.hpp>
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -20,7 +20,7 @@
 ///     struct Record {
 ///       double force_N = 0.0;
 ///       static constexpr auto signals() {
-///         return std::tuple{observed("force_N", &Record::force_N, units::newton, "master", "hand",
+///         return List{observed("force_N", &Record::force_N, units::newton, "master", "hand",
 ///                                    "pushes the hand back", "Displayed force, at the motor.")};
 ///       }
 ///     };
@@ -53,10 +53,14 @@ concept Recordable = std::is_trivially_copyable_v<T> && std::is_default_construc
   T::signals();
 };
 
+/// The signals of `T`, which a program holds once.
+template <Recordable T>
+inline constexpr auto signals_of = T::signals();
+
 /// Calls `visit(observed)` for each signal of `T`, in order.
 template <Recordable T, class Visit>
 constexpr void for_each_signal(Visit&& visit) {
-  std::apply([&](const auto&... all) { (visit(all), ...); }, T::signals());
+  signals_of<T>.for_each(visit);
 }
 
 /// A text as a template argument.
@@ -66,30 +70,38 @@ struct FixedText {
   constexpr FixedText(const char (&from)[size]) { std::copy_n(from, size, text); }
 };
 
-/// The signals of `T` as a part of a record that derives from it, each name after `prefix`. So a record may hold two
-/// parts of one type: what a site heard and what it told.
-template <class T, FixedText prefix>
-struct Part : T {
-  static constexpr auto signals() { return signals(std::make_index_sequence<count>()); }
+namespace detail {
 
- private:
-  static constexpr std::size_t count = std::tuple_size_v<decltype(T::signals())>;
+/// The signals of `T` as members of `Derived`, each name after `prefix`.
+template <class Derived, class T, FixedText prefix>
+struct PartOf {
   template <std::size_t I>
   static constexpr auto name = [] {
-    constexpr std::string_view own = std::get<I>(T::signals()).name;
+    constexpr std::string_view own = at<I>(signals_of<T>).name;
     std::array<char, sizeof(prefix.text) + own.size()> joined{};
     std::copy(own.begin(), own.end(), std::copy_n(prefix.text, sizeof(prefix.text) - 1, joined.begin()));
     return joined;
   }();
   template <std::size_t I>
   static constexpr auto renamed() {
-    constexpr auto own = std::get<I>(T::signals());
+    constexpr auto own = at<I>(signals_of<T>);
     using Value = typename decltype(own)::value_type;
-    return Observed<Part, Value>{name<I>.data(), own.member, own.unit, own.site, own.frame, own.sign, own.doc};
+    return Observed<Derived, Value>{name<I>.data(), own.member, own.unit, own.site, own.frame, own.sign, own.doc};
   }
   template <std::size_t... I>
   static constexpr auto signals(std::index_sequence<I...>) {
-    return std::tuple{renamed<I>()...};
+    return List{renamed<I>()...};
+  }
+};
+
+}  // namespace detail
+
+/// The signals of `T` as a part of a record that derives from it, each name after `prefix`. So a record may hold two
+/// parts of one type: what a site heard and what it told. Its members are those of `T`, whatever these are called.
+template <class T, FixedText prefix>
+struct Part : T {
+  static constexpr auto signals() {
+    return detail::PartOf<Part, T, prefix>::signals(std::make_index_sequence<decltype(T::signals())::size()>());
   }
 };
 

@@ -11,12 +11,12 @@ struct ModelMismatch {
   double linkage_stiffness = 1.0;
   double operator_damping = 1.0;
   static constexpr auto fields() {
-    return std::tuple{field("mass", &ModelMismatch::mass, units::none, between(0.2, 5.0),
-                            "Factor on the masses of motor, drum and handle."),
-                      field("linkage_stiffness", &ModelMismatch::linkage_stiffness, units::none, between(0.2, 5.0),
-                            "Factor on the stiffness of the linkage."),
-                      field("operator_damping", &ModelMismatch::operator_damping, units::none, between(0.2, 5.0),
-                            "Factor on the damping of the operator's hand.")};
+    return List{field("mass", &ModelMismatch::mass, units::none, between(0.2, 5.0),
+                      "Factor on the masses of motor, drum and handle."),
+                field("linkage_stiffness", &ModelMismatch::linkage_stiffness, units::none, between(0.2, 5.0),
+                      "Factor on the stiffness of the linkage."),
+                field("operator_damping", &ModelMismatch::operator_damping, units::none, between(0.2, 5.0),
+                      "Factor on the damping of the operator's hand.")};
   }
 };
 

@@ -23,7 +23,7 @@ struct ForceEnvelope {
   double force_limit_N = 5.0;
   double fade_s = 0.1;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("force_limit_N", &ForceEnvelope::force_limit_N, units::newton, positive, "Largest force allowed."),
         field("fade_s", &ForceEnvelope::fade_s, units::second, non_negative,
               "Time in which the force grows from 0, and in which it dies away, along half a cosine."),
@@ -45,7 +45,7 @@ struct SweptSineParams {
   SweepSpacing spacing = SweepSpacing::logarithmic;
   ForceEnvelope envelope = {};
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("start_Hz", &SweptSineParams::start_Hz, units::hertz, positive, "Frequency of the first sample."),
         field("end_Hz", &SweptSineParams::end_Hz, units::hertz, positive, "Frequency at the end."),
         field("duration_s", &SweptSineParams::duration_s, units::second, excitation_duration_s, "Length."),
@@ -68,7 +68,7 @@ struct MultisineParams {
   double peak_N = 1.0;
   ForceEnvelope envelope = {};
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("lowest_Hz", &MultisineParams::lowest_Hz, units::hertz, positive, "No line lies below."),
         field("highest_Hz", &MultisineParams::highest_Hz, units::hertz, positive, "No line lies above."),
         field("period_s", &MultisineParams::period_s, units::second, excitation_duration_s,
@@ -89,7 +89,7 @@ struct RandomBinaryParams {
   std::int64_t seed = 1;
   ForceEnvelope envelope = {};
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("amplitude_N", &RandomBinaryParams::amplitude_N, units::newton, positive, "The force, either way."),
         field("hold_s", &RandomBinaryParams::hold_s, units::second, positive, "Time between draws, in whole samples."),
         field("duration_s", &RandomBinaryParams::duration_s, units::second, excitation_duration_s, "Length."),
@@ -107,7 +107,7 @@ struct ForceLoopParams {
   std::int64_t loops = 3;
   double force_limit_N = 5.0;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("peak_N", &ForceLoopParams::peak_N, units::newton, positive, "Force at which the loop turns."),
         field("rate_N_per_s", &ForceLoopParams::rate_N_per_s, units::newton_per_second, positive, "Slope."),
         field("loops", &ForceLoopParams::loops, between(1, 1000), "How often."),
@@ -127,7 +127,7 @@ struct CrossingParams {
   double workspace_lower_m = -0.03;
   double workspace_upper_m = 0.03;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("from_m", &CrossingParams::from_m, units::metre, any_finite, "Where it begins and ends."),
         field("to_m", &CrossingParams::to_m, units::metre, any_finite, "Where it turns."),
         field("speed_m_per_s", &CrossingParams::speed_m_per_s, units::metre_per_second, positive, "Constant speed."),

@@ -31,7 +31,7 @@ struct SegmentParams {
   double overlap = 0.5;
   Window window = Window::hann;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("samples", &SegmentParams::samples, between(8, 1 << 24),
               "Samples of a segment, a power of two: lines stand 1 / (samples * sample time) apart."),
         field("overlap", &SegmentParams::overlap, units::none, between(0.0, 0.95),
@@ -85,9 +85,9 @@ FrequencyResponse response_h2(const Spectra& spectra);
 struct EtfeParams {
   std::int64_t smoothing_lines = 1;
   static constexpr auto fields() {
-    return std::tuple{field("smoothing_lines", &EtfeParams::smoothing_lines, between(1, 1001),
-                            "Lines that a moving average takes together, an odd number; at both ends of the frequency "
-                            "axis it takes as many as there are.")};
+    return List{field("smoothing_lines", &EtfeParams::smoothing_lines, between(1, 1001),
+                      "Lines that a moving average takes together, an odd number; at both ends of the frequency "
+                      "axis it takes as many as there are.")};
   }
 };
 

@@ -22,7 +22,7 @@ struct NarxStructure {
   double actuator_gain = 1.0;
   static constexpr auto fields() {
     using S = NarxStructure;
-    return std::tuple{
+    return List{
         field("degree", &S::degree, between(1, 3), "Highest degree of a term."),
         field("differences", &S::differences, between(2, 6), "Differences of neighbouring lagged positions."),
         field("output_lags", &S::output_lags, between(0, 3), "Lagged outputs of the model itself; 0 is no feedback."),

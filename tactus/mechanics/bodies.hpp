@@ -10,9 +10,9 @@ struct RubbingMass {
   double mass_kg = 0.01;
   double friction_N = 0.0;
   static constexpr auto fields() {
-    return std::tuple{field("mass_kg", &RubbingMass::mass_kg, units::kilogram, positive, "Mass, felt at the hand."),
-                      field("friction_N", &RubbingMass::friction_N, units::newton, non_negative,
-                            "Coulomb friction against the ground, felt at the hand.")};
+    return List{field("mass_kg", &RubbingMass::mass_kg, units::kilogram, positive, "Mass, felt at the hand."),
+                field("friction_N", &RubbingMass::friction_N, units::newton, non_negative,
+                      "Coulomb friction against the ground, felt at the hand.")};
   }
 };
 
@@ -20,7 +20,7 @@ struct RubbingMass {
 struct FreeMass {
   double mass_kg = 0.01;
   static constexpr auto fields() {
-    return std::tuple{field("mass_kg", &FreeMass::mass_kg, units::kilogram, positive, "Mass, felt at the hand.")};
+    return List{field("mass_kg", &FreeMass::mass_kg, units::kilogram, positive, "Mass, felt at the hand.")};
   }
 };
 

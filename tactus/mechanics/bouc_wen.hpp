@@ -69,7 +69,7 @@ class BoucWenSpring {
     double slip_deflection_m = 6.5e-5;
     double reference_deflection_m = 2.5e-4;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
                 "Average stiffness: tip-to-tip slope of a closed loop of the reference deflection (the master's "
                 "linkage: 3950, paper A, Table I)."),

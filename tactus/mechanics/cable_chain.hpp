@@ -101,11 +101,11 @@ class CableChain {
     ElastoSlipSpring::Params linkage;
     FreeMass tip{.mass_kg = 0.014};
     static constexpr auto fields() {
-      return std::tuple{field("motor", &Params::motor, "Motor rotor (paper A, Table I)."),
-                        field("cable", &Params::cable, "Cable between motor and drum (paper A, Table I)."),
-                        field("drum", &Params::drum, "Drum (paper A, Table I)."),
-                        field("linkage", &Params::linkage, "Linkage between drum and tip, with hysteresis."),
-                        field("tip", &Params::tip, "Handle of the master or tool of the slave (paper A, Table I).")};
+      return List{field("motor", &Params::motor, "Motor rotor (paper A, Table I)."),
+                  field("cable", &Params::cable, "Cable between motor and drum (paper A, Table I)."),
+                  field("drum", &Params::drum, "Drum (paper A, Table I)."),
+                  field("linkage", &Params::linkage, "Linkage between drum and tip, with hysteresis."),
+                  field("tip", &Params::tip, "Handle of the master or tool of the slave (paper A, Table I).")};
     }
   };
 

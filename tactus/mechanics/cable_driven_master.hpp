@@ -25,12 +25,12 @@ class CableDrivenMaster {
     Encoder::Params encoder{.resolution_m = 1e-5};
     ForceSensor::Params force_sensor{.seed = 2};
     static constexpr auto fields() {
-      return std::tuple{field("mechanism", &Params::mechanism, "Motor, cable, drum, linkage and handle."),
-                        field("amplifier", &Params::amplifier, "Current amplifier of the motor."),
-                        field("handle_actuator", &Params::handle_actuator,
-                              "Vibrotactile actuator: applies a force to the handle, idle unless commanded."),
-                        field("encoder", &Params::encoder, "Position encoder on the motor."),
-                        field("force_sensor", &Params::force_sensor, "Force sensor between handle and hand.")};
+      return List{field("mechanism", &Params::mechanism, "Motor, cable, drum, linkage and handle."),
+                  field("amplifier", &Params::amplifier, "Current amplifier of the motor."),
+                  field("handle_actuator", &Params::handle_actuator,
+                        "Vibrotactile actuator: applies a force to the handle, idle unless commanded."),
+                  field("encoder", &Params::encoder, "Position encoder on the motor."),
+                  field("force_sensor", &Params::force_sensor, "Force sensor between handle and hand.")};
     }
   };
 

@@ -39,10 +39,10 @@ class KelvinVoigtContact {
     double stiffness_N_per_m = 40000.0;
     double damping_N_s_per_m = 2.0;
     static constexpr auto fields() {
-      return std::tuple{field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
-                              "Force per depth."),
-                        field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre,
-                              non_negative, "Force per rate of depth.")};
+      return List{field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
+                        "Force per depth."),
+                  field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
+                        "Force per rate of depth.")};
     }
   };
   using Input = Penetration;
@@ -81,7 +81,7 @@ class HuntCrossleyContact {
     double exponent = 1.5;
     double dissipation_s_per_m = 0.5;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
                 "Force over depth at the reference depth."),
           field("reference_penetration_m", &Params::reference_penetration_m, units::metre, positive,

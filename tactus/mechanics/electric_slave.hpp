@@ -27,10 +27,10 @@ class ElectricSlave {
     Encoder::Params encoder{.resolution_m = 1e-5};
     ForceSensor::Params force_sensor;
     static constexpr auto fields() {
-      return std::tuple{field("mechanism", &Params::mechanism, "Motor, cable, drum, linkage and tip."),
-                        field("amplifier", &Params::amplifier, "Current amplifier of the motor."),
-                        field("encoder", &Params::encoder, "Position encoder on the motor."),
-                        field("force_sensor", &Params::force_sensor, "Force sensor behind the tip.")};
+      return List{field("mechanism", &Params::mechanism, "Motor, cable, drum, linkage and tip."),
+                  field("amplifier", &Params::amplifier, "Current amplifier of the motor."),
+                  field("encoder", &Params::encoder, "Position encoder on the motor."),
+                  field("force_sensor", &Params::force_sensor, "Force sensor behind the tip.")};
     }
   };
 

@@ -26,8 +26,8 @@ class Encoder {
   struct Params {
     double resolution_m = 0.0;
     static constexpr auto fields() {
-      return std::tuple{field("resolution_m", &Params::resolution_m, units::metre, non_negative,
-                              "Distance between two counts, at the operator's hand; 0 is an ideal sensor.")};
+      return List{field("resolution_m", &Params::resolution_m, units::metre, non_negative,
+                        "Distance between two counts, at the operator's hand; 0 is an ideal sensor.")};
     }
   };
   using Input = double;

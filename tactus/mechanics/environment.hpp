@@ -33,7 +33,7 @@ class Environment {
     double exponent = 1.5;
     double dissipation_s_per_m = 0.5;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("law", &Params::law, "Contact law of the wall; bonded pulls as it pushes."),
           field("position_m", &Params::position_m, units::metre, between(-1.0, 1.0), "Where the wall's surface is."),
           field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, between(0.0, 1e7),

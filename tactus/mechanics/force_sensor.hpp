@@ -20,15 +20,14 @@ class ForceSensor {
     double limit_N = 100.0;
     std::int64_t seed = 1;
     static constexpr auto fields() {
-      return std::tuple{
-          field("bandwidth_Hz", &Params::bandwidth_Hz, units::hertz, positive,
-                "The -3 dB frequency of the analogue part; below half the rate of the substeps."),
-          field("noise_rms_N", &Params::noise_rms_N, units::newton, non_negative,
-                "Standard deviation of the white noise on every sample."),
-          field("offset_N", &Params::offset_N, units::newton, any_finite, "Reading at no force."),
-          field("limit_N", &Params::limit_N, units::newton, positive,
-                "Largest reading either way; beyond it the sensor saturates."),
-          field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
+      return List{field("bandwidth_Hz", &Params::bandwidth_Hz, units::hertz, positive,
+                        "The -3 dB frequency of the analogue part; below half the rate of the substeps."),
+                  field("noise_rms_N", &Params::noise_rms_N, units::newton, non_negative,
+                        "Standard deviation of the white noise on every sample."),
+                  field("offset_N", &Params::offset_N, units::newton, any_finite, "Reading at no force."),
+                  field("limit_N", &Params::limit_N, units::newton, positive,
+                        "Largest reading either way; beyond it the sensor saturates."),
+                  field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
     }
   };
   using Input = double;

@@ -34,8 +34,8 @@ class CoulombFriction {
   struct Params {
     double force_N = 0.01;
     static constexpr auto fields() {
-      return std::tuple{field("force_N", &Params::force_N, units::newton, non_negative,
-                              "Coulomb friction, static and kinetic (the master's motor: 0.01, paper A, Table I).")};
+      return List{field("force_N", &Params::force_N, units::newton, non_negative,
+                        "Coulomb friction, static and kinetic (the master's motor: 0.01, paper A, Table I).")};
     }
   };
   struct Input {

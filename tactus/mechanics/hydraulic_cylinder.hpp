@@ -19,7 +19,7 @@ struct StribeckFriction {
   double viscous_N_s_per_m = 300.0;
   static constexpr auto fields() {
     using Params = StribeckFriction;
-    return std::tuple{
+    return List{
         field("coulomb_N", &Params::coulomb_N, units::newton, non_negative, "F_c, while it moves."),
         field("static_N", &Params::static_N, units::newton, non_negative, "F_s, at rest; not below the Coulomb value."),
         field("stribeck_velocity_m_per_s", &Params::stribeck_velocity_m_per_s, units::metre_per_second, positive,
@@ -61,7 +61,7 @@ class HydraulicCylinder {
     StribeckFriction friction;
     KelvinVoigtContact::Params end_stop{.stiffness_N_per_m = 5e7, .damping_N_s_per_m = 1.1e4};
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("first_area_m2", &Params::first_area_m2, units::square_metre, positive,
                 "Piston area of the chamber that pushes toward +x."),
           field("second_area_m2", &Params::second_area_m2, units::square_metre, positive, "And of the other."),

@@ -68,7 +68,7 @@ class Operator {
     double bandwidth_Hz = 5.0;
     double reaction_time_s = 0.1;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("gain_per_s", &Correction::gain_per_s, units::per_second, between(0.0, 8.0),
                 "Speed of the correction per metre of error; 0 switches it off, above 8 a person would oscillate."),
           field("bandwidth_Hz", &Correction::bandwidth_Hz, units::hertz, between(0.1, 20.0),
@@ -85,7 +85,7 @@ class Operator {
     double start_s = 0.0;
     double duration_s = 0.1;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("factor", &GripChange::factor, units::none, between(0.05, 20.0),
                 "Stiffness and damping of the grip after the change over those before; 1 is no change."),
           field("start_s", &GripChange::start_s, units::second, non_negative,
@@ -108,16 +108,15 @@ class Operator {
     double tremor_frequency_Hz = 10.0;
     double tremor_phase_cycles = 0.0;
     static constexpr auto fields() {
-      return std::tuple{
-          field("grip", &Params::grip, "Passive impedance of hand and arm at the handle (paper A, Table I)."),
-          field("grip_change", &Params::grip_change, "A grip that changes during the run."),
-          field("correction", &Params::correction, "Slow correction of the handle's position."),
-          field("tremor_amplitude_m", &Params::tremor_amplitude_m, units::metre, between(0.0, 0.005),
-                "Amplitude of physiological tremor on the intended path."),
-          field("tremor_frequency_Hz", &Params::tremor_frequency_Hz, units::hertz, between(1.0, 30.0),
-                "Frequency of the tremor."),
-          field("tremor_phase_cycles", &Params::tremor_phase_cycles, units::cycles, between(0.0, 1.0),
-                "Phase of the tremor at the start.")};
+      return List{field("grip", &Params::grip, "Passive impedance of hand and arm at the handle (paper A, Table I)."),
+                  field("grip_change", &Params::grip_change, "A grip that changes during the run."),
+                  field("correction", &Params::correction, "Slow correction of the handle's position."),
+                  field("tremor_amplitude_m", &Params::tremor_amplitude_m, units::metre, between(0.0, 0.005),
+                        "Amplitude of physiological tremor on the intended path."),
+                  field("tremor_frequency_Hz", &Params::tremor_frequency_Hz, units::hertz, between(1.0, 30.0),
+                        "Frequency of the tremor."),
+                  field("tremor_phase_cycles", &Params::tremor_phase_cycles, units::cycles, between(0.0, 1.0),
+                        "Phase of the tremor at the start.")};
     }
   };
 

@@ -21,14 +21,13 @@ class PositionTransducer {
     double resolution_m = 3e-6;
     std::int64_t seed = 2;
     static constexpr auto fields() {
-      return std::tuple{
-          field("bandwidth_Hz", &Params::bandwidth_Hz, units::hertz, positive,
-                "The -3 dB frequency of the demodulator; below half the rate of the substeps."),
-          field("noise_rms_m", &Params::noise_rms_m, units::metre, non_negative,
-                "Standard deviation of the white noise on every sample."),
-          field("resolution_m", &Params::resolution_m, units::metre, non_negative,
-                "Step of the converter; 0 has none."),
-          field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
+      return List{field("bandwidth_Hz", &Params::bandwidth_Hz, units::hertz, positive,
+                        "The -3 dB frequency of the demodulator; below half the rate of the substeps."),
+                  field("noise_rms_m", &Params::noise_rms_m, units::metre, non_negative,
+                        "Standard deviation of the white noise on every sample."),
+                  field("resolution_m", &Params::resolution_m, units::metre, non_negative,
+                        "Step of the converter; 0 has none."),
+                  field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
     }
   };
   using Input = double;

@@ -22,15 +22,14 @@ class PressureSensor {
     double limit_Pa = 25e6;
     std::int64_t seed = 1;
     static constexpr auto fields() {
-      return std::tuple{
-          field("bandwidth_Hz", &Params::bandwidth_Hz, units::hertz, positive,
-                "The -3 dB frequency of the analogue part; below half the rate of the substeps."),
-          field("noise_rms_Pa", &Params::noise_rms_Pa, units::pascal, non_negative,
-                "Standard deviation of the white noise on every sample."),
-          field("resolution_Pa", &Params::resolution_Pa, units::pascal, non_negative,
-                "Step of the converter; 0 has none."),
-          field("limit_Pa", &Params::limit_Pa, units::pascal, positive, "Full scale."),
-          field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
+      return List{field("bandwidth_Hz", &Params::bandwidth_Hz, units::hertz, positive,
+                        "The -3 dB frequency of the analogue part; below half the rate of the substeps."),
+                  field("noise_rms_Pa", &Params::noise_rms_Pa, units::pascal, non_negative,
+                        "Standard deviation of the white noise on every sample."),
+                  field("resolution_Pa", &Params::resolution_Pa, units::pascal, non_negative,
+                        "Step of the converter; 0 has none."),
+                  field("limit_Pa", &Params::limit_Pa, units::pascal, positive, "Full scale."),
+                  field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
     }
   };
   using Input = double;

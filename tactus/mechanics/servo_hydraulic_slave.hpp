@@ -21,11 +21,11 @@ class ServoHydraulicSlave {
     PressureSensor::Params second_pressure{.seed = 4};
     PositionTransducer::Params position;
     static constexpr auto fields() {
-      return std::tuple{field("valve", &Params::valve, "Servo valve."),
-                        field("cylinder", &Params::cylinder, "Cylinder and load."),
-                        field("first_pressure", &Params::first_pressure, "Pressure sensor of the first chamber."),
-                        field("second_pressure", &Params::second_pressure, "Pressure sensor of the second chamber."),
-                        field("position", &Params::position, "Position transducer of the rod.")};
+      return List{field("valve", &Params::valve, "Servo valve."),
+                  field("cylinder", &Params::cylinder, "Cylinder and load."),
+                  field("first_pressure", &Params::first_pressure, "Pressure sensor of the first chamber."),
+                  field("second_pressure", &Params::second_pressure, "Pressure sensor of the second chamber."),
+                  field("position", &Params::position, "Position transducer of the rod.")};
     }
   };
   /// Current of the valve in mA, positive toward +x.

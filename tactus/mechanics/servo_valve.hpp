@@ -36,7 +36,7 @@ class ServoValve {
     double leakage_m3_per_s_per_Pa = 4e-13;
     double transition_Pa = 1e5;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("rated_current_mA", &Params::rated_current_mA, units::milliampere, positive,
                 "Current that opens the valve all the way; more does nothing."),
           field("rated_flow_m3_per_s", &Params::rated_flow_m3_per_s, units::cubic_metre_per_second, positive,

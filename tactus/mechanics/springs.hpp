@@ -26,10 +26,10 @@ class LinearSpring {
     double stiffness_N_per_m = 39500.0;
     double damping_N_s_per_m = 3.6;
     static constexpr auto fields() {
-      return std::tuple{field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
-                              "Force per deflection (the master's cable: 39500, paper A, Table I)."),
-                        field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre,
-                              non_negative, "Force per rate of deflection (the master's cable: 3.6).")};
+      return List{field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
+                        "Force per deflection (the master's cable: 39500, paper A, Table I)."),
+                  field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
+                        "Force per rate of deflection (the master's cable: 3.6).")};
     }
   };
   using Input = Stretch;
@@ -76,15 +76,14 @@ class QuinticSpring {
     double damping_N_s_per_m = 23.0;
     double guard_m = 5e-3;
     static constexpr auto fields() {
-      return std::tuple{
-          field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
-                "Force per deflection at small deflection (paper A, Table I: 40)."),
-          field("quintic_stiffness_N_per_m5", &Params::quintic_stiffness_N_per_m5, units::newton_per_metre5,
-                non_negative, "Force per fifth power of the deflection (paper A, Table I: 3.125e13)."),
-          field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
-                "Force per rate of deflection (paper A, Table I: 23)."),
-          field("guard_m", &Params::guard_m, units::metre, positive,
-                "Deflection beyond which the quintic part grows no further, for numerical safety.")};
+      return List{field("stiffness_N_per_m", &Params::stiffness_N_per_m, units::newton_per_metre, non_negative,
+                        "Force per deflection at small deflection (paper A, Table I: 40)."),
+                  field("quintic_stiffness_N_per_m5", &Params::quintic_stiffness_N_per_m5, units::newton_per_metre5,
+                        non_negative, "Force per fifth power of the deflection (paper A, Table I: 3.125e13)."),
+                  field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
+                        "Force per rate of deflection (paper A, Table I: 23)."),
+                  field("guard_m", &Params::guard_m, units::metre, positive,
+                        "Deflection beyond which the quintic part grows no further, for numerical safety.")};
     }
   };
   using Input = Stretch;

@@ -22,7 +22,7 @@ class RemotePath {
     double fastest_m_per_s = 0.5;
     double timeout_s = 0.2;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("lowest_m", &Params::lowest_m, units::metre, between(-1.0, 1.0), "Smallest position that is followed."),
           field("highest_m", &Params::highest_m, units::metre, between(-1.0, 1.0),
                 "Largest position that is followed."),

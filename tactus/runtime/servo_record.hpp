@@ -15,7 +15,7 @@ struct ServoRecord {
   double previous_duration_s = 0.0;
   std::int64_t previous_cause = 0;
   static constexpr auto signals() {
-    return std::tuple{
+    return List{
         observed("tick", &ServoRecord::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
         observed("missed", &ServoRecord::missed, units::none, "", "", "", "Deadlines missed right before this one."),
         observed("lateness_s", &ServoRecord::lateness_s, units::second, "", "", "", "From the deadline to the step."),

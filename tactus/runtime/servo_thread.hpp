@@ -25,7 +25,7 @@ struct ServoThreadParams {
   std::int64_t core = -1;
   double spin_s = 0.0;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("rate_Hz", &ServoThreadParams::rate_Hz, units::hertz, between(1.0, 20000.0), "Ticks per second."),
         field("priority", &ServoThreadParams::priority, between(1, 99),
               "Priority of the thread under SCHED_FIFO; threads of the kernel that serve interrupts stand at 50."),

@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 
 /// What a site under supervision leaves of each tick: with the configuration, enough to step it again.
 namespace tactus::runtime {
@@ -23,9 +22,9 @@ struct SiteTickRecord : control::SiteRecord {
   std::int64_t told_sequence = 0;
   static constexpr auto signals() {
     using R = SiteTickRecord;
-    return std::tuple_cat(
+    return joined(
         control::SiteRecord::signals(),
-        std::tuple{
+        List{
             observed("tick", &R::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
             observed("missed", &R::missed, units::none, "", "", "", "Deadlines missed right before this one."),
             observed("age_s", &R::age_s, units::second, "", "", "", "Of the packet that was applied last, on arrival."),
@@ -53,7 +52,7 @@ struct AxisRecord {
   double intended_position_m = 0.0;
   static constexpr auto signals() {
     using R = AxisRecord;
-    return std::tuple{
+    return List{
         observed("position_m", &R::position_m, units::metre, "", "", "toward the environment", "Read at the motor."),
         observed("read_force_N", &R::read_force_N, units::newton, "", "", "",
                  "Master: read on the handle, toward the environment. Slave: read at the tip, which is pushed back."),
@@ -75,7 +74,7 @@ struct SiteLogRecord : SiteTickRecord, AxisRecord, Part<control::Message, "heard
   using Told = Part<control::Message, "told_">;    ///< to the other site
   using AxisRecord::position_m;
   static constexpr auto signals() {
-    return std::tuple_cat(SiteTickRecord::signals(), AxisRecord::signals(), Heard::signals(), Told::signals());
+    return joined(SiteTickRecord::signals(), AxisRecord::signals(), Heard::signals(), Told::signals());
   }
 };
 
@@ -91,12 +90,12 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
   double given_J = 0.0;
   static constexpr auto signals() {
     using R = JointLogRecord;
-    return std::tuple_cat(
-        std::tuple{observed("tick", &R::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
-                   observed("limit", &R::limit, units::none, "", "", "", control::limit_legend.text),
-                   observed("fault", &R::fault, units::none, "", "", "", control::fault_legend.text),
-                   observed("given_J", &R::given_J, units::joule, "", "", "the motor gave it",
-                            "Account of the passivity monitor.")},
+    return joined(
+        List{observed("tick", &R::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
+             observed("limit", &R::limit, units::none, "", "", "", control::limit_legend.text),
+             observed("fault", &R::fault, units::none, "", "", "", control::fault_legend.text),
+             observed("given_J", &R::given_J, units::joule, "", "", "the motor gave it",
+                      "Account of the passivity monitor.")},
         AxisRecord::signals(), Heard::signals(), Told::signals());
   }
 };
@@ -119,20 +118,19 @@ struct PacketRecord : control::Message {
 
   static constexpr auto signals() {
     using R = PacketRecord;
-    return std::tuple_cat(
-        std::tuple{observed("tick", &R::tick, units::none, "", "", "", "At which it came."),
-                   observed("session", &R::session, units::none, "", "", "", "Of the other site."),
-                   observed("sequence", &R::sequence, units::none, "", "", "", "Its number in that session."),
-                   observed("age_s", &R::age_s, units::second, "", "", "", "On arrival, as well as is known."),
-                   observed("state", &R::state, units::none, "", "", "", control::state_legend.text),
-                   observed("armings", &R::armings, units::none, "", "", "", "The arming that is followed there."),
-                   observed("digest_high", &R::digest_high, units::none, "", "", "",
-                            "Upper 32 bits of the digest of what both sites must have in common."),
-                   observed("digest_low", &R::digest_low, units::none, "", "", "", "Its lower 32 bits."),
-                   observed("cell", &R::cell, units::none, "", "", "", "Number of the cell of it that is told."),
-                   observed("value_high", &R::value_high, units::none, "", "", "", "Upper 32 bits of that cell."),
-                   observed("value_low", &R::value_low, units::none, "", "", "", "Its lower 32 bits.")},
-        control::Message::signals());
+    return joined(List{observed("tick", &R::tick, units::none, "", "", "", "At which it came."),
+                       observed("session", &R::session, units::none, "", "", "", "Of the other site."),
+                       observed("sequence", &R::sequence, units::none, "", "", "", "Its number in that session."),
+                       observed("age_s", &R::age_s, units::second, "", "", "", "On arrival, as well as is known."),
+                       observed("state", &R::state, units::none, "", "", "", control::state_legend.text),
+                       observed("armings", &R::armings, units::none, "", "", "", "The arming that is followed there."),
+                       observed("digest_high", &R::digest_high, units::none, "", "", "",
+                                "Upper 32 bits of the digest of what both sites must have in common."),
+                       observed("digest_low", &R::digest_low, units::none, "", "", "", "Its lower 32 bits."),
+                       observed("cell", &R::cell, units::none, "", "", "", "Number of the cell of it that is told."),
+                       observed("value_high", &R::value_high, units::none, "", "", "", "Upper 32 bits of that cell."),
+                       observed("value_low", &R::value_low, units::none, "", "", "", "Its lower 32 bits.")},
+                  control::Message::signals());
   }
 };
 

@@ -25,8 +25,8 @@ class DelayLine {
   struct Params {
     double delay_s = 0.0;
     static constexpr auto fields() {
-      return std::tuple{field("delay_s", &Params::delay_s, units::second, non_negative,
-                              "Delay, rounded to the nearest whole number of ticks.")};
+      return List{field("delay_s", &Params::delay_s, units::second, non_negative,
+                        "Delay, rounded to the nearest whole number of ticks.")};
     }
   };
   using Input = T;

@@ -45,10 +45,9 @@ class FilteredDerivative {
   struct Params {
     double cutoff_Hz = 300.0;
     static constexpr auto fields() {
-      return std::tuple{
-          field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive,
-                "Frequency at which the gain is 3 dB below that of an ideal differentiator; below 0.44 of "
-                "the sample rate.")};
+      return List{field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive,
+                        "Frequency at which the gain is 3 dB below that of an ideal differentiator; below 0.44 of "
+                        "the sample rate.")};
     }
   };
   using Input = double;

@@ -35,7 +35,7 @@ class KalmanPredictor {
     double measurement_noise = 3e-6;
     double horizon_s = 0.0036;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("kinematics", &Params::kinematics,
                 "What is constant but for noise: constant-velocity or constant-acceleration."),
           field("process_noise", &Params::process_noise, units::none, positive,

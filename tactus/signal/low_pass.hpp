@@ -24,8 +24,8 @@ class LowPass {
   struct Params {
     double cutoff_Hz = 300.0;
     static constexpr auto fields() {
-      return std::tuple{field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive,
-                              "Frequency at which the gain has fallen by 3 dB; below half the sample rate.")};
+      return List{field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive,
+                        "Frequency at which the gain has fallen by 3 dB; below half the sample rate.")};
     }
   };
   using Input = double;

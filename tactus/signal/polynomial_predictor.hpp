@@ -27,7 +27,7 @@ class PolynomialPredictor {
     std::int64_t degree = 2;
     double horizon_s = 0.0036;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("samples", &Params::samples, between(1, 128), "Newest samples in the fit; more than the degree."),
           field("degree", &Params::degree, between(0, 3), "Of the polynomial; 0 is the mean."),
           field("horizon_s", &Params::horizon_s, units::second, between(0.0, 10.0),

@@ -38,10 +38,10 @@ class PredictionBlock {
     double time_constant_s = 0.0018;
     Discretisation discretisation = Discretisation::tustin;
     static constexpr auto fields() {
-      return std::tuple{field("time_constant_s", &Params::time_constant_s, units::second, positive_up_to(10.0),
-                              "Tp: how far the block looks ahead at low frequency."),
-                        field("discretisation", &Params::discretisation,
-                              "tustin keeps lead and gain limits; exact is exact for an input held between samples.")};
+      return List{field("time_constant_s", &Params::time_constant_s, units::second, positive_up_to(10.0),
+                        "Tp: how far the block looks ahead at low frequency."),
+                  field("discretisation", &Params::discretisation,
+                        "tustin keeps lead and gain limits; exact is exact for an input held between samples.")};
     }
   };
   using Input = double;
@@ -79,8 +79,8 @@ class PredictionCascade {
     std::int64_t blocks = 2;
     PredictionBlock::Params block;
     static constexpr auto fields() {
-      return std::tuple{field("blocks", &Params::blocks, between(0, 4), "Blocks in series; 0 predicts nothing."),
-                        field("block", &Params::block, "Each of the blocks.")};
+      return List{field("blocks", &Params::blocks, between(0, 4), "Blocks in series; 0 predicts nothing."),
+                  field("block", &Params::block, "Each of the blocks.")};
     }
   };
   using Input = double;

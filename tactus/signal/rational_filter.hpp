@@ -16,16 +16,16 @@ struct RationalFunction {
   double denominator_0 = 1.0, denominator_1 = 0.0, denominator_2 = 0.0, denominator_3 = 0.0, denominator_4 = 0.0;
   static constexpr auto fields() {
     using R = RationalFunction;
-    return std::tuple{field("numerator_0", &R::numerator_0, units::none, any_finite, "Numerator, constant."),
-                      field("numerator_1", &R::numerator_1, units::none, any_finite, "Numerator, s."),
-                      field("numerator_2", &R::numerator_2, units::none, any_finite, "Numerator, s^2."),
-                      field("numerator_3", &R::numerator_3, units::none, any_finite, "Numerator, s^3."),
-                      field("numerator_4", &R::numerator_4, units::none, any_finite, "Numerator, s^4."),
-                      field("denominator_0", &R::denominator_0, units::none, any_finite, "Denominator, constant."),
-                      field("denominator_1", &R::denominator_1, units::none, any_finite, "Denominator, s."),
-                      field("denominator_2", &R::denominator_2, units::none, any_finite, "Denominator, s^2."),
-                      field("denominator_3", &R::denominator_3, units::none, any_finite, "Denominator, s^3."),
-                      field("denominator_4", &R::denominator_4, units::none, any_finite, "Denominator, s^4.")};
+    return List{field("numerator_0", &R::numerator_0, units::none, any_finite, "Numerator, constant."),
+                field("numerator_1", &R::numerator_1, units::none, any_finite, "Numerator, s."),
+                field("numerator_2", &R::numerator_2, units::none, any_finite, "Numerator, s^2."),
+                field("numerator_3", &R::numerator_3, units::none, any_finite, "Numerator, s^3."),
+                field("numerator_4", &R::numerator_4, units::none, any_finite, "Numerator, s^4."),
+                field("denominator_0", &R::denominator_0, units::none, any_finite, "Denominator, constant."),
+                field("denominator_1", &R::denominator_1, units::none, any_finite, "Denominator, s."),
+                field("denominator_2", &R::denominator_2, units::none, any_finite, "Denominator, s^2."),
+                field("denominator_3", &R::denominator_3, units::none, any_finite, "Denominator, s^3."),
+                field("denominator_4", &R::denominator_4, units::none, any_finite, "Denominator, s^4.")};
   }
   using Coefficients = std::array<double, 5>;
   [[nodiscard]] constexpr Coefficients numerator() const {

@@ -40,7 +40,7 @@ class SecondOrderFilter {
     double frequency_Hz = 300.0;
     double notch_width_Hz = 50.0;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("kind", &Params::kind, "What passes: low-pass, high-pass or notch (all but a band)."),
           field("frequency_Hz", &Params::frequency_Hz, units::hertz, positive,
                 "The -3 dB frequency of a low-pass or high-pass, the centre of a notch; below half the sample rate."),

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <tuple>
 
 namespace tactus::simulation {
 
@@ -18,7 +17,7 @@ struct BadNumber {
                                    &station::DeviceReading::grip};
   static constexpr std::int64_t grip = 2;  ///< which a slave has not
   static constexpr std::int64_t first_told = read.size();
-  static constexpr std::int64_t age = first_told + std::tuple_size_v<decltype(control::Message::signals())>;
+  static constexpr std::int64_t age = first_told + decltype(control::Message::signals())::size();
   static constexpr std::int64_t master_inputs = age + 1;
   static constexpr std::int64_t slave_inputs = master_inputs - 1;
   static constexpr std::array values{std::numeric_limits<double>::quiet_NaN(),

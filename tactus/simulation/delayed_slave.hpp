@@ -23,7 +23,7 @@ struct DelayedSlaveParams {
   double sensor_lag_s = 0.002;
   static constexpr auto fields() {
     using P = DelayedSlaveParams;
-    return std::tuple{
+    return List{
         field("controller_gain_N_per_m", &P::controller_gain_N_per_m, units::newton_per_metre, positive,
               "K_c: command for one metre of measured error."),
         field("actuator_gain", &P::actuator_gain, units::none, positive_up_to(1e6), "K_a: force in N for one command."),

@@ -128,7 +128,7 @@ struct Impairment {
   double burst_ends_fraction = 1.0;
   double burst_loss_fraction = 1.0;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("delay_s", &Impairment::delay_s, units::second, between(0.0, 1.0), "Shortest delay of a packet."),
         field("jitter_s", &Impairment::jitter_s, units::second, between(0.0, 1.0),
               "Longest delay on top of it, drawn evenly for every packet, so that packets overtake one another."),
@@ -182,7 +182,7 @@ struct FaultPlan {
   std::int64_t seed = 1;
   Impairment impairment{};
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("kind", &FaultPlan::kind, "What fails."),
         field("site", &FaultPlan::site, "Where, if at one site."),
         field("start_s", &FaultPlan::start_s, units::second, non_negative, "When it begins."),

@@ -20,11 +20,11 @@ struct ValveCurrentModelParams {
   double derivative_filter_s = 0.003;
   static constexpr auto fields() {
     using P = ValveCurrentModelParams;
-    return std::tuple{field("actuator_gain_N_per_mA", &P::actuator_gain_N_per_mA, units::newton_per_milliampere,
-                            positive, "K_a: the stall force over the current that opens the valve all the way."),
-                      field("mass_kg", &P::mass_kg, units::kilogram, non_negative, "M_s, as weighed."),
-                      field("force_filter_s", &P::force_filter_s, units::second, non_negative, "T_f."),
-                      field("derivative_filter_s", &P::derivative_filter_s, units::second, non_negative, "T_d.")};
+    return List{field("actuator_gain_N_per_mA", &P::actuator_gain_N_per_mA, units::newton_per_milliampere, positive,
+                      "K_a: the stall force over the current that opens the valve all the way."),
+                field("mass_kg", &P::mass_kg, units::kilogram, non_negative, "M_s, as weighed."),
+                field("force_filter_s", &P::force_filter_s, units::second, non_negative, "T_f."),
+                field("derivative_filter_s", &P::derivative_filter_s, units::second, non_negative, "T_d.")};
   }
 };
 
@@ -36,11 +36,11 @@ struct HydraulicRigParams {
   PlantClockParams plant;
   static constexpr auto fields() {
     using P = HydraulicRigParams;
-    return std::tuple{field("slave", &P::slave, "Valve, cylinder and sensors."),
-                      field("controller_gain_mA_per_m", &P::controller_gain_mA_per_m, units::milliampere_per_metre,
-                            positive, "K_c: current for one metre of error; the valve's rating limits it."),
-                      field("model", &P::model, "The inverse model."), field("servo", &P::servo, "The servo clock."),
-                      field("plant", &P::plant, "The clock of the simulated slave.")};
+    return List{field("slave", &P::slave, "Valve, cylinder and sensors."),
+                field("controller_gain_mA_per_m", &P::controller_gain_mA_per_m, units::milliampere_per_metre, positive,
+                      "K_c: current for one metre of error; the valve's rating limits it."),
+                field("model", &P::model, "The inverse model."), field("servo", &P::servo, "The servo clock."),
+                field("plant", &P::plant, "The clock of the simulated slave.")};
   }
 };
 

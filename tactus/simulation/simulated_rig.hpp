@@ -20,8 +20,8 @@ struct BenchedMaster {
     mechanics::CableChain::Params mechanism;
     mechanics::CurrentAmplifier::Params amplifier;
     static constexpr auto fields() {
-      return std::tuple{field("mechanism", &Device::mechanism, "Motor, cable, drum, linkage and handle."),
-                        field("amplifier", &Device::amplifier, "Current amplifier of the motor.")};
+      return List{field("mechanism", &Device::mechanism, "Motor, cable, drum, linkage and handle."),
+                  field("amplifier", &Device::amplifier, "Current amplifier of the motor.")};
     }
   };
   /// What it can tell of the person.
@@ -29,15 +29,15 @@ struct BenchedMaster {
     mechanics::LinearSpring::Params grip{.stiffness_N_per_m = 40.0, .damping_N_s_per_m = 23.0};
     mechanics::Operator::Correction correction;
     static constexpr auto fields() {
-      return std::tuple{field("grip", &Person::grip, "Passive impedance of hand and arm."),
-                        field("correction", &Person::correction, "Slow correction of the handle's position.")};
+      return List{field("grip", &Person::grip, "Passive impedance of hand and arm."),
+                  field("correction", &Person::correction, "Slow correction of the handle's position.")};
     }
   };
   Device master;
   Person person;
   static constexpr auto fields() {
-    return std::tuple{field("master", &BenchedMaster::master, "The master device."),
-                      field("operator", &BenchedMaster::person, "The person at the master.")};
+    return List{field("master", &BenchedMaster::master, "The master device."),
+                field("operator", &BenchedMaster::person, "The person at the master.")};
   }
 };
 

@@ -30,14 +30,14 @@ class Teleoperator {
     PlantClockParams plant;
     control::ControlParams control;
     static constexpr auto fields() {
-      return std::tuple{field("master", &Params::master, "The master device."),
-                        field("slave", &Params::slave, "The slave device."),
-                        field("environment", &Params::environment, "The wall before the slave."),
-                        field("operator", &Params::person, "The person at the master."),
-                        field("channel", &Params::channel, "The link between the sites."),
-                        field("servo", &Params::servo, "The servo clock."),
-                        field("plant", &Params::plant, "The clock of the simulated plants."),
-                        field("control", &Params::control, "The controllers of both sites.")};
+      return List{field("master", &Params::master, "The master device."),
+                  field("slave", &Params::slave, "The slave device."),
+                  field("environment", &Params::environment, "The wall before the slave."),
+                  field("operator", &Params::person, "The person at the master."),
+                  field("channel", &Params::channel, "The link between the sites."),
+                  field("servo", &Params::servo, "The servo clock."),
+                  field("plant", &Params::plant, "The clock of the simulated plants."),
+                  field("control", &Params::control, "The controllers of both sites.")};
     }
   };
 
@@ -61,7 +61,7 @@ class Teleoperator {
     static constexpr auto signals() {
       constexpr const char* onward = "toward the environment";
       constexpr const char* back = "pushes the hand back";
-      return std::tuple{
+      return List{
           observed("time_s", &Record::time_s, units::second, "", "", "", "Virtual time of the tick."),
           observed("master_position_m", &Record::master_position_m, units::metre, "master", "hand", onward,
                    "Measured, at the motor."),

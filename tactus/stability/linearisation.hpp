@@ -17,7 +17,7 @@ struct Linearisation {
   /// Contact force about which a wall with a curved law is taken as straight, in N.
   double preload_N = 1.0;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("friction_speed_m_per_s", &Linearisation::friction_speed_m_per_s, units::metre_per_second, non_negative,
               "Velocity amplitude of the describing function of friction; 0 leaves friction out."),
         field("linkage_amplitude_m", &Linearisation::linkage_amplitude_m, units::metre, non_negative,

@@ -1,9 +1,11 @@
+#include <tactus/signal/matrix_functions.hpp>
 #include <tactus/stability/state_space.hpp>
 
 #include <cmath>
+#include <cstddef>
+#include <span>
 
-#include <Eigen/Dense>
-#include <unsupported/Eigen/MatrixFunctions>
+#include <Eigen/LU>
 
 namespace tactus::stability {
 
@@ -58,6 +60,14 @@ Eigen::VectorXd balance(Eigen::MatrixXd& a) {
   return scale;
 }
 
+using RowByRow = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+Eigen::MatrixXd exponential(RowByRow matrix) {
+  signal::exponentiate({matrix.data(), static_cast<std::size_t>(matrix.size())},
+                       static_cast<std::size_t>(matrix.rows()));
+  return matrix;
+}
+
 /// What the state of `continuous` becomes after `time_s` under a held input: Φ and Γ side by side (Van Loan 1978).
 Eigen::MatrixXd held(const StateSpace& continuous, double time_s) {
   const Eigen::Index n = continuous.states(), m = continuous.inputs();
@@ -65,7 +75,7 @@ Eigen::MatrixXd held(const StateSpace& continuous, double time_s) {
   augmented.topLeftCorner(n, n) = continuous.a * time_s;
   augmented.topRightCorner(n, m) = continuous.b * time_s;
   const Eigen::VectorXd scale = balance(augmented);
-  return (scale.asDiagonal() * augmented.exp() * scale.cwiseInverse().asDiagonal()).topRows(n);
+  return (scale.asDiagonal() * exponential(augmented) * scale.cwiseInverse().asDiagonal()).topRows(n);
 }
 
 }  // namespace
@@ -92,9 +102,12 @@ StateSpace one_channel(const StateSpace& system, Eigen::Index input, Eigen::Inde
 }
 
 Eigen::VectorXcd poles(const StateSpace& system) {
-  Eigen::MatrixXd a = system.a;
-  balance(a);
-  return a.eigenvalues();
+  Eigen::MatrixXd balanced = system.a;
+  balance(balanced);
+  const RowByRow a = balanced;
+  const auto values = signal::eigenvalues({a.data(), static_cast<std::size_t>(a.size())},
+                                          static_cast<std::size_t>(a.rows()));
+  return Eigen::Map<const Eigen::VectorXcd>(values.data(), a.rows());
 }
 
 }  // namespace tactus::stability

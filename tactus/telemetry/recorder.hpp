@@ -24,12 +24,11 @@ struct Gap {
   std::int64_t dropped = 0;
   std::int64_t lost = 0;
   static constexpr auto signals() {
-    return std::tuple{
-        observed("channel", &Gap::channel, units::none, "", "", "", "Number of the channel that has the gap."),
-        observed("dropped", &Gap::dropped, units::none, "", "", "",
-                 "Records of it that came faster than they were written, since the start."),
-        observed("lost", &Gap::lost, units::none, "", "", "",
-                 "Records of it in chunks that could not be written, since the start.")};
+    return List{observed("channel", &Gap::channel, units::none, "", "", "", "Number of the channel that has the gap."),
+                observed("dropped", &Gap::dropped, units::none, "", "", "",
+                         "Records of it that came faster than they were written, since the start."),
+                observed("lost", &Gap::lost, units::none, "", "", "",
+                         "Records of it in chunks that could not be written, since the start.")};
   }
 };
 

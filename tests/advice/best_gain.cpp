@@ -73,10 +73,10 @@ control::MasterModel exact(control::MasterModel model, const experiments::Tappin
 struct ModelFile {
   struct Control {
     control::MasterModel model;
-    static constexpr auto fields() { return std::tuple{field("model", &Control::model, "The controller's model.")}; }
+    static constexpr auto fields() { return List{field("model", &Control::model, "The controller's model.")}; }
   };
   Control control;
-  static constexpr auto fields() { return std::tuple{field("control", &ModelFile::control, "The controllers.")}; }
+  static constexpr auto fields() { return List{field("control", &ModelFile::control, "The controllers.")}; }
 };
 
 }  // namespace

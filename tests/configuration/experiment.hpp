@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <tuple>
 
 /// A description with every kind of parameter, nested two levels deep, for the tests of this module.
 namespace tactus::configuration::testing {
@@ -20,8 +19,8 @@ struct Filter {
   bool enabled = true;
   bool operator==(const Filter&) const = default;
   static constexpr auto fields() {
-    return std::tuple{field("cutoff_Hz", &Filter::cutoff_Hz, units::hertz, positive_up_to(20000), "The -3 dB point."),
-                      field("enabled", &Filter::enabled, "Whether it filters at all.")};
+    return List{field("cutoff_Hz", &Filter::cutoff_Hz, units::hertz, positive_up_to(20000), "The -3 dB point."),
+                field("enabled", &Filter::enabled, "Whether it filters at all.")};
   }
 };
 
@@ -32,7 +31,7 @@ struct Slave {
   double stiffness_N_per_m = 3950.0;
   bool operator==(const Slave&) const = default;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("velocity_filter", &Slave::velocity_filter, "Filters the measured velocity."),
         field("mass_kg", &Slave::mass_kg, units::kilogram, positive, "Moving mass."),
         field("offset_m", &Slave::offset_m, units::metre, any_finite, "Where it rests | at the start."),
@@ -47,10 +46,10 @@ struct Control {
   std::int64_t seed = 1;
   bool operator==(const Control&) const = default;
   static constexpr auto fields() {
-    return std::tuple{field("force_gain", &Control::force_gain, units::none, between(0, 10), "Force scale."),
-                      field("cancellation", &Control::cancellation, "How the induced motion is cancelled."),
-                      field("taps", &Control::taps, between(1, 4096), "Number of taps."),
-                      field("seed", &Control::seed, any_finite, "Seed of the noise.")};
+    return List{field("force_gain", &Control::force_gain, units::none, between(0, 10), "Force scale."),
+                field("cancellation", &Control::cancellation, "How the induced motion is cancelled."),
+                field("taps", &Control::taps, between(1, 4096), "Number of taps."),
+                field("seed", &Control::seed, any_finite, "Seed of the noise.")};
   }
 };
 
@@ -59,8 +58,8 @@ struct Task {
   std::string recording;
   bool operator==(const Task&) const = default;
   static constexpr auto fields() {
-    return std::tuple{field("kind", &Task::kind, "What is done."),
-                      field("recording", &Task::recording, "File of a recording.")};
+    return List{field("kind", &Task::kind, "What is done."),
+                field("recording", &Task::recording, "File of a recording.")};
   }
 };
 
@@ -71,10 +70,10 @@ struct Experiment {
   double duration_s = 2.0;
   bool operator==(const Experiment&) const = default;
   static constexpr auto fields() {
-    return std::tuple{
-        field("slave", &Experiment::slave, "The slave."), field("control", &Experiment::control, "The controller."),
-        field("task", &Experiment::task, "The task."),
-        field("duration_s", &Experiment::duration_s, units::second, positive_up_to(3600), "How long it runs.")};
+    return List{field("slave", &Experiment::slave, "The slave."),
+                field("control", &Experiment::control, "The controller."),
+                field("task", &Experiment::task, "The task."),
+                field("duration_s", &Experiment::duration_s, units::second, positive_up_to(3600), "How long it runs.")};
   }
 };
 

@@ -1,7 +1,6 @@
 #include <tactus/configuration/reference.hpp>
 
 #include <string>
-#include <tuple>
 
 #include <gtest/gtest.h>
 #include <tests/configuration/experiment.hpp>
@@ -61,9 +60,8 @@ struct StifferExperiment : testing::Experiment {
   double stay_s = 1.0;
   StifferExperiment() { slave.stiffness_N_per_m = 5000.0; }
   static constexpr auto fields() {
-    return std::tuple_cat(
-        testing::Experiment::fields(),
-        std::tuple{field("stay_s", &StifferExperiment::stay_s, units::second, positive, "How long it stays.")});
+    return joined(testing::Experiment::fields(),
+                  List{field("stay_s", &StifferExperiment::stay_s, units::second, positive, "How long it stays.")});
   }
 };
 

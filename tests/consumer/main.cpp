@@ -5,8 +5,7 @@
 struct Handle {
   double mass_kg = 0.15;
   static constexpr auto fields() {
-    return std::tuple{
-        tactus::field("mass_kg", &Handle::mass_kg, tactus::units::kilogram, tactus::positive, "Moving mass.")};
+    return tactus::List{tactus::field("mass_kg", &Handle::mass_kg, tactus::units::kilogram, tactus::positive, "Moving mass.")};
   }
 };
 

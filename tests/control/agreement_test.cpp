@@ -112,7 +112,7 @@ struct PluggedParams {
   bool soft = false;
   ReflectedForce force = ReflectedForce::tip;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("stiffness_N_per_m", &PluggedParams::stiffness_N_per_m, units::newton_per_metre, positive, "Stiffness."),
         field("stages", &PluggedParams::stages, between(1.0, 5.0), "Stages."),
         field("soft", &PluggedParams::soft, "Softly."), field("force", &PluggedParams::force, "Which force.")};

@@ -48,8 +48,8 @@ struct ScriptParams {
   double force_N = 0.5;
   std::int64_t lines = 3;
   static constexpr auto fields() {
-    return std::tuple{field("force_N", &ScriptParams::force_N, units::newton, between(0.0, 2.0), "What it answers."),
-                      field("lines", &ScriptParams::lines, between(1.0, 9.0), "How many lines it has.")};
+    return List{field("force_N", &ScriptParams::force_N, units::newton, between(0.0, 2.0), "What it answers."),
+                field("lines", &ScriptParams::lines, between(1.0, 9.0), "How many lines it has.")};
   }
 };
 

@@ -10,7 +10,7 @@ namespace {
 struct Inner {
   double mass_kg = 0.01;
   static constexpr auto fields() {
-    return std::tuple{field("mass_kg", &Inner::mass_kg, units::kilogram, positive, "Moving mass.")};
+    return List{field("mass_kg", &Inner::mass_kg, units::kilogram, positive, "Moving mass.")};
   }
 };
 
@@ -18,8 +18,8 @@ struct Outer {
   Inner motor;
   std::int64_t taps = 32;
   static constexpr auto fields() {
-    return std::tuple{field("motor", &Outer::motor, "The motor."),
-                      field("taps", &Outer::taps, between(1, 4096), "Number of taps.")};
+    return List{field("motor", &Outer::motor, "The motor."),
+                field("taps", &Outer::taps, between(1, 4096), "Number of taps.")};
   }
 };
 

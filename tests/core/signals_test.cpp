@@ -1,7 +1,6 @@
 #include <tactus/core/signals.hpp>
 
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -13,8 +12,8 @@ struct Pose {
   double position_m = 0.0;
   std::int64_t count = 0;
   static constexpr auto signals() {
-    return std::tuple{observed("position_m", &Pose::position_m, units::metre, "", "", "", "Where."),
-                      observed("count", &Pose::count, units::none, "", "", "", "How often.")};
+    return List{observed("position_m", &Pose::position_m, units::metre, "", "", "", "Where."),
+                observed("count", &Pose::count, units::none, "", "", "", "How often.")};
   }
 };
 
@@ -22,7 +21,7 @@ struct Pose {
 struct Both : Part<Pose, "left_">, Part<Pose, "right_"> {
   using Left = Part<Pose, "left_">;
   using Right = Part<Pose, "right_">;
-  static constexpr auto signals() { return std::tuple_cat(Left::signals(), Right::signals()); }
+  static constexpr auto signals() { return joined(Left::signals(), Right::signals()); }
 };
 
 TEST(Part, OfOneTypeMayStandTwiceInARecordEachUnderItsOwnNames) {

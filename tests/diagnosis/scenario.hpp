@@ -23,8 +23,8 @@ inline constexpr double held_from_s = 3.5;  ///< until then the person moves abo
 struct IntegralParams {
   double integral_N_per_m_s = 0.0;
   static constexpr auto fields() {
-    return std::tuple{field("integral_N_per_m_s", &IntegralParams::integral_N_per_m_s, units::none, between(0.0, 1e6),
-                            "Force per integral of the position error, in N/(m s).")};
+    return List{field("integral_N_per_m_s", &IntegralParams::integral_N_per_m_s, units::none, between(0.0, 1e6),
+                      "Force per integral of the position error, in N/(m s).")};
   }
 };
 

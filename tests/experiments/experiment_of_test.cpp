@@ -23,9 +23,9 @@ struct FallTask {
   double height_m = 5.0;
   double gravity_m_per_s2 = 10.0;
   static constexpr auto fields() {
-    return std::tuple{field("kind", &FallTask::kind, "Which experiment this is."),
-                      field("height_m", &FallTask::height_m, units::metre, positive_up_to(100.0), "Of the fall."),
-                      field("gravity_m_per_s2", &FallTask::gravity_m_per_s2, units::none, positive, "Where it falls.")};
+    return List{field("kind", &FallTask::kind, "Which experiment this is."),
+                field("height_m", &FallTask::height_m, units::metre, positive_up_to(100.0), "Of the fall."),
+                field("gravity_m_per_s2", &FallTask::gravity_m_per_s2, units::none, positive, "Where it falls.")};
   }
 };
 
@@ -34,8 +34,7 @@ struct FallParams {
   simulation::ServoParams servo;
   FallTask task;
   static constexpr auto fields() {
-    return std::tuple{field("servo", &FallParams::servo, "The servo clock."),
-                      field("task", &FallParams::task, "The fall.")};
+    return List{field("servo", &FallParams::servo, "The servo clock."), field("task", &FallParams::task, "The fall.")};
   }
 };
 

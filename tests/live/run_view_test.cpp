@@ -16,8 +16,8 @@ struct Tick {
   std::int64_t number = 0;
   double force_N = 0.0;
   static constexpr auto signals() {
-    return std::tuple{observed("number", &Tick::number, units::none, "", "", "", "Which."),
-                      observed("force_N", &Tick::force_N, units::newton, "master", "hand", "", "Displayed.")};
+    return List{observed("number", &Tick::number, units::none, "", "", "", "Which."),
+                observed("force_N", &Tick::force_N, units::newton, "master", "hand", "", "Displayed.")};
   }
 };
 

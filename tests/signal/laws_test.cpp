@@ -74,8 +74,8 @@ struct Leaky {
     double leak = 0.5;
     std::int64_t order = 1;
     static constexpr auto fields() {
-      return std::tuple{field("leak", &Params::leak, units::none, between(0.0, 0.9), "Share that is kept."),
-                        field("order", &Params::order, between(1, 3), "How often.")};
+      return List{field("leak", &Params::leak, units::none, between(0.0, 0.9), "Share that is kept."),
+                  field("order", &Params::order, between(1, 3), "How often.")};
     }
   };
   using Input = double;
@@ -174,14 +174,14 @@ TEST(TheLaws, CatchAnErrorThatNamesTheWrongParameter) {
 struct LoosePart {
   double mass_kg = 1.0;
   static constexpr auto fields() {
-    return std::tuple{field("mass_kg", &LoosePart::mass_kg, units::kilogram, any_finite, "Mass.")};
+    return List{field("mass_kg", &LoosePart::mass_kg, units::kilogram, any_finite, "Mass.")};
   }
 };
 /// Its own bounds on the nested part are never looked at.
 struct Nested {
   struct Params {
     LoosePart part;
-    static constexpr auto fields() { return std::tuple{field("part", &Params::part, "A part.")}; }
+    static constexpr auto fields() { return List{field("part", &Params::part, "A part.")}; }
   };
   using Input = double;
   using Output = double;
@@ -200,50 +200,46 @@ TEST(TheLaws, LookIntoNestedGroups) {
 struct WrongSuffix {
   double mass_kg = 1.0;
   static constexpr auto fields() {
-    return std::tuple{field("mass_kg", &WrongSuffix::mass_kg, units::newton, positive, "Mass.")};
+    return List{field("mass_kg", &WrongSuffix::mass_kg, units::newton, positive, "Mass.")};
   }
 };
 struct UnitInDisguise {
   double delay_s = 1.0;
   static constexpr auto fields() {
-    return std::tuple{field("delay_s", &UnitInDisguise::delay_s, units::none, positive, "Delay.")};
+    return List{field("delay_s", &UnitInDisguise::delay_s, units::none, positive, "Delay.")};
   }
 };
 struct RareUnitInDisguise {
   double pressure_Pa = 1.0;
   static constexpr auto fields() {
-    return std::tuple{field("pressure_Pa", &RareUnitInDisguise::pressure_Pa, units::none, positive, "Pressure.")};
+    return List{field("pressure_Pa", &RareUnitInDisguise::pressure_Pa, units::none, positive, "Pressure.")};
   }
 };
 struct ShorterUnit {
   double torque_N_m = 1.0;
   static constexpr auto fields() {
-    return std::tuple{field("torque_N_m", &ShorterUnit::torque_N_m, units::metre, positive, "Torque.")};
+    return List{field("torque_N_m", &ShorterUnit::torque_N_m, units::metre, positive, "Torque.")};
   }
 };
 struct Undocumented {
   double gain = 1.0;
-  static constexpr auto fields() { return std::tuple{field("gain", &Undocumented::gain, units::none, positive, "")}; }
+  static constexpr auto fields() { return List{field("gain", &Undocumented::gain, units::none, positive, "")}; }
 };
 struct Incomplete {
   double gain = 1.0;
   double forgotten = 1.0;
-  static constexpr auto fields() {
-    return std::tuple{field("gain", &Incomplete::gain, units::none, positive, "Gain.")};
-  }
+  static constexpr auto fields() { return List{field("gain", &Incomplete::gain, units::none, positive, "Gain.")}; }
 };
 struct BadDefault {
   double gain = -1.0;
-  static constexpr auto fields() {
-    return std::tuple{field("gain", &BadDefault::gain, units::none, positive, "Gain.")};
-  }
+  static constexpr auto fields() { return List{field("gain", &BadDefault::gain, units::none, positive, "Gain.")}; }
 };
 struct Twice {
   double gain = 1.0;
   double other = 1.0;
   static constexpr auto fields() {
-    return std::tuple{field("gain", &Twice::gain, units::none, positive, "Gain."),
-                      field("gain", &Twice::other, units::none, positive, "Gain.")};
+    return List{field("gain", &Twice::gain, units::none, positive, "Gain."),
+                field("gain", &Twice::other, units::none, positive, "Gain.")};
   }
 };
 

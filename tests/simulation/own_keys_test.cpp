@@ -22,9 +22,9 @@ struct BendParams {
   Bend kind = Bend::soft;
   control::ServoPd::Params inner{.proportional_N_per_m = 7.0};
   static constexpr auto fields() {
-    return std::tuple{field("from_N", &BendParams::from_N, units::newton, between(0.0, 2.0), "Where it begins."),
-                      field("kind", &BendParams::kind, "Its shape."),
-                      field("inner", &BendParams::inner, "The controller behind it.")};
+    return List{field("from_N", &BendParams::from_N, units::newton, between(0.0, 2.0), "Where it begins."),
+                field("kind", &BendParams::kind, "Its shape."),
+                field("inner", &BendParams::inner, "The controller behind it.")};
   }
 };
 

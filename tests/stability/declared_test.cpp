@@ -21,7 +21,7 @@ struct Silent {
   struct Params {
     double gain = 1.0;
     static constexpr auto fields() {
-      return std::tuple{field("gain", &Params::gain, units::none, positive, "What it multiplies by.")};
+      return List{field("gain", &Params::gain, units::none, positive, "What it multiplies by.")};
     }
   };
 };

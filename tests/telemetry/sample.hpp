@@ -15,7 +15,7 @@ struct Sample {
   double force_N = 0.0;
   std::int64_t count = 0;
   static constexpr auto signals() {
-    return std::tuple{
+    return List{
         observed("time_s", &Sample::time_s, units::second, "", "", "", "When."),
         observed("touched", &Sample::touched, units::none, "environment", "", "", "Whether the wall was met."),
         observed("force_N", &Sample::force_N, units::newton, "master", "hand", "pushes the hand back", "Shown force."),

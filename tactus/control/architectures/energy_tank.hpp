@@ -35,7 +35,7 @@ class EnergyTank {
     double fastest_m_per_s = 1.0;
     signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("desired_level_J", &Params::desired_level_J, units::joule, positive_up_to(100.0),
                 "Level at the start, and below which the master draws energy from the hand."),
           field("capacity_J", &Params::capacity_J, units::joule, positive_up_to(1000.0),
@@ -91,8 +91,8 @@ class TankMaster {
     PositionForceMaster::Params display;
     EnergyTank::Params tank;
     static constexpr auto fields() {
-      return std::tuple{field("display", &Params::display, "The master of position-force control."),
-                        field("tank", &Params::tank, "The tank.")};
+      return List{field("display", &Params::display, "The master of position-force control."),
+                  field("tank", &Params::tank, "The tank.")};
     }
   };
   using Input = MasterInput;
@@ -131,7 +131,7 @@ class TankSlave {
     ServoPd::Params slave;
     EnergyTank::Params tank;
     static constexpr auto fields() {
-      return std::tuple{field("slave", &Params::slave, "The servo."), field("tank", &Params::tank, "The tank.")};
+      return List{field("slave", &Params::slave, "The servo."), field("tank", &Params::tank, "The tank.")};
     }
   };
   using Input = SlaveInput;

@@ -39,7 +39,7 @@ struct FourChannelParams {
   double slave_feedforward_kg = 0.0;
   signal::FilteredDerivative::Params acceleration{.cutoff_Hz = 30.0};
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("master", &FourChannelParams::master, "The master's position controller: C_m, and C_4 without inertia."),
         field("environment_force_gain", &FourChannelParams::environment_force_gain, units::none, between(0.0, 1000.0),
               "C_2 over the force gain; transparent at 1 + master_force_loop_gain."),
@@ -89,7 +89,7 @@ class FourChannelMaster {
     double force_limit_N = 1.0;
     FourChannelParams four_channel{};
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
                 "Slave motion over master motion, lambda."),
           field("force_gain", &Params::force_gain, units::none, between(0.0, 1000.0), "Hand force over tip force, mu."),
@@ -128,7 +128,7 @@ class FourChannelSlave {
     ServoPd::Params slave{};
     FourChannelParams four_channel{};
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("force_gain", &Params::force_gain, units::none, between(0.0, 1000.0), "Hand force over tip force, mu."),
           field("slave", &Params::slave, "The slave's position controller: C_s, and C_1 without inertia."),
           field("four_channel", &Params::four_channel, "The channels.")};
@@ -179,8 +179,8 @@ class CancellingSlave {
     PositionForceMaster::Params master;
     ServoPd::Params slave;
     static constexpr auto fields() {
-      return std::tuple{field("master", &Params::master, "What the slave knows of the master."),
-                        field("slave", &Params::slave, "The slave's position controller.")};
+      return List{field("master", &Params::master, "What the slave knows of the master."),
+                  field("slave", &Params::slave, "The slave's position controller.")};
     }
   };
   using Input = SlaveInput;

@@ -67,7 +67,7 @@ class PositionForceMaster {
     ShapingFilter::Params force_filter;
     Crossover::Params crossover;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("position_scale", &Params::position_scale, units::none, positive_up_to(1000.0),
                 "Slave motion over master motion, lambda."),
           field("force_gain", &Params::force_gain, units::none, between(0.0, 1000.0),

@@ -25,7 +25,7 @@ class PositionPositionMaster {
     PositionForceMaster::Params position_force;
     ServoPd::Params coupling;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("position_force", &Params::position_force, "Command path, scales and limit, as in position-force."),
           field("coupling", &Params::coupling, "What pulls the master toward the slave: the slave's own gains.")};
     }

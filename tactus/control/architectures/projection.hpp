@@ -12,7 +12,7 @@ struct ProjectionParams {
   double negligible_force_N = 0.02;
   double hand_force_cutoff_Hz = 30.0;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("unconditional_fraction", &ProjectionParams::unconditional_fraction, units::none, between(0.0, 1.0),
               "Share of the force that is displayed whether the hand holds it or not, alpha; 1 is position-force."),
         field("negligible_force_N", &ProjectionParams::negligible_force_N, units::newton,
@@ -54,7 +54,7 @@ class ProjectionMaster {
     PositionForceMaster::Params position_force;
     ProjectionParams projection;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("position_force", &Params::position_force, "Command path, scales and limit, as in position-force."),
           field("projection", &Params::projection, "What of the force is reflected at once.")};
     }

@@ -11,7 +11,7 @@ struct ComplianceParams {
   double stiffness_N_per_m = 100.0;
   double cutoff_Hz = 2.0;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("stiffness_N_per_m", &ComplianceParams::stiffness_N_per_m, units::newton_per_metre,
               Bounds{.lower = 1.0, .upper = 1e6}, "Tip force per distance that the slave's command yields at rest."),
         field("cutoff_Hz", &ComplianceParams::cutoff_Hz, units::hertz, positive,
@@ -38,8 +38,8 @@ class SharedCompliantSlave {
     ServoPd::Params slave;
     ComplianceParams compliance;
     static constexpr auto fields() {
-      return std::tuple{field("slave", &Params::slave, "The slave's position controller."),
-                        field("compliance", &Params::compliance, "How the slave's command yields to the tip force.")};
+      return List{field("slave", &Params::slave, "The slave's position controller."),
+                  field("compliance", &Params::compliance, "How the slave's command yields to the tip force.")};
     }
   };
   using Input = SlaveInput;

@@ -57,7 +57,7 @@ struct PassivityParams {
   double recovery_time_s = 0.05;
   signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("reflected_force", &PassivityParams::reflected_force, "Which force the slave sends back."),
         field("damping_limit_N_s_per_m", &PassivityParams::damping_limit_N_s_per_m, units::newton_second_per_metre,
               between(0.0, 1000.0),
@@ -93,8 +93,8 @@ class PassivityMaster {
     PositionForceMaster::Params display;
     PassivityParams passivity;
     static constexpr auto fields() {
-      return std::tuple{field("display", &Params::display, "The master of position-force control."),
-                        field("passivity", &Params::passivity, "Observer and controller.")};
+      return List{field("display", &Params::display, "The master of position-force control."),
+                  field("passivity", &Params::passivity, "Observer and controller.")};
     }
   };
   using Input = MasterInput;
@@ -137,8 +137,8 @@ class PassivitySlave {
     ServoPd::Params slave;
     PassivityParams passivity;
     static constexpr auto fields() {
-      return std::tuple{field("slave", &Params::slave, "The servo."),
-                        field("passivity", &Params::passivity, "Observer and controller.")};
+      return List{field("slave", &Params::slave, "The servo."),
+                  field("passivity", &Params::passivity, "Observer and controller.")};
     }
   };
   using Input = SlaveInput;

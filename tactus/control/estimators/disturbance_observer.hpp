@@ -26,8 +26,8 @@ class DisturbanceObserver {
     SlaveModel model{};
     double cutoff_Hz = 100.0;
     static constexpr auto fields() {
-      return std::tuple{field("model", &Params::model, "The nominal slave."),
-                        field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive, "-3 dB of the estimate.")};
+      return List{field("model", &Params::model, "The nominal slave."),
+                  field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive, "-3 dB of the estimate.")};
     }
   };
   using Input = SlaveMotionSample;

@@ -32,7 +32,7 @@ class HandForceObserver {
     double friction_N = 0.0;
     double cutoff_Hz = 30.0;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("mass_kg", &Params::mass_kg, units::kilogram, positive_up_to(1000.0), "All that moves with the hand."),
           field("friction_N", &Params::friction_N, units::newton, between(0.0, 1000.0), "Its Coulomb friction."),
           field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive,

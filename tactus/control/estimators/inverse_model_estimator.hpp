@@ -38,7 +38,7 @@ struct FrictionFunction {
   double linear = 0.1;
   double quadratic = 0.00045;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("law", &FrictionFunction::law, "none, sigmoid, smooth-coulomb or dead-band-coulomb."),
         field("force_N", &FrictionFunction::force_N, units::newton, non_negative,
               "Coulomb friction, or the factor of the sigmoid (the paper's h_e)."),
@@ -90,7 +90,7 @@ class InverseModelEstimator {
     double declared_delay_s = 0.0;
     signal::Predictor::Params prediction;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("form", &Params::form, "Which keys state the linear model: mass-damping or rational."),
           field("mass_kg", &Params::mass_kg, units::kilogram, non_negative, "Moving mass M (mass-damping)."),
           field("viscous_damping_N_s_per_m", &Params::viscous_damping_N_s_per_m, units::newton_second_per_metre,

@@ -29,7 +29,7 @@ class KalmanForceEstimator {
     double model_noise_N = 1e-3;
     double position_noise_m = 3e-6;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("model", &Params::model, "The nominal slave."),
           field("force_walk_N", &Params::force_walk_N, units::newton, positive,
                 "q: how far the force is expected to go within a second, standard deviation."),

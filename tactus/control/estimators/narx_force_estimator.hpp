@@ -28,11 +28,11 @@ struct NarxTerm {
   std::int64_t variable_2 = 0;
   std::int64_t variable_3 = 0;
   static constexpr auto fields() {
-    return std::tuple{field("coefficient_N", &NarxTerm::coefficient_N, units::newton, between(-1e9, 1e9),
-                            "Force where each variable is at its scale; 0 drops the term."),
-                      field("variable_1", &NarxTerm::variable_1, between(0, 9), "First factor; 0 is the one."),
-                      field("variable_2", &NarxTerm::variable_2, between(0, 9), "Second factor."),
-                      field("variable_3", &NarxTerm::variable_3, between(0, 9), "Third factor.")};
+    return List{field("coefficient_N", &NarxTerm::coefficient_N, units::newton, between(-1e9, 1e9),
+                      "Force where each variable is at its scale; 0 drops the term."),
+                field("variable_1", &NarxTerm::variable_1, between(0, 9), "First factor; 0 is the one."),
+                field("variable_2", &NarxTerm::variable_2, between(0, 9), "Second factor."),
+                field("variable_3", &NarxTerm::variable_3, between(0, 9), "Third factor.")};
   }
 };
 
@@ -43,12 +43,12 @@ struct NarxTerms {
   NarxTerm term_6{}, term_7{}, term_8{}, term_9{}, term_10{}, term_11{};
   static constexpr auto fields() {
     using T = NarxTerms;
-    return std::tuple{field("term_0", &T::term_0, "Term."),   field("term_1", &T::term_1, "Term."),
-                      field("term_2", &T::term_2, "Term."),   field("term_3", &T::term_3, "Term."),
-                      field("term_4", &T::term_4, "Term."),   field("term_5", &T::term_5, "Term."),
-                      field("term_6", &T::term_6, "Term."),   field("term_7", &T::term_7, "Term."),
-                      field("term_8", &T::term_8, "Term."),   field("term_9", &T::term_9, "Term."),
-                      field("term_10", &T::term_10, "Term."), field("term_11", &T::term_11, "Term.")};
+    return List{field("term_0", &T::term_0, "Term."),   field("term_1", &T::term_1, "Term."),
+                field("term_2", &T::term_2, "Term."),   field("term_3", &T::term_3, "Term."),
+                field("term_4", &T::term_4, "Term."),   field("term_5", &T::term_5, "Term."),
+                field("term_6", &T::term_6, "Term."),   field("term_7", &T::term_7, "Term."),
+                field("term_8", &T::term_8, "Term."),   field("term_9", &T::term_9, "Term."),
+                field("term_10", &T::term_10, "Term."), field("term_11", &T::term_11, "Term.")};
   }
   [[nodiscard]] std::array<NarxTerm, most> all() const noexcept {
     return {term_0, term_1, term_2, term_3, term_4, term_5, term_6, term_7, term_8, term_9, term_10, term_11};
@@ -65,14 +65,14 @@ struct NarxScales {
   double force_limit_N = 10.0;
   static constexpr auto fields() {
     using S = NarxScales;
-    return std::tuple{field("cutoff_Hz", &S::cutoff_Hz, units::hertz, positive,
-                            "Butterworth low-pass on position and command, below half the sample rate."),
-                      field("lag_s", &S::lag_s, units::second, positive,
-                            "From one lag to the next; rounded to samples, 1 to 64 of them."),
-                      field("difference_scale_m", &S::difference_scale_m, units::metre, positive,
-                            "Scale of each difference of lagged positions."),
-                      field("force_limit_N", &S::force_limit_N, units::newton, between(1e-9, 1e9),
-                            "The model's output saturates here, and this is its scale.")};
+    return List{field("cutoff_Hz", &S::cutoff_Hz, units::hertz, positive,
+                      "Butterworth low-pass on position and command, below half the sample rate."),
+                field("lag_s", &S::lag_s, units::second, positive,
+                      "From one lag to the next; rounded to samples, 1 to 64 of them."),
+                field("difference_scale_m", &S::difference_scale_m, units::metre, positive,
+                      "Scale of each difference of lagged positions."),
+                field("force_limit_N", &S::force_limit_N, units::newton, between(1e-9, 1e9),
+                      "The model's output saturates here, and this is its scale.")};
   }
 };
 
@@ -136,10 +136,10 @@ class NarxForceEstimator {
     NarxScales scales{};
     NarxTerms terms{};
     static constexpr auto fields() {
-      return std::tuple{field("actuator_gain", &Params::actuator_gain, units::none, any_finite,
-                              "K_a: force in N for one unit of the command."),
-                        field("scales", &Params::scales, "Filters, lags and scales."),
-                        field("terms", &Params::terms, "The polynomial.")};
+      return List{field("actuator_gain", &Params::actuator_gain, units::none, any_finite,
+                        "K_a: force in N for one unit of the command."),
+                  field("scales", &Params::scales, "Filters, lags and scales."),
+                  field("terms", &Params::terms, "The polynomial.")};
     }
   };
   using Input = SlaveMotionSample;

@@ -55,7 +55,7 @@ struct MasterModel {
   mechanics::QuinticSpring::Params hand;
   double linear_hand_stiffening = 10.0;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("motor", &MasterModel::motor, "Motor rotor."),
         field("cable", &MasterModel::cable, "Cable between motor and drum."),
         field("drum", &MasterModel::drum, "Drum."),
@@ -109,7 +109,7 @@ class InducedMotionModel {
     ModelFriction friction = ModelFriction::total_velocity;
     double friction_band_m_per_s = 0.005;
     static constexpr auto fields() {
-      return std::tuple{
+      return List{
           field("master", &Params::master, "Master and hand."),
           field("fidelity", &Params::fidelity, "How much of them the model tells apart."),
           field("step", &Params::step, "How the model is advanced."),

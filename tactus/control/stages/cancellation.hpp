@@ -20,9 +20,9 @@ class Cancellation {
     InducedMotionModel::Params model;
     signal::FilteredDerivative::Params intended_velocity{.cutoff_Hz = 30.0};
     static constexpr auto fields() {
-      return std::tuple{field("model", &Params::model, "The model of induced motion."),
-                        field("intended_velocity", &Params::intended_velocity,
-                              "Filter for the intended velocity that the model's friction sees.")};
+      return List{field("model", &Params::model, "The model of induced motion."),
+                  field("intended_velocity", &Params::intended_velocity,
+                        "Filter for the intended velocity that the model's friction sees.")};
     }
   };
   struct Input {

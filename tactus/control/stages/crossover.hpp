@@ -28,9 +28,9 @@ class Crossover {
   struct Params {
     double frequency_Hz = 0.0;
     static constexpr auto fields() {
-      return std::tuple{field("frequency_Hz", &Params::frequency_Hz, units::hertz, non_negative,
-                              "The force below goes to the motor, the rest to the actuator on the handle; below half "
-                              "the servo rate; 0 is off: all goes to the motor.")};
+      return List{field("frequency_Hz", &Params::frequency_Hz, units::hertz, non_negative,
+                        "The force below goes to the motor, the rest to the actuator on the handle; below half "
+                        "the servo rate; 0 is off: all goes to the motor.")};
     }
   };
   /// The whole force, in N.

@@ -52,8 +52,8 @@ class GripCancellation {
     Cancellation::Params cancellation;
     OperatorEstimate estimate = OperatorEstimate::off;
     static constexpr auto fields() {
-      return std::tuple{field("cancellation", &Params::cancellation, "Cancellation with the nominal hand."),
-                        field("estimate", &Params::estimate, "Where the grip is known from.")};
+      return List{field("cancellation", &Params::cancellation, "Cancellation with the nominal hand."),
+                  field("estimate", &Params::estimate, "Where the grip is known from.")};
     }
   };
   struct Input {

@@ -26,9 +26,9 @@ class LocalDamping {
     double damping_N_s_per_m = 0.0;
     signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
     static constexpr auto fields() {
-      return std::tuple{field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre,
-                              between(0.0, 1e3), "Force against the motor per velocity of the motor; 0 is off."),
-                        field("velocity", &Params::velocity, "Filter of the motor's velocity.")};
+      return List{field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre,
+                        between(0.0, 1e3), "Force against the motor per velocity of the motor; 0 is off."),
+                  field("velocity", &Params::velocity, "Filter of the motor's velocity.")};
     }
   };
   /// Measured position of the motor, in m.

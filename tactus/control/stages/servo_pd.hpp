@@ -15,11 +15,11 @@ class ServoPd {
     double derivative_N_s_per_m = 0.65;
     signal::FilteredDerivative::Params velocity{.cutoff_Hz = 300.0};
     static constexpr auto fields() {
-      return std::tuple{field("proportional_N_per_m", &Params::proportional_N_per_m, units::newton_per_metre,
-                              between(0.0, 1e5), "Force per position error."),
-                        field("derivative_N_s_per_m", &Params::derivative_N_s_per_m, units::newton_second_per_metre,
-                              between(0.0, 1e3), "Force per rate of the position error."),
-                        field("velocity", &Params::velocity, "Filter of the rate of the position error.")};
+      return List{field("proportional_N_per_m", &Params::proportional_N_per_m, units::newton_per_metre,
+                        between(0.0, 1e5), "Force per position error."),
+                  field("derivative_N_s_per_m", &Params::derivative_N_s_per_m, units::newton_second_per_metre,
+                        between(0.0, 1e3), "Force per rate of the position error."),
+                  field("velocity", &Params::velocity, "Filter of the rate of the position error.")};
     }
   };
   /// Wanted less measured position, in m.

@@ -23,13 +23,12 @@ struct GainSearch : TapSeries {
   double lowest_gain = 0.25;
   double highest_gain = 32.0;
   static constexpr auto fields() {
-    return std::tuple_cat(
-        std::tuple{
-            field("strong_display_N", &GainSearch::strong_display_N, units::newton, positive_up_to(100.0),
-                  "A second force limit, for a display that saturates less than `control.force_limit_N`."),
-            field("lowest_gain", &GainSearch::lowest_gain, units::none, between(0.01, 1000.0),
-                  "Where the search for the largest gain begins."),
-            field("highest_gain", &GainSearch::highest_gain, units::none, between(0.01, 1000.0), "Where it ends.")},
+    return joined(
+        List{field("strong_display_N", &GainSearch::strong_display_N, units::newton, positive_up_to(100.0),
+                   "A second force limit, for a display that saturates less than `control.force_limit_N`."),
+             field("lowest_gain", &GainSearch::lowest_gain, units::none, between(0.01, 1000.0),
+                   "Where the search for the largest gain begins."),
+             field("highest_gain", &GainSearch::highest_gain, units::none, between(0.01, 1000.0), "Where it ends.")},
         TapSeries::fields());
   }
 };
@@ -40,16 +39,15 @@ Check check(const GainSearch& search);
 struct ContestTask : GainSearch {
   ContestKind kind = ContestKind::contest;
   static constexpr auto fields() {
-    return std::tuple_cat(std::tuple{field("kind", &ContestTask::kind, "Which experiment this is.")},
-                          GainSearch::fields());
+    return joined(List{field("kind", &ContestTask::kind, "Which experiment this is.")}, GainSearch::fields());
   }
 };
 
 struct ContestParams : simulation::Teleoperator::Params {
   ContestTask task;
   static constexpr auto fields() {
-    return std::tuple_cat(simulation::Teleoperator::Params::fields(),
-                          std::tuple{field("task", &ContestParams::task, "The taps and the search.")});
+    return joined(simulation::Teleoperator::Params::fields(),
+                  List{field("task", &ContestParams::task, "The taps and the search.")});
   }
 };
 

@@ -23,7 +23,7 @@ struct HarmBounds {
   double pressing_N = 10.0;
   double release_s = 1.0;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("given_J", &HarmBounds::given_J, units::joule, positive, "Energy that a motor may give."),
         field("speed_m_per_s", &HarmBounds::speed_m_per_s, units::metre_per_second, positive,
               "Speed that handle and tool may reach."),
@@ -49,20 +49,20 @@ struct FaultsTask {
   HarmBounds bounds;
   std::int64_t real_time_seeds = 30;
   static constexpr auto fields() {
-    return std::tuple{field("kind", &FaultsTask::kind, "Which experiment this is."),
-                      field("seeds", &FaultsTask::seeds, between(1, 1000000), "Runs of each fault."),
-                      field("seed", &FaultsTask::seed, non_negative, "Seed that draws every plan."),
-                      field("only", &FaultsTask::only, "The id of one row, where not all are wanted; empty is all."),
-                      field("longest_cut_s", &FaultsTask::longest_cut_s, units::second, between(0.02, 600.0),
-                            "Longest cut of the link."),
-                      field("light_grip_fraction", &FaultsTask::light_grip_fraction, units::none, between(0.01, 1.0),
-                            "Damping of the light grip over that of the operator."),
-                      field("diverged_above_J", &FaultsTask::diverged_above_J, units::joule, positive,
-                            "A run in which the master's motor gave more energy than this diverged."),
-                      field("bounds", &FaultsTask::bounds, "What a fault may do to people."),
-                      field("real_time_seeds", &FaultsTask::real_time_seeds, between(1, 1000),
-                            "Runs of each fault in real time, where that is asked for: the first of those in virtual "
-                            "time, no cut longer than a second.")};
+    return List{field("kind", &FaultsTask::kind, "Which experiment this is."),
+                field("seeds", &FaultsTask::seeds, between(1, 1000000), "Runs of each fault."),
+                field("seed", &FaultsTask::seed, non_negative, "Seed that draws every plan."),
+                field("only", &FaultsTask::only, "The id of one row, where not all are wanted; empty is all."),
+                field("longest_cut_s", &FaultsTask::longest_cut_s, units::second, between(0.02, 600.0),
+                      "Longest cut of the link."),
+                field("light_grip_fraction", &FaultsTask::light_grip_fraction, units::none, between(0.01, 1.0),
+                      "Damping of the light grip over that of the operator."),
+                field("diverged_above_J", &FaultsTask::diverged_above_J, units::joule, positive,
+                      "A run in which the master's motor gave more energy than this diverged."),
+                field("bounds", &FaultsTask::bounds, "What a fault may do to people."),
+                field("real_time_seeds", &FaultsTask::real_time_seeds, between(1, 1000),
+                      "Runs of each fault in real time, where that is asked for: the first of those in virtual "
+                      "time, no cut longer than a second.")};
   }
 };
 
@@ -71,8 +71,7 @@ struct FaultsParams : simulation::Teleoperator::Params {
   FaultsTask task;
   FaultsParams();
   static constexpr auto fields() {
-    return std::tuple_cat(simulation::Teleoperator::Params::fields(),
-                          std::tuple{field("task", &FaultsParams::task, "The faults.")});
+    return joined(simulation::Teleoperator::Params::fields(), List{field("task", &FaultsParams::task, "The faults.")});
   }
 };
 

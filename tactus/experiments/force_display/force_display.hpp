@@ -34,7 +34,7 @@ struct ForceProfileParams {
   double frequency_Hz = 110.0;
   double decay_time_s = 0.012;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field(
             "file", &ForceProfileParams::file,
             "Recording to play: CSV with a header, or MATLAB v5. Empty: a synthetic transient. A relative path counts "
@@ -66,17 +66,16 @@ struct ForceDisplayTask {
   double force_limit_N = 1.0;
   ModelMismatch mismatch{.mass = 1.2, .linkage_stiffness = 0.8, .operator_damping = 1.2};
   static constexpr auto fields() {
-    return std::tuple{
-        field("kind", &ForceDisplayTask::kind, "Which experiment this is."),
-        field("seed", &ForceDisplayTask::seed, non_negative, "Seed that draws the tremor of each repeat."),
-        field("repeats", &ForceDisplayTask::repeats, between(1, 10000), "How often each case is played."),
-        field("speed_m_per_s", &ForceDisplayTask::speed_m_per_s, units::metre_per_second, between(-1.0, 1.0),
-              "Constant speed of the hand."),
-        field("observation_s", &ForceDisplayTask::observation_s, units::second, between(0.02, 10.0),
-              "How long the motion is judged from the start of the force."),
-        field("force_limit_N", &ForceDisplayTask::force_limit_N, units::newton, positive_up_to(100.0),
-              "Full scale; the profile is played at a quarter, half and all of it."),
-        field("mismatch", &ForceDisplayTask::mismatch, "Errors of the mismatched model.")};
+    return List{field("kind", &ForceDisplayTask::kind, "Which experiment this is."),
+                field("seed", &ForceDisplayTask::seed, non_negative, "Seed that draws the tremor of each repeat."),
+                field("repeats", &ForceDisplayTask::repeats, between(1, 10000), "How often each case is played."),
+                field("speed_m_per_s", &ForceDisplayTask::speed_m_per_s, units::metre_per_second, between(-1.0, 1.0),
+                      "Constant speed of the hand."),
+                field("observation_s", &ForceDisplayTask::observation_s, units::second, between(0.02, 10.0),
+                      "How long the motion is judged from the start of the force."),
+                field("force_limit_N", &ForceDisplayTask::force_limit_N, units::newton, positive_up_to(100.0),
+                      "Full scale; the profile is played at a quarter, half and all of it."),
+                field("mismatch", &ForceDisplayTask::mismatch, "Errors of the mismatched model.")};
   }
 };
 
@@ -86,10 +85,10 @@ struct ForceDisplayControl {
   control::CancellationStep cancellation_step = control::CancellationStep::exact;
   control::MasterModel model;
   static constexpr auto fields() {
-    return std::tuple{field("cancellation_model", &ForceDisplayControl::cancellation_model,
-                            "How much of master and hand the model tells apart."),
-                      field("cancellation_step", &ForceDisplayControl::cancellation_step, "How the model is advanced."),
-                      field("model", &ForceDisplayControl::model, "The controller's model of master and hand.")};
+    return List{field("cancellation_model", &ForceDisplayControl::cancellation_model,
+                      "How much of master and hand the model tells apart."),
+                field("cancellation_step", &ForceDisplayControl::cancellation_step, "How the model is advanced."),
+                field("model", &ForceDisplayControl::model, "The controller's model of master and hand.")};
   }
 };
 
@@ -102,13 +101,13 @@ struct ForceDisplayParams {
   ForceProfileParams profile;
   ForceDisplayTask task;
   static constexpr auto fields() {
-    return std::tuple{field("master", &ForceDisplayParams::master, "The master device."),
-                      field("operator", &ForceDisplayParams::person, "The person at the master."),
-                      field("servo", &ForceDisplayParams::servo, "The servo clock."),
-                      field("plant", &ForceDisplayParams::plant, "The clock of the simulated plant."),
-                      field("control", &ForceDisplayParams::control, "The model under test."),
-                      field("profile", &ForceDisplayParams::profile, "The force that is played."),
-                      field("task", &ForceDisplayParams::task, "How it is played and judged.")};
+    return List{field("master", &ForceDisplayParams::master, "The master device."),
+                field("operator", &ForceDisplayParams::person, "The person at the master."),
+                field("servo", &ForceDisplayParams::servo, "The servo clock."),
+                field("plant", &ForceDisplayParams::plant, "The clock of the simulated plant."),
+                field("control", &ForceDisplayParams::control, "The model under test."),
+                field("profile", &ForceDisplayParams::profile, "The force that is played."),
+                field("task", &ForceDisplayParams::task, "How it is played and judged.")};
   }
 };
 

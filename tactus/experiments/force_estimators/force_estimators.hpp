@@ -32,7 +32,7 @@ struct ForceEstimatorsTask {
   double press_depth_m = 0.01;
   static constexpr auto fields() {
     using Task = ForceEstimatorsTask;
-    return std::tuple{
+    return List{
         field("kind", &Task::kind, "Which experiment this is."),
         field("free_amplitude_m", &Task::free_amplitude_m, units::metre, between(1e-4, 0.5),
               "Amplitude of the motion to and fro, which ends this far before the wall."),
@@ -56,19 +56,18 @@ struct ForceEstimatorsParams {
   identification::NarxStructure narx;
   static constexpr auto fields() {
     using Params = ForceEstimatorsParams;
-    return std::tuple{
-        field("task", &Params::task, "The motion."),
-        field("slave", &Params::slave, "The slave device."),
-        field("environment", &Params::environment, "The wall before the slave."),
-        field("controller", &Params::controller, "The slave's position controller."),
-        field("servo", &Params::servo, "The servo clock."),
-        field("plant", &Params::plant, "The clock of the simulated plant."),
-        field("inverse_model", &Params::inverse_model,
-              "The inverse model; it runs without prediction and with each kind of it, whichever kind says."),
-        field("disturbance_observer", &Params::disturbance_observer, "The disturbance observer."),
-        field("momentum_observer", &Params::momentum_observer, "The momentum observer."),
-        field("kalman", &Params::kalman, "The Kalman filter."),
-        field("narx", &Params::narx, "The NARX model, fitted to another free motion of the same slave.")};
+    return List{field("task", &Params::task, "The motion."),
+                field("slave", &Params::slave, "The slave device."),
+                field("environment", &Params::environment, "The wall before the slave."),
+                field("controller", &Params::controller, "The slave's position controller."),
+                field("servo", &Params::servo, "The servo clock."),
+                field("plant", &Params::plant, "The clock of the simulated plant."),
+                field("inverse_model", &Params::inverse_model,
+                      "The inverse model; it runs without prediction and with each kind of it, whichever kind says."),
+                field("disturbance_observer", &Params::disturbance_observer, "The disturbance observer."),
+                field("momentum_observer", &Params::momentum_observer, "The momentum observer."),
+                field("kalman", &Params::kalman, "The Kalman filter."),
+                field("narx", &Params::narx, "The NARX model, fitted to another free motion of the same slave.")};
   }
 };
 

@@ -24,7 +24,7 @@ struct HydraulicChirpTask {
   double training_amplitude_m = 0.05;
   static constexpr auto fields() {
     using P = HydraulicChirpTask;
-    return std::tuple{
+    return List{
         field("kind", &P::kind, "The experiment."),
         field("duration_s", &P::duration_s, units::second, between(2.0, 200.0), "Length of the chirp."),
         field("start_frequency_Hz", &P::start_frequency_Hz, units::hertz, between(0.01, 50.0), "Its first frequency."),
@@ -38,8 +38,8 @@ struct HydraulicChirpTask {
 struct HydraulicChirpParams : simulation::HydraulicRigParams {
   HydraulicChirpTask task;
   static constexpr auto fields() {
-    return std::tuple_cat(std::tuple{field("task", &HydraulicChirpParams::task, "The motion.")},
-                          simulation::HydraulicRigParams::fields());
+    return joined(List{field("task", &HydraulicChirpParams::task, "The motion.")},
+                  simulation::HydraulicRigParams::fields());
   }
 };
 

@@ -28,19 +28,18 @@ struct HydraulicRigidContactTask {
   double training_amplitude_m = 0.05;
   static constexpr auto fields() {
     using P = HydraulicRigidContactTask;
-    return std::tuple{
-        field("kind", &P::kind, "The experiment."),
-        field("first_press_m", &P::first_press_m, units::metre, between(1e-3, 0.1),
-              "How far beyond the end stop the person means to go the first time."),
-        field("second_press_m", &P::second_press_m, units::metre, between(1e-3, 0.1), "And the second time."),
-        field("force_division", &P::force_division, units::none, between(1.0, 1e5),
-              "Force at the slave over force at the master."),
-        field("blocks", &P::blocks, between(1, 4), "Prediction blocks of the variant with prediction."),
-        field("delay_s", &P::delay_s, units::second, between(0.0, 0.1), "Of the link, each way."),
-        field("pressure_filter_Hz", &P::pressure_filter_Hz, units::hertz, positive,
-              "Low-pass, second order, of the force from the pressure sensors."),
-        field("training_amplitude_m", &P::training_amplitude_m, units::metre, between(1e-4, 0.09),
-              "Sum of the amplitudes of the sines on which the model is identified.")};
+    return List{field("kind", &P::kind, "The experiment."),
+                field("first_press_m", &P::first_press_m, units::metre, between(1e-3, 0.1),
+                      "How far beyond the end stop the person means to go the first time."),
+                field("second_press_m", &P::second_press_m, units::metre, between(1e-3, 0.1), "And the second time."),
+                field("force_division", &P::force_division, units::none, between(1.0, 1e5),
+                      "Force at the slave over force at the master."),
+                field("blocks", &P::blocks, between(1, 4), "Prediction blocks of the variant with prediction."),
+                field("delay_s", &P::delay_s, units::second, between(0.0, 0.1), "Of the link, each way."),
+                field("pressure_filter_Hz", &P::pressure_filter_Hz, units::hertz, positive,
+                      "Low-pass, second order, of the force from the pressure sensors."),
+                field("training_amplitude_m", &P::training_amplitude_m, units::metre, between(1e-4, 0.09),
+                      "Sum of the amplitudes of the sines on which the model is identified.")};
   }
 };
 
@@ -50,8 +49,8 @@ struct HydraulicMasterParams {
   mechanics::LinearSpring::Params hand{.stiffness_N_per_m = 800.0, .damping_N_s_per_m = 40.0};
   static constexpr auto fields() {
     using P = HydraulicMasterParams;
-    return std::tuple{field("mass_kg", &P::mass_kg, units::kilogram, positive, "Master and hand."),
-                      field("hand", &P::hand, "The arm.")};
+    return List{field("mass_kg", &P::mass_kg, units::kilogram, positive, "Master and hand."),
+                field("hand", &P::hand, "The arm.")};
   }
 };
 
@@ -59,9 +58,9 @@ struct HydraulicRigidContactParams : simulation::HydraulicRigParams {
   HydraulicRigidContactTask task;
   HydraulicMasterParams master;
   static constexpr auto fields() {
-    return std::tuple_cat(std::tuple{field("task", &HydraulicRigidContactParams::task, "The motion and the loop."),
-                                     field("master", &HydraulicRigidContactParams::master, "The master.")},
-                          simulation::HydraulicRigParams::fields());
+    return joined(List{field("task", &HydraulicRigidContactParams::task, "The motion and the loop."),
+                       field("master", &HydraulicRigidContactParams::master, "The master.")},
+                  simulation::HydraulicRigParams::fields());
   }
 };
 

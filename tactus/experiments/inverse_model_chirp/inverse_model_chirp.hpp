@@ -26,7 +26,7 @@ struct InverseModelChirpTask {
   double fit_start_frequency_Hz = 30.0;
   static constexpr auto fields() {
     using P = InverseModelChirpTask;
-    return std::tuple{
+    return List{
         field("kind", &P::kind, "The experiment."),
         field("duration_s", &P::duration_s, units::second, between(1.0, 200.0), "Length of each trajectory."),
         field("start_frequency_Hz", &P::start_frequency_Hz, units::hertz, between(0.01, 100.0), "Chirp: first."),
@@ -44,10 +44,10 @@ struct InverseModelChirpParams {
   control::InverseModelEstimator::Params estimator;
   static constexpr auto fields() {
     using P = InverseModelChirpParams;
-    return std::tuple{field("task", &P::task, "Trajectories and sampling."),
-                      field("slave", &P::slave, "The simulated slave."),
-                      field("estimator", &P::estimator,
-                            "What the inverse model believes; blocks and time constant are set by the experiment.")};
+    return List{field("task", &P::task, "Trajectories and sampling."),
+                field("slave", &P::slave, "The simulated slave."),
+                field("estimator", &P::estimator,
+                      "What the inverse model believes; blocks and time constant are set by the experiment.")};
   }
 };
 

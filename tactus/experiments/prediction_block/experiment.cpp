@@ -28,7 +28,7 @@ struct PredictionBlockTask {
   double tolerance = 0.1;
   static constexpr auto fields() {
     using P = PredictionBlockTask;
-    return std::tuple{
+    return List{
         field("kind", &P::kind, "The experiment."),
         field("sample_rate_Hz", &P::sample_rate_Hz, units::hertz, between(100.0, 1e5), "At which the predictors run."),
         field("lag_s", &P::lag_s, units::second, between(1e-3, 1.0),
@@ -44,10 +44,10 @@ struct PredictionBlockParams {
   signal::PolynomialPredictor::Params polynomial;
   signal::KalmanPredictor::Params kalman;
   static constexpr auto fields() {
-    return std::tuple{field("task", &PredictionBlockParams::task, "What is shown."),
-                      field("block", &PredictionBlockParams::block, "Each of the blocks."),
-                      field("polynomial", &PredictionBlockParams::polynomial, "Their rival that extrapolates."),
-                      field("kalman", &PredictionBlockParams::kalman, "Their rival that filters.")};
+    return List{field("task", &PredictionBlockParams::task, "What is shown."),
+                field("block", &PredictionBlockParams::block, "Each of the blocks."),
+                field("polynomial", &PredictionBlockParams::polynomial, "Their rival that extrapolates."),
+                field("kalman", &PredictionBlockParams::kalman, "Their rival that filters.")};
   }
 };
 

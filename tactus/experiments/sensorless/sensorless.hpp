@@ -17,16 +17,15 @@ constexpr auto enumerators(SensorlessKind) { return std::array{Enumerator{Sensor
 struct SensorlessTask : GainSearch {
   SensorlessKind kind = SensorlessKind::sensorless;
   static constexpr auto fields() {
-    return std::tuple_cat(std::tuple{field("kind", &SensorlessTask::kind, "Which experiment this is.")},
-                          GainSearch::fields());
+    return joined(List{field("kind", &SensorlessTask::kind, "Which experiment this is.")}, GainSearch::fields());
   }
 };
 
 struct SensorlessParams : simulation::Teleoperator::Params {
   SensorlessTask task;
   static constexpr auto fields() {
-    return std::tuple_cat(simulation::Teleoperator::Params::fields(),
-                          std::tuple{field("task", &SensorlessParams::task, "The taps and the search.")});
+    return joined(simulation::Teleoperator::Params::fields(),
+                  List{field("task", &SensorlessParams::task, "The taps and the search.")});
   }
 };
 

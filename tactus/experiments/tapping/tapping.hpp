@@ -25,7 +25,7 @@ struct TapSeries {
   double model_error = 0.0;
   ModelMismatch mismatch;
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("taps", &TapSeries::taps, between(1, 100000), "Number of taps in the ensemble."),
         field("seed", &TapSeries::seed, non_negative, "Seed that draws the ensemble and the noise."),
         field("slowest_m_per_s", &TapSeries::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
@@ -51,16 +51,14 @@ constexpr auto enumerators(TappingKind) { return std::array{Enumerator{TappingKi
 struct TappingTask : TapSeries {
   TappingKind kind = TappingKind::tapping;
   static constexpr auto fields() {
-    return std::tuple_cat(std::tuple{field("kind", &TappingTask::kind, "Which experiment this is.")},
-                          TapSeries::fields());
+    return joined(List{field("kind", &TappingTask::kind, "Which experiment this is.")}, TapSeries::fields());
   }
 };
 
 struct TappingParams : simulation::Teleoperator::Params {
   TappingTask task;
   static constexpr auto fields() {
-    return std::tuple_cat(simulation::Teleoperator::Params::fields(),
-                          std::tuple{field("task", &TappingParams::task, "The taps.")});
+    return joined(simulation::Teleoperator::Params::fields(), List{field("task", &TappingParams::task, "The taps.")});
   }
 };
 
