@@ -12,15 +12,15 @@ constexpr std::size_t head_bytes = 7;  // up to the length
 constexpr std::size_t crc_bytes = 2;
 
 constexpr std::array<std::uint16_t, 256> crc_table = [] {
-  std::array<std::uint16_t, 256> table{};
-  for (std::size_t i = 0; i < table.size(); ++i) {
+  std::array<std::uint16_t, 256> remainders{};
+  for (std::size_t i = 0; i < remainders.size(); ++i) {
     auto crc = static_cast<std::uint16_t>(i << 8);
     for (int bit = 0; bit < 8; ++bit) {
       crc = static_cast<std::uint16_t>((crc & 0x8000) != 0 ? (crc << 1) ^ 0x8005 : crc << 1);
     }
-    table[i] = crc;
+    remainders[i] = crc;
   }
-  return table;
+  return remainders;
 }();
 
 /// Whether the last three of `bytes` are those after which a byte is stuffed.
