@@ -32,7 +32,6 @@ constexpr std::array enabling{ServoStep{write, bus_watchdog, 0}, ServoStep{write
 constexpr std::array looks{hardware_error, torque_enable, bus_watchdog, voltage_and_heat};
 
 constexpr ServoTable table{.hush = hush,
-                           .asking = asking,
                            .enabling = enabling,
                            .looks = looks,
                            .power = torque_enable,
@@ -41,18 +40,18 @@ constexpr ServoTable table{.hush = hush,
                            .steps_until_wrap = std::int64_t{1} << 32,
                            .silence_ns = 100'000'000};  // that of the watchdog
 
-constexpr double velocity_unit_rad_per_s = 0.229 * 2.0 * std::numbers::pi / 60.0;
 constexpr std::int64_t plain_cycles = 1000;
 constexpr std::int64_t latched_watchdog = 0xff;  // -1
 constexpr std::size_t status_bytes = 11;         // of an answer without data
 constexpr std::size_t fast_head_bytes = 8, fast_block_bytes = 4;
 
-constexpr std::array<ServoModel, 6> models{{{"XL330-M077", 1190, 0.001, 1750, 0.215 / 1.47},
-                                            {"XL330-M288", 1200, 0.001, 1750, 0.52 / 1.47},
-                                            {"XC330-M288", 1240, 0.001, 2352, 0.93 / 1.80},
-                                            {"XC330-T288", 1220, 0.001, 910, 1.0 / 1.15873},
-                                            {"XM430-W210", 1030, 0.00269, 1193, 1.0 / (371.7 * 0.00269)},
-                                            {"XM430-W350", 1020, 0.00269, 1193, 4.1 / 2.3}}};
+constexpr double velocity_unit = 0.229 * 2.0 * std::numbers::pi / 60.0;  // rad/s
+constexpr std::array<ServoModel, 6> models{{{"XL330-M077", 1190, 0.001, 1750, 0.215 / 1.47, velocity_unit},
+                                            {"XL330-M288", 1200, 0.001, 1750, 0.52 / 1.47, velocity_unit},
+                                            {"XC330-M288", 1240, 0.001, 2352, 0.93 / 1.80, velocity_unit},
+                                            {"XC330-T288", 1220, 0.001, 910, 1.0 / 1.15873, velocity_unit},
+                                            {"XM430-W210", 1030, 0.00269, 1193, 1.0 / (371.7 * 0.00269), velocity_unit},
+                                            {"XM430-W350", 1020, 0.00269, 1193, 4.1 / 2.3, velocity_unit}}};
 
 std::int64_t signed_number(std::span<const std::uint8_t> bytes) noexcept {
   const std::int64_t value = little_endian(bytes);
@@ -98,9 +97,8 @@ Result<DynamixelBus> DynamixelBus::make(const Params& params) {
   return DynamixelBus(params);
 }
 
-DynamixelBus::DynamixelBus(const Params& params)
-    : ServoBus(table, params.bits_per_s, velocity_unit_rad_per_s), fast_(params.fast_sync_read) {
-  for (const Motor& motor : params.motors) add(static_cast<std::uint8_t>(motor.id), servo_model(motor.model));
+DynamixelBus::DynamixelBus(const Params& params) : ServoBus(table, params.bits_per_s), fast_(params.fast_sync_read) {
+  for (const Motor& motor : params.motors) add(static_cast<std::uint8_t>(motor.id), servo_model(motor.model), asking);
 }
 
 void DynamixelBus::find(std::span<const std::uint8_t> bytes) noexcept {
@@ -130,7 +128,7 @@ void DynamixelBus::take(std::span<const std::uint8_t> packet) noexcept {
   }
 }
 
-ServoPacket DynamixelBus::read(std::uint8_t id, Register place) const noexcept {
+ServoPacket DynamixelBus::read(std::uint8_t id, Register place) noexcept {
   ServoPacket parameters;
   parameters.put(place.address, 2);
   parameters.put(place.bytes, 2);

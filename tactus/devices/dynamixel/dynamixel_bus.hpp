@@ -55,7 +55,7 @@ class DynamixelBus final : public ServoBus {
 
   void find(std::span<const std::uint8_t> bytes) noexcept override;
   void give_up() noexcept override;
-  ServoPacket read(std::uint8_t id, Register place) const noexcept override;
+  ServoPacket read(std::uint8_t id, Register place) noexcept override;
   ServoPacket write(std::uint8_t id, Register place, std::int64_t value) noexcept override;
   ServoPacket write_all(Register place, std::span<const std::int64_t> values) const noexcept override;
   ServoPacket read_states() noexcept override;

@@ -19,10 +19,11 @@ constexpr std::int64_t cycles_per_look = 32;
 }  // namespace
 }  // namespace servo
 
-void ServoBus::add(std::uint8_t id, const ServoModel& model) {
+void ServoBus::add(std::uint8_t id, const ServoModel& model, std::span<const ServoStep> asking) {
   Servo& servo = servos_[count_];
   servo.id = ids_[count_] = id;
   servo.model = model;
+  servo.asking = asking;
   servo.limit = model.current_limit;
   ++count_;
 }
@@ -103,7 +104,7 @@ void ServoBus::take(Servo& servo, const State& state) noexcept {
   if (now_ns_ - servo.reading.heard_ns > table_.silence_ns / 2) servo.looks = 0xff;
   MotorReading& reading = servo.reading;
   reading.position_rad = static_cast<double>(servo.place) * (turn_rad / static_cast<double>(table_.steps_per_turn));
-  reading.velocity_rad_per_s = static_cast<double>(state.velocity) * velocity_unit_rad_per_s_;
+  reading.velocity_rad_per_s = static_cast<double>(state.velocity) * servo.model.velocity_unit_rad_per_s;
   reading.torque_Nm = static_cast<double>(state.current) * servo.model.current_unit_A * servo.model.torque_Nm_per_A;
   if (!std::isnan(state.temperature_C)) reading.temperature_C = state.temperature_C;
   reading.heard_ns = now_ns_;
@@ -159,7 +160,7 @@ std::span<const std::uint8_t> ServoBus::ask() noexcept {
     return sent();
   }
   if (asked_ < count_) {
-    const ServoStep& step = table_.asking[asked_step_];
+    const ServoStep& step = servos_[asked_].asking[asked_step_];
     const bool reads = step.kind != ServoStep::Kind::write && !keeping_;
     return send_errand({Purpose::asking, asked_, step.place, reads, asked_step_}, step.value);
   }
@@ -173,7 +174,7 @@ std::span<const std::uint8_t> ServoBus::ask() noexcept {
 void ServoBus::ask_next(bool same_servo) noexcept {
   keeping_ = false;
   servos_[asked_].tries = 0;
-  if (same_servo && ++asked_step_ < table_.asking.size()) return;
+  if (same_servo && ++asked_step_ < servos_[asked_].asking.size()) return;
   asked_step_ = 0;
   ++asked_;
 }
@@ -263,7 +264,7 @@ void ServoBus::errand_answered(std::span<const std::uint8_t> data) noexcept {
   const std::int64_t value = little_endian(data);
   switch (errand_.purpose) {
     case Purpose::asking: {
-      const ServoStep& step = table_.asking[errand_.which];
+      const ServoStep& step = servo.asking[errand_.which];
       Wrong wrong = Wrong::nothing;
       if (errand_.reads && step.kind == ServoStep::Kind::check) wrong = check(errand_.motor, errand_.place, value);
       if (wrong != Wrong::nothing) return found_wrong(wrong, value);

@@ -17,7 +17,8 @@ struct ServoModel {
   std::int64_t number;         ///< that it tells of itself; 0 where no page says it, and then it is not compared
   double current_unit_A;       ///< of its goal and its present current
   std::int64_t current_limit;  ///< the largest goal that it can be set to take, in units; 0: it takes no current
-  double torque_Nm_per_A;      ///< at the output, by the maker's stall torque; friction is not in it
+  double torque_Nm_per_A;      ///< at the output; friction of the gear is not in it
+  double velocity_unit_rad_per_s;
 };
 
 /// Some bytes of a servo's control table.
@@ -40,7 +41,6 @@ struct ServoStep {
 /// How servos of one make are spoken to.
 struct ServoTable {
   std::span<const ServoStep> hush;      ///< written to all at once before anything is asked; nobody answers
-  std::span<const ServoStep> asking;    ///< for each servo, before the bus is ready
   std::span<const ServoStep> enabling;  ///< for each servo, when it is given power; only writes
   std::span<const Register> looks;      ///< read now and then, of one servo at a time; the first tells its error
   Register power, goal;
@@ -88,10 +88,9 @@ class ServoBus : public MotorBus {
   /// What was found while asking.
   enum class Wrong : std::uint8_t { nothing, silent, model, limit, refused };
 
-  ServoBus(const ServoTable& table, std::int64_t bits_per_s, double velocity_unit_rad_per_s)
-      : table_(table), bits_per_s_(bits_per_s), velocity_unit_rad_per_s_(velocity_unit_rad_per_s) {}
-  /// Before anything is said. At most `most_servos`.
-  void add(std::uint8_t id, const ServoModel& model);
+  ServoBus(const ServoTable& table, std::int64_t bits_per_s) : table_(table), bits_per_s_(bits_per_s) {}
+  /// Before anything is said, with what it is asked before the bus is ready. At most `most_servos`.
+  void add(std::uint8_t id, const ServoModel& model, std::span<const ServoStep> asking);
 
   [[nodiscard]] const ServoModel& model(std::size_t motor) const noexcept { return servos_[motor].model; }
   [[nodiscard]] std::uint8_t id(std::size_t motor) const noexcept { return servos_[motor].id; }
@@ -112,7 +111,7 @@ class ServoBus : public MotorBus {
   virtual void find(std::span<const std::uint8_t> bytes) noexcept = 0;
   /// The answer that began does not end.
   virtual void give_up() noexcept = 0;
-  virtual ServoPacket read(std::uint8_t id, Register place) const noexcept = 0;
+  virtual ServoPacket read(std::uint8_t id, Register place) noexcept = 0;
   virtual ServoPacket write(std::uint8_t id, Register place, std::int64_t value) noexcept = 0;
   /// Each servo's value, but for those that take no goal; empty where none does.
   virtual ServoPacket write_all(Register place, std::span<const std::int64_t> values) const noexcept = 0;
@@ -137,6 +136,7 @@ class ServoBus : public MotorBus {
     MotorReading reading;
     MotorCommand wanted;
     ServoModel model{};
+    std::span<const ServoStep> asking;
     std::uint8_t id = 0;
     std::int64_t limit = 0;
     std::int64_t place = 0, last = 0;  ///< unwrapped, and as on the wire
@@ -180,7 +180,6 @@ class ServoBus : public MotorBus {
 
   ServoTable table_;
   std::int64_t bits_per_s_;
-  double velocity_unit_rad_per_s_;
   std::array<Servo, most_servos> servos_{};
   std::array<std::uint8_t, most_servos> ids_{};
   std::size_t count_ = 0;
