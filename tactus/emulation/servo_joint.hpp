@@ -22,6 +22,10 @@ class ServoJoint {
   /// The torque acted since the last call.
   void advance(std::int64_t now_ns, double torque_Nm) noexcept {
     now_ns_ = std::max(now_ns_, now_ns - longest_ns);
+    if (velocity_rad_per_s == 0.0 && std::fabs(torque_Nm) <= friction_Nm) {
+      now_ns_ += (now_ns - now_ns_) / step_ns * step_ns;  // it stays where it is
+      return;
+    }
     const double kick = friction_Nm / inertia_kg_m2 * step_s;
     for (; now_ns_ + step_ns <= now_ns; now_ns_ += step_ns) {
       double v = velocity_rad_per_s + (torque_Nm - drag_Nm_s_per_rad * velocity_rad_per_s) / inertia_kg_m2 * step_s;

@@ -121,8 +121,8 @@ void DynamixelBus::take(std::span<const std::uint8_t> packet) noexcept {
   if (packet_heard.id != broadcast) return answered(packet_heard.id, content[0], content.subspan(1));
   // A block for each servo; the CRC of the last one is the packet's.
   constexpr std::size_t stride = present.bytes + fast_block_bytes;
-  if (content.size() + 2 != motors() * stride) return;
-  for (std::size_t i = 0; i < motors(); ++i) {
+  if (content.size() + 2 != asked().size() * stride) return;
+  for (std::size_t i = 0; i < asked().size(); ++i) {
     const auto block = content.subspan(i * stride, stride - 2);
     answered(block[1], block[0], block.subspan(2));
   }
@@ -157,7 +157,7 @@ ServoPacket DynamixelBus::read_states() noexcept {
   ServoPacket parameters;
   parameters.put(present.address, 2);
   parameters.put(present.bytes, 2);
-  parameters.put(ids());
+  parameters.put(asked());
   const bool fast = fast_ && plain_left_ == 0;
   return encode(broadcast, fast ? Instruction::fast_sync_read : Instruction::sync_read, parameters.bytes());
 }
@@ -174,8 +174,8 @@ std::size_t DynamixelBus::answer_bytes(std::size_t data) const noexcept { return
 
 std::size_t DynamixelBus::states_bytes() const noexcept {
   const bool fast = fast_ && plain_left_ == 0;
-  return fast ? fast_head_bytes + motors() * (present.bytes + fast_block_bytes)
-              : motors() * answer_bytes(present.bytes);
+  return fast ? fast_head_bytes + asked().size() * (present.bytes + fast_block_bytes)
+              : asked().size() * answer_bytes(present.bytes);
 }
 
 bool DynamixelBus::read_state(std::size_t, std::span<const std::uint8_t> data, State& state) const noexcept {

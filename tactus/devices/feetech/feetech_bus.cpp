@@ -172,13 +172,13 @@ ServoPacket FeetechBus::read_states() noexcept {
   ServoPacket parameters;
   parameters.put(static_cast<std::uint8_t>(present_.address));
   parameters.put(present_.bytes);
-  parameters.put(ids());
+  parameters.put(asked());
   return encode(broadcast, Instruction::sync_read, parameters.bytes());
 }
 
 std::size_t FeetechBus::answer_bytes(std::size_t data) const noexcept { return status_bytes + data; }
 
-std::size_t FeetechBus::states_bytes() const noexcept { return motors() * answer_bytes(present_.bytes); }
+std::size_t FeetechBus::states_bytes() const noexcept { return asked().size() * answer_bytes(present_.bytes); }
 
 bool FeetechBus::read_state(std::size_t motor, std::span<const std::uint8_t> data, State& state) const noexcept {
   if (data.size() != present_.bytes) return false;

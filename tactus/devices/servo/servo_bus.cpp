@@ -11,7 +11,9 @@ namespace {
 
 /// Beyond the time of the bytes: a USB adapter collects for a millisecond and hands over in the next frame.
 constexpr std::int64_t patience_ns = 2'000'000;
-/// How often a servo is asked the same before it counts as silent.
+/// How often a silent servo is asked again: each time the others wait for it.
+constexpr std::int64_t again_ns = 50'000'000;
+/// How often a servo is asked in a row before it counts as one that does not answer.
 constexpr std::size_t most_tries = 10;
 /// One look at one servo in so many cycles: less than a hundredth of the bus.
 constexpr std::int64_t cycles_per_look = 32;
@@ -78,13 +80,10 @@ void ServoBus::heard(const Answer& answer) noexcept {
     return errand_answered(answer.data);
   }
   State state{};
-  if (servo.answered || answer.refusal != 0 || !read_state(motor, answer.data, state)) return;
+  if (!servo.asked || servo.answered || answer.refusal != 0 || !read_state(motor, answer.data, state)) return;
   servo.answered = true;
   take(servo, state);
-  if (std::all_of(servos_.begin(), servos_.begin() + static_cast<std::ptrdiff_t>(count_),
-                  [](const Servo& each) { return each.answered; })) {
-    cycle_ended();
-  }
+  if (--missing_ == 0) cycle_ended();
 }
 
 void ServoBus::take(Servo& servo, const State& state) noexcept {
@@ -100,15 +99,19 @@ void ServoBus::take(Servo& servo, const State& state) noexcept {
     servo.placed = true;
   }
   servo.last = state.position;
-  // It may have been without power meanwhile.
-  if (now_ns_ - servo.reading.heard_ns > table_.silence_ns / 2) servo.looks = 0xff;
+  answered(servo);
   MotorReading& reading = servo.reading;
   reading.position_rad = static_cast<double>(servo.place) * (turn_rad / static_cast<double>(table_.steps_per_turn));
   reading.velocity_rad_per_s = static_cast<double>(state.velocity) * servo.model.velocity_unit_rad_per_s;
   reading.torque_Nm = static_cast<double>(state.current) * servo.model.current_unit_A * servo.model.torque_Nm_per_A;
   if (!std::isnan(state.temperature_C)) reading.temperature_C = state.temperature_C;
-  reading.heard_ns = now_ns_;
-  ++reading.answers;
+}
+
+void ServoBus::answered(Servo& servo) noexcept {
+  // It may have been without power meanwhile, or its watchdog may have let go.
+  if (now_ns_ - servo.reading.heard_ns > table_.silence_ns / 2) servo.looks = 0xff;
+  servo.reading.heard_ns = now_ns_;
+  ++servo.reading.answers;
 }
 
 void ServoBus::wait(Waiting for_what, std::size_t answer_bytes) noexcept {
@@ -186,13 +189,9 @@ std::span<const std::uint8_t> ServoBus::cycle() noexcept {
     if (!errand.empty()) return errand;
   }
   if (!read_due_) {
-    const bool was_away = cycle_began_ns_ >= 0 && now_ns_ - cycle_began_ns_ > table_.silence_ns / 2;
-    cycle_began_ns_ = now_ns_;
     std::array<std::int64_t, most_servos> goals{};
     for (std::size_t i = 0; i < count_; ++i) {
       goals[i] = goal(servos_[i]);
-      servos_[i].answered = false;
-      if (was_away) servos_[i].looks = 0xff;  // their watchdogs may have let go
     }
     packet_ = write_all(table_.goal, goals);
     read_due_ = true;
@@ -200,26 +199,39 @@ std::span<const std::uint8_t> ServoBus::cycle() noexcept {
     if (packet_.size() > 0) return sent();
   }
   read_due_ = false;
+  ask_for_states();
   packet_ = read_states();
   wait(Waiting::states, states_bytes());
   return sent();
+}
+
+void ServoBus::ask_for_states() noexcept {
+  const bool again = now_ns_ - asked_again_ns_ >= servo::again_ns;
+  if (again) asked_again_ns_ = now_ns_;
+  missing_ = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    servos_[i].answered = false;
+    servos_[i].asked = again || servos_[i].missed < servo::most_tries;
+    if (servos_[i].asked) asked_ids_[missing_++] = servos_[i].id;
+  }
+  for (std::size_t i = 0; missing_ == 0 && i < count_; ++i) servos_[i].asked = true;  // all are silent
+  if (missing_ == 0) std::copy_n(ids_.begin(), missing_ = count_, asked_ids_.begin());
+  asked_count_ = missing_;
 }
 
 void ServoBus::cycle_ended() noexcept {
   waiting_ = Waiting::nothing;
   errand_turn_ = true;
   ++cycles_;
-  bool all = true;
   for (std::size_t i = 0; i < count_; ++i) {
     Servo& servo = servos_[i];
-    all = all && servo.answered;
-    servo.missed = servo.answered ? 0 : servo.missed + 1;
+    if (servo.asked) servo.missed = servo.answered ? 0 : servo.missed + 1;
     // Once is not enough: where this program stood still, it was not the servo that was silent.
     if (servo.missed > 1 && now_ns_ - servo.reading.heard_ns > table_.silence_ns) fail(servo, MotorFault::silent);
     const bool gone = servo.answered && servo.ails == MotorFault::none && servo.looks == 0;
     if (gone && !servo.power && !wants_power(servo)) servo.reading.fault = MotorFault::none;
   }
-  read_ended(all);
+  read_ended(missing_ == 0);
   if (cycles_ % servo::cycles_per_look != 0) return;
   const std::size_t looks = table_.looks.size();
   servos_[look_turn_ / looks % count_].looks |= static_cast<std::uint8_t>(1U << (look_turn_ % looks));
@@ -259,8 +271,7 @@ std::span<const std::uint8_t> ServoBus::next_errand() noexcept {
 void ServoBus::errand_answered(std::span<const std::uint8_t> data) noexcept {
   waiting_ = Waiting::nothing;
   Servo& servo = servos_[errand_.motor];
-  servo.reading.heard_ns = now_ns_;
-  ++servo.reading.answers;
+  answered(servo);
   const std::int64_t value = little_endian(data);
   switch (errand_.purpose) {
     case Purpose::asking: {

@@ -94,7 +94,8 @@ class ServoBus : public MotorBus {
 
   [[nodiscard]] const ServoModel& model(std::size_t motor) const noexcept { return servos_[motor].model; }
   [[nodiscard]] std::uint8_t id(std::size_t motor) const noexcept { return servos_[motor].id; }
-  [[nodiscard]] std::span<const std::uint8_t> ids() const noexcept { return {ids_.data(), count_}; }
+  /// Whose state is asked for in this cycle: of all but those that were silent a moment ago.
+  [[nodiscard]] std::span<const std::uint8_t> asked() const noexcept { return {asked_ids_.data(), asked_count_}; }
   /// Only where the servo's own limit is narrower than its model's.
   void limit(std::size_t motor, std::int64_t current) noexcept { servos_[motor].limit = current; }
   /// What ails a servo, by its registers; `none` where nothing does any more.
@@ -115,7 +116,7 @@ class ServoBus : public MotorBus {
   virtual ServoPacket write(std::uint8_t id, Register place, std::int64_t value) noexcept = 0;
   /// Each servo's value, but for those that take no goal; empty where none does.
   virtual ServoPacket write_all(Register place, std::span<const std::int64_t> values) const noexcept = 0;
-  /// Asks all for their state.
+  /// Asks those that are `asked` for their state.
   virtual ServoPacket read_states() noexcept = 0;
   /// The cycle that `read_states` began is over.
   virtual void read_ended(bool all_answered) noexcept = 0;
@@ -141,9 +142,9 @@ class ServoBus : public MotorBus {
     std::int64_t limit = 0;
     std::int64_t place = 0, last = 0;  ///< unwrapped, and as on the wire
     bool placed = false;
-    bool power = false;       ///< it may have power; `reading.enabled` says that it told so
-    bool answered = false;    ///< in this cycle
-    std::int64_t missed = 0;  ///< cycles in a row
+    bool power = false;                    ///< it may have power; `reading.enabled` says that it told so
+    bool asked = false, answered = false;  ///< in this cycle
+    std::size_t missed = 0;                ///< cycles in a row
     MotorFault ails = MotorFault::none;
     std::size_t step = 0;    ///< of its enabling
     std::size_t tries = 0;   ///< of that step
@@ -168,10 +169,12 @@ class ServoBus : public MotorBus {
   std::span<const std::uint8_t> next_errand() noexcept;
   void ask_next(bool same_servo) noexcept;
   void wait(Waiting for_what, std::size_t answer_bytes) noexcept;
+  void ask_for_states() noexcept;
   void cycle_ended() noexcept;
   void errand_answered(std::span<const std::uint8_t> data) noexcept;
   void errand_failed(Wrong how, std::uint8_t code) noexcept;
   void take(Servo& servo, const State& state) noexcept;
+  void answered(Servo& servo) noexcept;
   void fail(Servo& servo, MotorFault fault) noexcept;
   [[nodiscard]] static bool wants_power(const Servo& servo) noexcept;
   [[nodiscard]] static std::int64_t goal(const Servo& servo) noexcept;
@@ -181,8 +184,9 @@ class ServoBus : public MotorBus {
   ServoTable table_;
   std::int64_t bits_per_s_;
   std::array<Servo, most_servos> servos_{};
-  std::array<std::uint8_t, most_servos> ids_{};
-  std::size_t count_ = 0;
+  std::array<std::uint8_t, most_servos> ids_{}, asked_ids_{};
+  std::size_t count_ = 0, asked_count_ = 0, missing_ = 0;
+  std::int64_t asked_again_ns_ = 0;
   BusState state_ = BusState::asking;
   ServoPacket packet_;
   Errand errand_{};
@@ -193,7 +197,7 @@ class ServoBus : public MotorBus {
   bool keeping_ = false;       ///< the register that was read is to be written
   std::size_t hushed_ = 0, asked_ = 0, asked_step_ = 0;
   std::size_t turn_ = 0, look_turn_ = 0;
-  std::int64_t now_ns_ = 0, deadline_ns_ = 0, said_bytes_ = 0, cycle_began_ns_ = -1;
+  std::int64_t now_ns_ = 0, deadline_ns_ = 0, said_bytes_ = 0;
   std::int64_t cycles_ = 0, limited_ = 0;
 };
 

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
+#include <tests/allocation_counter.hpp>
 
 /// The driver joined to its peer in virtual time, over a line that takes the time that a real one takes.
 namespace tactus::devices::feetech::bus_test {
@@ -216,6 +217,7 @@ TEST(FeetechBus, WhateverTheLineDoesNoServoGivesMoreThanItWasAskedFor) {
       for (std::size_t i = 0; i < 6; ++i) {
         const bool broken = i == 2 && fault != ServoFault::none;
         EXPECT_LE(rig.peer.largest_current(i), most) << seed;
+        EXPECT_EQ(rig.peer.stored(i, 33, 1), 2) << seed;  // also of whom was without power: it was unlocked
         const MotorFault expected = !broken                    ? MotorFault::none
                                     : fault == ServoFault::hot ? MotorFault::hot
                                                                : MotorFault::silent;
@@ -225,6 +227,18 @@ TEST(FeetechBus, WhateverTheLineDoesNoServoGivesMoreThanItWasAskedFor) {
       }
     }
   }
+}
+
+TEST(FeetechBus, NeitherItNorItsPeerAllocatesOnceMade) {
+  Rig rig({.line = {.corrupt = 0.01, .garbage = 0.01, .split = 0.01, .echo = 1},
+           .fault = ServoFault::power_cycle,
+           .fault_from_ns = 700 * ms});
+  const std::uint64_t before = laws::own_allocation_count();
+  rig.run(600 * ms);
+  rig.command_all(0.05, 1);
+  rig.run(second);
+  EXPECT_EQ(laws::own_allocation_count(), before);
+  EXPECT_GT(rig.bus.cycles(), 100);
 }
 
 TEST(FeetechBus, WhatCannotBeABusIsRefused) {
