@@ -50,7 +50,8 @@ struct Fault {
   std::int64_t from_ns = 0;  ///< after the peer's first call
   std::int64_t until_ns = wire::never_ns;
 
-  [[nodiscard]] bool concerns(std::uint32_t id) const noexcept { return motor == 0 || motor == id; }
+  /// A motor of this identifier; 0: the adapter.
+  [[nodiscard]] bool concerns(std::uint32_t id) const noexcept { return motor == 0 || id == 0 || motor == id; }
   [[nodiscard]] bool lasts_at(std::int64_t since_start_ns) const noexcept {
     return since_start_ns >= from_ns && since_start_ns < until_ns;
   }
