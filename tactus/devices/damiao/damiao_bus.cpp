@@ -171,10 +171,7 @@ void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t 
   }
   motor.wrapped_rad = told->position_rad;
   motor.status = told->status;
-  if (motor.owed > 0) {
-    --motor.owed;
-    progress_ns_ = now_ns;
-  }
+  if (std::exchange(motor.owed, false)) progress_ns_ = now_ns;
   motor.missed = 0;
   reading.position_rad = told->position_rad + motor.turns * turn_rad;
   reading.velocity_rad_per_s = told->velocity_rad_per_s;
@@ -204,7 +201,7 @@ bool DamiaoBus::all_answered() const noexcept {
   bool any = false;
   for (const Motor& motor : motors_) {
     if (motor.missed >= missed_is_silent) continue;
-    if (motor.owed > 0) return false;
+    if (motor.owed) return false;
     any = true;
   }
   return any;
@@ -219,7 +216,7 @@ void DamiaoBus::begin_cycle(std::int64_t now_ns) noexcept {
       if ((motor.missed >= missed_is_silent) != silent) continue;
       if (silent && now_ns < motor.asked_again_ns) continue;
       motor.asked_again_ns = now_ns + silent_asked_every_ns;
-      ++motor.owed;
+      motor.owed = true;
       send(frame_for(motor), now_ns);
     }
   }
@@ -229,13 +226,9 @@ void DamiaoBus::end_cycle() noexcept {
   in_cycle_ = false;
   ++cycles_;
   for (Motor& motor : motors_) {
-    // What was late may come in the next cycle, and must not be taken for the answer to that one.
-    motor.late = motor.owed > 0 && !motor.late;
-    if (motor.owed > 0 && motor.reading.heard_ns < cycle_began_ns_) {
-      ++motor.missed;
-      judge(motor);
-    }
-    motor.owed = motor.late ? 1 : 0;
+    if (!std::exchange(motor.owed, false)) continue;
+    ++motor.missed;
+    judge(motor);
   }
 }
 

@@ -203,6 +203,46 @@ TEST(DamiaoBus, OneSilentMotorCostsNoOtherItsData) {
   }
 }
 
+TEST(DamiaoBus, ALostAnswerCostsNoLaterCycleItsTime) {
+  const auto cycles = [](std::vector<EmulatedFault> faults) {
+    Bench bench({.motors = 4, .faults = std::move(faults)});
+    bench.run(350 * ms);
+    const std::int64_t before = bench.bus->cycles();
+    bench.run(1000 * ms);
+    return static_cast<double>(bench.bus->cycles() - before);
+  };
+  const EmulatedFault lost{.kind = FaultKind::silence, .motor = 2, .from_ns = 300 * ms, .until_ns = 302 * ms};
+  EXPECT_GE(cycles({lost}), 0.99 * cycles({}));
+}
+
+/// Counts what the driver says.
+class Counted final : public wire::WireEnd {
+ public:
+  explicit Counted(wire::WireEnd& peer) : peer_(&peer) {}
+  void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override {
+    ++packets;
+    peer_->hear(bytes, now_ns);
+  }
+  std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override { return peer_->say(now_ns); }
+  [[nodiscard]] std::int64_t wakes_ns() const noexcept override { return peer_->wakes_ns(); }
+  std::int64_t packets = 0;
+
+ private:
+  wire::WireEnd* peer_;
+};
+
+TEST(DamiaoBus, WhereAllAreSilentEachIsAskedEvery10msSoThatNothingPilesUpInAnAdapter) {
+  Bench bench(
+      {.motors = 7, .framing = Framing::socketcan, .faults = {{.kind = FaultKind::silence, .from_ns = 300 * ms}}});
+  Counted counted(*bench.peer);
+  wire::join(*bench.bus, counted, 0, 400 * ms);
+  EXPECT_EQ(bench.bus->reading(6).fault, MotorFault::silent);
+  const std::int64_t before = counted.packets;
+  wire::join(*bench.bus, counted, 400 * ms, 500 * ms);
+  EXPECT_LE(counted.packets - before, 7 * 11);
+  EXPECT_GE(counted.packets - before, 7 * 8);
+}
+
 TEST(DamiaoBus, ASilentMotorIsToldAndComesBackWithoutPower) {
   const EmulatedFault silence{.kind = FaultKind::silence, .motor = 2, .from_ns = 300 * ms, .until_ns = 400 * ms};
   Bench bench({.faults = {silence}});
