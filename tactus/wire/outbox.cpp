@@ -5,6 +5,7 @@
 namespace tactus::wire {
 
 bool Outbox::put(std::span<const std::uint8_t> packet, std::int64_t due_ns) noexcept {
+  if (packet.empty()) return true;
   const std::size_t waiting = end_ - begin_, needed = sizeof(Head) + packet.size();
   if (waiting + needed > room_.size()) return false;
   if (end_ + needed > room_.size()) {
@@ -14,7 +15,7 @@ bool Outbox::put(std::span<const std::uint8_t> packet, std::int64_t due_ns) noex
   }
   const Head head{.due_ns = due_ns, .size = packet.size()};
   std::memcpy(room_.data() + end_, &head, sizeof(head));
-  if (!packet.empty()) std::memcpy(room_.data() + end_ + sizeof(head), packet.data(), packet.size());
+  std::memcpy(room_.data() + end_ + sizeof(head), packet.data(), packet.size());
   end_ += needed;
   return true;
 }

@@ -16,7 +16,7 @@ class Outbox {
   /// Room for so many bytes, with 16 more for each packet.
   explicit Outbox(std::size_t bytes) : room_(bytes) {}
 
-  /// False, and nothing happened, where there is no room.
+  /// False, and nothing happened, where there is no room. A packet without bytes is none.
   bool put(std::span<const std::uint8_t> packet, std::int64_t due_ns) noexcept;
   /// The first packet, where its time has come; empty where not. It is valid until the next call.
   std::span<const std::uint8_t> take(std::int64_t now_ns) noexcept;

@@ -42,6 +42,8 @@ TEST(Outbox, AnEmptyOneIsNeverDue) {
   Outbox outbox(64);
   EXPECT_EQ(outbox.due_ns(), never_ns);
   EXPECT_TRUE(outbox.take(never_ns).empty());
+  EXPECT_TRUE(outbox.put(Bytes{}, 3));
+  EXPECT_EQ(outbox.due_ns(), never_ns);
   ASSERT_TRUE(outbox.put(Bytes{1}, 3));
   outbox.clear();
   EXPECT_EQ(outbox.due_ns(), never_ns);
