@@ -17,6 +17,8 @@ namespace {
 /// A kind of motors is a line here.
 constexpr std::array kinds{
     EmulatedKind{"damiao", "Motors of Damiao's DM series behind a serial CAN adapter", &add_damiao_options},
+    EmulatedKind{"dynamixel", "Dynamixel servos of the X series behind a serial line", &add_dynamixel_options},
+    EmulatedKind{"feetech", "Feetech's STS3215 or HLS3625 behind a serial line", &add_feetech_options},
 };
 
 Check emulate(const std::function<Result<EmulatedPeer>()>& make) {

@@ -30,6 +30,8 @@ struct EmulatedKind {
 };
 
 std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb);
+std::function<Result<EmulatedPeer>()> add_dynamixel_options(CLI::App& verb);
+std::function<Result<EmulatedPeer>()> add_feetech_options(CLI::App& verb);
 
 /// The words of an enum, for an option that takes one.
 template <NamedEnum E>

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <tactus/core/parameters.hpp>
+#include <tactus/core/result.hpp>
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 namespace tactus::emulation {
 
@@ -32,5 +34,17 @@ struct LineFaults {
   double split = 0.0;     ///< it comes in two pieces, 0.3 ms apart
   std::int64_t echo = 0;  ///< 1: what is sent comes back, as some adapters do
 };
+
+/// A fault as a person writes it.
+struct WrittenFault {
+  ServoFault servo = ServoFault::none;
+  std::int64_t id = -1;      ///< of the servo; negative: of all
+  std::int64_t from_ns = 0;  ///< after the first byte that the peer hears
+  LineFaults line;           ///< where it is one of the line
+};
+/// Reads `KIND[:ID][@SECONDS]`: an enumerator of `ServoFault`, of which servo and from when, as `hot:2@5`; or
+/// `corrupt`, `garbage` and `split` for a hundredth of all answers, or `echo`. Errors: `syntax`, with the text and what
+/// there is.
+Result<WrittenFault> parse_servo_fault(std::string_view text);
 
 }  // namespace tactus::emulation

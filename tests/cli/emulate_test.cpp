@@ -44,6 +44,46 @@ TEST_F(Emulate, DamiaoPrintsItsPathAtOnceAnswersOneClientAfterAnotherAndEndsOnAS
   EXPECT_EQ(content("emulate.log"), "");
 }
 
+TEST_F(Emulate, ServosAnswerWithTheBytesOfTheirMakersPages) {
+  shell(R"(
+    for kind in dynamixel feetech; do
+      mkfifo $kind
+      $TACTUS emulate $kind >$kind 2>>emulate.log </dev/null & peer=$!
+      read -r path <$kind || exit 3
+      for client in 1 2; do
+        exec 3<>"$path"
+        if [ $kind = dynamixel ]; then
+          printf '\377\377\375\000\001\007\000\002\204\000\004\000\035\025' >&3
+          timeout 20 head -c 15 <&3 | od -An -tx1 | tr -d ' \n' >$kind$client
+        else
+          printf '\377\377\001\002\001\373' >&3
+          timeout 20 head -c 6 <&3 | od -An -tx1 | tr -d ' \n' >$kind$client
+        fi
+        exec 3>&-
+      done
+      kill -TERM $peer
+      wait $peer || exit 5
+    done
+  )");
+  // Position 0 of servo 1; its CRC by long division.
+  EXPECT_EQ(content("dynamixel1"), "fffffd00010800550000000000bfb8");
+  EXPECT_EQ(content("dynamixel2"), content("dynamixel1"));
+  EXPECT_EQ(content("feetech1"), "ffff010200fc");
+  EXPECT_EQ(content("feetech2"), content("feetech1"));
+  EXPECT_EQ(content("emulate.log"), "");
+}
+
+TEST_F(Emulate, AFaultOfServosIsReadOrRefusedWithWhatThereIs) {
+  for (const char* kind : {"dynamixel", "feetech"}) {
+    const Outcome unknown = tactus({"emulate", kind, "--fault", "hicups:1"});
+    EXPECT_EQ(unknown.status, 2);
+    EXPECT_NE(unknown.err.find("--fault: 'hicups:1': there is no such fault (corrupt, "), std::string::npos);
+    const Outcome nobody = tactus({"emulate", kind, "--fault", "hot:3"});
+    EXPECT_EQ(nobody.status, 2);
+    EXPECT_NE(nobody.err.find("--fault: 'hot:3': the ids go from 1 to 2"), std::string::npos) << nobody.err;
+  }
+}
+
 TEST_F(Emulate, AnUnknownKindOrFaultIsRefusedWithWhatThereIs) {
   const Outcome nobody = tactus({"emulate", "nobody"});
   EXPECT_EQ(nobody.status, 2);

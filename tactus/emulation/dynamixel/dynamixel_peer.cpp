@@ -208,6 +208,10 @@ bool DynamixelPeer::answers(const State& servo, std::int64_t now_ns) const noexc
 }
 
 void DynamixelPeer::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {
+  if (!began_) {
+    began_ = true;
+    for (State& servo : servos_) servo.fault_from_ns += now_ns;
+  }
   line_.echo(bytes, now_ns);
   for (const std::uint8_t byte : bytes) {
     last_four_ = (last_four_ << 8) | byte;

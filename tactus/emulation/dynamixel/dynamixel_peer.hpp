@@ -28,7 +28,7 @@ class DynamixelPeer final : public wire::WireEnd {
     std::int64_t id = 1;
     std::int64_t model_number = 1200;  ///< as its maker numbers it
     ServoFault fault = ServoFault::none;
-    std::int64_t fault_from_ns = 0;  ///< where the fault is one that begins
+    std::int64_t fault_from_ns = 0;  ///< after the first byte that the peer hears, where the fault is one that begins
   };
   struct Params {
     std::vector<Servo> servos{{.id = 1}, {.id = 2}};
@@ -107,6 +107,7 @@ class DynamixelPeer final : public wire::WireEnd {
   ServoLine line_;
   std::array<std::uint8_t, packet_bytes> came_{};
   std::size_t came_size_ = 0;
+  bool began_ = false;  ///< something was heard
   bool in_packet_ = false;
   std::uint32_t last_four_ = 0;
   std::int64_t instruction_ns_ = 0;  ///< when the last one was heard

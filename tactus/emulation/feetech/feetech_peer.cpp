@@ -137,6 +137,10 @@ FeetechPeer::State* FeetechPeer::find(std::uint8_t id) noexcept {
 }
 
 void FeetechPeer::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {
+  if (!began_) {
+    began_ = true;
+    for (State& servo : servos_) servo.fault_from_ns += now_ns;
+  }
   line_.echo(bytes, now_ns);
   for (const std::uint8_t byte : bytes) {
     // Two header bytes, then an id that is none.

@@ -33,7 +33,7 @@ class FeetechPeer final : public wire::WireEnd {
     std::int64_t id = 1;
     Make make = Make::hls3625;
     ServoFault fault = ServoFault::none;
-    std::int64_t fault_from_ns = 0;  ///< where the fault is one that begins
+    std::int64_t fault_from_ns = 0;  ///< after the first byte that the peer hears, where the fault is one that begins
   };
   struct Params {
     std::vector<Servo> servos{{.id = 1}, {.id = 2}};
@@ -90,6 +90,7 @@ class FeetechPeer final : public wire::WireEnd {
   ServoLine line_;
   std::array<std::uint8_t, 260> came_{};
   std::size_t came_size_ = 0;
+  bool began_ = false;  ///< something was heard
 };
 
 }  // namespace tactus::emulation::feetech

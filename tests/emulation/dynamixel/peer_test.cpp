@@ -197,6 +197,34 @@ TEST(DynamixelPeer, TheJointObeysItsLaw) {
   EXPECT_EQ(joint.velocity_rad_per_s, 0.0);
 }
 
+TEST(ServoFaults, AreReadAsTheyAreWritten) {
+  const auto fault = parse_servo_fault("power-cycle:12@0.5");
+  ASSERT_TRUE(fault) << describe(fault.error());
+  EXPECT_EQ(fault->servo, ServoFault::power_cycle);
+  EXPECT_EQ(fault->id, 12);
+  EXPECT_EQ(fault->from_ns, 500 * ms);
+  EXPECT_EQ(parse_servo_fault("hot")->id, -1);
+  EXPECT_EQ(parse_servo_fault("garbage")->line.garbage, 0.01);
+  EXPECT_EQ(parse_servo_fault("echo")->line.echo, 1);
+  for (const char* wrong :
+       {"", "none", "hot:", "hot:x", "hot:1.5", "hot:-1", "hot@x", "hot@nan", "echo:1", "split@2"}) {
+    const auto refused = parse_servo_fault(wrong);
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_EQ(refused.error().code, ErrorCode::syntax);
+    EXPECT_NE(refused.error().message.find("KIND[:ID][@SECONDS]"), std::string::npos);
+  }
+}
+
+TEST(DynamixelPeer, AFaultBeginsByTheTimeOfTheFirstByte) {
+  Bench bench(std::vector{DynamixelPeer::Servo{.id = 1, .fault = ServoFault::silent, .fault_from_ns = 10 * ms}});
+  bench.now_ns = 5'000'000 * ms;
+  EXPECT_EQ(bench.read(132, 4), 0);
+  bench.now_ns += 9 * ms;
+  EXPECT_EQ(bench.read(132, 4), 0);
+  bench.now_ns += 2 * ms;
+  EXPECT_EQ(bench.read(132, 4), -1);
+}
+
 TEST(DynamixelPeer, FaultsOfTheLineAreThoseOfTheSeed) {
   const auto run = [](std::int64_t seed) {
     auto peer = DynamixelPeer::make({.line = {.corrupt = 0.3, .garbage = 0.3, .split = 0.3, .echo = 1}, .seed = seed});
