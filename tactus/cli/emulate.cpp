@@ -6,7 +6,9 @@
 #include <tactus/wire/talk.hpp>
 
 #include <array>
+#include <chrono>
 #include <iostream>
+#include <thread>
 
 #include <CLI/CLI.hpp>
 
@@ -34,20 +36,39 @@ Check emulate(const std::function<Result<EmulatedPeer>()>& make) {
   return wire::talk(*peer->line, *port, [&end] { return end.asked(); });
 }
 
+Check serve_inverse3(const std::function<Result<emulation::inverse3::Inverse3Server>()>& start) {
+  runtime::EndRequest end;
+  const auto interruption = Interruption::start(end);
+  if (!interruption) return interruption.error();
+  const auto server = start();
+  if (!server) return server.error();
+  std::cout << server.value().url() << "\n";
+  if (Check error = flush_standard_output()) return error;
+  while (!end.asked()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  return std::nullopt;
+}
+
 }  // namespace
 
 void add_emulate(CLI::App& app, int& status) {
-  CLI::App* verb = app.add_subcommand("emulate", "Be motors at a pseudo-terminal, whose path it prints");
+  CLI::App* verb = app.add_subcommand("emulate", "Be motors or a handle: at a pseudo-terminal or port that it prints");
   verb->require_subcommand(1);
-  for (const EmulatedKind& kind : kinds) {
-    CLI::App* chosen = verb->add_subcommand(kind.name, kind.summary);
-    chosen->callback([make = kind.add_options(*chosen), &app, &status] {
-      if (const auto error = emulate(make)) {
+  const auto run = [&app, &status](CLI::App& chosen, const auto& emulated) {
+    chosen.callback([emulated, &app, &status] {
+      if (const Check error = emulated()) {
         std::cerr << app.get_name() << ": " << describe(*error) << "\n";
         status = exit_status(*error);
       }
     });
+  };
+  for (const EmulatedKind& kind : kinds) {
+    CLI::App* chosen = verb->add_subcommand(kind.name, kind.summary);
+    run(*chosen, [make = kind.add_options(*chosen)] { return emulate(make); });
   }
+  CLI::App* chosen = verb->add_subcommand("inverse3",
+                                          "Haply's Inverse Service with an Inverse3, at a port whose address "
+                                          "it prints");
+  run(*chosen, [start = add_inverse3_options(*chosen)] { return serve_inverse3(start); });
 }
 
 }  // namespace tactus::cli

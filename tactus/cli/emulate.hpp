@@ -2,6 +2,7 @@
 
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/emulation/inverse3/inverse3_server.hpp>
 #include <tactus/wire/wire_end.hpp>
 
 #include <functional>
@@ -32,6 +33,8 @@ struct EmulatedKind {
 std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb);
 std::function<Result<EmulatedPeer>()> add_dynamixel_options(CLI::App& verb);
 std::function<Result<EmulatedPeer>()> add_feetech_options(CLI::App& verb);
+/// A server, not a line: it has no path but an address.
+std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_options(CLI::App& verb);
 
 /// The words of an enum, for an option that takes one.
 template <NamedEnum E>

@@ -73,6 +73,22 @@ TEST_F(Emulate, ServosAnswerWithTheBytesOfTheirMakersPages) {
   EXPECT_EQ(content("emulate.log"), "");
 }
 
+TEST_F(Emulate, Inverse3PrintsItsAddressAtOnceAndAnswersThere) {
+  shell(R"sh(
+    mkfifo said
+    $TACTUS emulate inverse3 --port 0 --dialect 3.1 >said 2>emulate.log </dev/null & peer=$!
+    read -r url <said || exit 3
+    python3 -c "
+import sys, urllib.request
+print(urllib.request.urlopen('http' + sys.argv[1][2:] + '/version', timeout=20).read().decode())" $url >answer || exit 4
+    kill -TERM $peer
+    wait $peer || exit 5
+  )sh");
+  EXPECT_EQ(content("answer"), R"({"data":{"version":"3.1.0"},"ok":true})"
+                               "\n");
+  EXPECT_EQ(content("emulate.log"), "");
+}
+
 TEST_F(Emulate, AFaultOfServosIsReadOrRefusedWithWhatThereIs) {
   for (const char* kind : {"dynamixel", "feetech"}) {
     const Outcome unknown = tactus({"emulate", kind, "--fault", "hicups:1"});
