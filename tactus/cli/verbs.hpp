@@ -16,6 +16,7 @@ void add_run(CLI::App& app, const std::string& command, int& status);
 void add_advise(CLI::App& app, const std::string& command, int& status);
 void add_diagnose(CLI::App& app, const std::string& command, int& status);
 void add_doctor(CLI::App& app, const std::string& command, int& status);
+void add_emulate(CLI::App& app, int& status);
 void add_estimate(CLI::App& app, const std::string& command, int& status);
 void add_export(CLI::App& app, int& status);
 void add_faults(CLI::App& app, const std::string& command, int& status);

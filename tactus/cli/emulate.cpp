@@ -1,0 +1,74 @@
+#include <tactus/cli/emulate.hpp>
+#include <tactus/cli/interruption.hpp>
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/verbs.hpp>
+#include <tactus/wire/port.hpp>
+#include <tactus/wire/talk.hpp>
+
+#include <array>
+#include <chrono>
+#include <iostream>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+/// A kind of motors is a line here.
+constexpr std::array kinds{
+    EmulatedKind{"damiao", "Motors of Damiao's DM series behind a serial CAN adapter", &add_damiao_options},
+    EmulatedKind{"dynamixel", "Dynamixel servos of the X series behind a serial line", &add_dynamixel_options},
+    EmulatedKind{"feetech", "Feetech's STS3215 or HLS3625 behind a serial line", &add_feetech_options},
+};
+
+Check emulate(const std::function<Result<EmulatedPeer>()>& make) {
+  const auto peer = make();
+  if (!peer) return peer.error();
+  runtime::EndRequest end;
+  const auto interruption = Interruption::start(end);
+  if (!interruption) return interruption.error();
+  auto port = wire::Port::pseudo_terminal();
+  if (!port) return port.error();
+  std::cout << port->path() << "\n";
+  if (Check error = flush_standard_output()) return error;
+  return wire::talk(*peer->line, *port, [&end] { return end.asked(); });
+}
+
+Check serve_inverse3(const std::function<Result<emulation::inverse3::Inverse3Server>()>& start) {
+  runtime::EndRequest end;
+  const auto interruption = Interruption::start(end);
+  if (!interruption) return interruption.error();
+  const auto server = start();
+  if (!server) return server.error();
+  std::cout << server.value().url() << "\n";
+  if (Check error = flush_standard_output()) return error;
+  while (!end.asked()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  return std::nullopt;
+}
+
+}  // namespace
+
+void add_emulate(CLI::App& app, int& status) {
+  CLI::App* verb = app.add_subcommand("emulate", "Be motors or a handle: at a pseudo-terminal or port that it prints");
+  verb->require_subcommand(1);
+  const auto run = [&app, &status](CLI::App& chosen, const auto& emulated) {
+    chosen.callback([emulated, &app, &status] {
+      if (const Check error = emulated()) {
+        std::cerr << app.get_name() << ": " << describe(*error) << "\n";
+        status = exit_status(*error);
+      }
+    });
+  };
+  for (const EmulatedKind& kind : kinds) {
+    CLI::App* chosen = verb->add_subcommand(kind.name, kind.summary);
+    run(*chosen, [make = kind.add_options(*chosen)] { return emulate(make); });
+  }
+  CLI::App* chosen = verb->add_subcommand("inverse3",
+                                          "Haply's Inverse Service with an Inverse3, at a port whose address "
+                                          "it prints");
+  run(*chosen, [start = add_inverse3_options(*chosen)] { return serve_inverse3(start); });
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <tactus/core/parameters.hpp>
+#include <tactus/core/result.hpp>
+#include <tactus/emulation/inverse3/inverse3_server.hpp>
+#include <tactus/wire/wire_end.hpp>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {  // NOLINT: the name is not ours
+class App;
+}
+
+namespace tactus::cli {
+
+/// Emulated motors, and the serial line around them that is to be driven.
+struct EmulatedPeer {
+  std::unique_ptr<wire::WireEnd> motors;
+  std::unique_ptr<wire::WireEnd> line;
+};
+
+/// What `tactus emulate` can be: a word of its command line, and its options.
+struct EmulatedKind {
+  const char* name;
+  const char* summary;
+  /// Adds the options to the verb; the returned function makes the peer when they are read.
+  std::function<Result<EmulatedPeer>()> (*add_options)(CLI::App& verb);
+};
+
+std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb);
+std::function<Result<EmulatedPeer>()> add_dynamixel_options(CLI::App& verb);
+std::function<Result<EmulatedPeer>()> add_feetech_options(CLI::App& verb);
+/// A server, not a line: it has no path but an address.
+std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_options(CLI::App& verb);
+
+/// The words of an enum, for an option that takes one.
+template <NamedEnum E>
+std::vector<std::string> words_of() {
+  std::vector<std::string> words;
+  for (const auto& entry : enumerators(E{})) words.emplace_back(entry.name);
+  return words;
+}
+/// The value that one of these words stands for.
+template <NamedEnum E>
+E value_of(const std::string& word) {
+  for (const auto& entry : enumerators(E{})) {
+    if (entry.name == word) return entry.value;
+  }
+  return E{};
+}
+
+}  // namespace tactus::cli

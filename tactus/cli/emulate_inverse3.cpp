@@ -1,0 +1,45 @@
+#include <tactus/cli/emulate.hpp>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+using emulation::inverse3::Dialect;
+using emulation::inverse3::Inverse3Service;
+
+struct Inverse3Options {
+  Inverse3Service::Params service;
+  std::string dialect = name_of(Dialect::v3_5);
+  bool uncalibrated = false;
+  double late_s = 0.0;
+  std::uint16_t port = 10001;
+};
+
+}  // namespace
+
+std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_options(CLI::App& verb) {
+  auto options = std::make_shared<Inverse3Options>();
+  verb.add_option("--devices", options->service.devices, "How many")->check(CLI::Range(1, 4))->capture_default_str();
+  verb.add_option("--dialect", options->dialect, "Version whose keys it speaks")
+      ->check(CLI::IsMember(words_of<Dialect>()))
+      ->capture_default_str();
+  verb.add_option("--port", options->port, "To listen at; 0 takes any that is free")->capture_default_str();
+  verb.add_flag("--uncalibrated", options->uncalibrated, "Gives no force and says so");
+  verb.add_flag("--partial", options->service.partial, "Leaves out of a state what equals the identity");
+  verb.add_option("--late-s", options->late_s, "Answers so much later")->check(CLI::Range(0.0, 10.0));
+  verb.add_option("--garbage", options->service.garbage, "Share of answers that are cut off")
+      ->check(CLI::Range(0.0, 1.0));
+  verb.add_option("--closes-after", options->service.closes_after, "Closes in place of this answer; 0: never");
+  verb.add_option("--seed", options->service.seed, "Of what is cut off")->capture_default_str();
+  return [options] {
+    Inverse3Service::Params params = options->service;
+    params.dialect = value_of<Dialect>(options->dialect);
+    params.calibrated = !options->uncalibrated;
+    params.late_ns = static_cast<std::int64_t>(options->late_s * 1e9);
+    return emulation::inverse3::Inverse3Server::start(params, options->port);
+  };
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,136 @@
+#include <tactus/devices/bus_thread.hpp>
+#include <tactus/wire/talk.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+namespace tactus::devices {
+
+namespace {
+
+/// For the motors to say that they have no power.
+constexpr std::int64_t farewell_ns = 100'000'000;
+
+}  // namespace
+
+/// The bus, with the tick's commands put in and its readings taken out on the way. It lives on the thread.
+class BusThread::Exchange final : public wire::WireEnd {
+ public:
+  explicit Exchange(BusThread& owner) : owner_(&owner), bus_(owner.bus_.get()) {}
+
+  void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override { bus_->hear(bytes, now_ns); }
+  std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override {
+    take_commands(now_ns);
+    const auto said = bus_->say(now_ns);
+    if (bus_->cycles() != told_.cycles || bus_->state() != told_.state) tell(now_ns);
+    return said;
+  }
+  [[nodiscard]] std::int64_t wakes_ns() const noexcept override { return bus_->wakes_ns(); }
+
+  /// All motors without power, for good.
+  void leave() noexcept { leaving_ = true; }
+  [[nodiscard]] bool has_power() const noexcept {
+    for (std::size_t motor = 0; motor < owner_->motors_; ++motor) {
+      if (bus_->reading(motor).enabled != 0) return true;
+    }
+    return false;
+  }
+
+ private:
+  void take_commands(std::int64_t now_ns) noexcept {
+    if (const auto newest = owner_->commands_.newest()) commands_ = *newest;
+    const bool nothing = std::none_of(commands_.motors.begin(), commands_.motors.end(),
+                                      [](const MotorCommand& command) { return command.enabled != 0; });
+    if (commands_.time_ns > 0 && now_ns - commands_.time_ns > owner_->silence_ns_) {
+      silenced_ = true;
+    } else if (nothing) {
+      silenced_ = false;
+    }
+    for (std::size_t motor = 0; motor < owner_->motors_; ++motor) {
+      bus_->command(motor, silenced_ || leaving_ ? MotorCommand{} : commands_.motors[motor]);
+    }
+  }
+  void tell(std::int64_t now_ns) noexcept {
+    for (std::size_t motor = 0; motor < owner_->motors_; ++motor) told_.motors[motor] = bus_->reading(motor);
+    told_.state = bus_->state();
+    told_.cycles = bus_->cycles();
+    told_.time_ns = now_ns;
+    owner_->readings_.publish(told_);
+  }
+
+  BusThread* owner_;
+  MotorBus* bus_;
+  BusCommands commands_;
+  BusReadings told_{.motors = {}, .state = BusState::asking, .cycles = -1, .time_ns = 0};
+  bool silenced_ = false;  ///< until a tick asks for nothing
+  bool leaving_ = false;
+};
+
+Result<std::unique_ptr<BusThread>> BusThread::start(std::unique_ptr<MotorBus> bus, wire::Port port,
+                                                    const Params& params) {
+  if (Check error = validate(params)) return *std::move(error);
+  constexpr Bounds counts = between(1.0, static_cast<double>(most_joints));
+  const auto count = static_cast<double>(bus->motors());
+  if (!counts.contain(count)) return out_of_bounds("motors", count, counts, units::none);
+  std::unique_ptr<BusThread> made(new BusThread(std::move(bus), std::move(port), params));
+  try {
+    made->thread_ = std::thread([self = made.get()] { self->run(); });
+  } catch (const std::system_error& error) {
+    return Error{.code = ErrorCode::failed,
+                 .parameter = {},
+                 .message = std::string("no thread for the bus (") + error.what() + "): end other programs",
+                 .place = {}};
+  }
+  return made;
+}
+
+BusThread::BusThread(std::unique_ptr<MotorBus> bus, wire::Port port, const Params& params)
+    : bus_(std::move(bus)),
+      port_(std::move(port)),
+      silence_ns_(std::llround(params.silence_s * 1e9)),
+      motors_(bus_->motors()) {}
+
+BusThread::~BusThread() { stop(); }
+
+void BusThread::run() noexcept {
+  Exchange exchange(*this);
+  failed_ = wire::talk(exchange, port_, [this] { return stopping_.load(std::memory_order_relaxed); });
+  if (!failed_) {
+    exchange.leave();
+    const std::int64_t until_ns = wire::monotonic_ns() + farewell_ns;
+    failed_ = wire::talk(exchange, port_, [&] { return !exchange.has_power() || wire::monotonic_ns() > until_ns; });
+  }
+  running_.store(false, std::memory_order_release);
+}
+
+void BusThread::stop() {
+  stopping_.store(true, std::memory_order_relaxed);
+  if (thread_.joinable()) thread_.join();
+}
+
+Check BusThread::wait_until_asked(Seconds longest) {
+  using std::chrono::steady_clock;
+  const auto until = steady_clock::now() + std::chrono::duration<double>(longest.value);
+  while (running() && steady_clock::now() < until) {
+    const auto now = newest();
+    if (now && now->state == BusState::ready) return std::nullopt;
+    if (now && now->state == BusState::refused) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  // Nobody may look at the bus while its thread lives.
+  stop();
+  Check wrong = failed_ ? failed_ : bus_->problem();
+  if (!wrong) {
+    wrong = Error{.code = ErrorCode::failed,
+                  .parameter = {},
+                  .message = "the motors were not done answering in time: look at the bit rate and the wiring",
+                  .place = {}};
+  }
+  if (wrong->place.empty()) wrong->place = port_.path();
+  return wrong;
+}
+
+}  // namespace tactus::devices

@@ -1,0 +1,253 @@
+#include <tactus/devices/damiao/damiao_bus.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace tactus::devices::damiao {
+
+namespace {
+
+constexpr std::int64_t most_motors = 15;
+/// Frames to clear a fault or to enable, before a motor counts as one that refuses.
+constexpr int most_tries = 50;
+constexpr int missed_is_silent = 3;
+constexpr std::int64_t silent_asked_every_ns = 10'000'000;
+constexpr double timeout_unit_s = 50e-6;
+
+std::int64_t ns_of(double seconds) { return std::llround(seconds * 1e9); }
+
+Error bad_motor(const MotorParams& motor, const char* key, std::string message) {
+  return {.code = ErrorCode::inconsistent,
+          .parameter = std::string("motor_") + std::to_string(motor.id) + "." + key,
+          .message = std::move(message),
+          .place = {}};
+}
+
+Check check(const DamiaoBusParams& params) {
+  if (Check error = validate(params)) return error;
+  const auto count = static_cast<std::int64_t>(params.motors.size());
+  if (count < 1 || count > most_motors) {
+    return out_of_bounds("motors", static_cast<double>(count), between(1, most_motors), units::none);
+  }
+  for (const MotorParams& motor : params.motors) {
+    constexpr Bounds ids = between(1, most_motors), feedback_ids = between(0, 0x7fe);
+    if (!ids.contain(static_cast<double>(motor.id))) {
+      return out_of_bounds("id", static_cast<double>(motor.id), ids, units::none);
+    }
+    if (!feedback_ids.contain(static_cast<double>(motor.feedback_id))) {
+      return out_of_bounds("feedback_id", static_cast<double>(motor.feedback_id), feedback_ids, units::none);
+    }
+    const auto same_id = [&motor](const MotorParams& other) { return other.id == motor.id; };
+    if (std::count_if(params.motors.begin(), params.motors.end(), same_id) > 1) {
+      return bad_motor(motor, "id", "two motors have this identifier: give each one of its own");
+    }
+    const auto commanded = [&motor](const MotorParams& other) { return other.id == motor.feedback_id; };
+    if (std::any_of(params.motors.begin(), params.motors.end(), commanded)) {
+      return bad_motor(motor, "feedback_id",
+                       "a motor takes commands with this identifier: by convention it is id + 16");
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<DamiaoBus>> DamiaoBus::make(const DamiaoBusParams& params) {
+  if (Check error = check(params)) return *std::move(error);
+  return std::unique_ptr<DamiaoBus>(new DamiaoBus(params));
+}
+
+DamiaoBus::DamiaoBus(const DamiaoBusParams& params)
+    : framing_(params.framing),
+      patience_ns_(ns_of(params.patience_s)),
+      shortest_cycle_ns_(ns_of(params.shortest_cycle_s)),
+      reader_(params.framing),
+      outbox_(params.motors.size() * 128) {
+  const auto timeout = static_cast<std::uint32_t>(std::lround(params.watchdog_s / timeout_unit_s));
+  for (const MotorParams& motor : params.motors) {
+    motors_.push_back({.params = motor,
+                       .scale = scale_of(motor.model),
+                       .questions = Questions(motor, timeout),
+                       .reading = {.fault = MotorFault::silent},
+                       .command = {}});
+  }
+}
+
+Check DamiaoBus::problem() const {
+  for (const Motor& motor : motors_) {
+    if (Check found = motor.questions.problem()) return found;
+  }
+  return std::nullopt;
+}
+
+const MotorReading& DamiaoBus::reading(std::size_t motor) const noexcept { return motors_[motor].reading; }
+
+void DamiaoBus::command(std::size_t motor, const MotorCommand& wanted) noexcept {
+  MotorCommand& command = motors_[motor].command;
+  const double most_Nm = motors_[motor].scale.torque_Nm;
+  const bool number = std::isfinite(wanted.torque_Nm);
+  command.enabled = number ? wanted.enabled : 0;
+  command.torque_Nm = number ? std::clamp(wanted.torque_Nm, -most_Nm, most_Nm) : 0.0;
+}
+
+void DamiaoBus::send(const CanFrame& frame, std::int64_t now_ns) noexcept {
+  outbox_.put(wrap(framing_, frame).view(), now_ns);
+  progress_ns_ = now_ns;
+}
+
+void DamiaoBus::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {
+  reader_.take(bytes, [this, now_ns](const CanFrame& frame) { take(frame, now_ns); });
+}
+
+std::span<const std::uint8_t> DamiaoBus::say(std::int64_t now_ns) noexcept {
+  if (outbox_.due_ns() != wire::never_ns) return outbox_.take(now_ns);
+  if (state_ == BusState::asking) {
+    ask(now_ns);
+  } else if (state_ == BusState::ready) {
+    if (in_cycle_ && (all_answered() || now_ns >= progress_ns_ + patience_ns_)) end_cycle();
+    if (!in_cycle_ && now_ns >= cycle_began_ns_ + shortest_cycle_ns_) begin_cycle(now_ns);
+  }
+  return outbox_.take(now_ns);
+}
+
+std::int64_t DamiaoBus::wakes_ns() const noexcept {
+  if (outbox_.due_ns() != wire::never_ns) return outbox_.due_ns();
+  switch (state_) {
+    case BusState::asking:
+      return opened_ ? motors_[asked_].questions.wakes_ns() : 0;
+    case BusState::ready:
+      return in_cycle_ && !all_answered() ? progress_ns_ + patience_ns_ : cycle_began_ns_ + shortest_cycle_ns_;
+    case BusState::refused:
+      break;
+  }
+  return wire::never_ns;
+}
+
+void DamiaoBus::ask(std::int64_t now_ns) noexcept {
+  if (!opened_) {
+    opened_ = true;
+    if (const Wrapped lines = opening(framing_); lines.size > 0) {
+      outbox_.put(lines.view(), now_ns);
+      return;
+    }
+  }
+  while (asked_ < motors_.size()) {
+    if (const auto frame = motors_[asked_].questions.next(now_ns)) return send(*frame, now_ns);
+    if (!motors_[asked_].questions.done()) return;
+    ++asked_;
+  }
+  const bool well =
+      std::all_of(motors_.begin(), motors_.end(), [](const Motor& motor) { return motor.questions.is_well(); });
+  state_ = well ? BusState::ready : BusState::refused;
+}
+
+void DamiaoBus::take(const CanFrame& frame, std::int64_t now_ns) noexcept {
+  if (state_ == BusState::asking) {
+    if (asked_ < motors_.size()) motors_[asked_].questions.take(frame);
+    return;
+  }
+  if (frame.size != 8) return;
+  for (Motor& motor : motors_) {
+    if (frame.id != motor.params.feedback_id || (frame.data[0] & 0x0f) != motor.params.id) continue;
+    // Nobody asked for one, but an answer may have been late, or another program may ask.
+    const auto answer = register_answer_of(frame);
+    if (!answer || answer->motor != motor.params.id) take_feedback(motor, frame, now_ns);
+    return;
+  }
+}
+
+void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t now_ns) noexcept {
+  const auto told = feedback_of(frame, motor.scale);
+  if (!told) return;
+  MotorReading& reading = motor.reading;
+  const double turn_rad = 2.0 * motor.scale.position_rad;
+  if (reading.answers > 0) {
+    const double silent_s = static_cast<double>(now_ns - reading.heard_ns) * 1e-9;
+    // It could have turned by half its range meanwhile, and its number says nothing of that.
+    if (silent_s * motor.scale.velocity_rad_per_s > motor.scale.position_rad) motor.latched = MotorFault::encoder;
+    motor.turns -= std::round((told->position_rad - motor.wrapped_rad) / turn_rad);
+  }
+  motor.wrapped_rad = told->position_rad;
+  motor.status = told->status;
+  if (std::exchange(motor.owed, false)) progress_ns_ = now_ns;
+  motor.missed = 0;
+  reading.position_rad = told->position_rad + motor.turns * turn_rad;
+  reading.velocity_rad_per_s = told->velocity_rad_per_s;
+  reading.torque_Nm = told->torque_Nm;
+  reading.temperature_C = std::max(told->drive_C, told->winding_C);
+  reading.enabled = told->status == status_enabled ? 1 : 0;
+  reading.heard_ns = now_ns;
+  ++reading.answers;
+  judge(motor);
+}
+
+/// Which fault it has, and whether that stays.
+void DamiaoBus::judge(Motor& motor) noexcept {
+  const bool silent = motor.missed >= missed_is_silent;
+  const MotorFault now = silent ? MotorFault::silent : fault_of(motor.status);
+  if (motor.was_wanted && motor.latched == MotorFault::none) {
+    if (motor.status == status_enabled) motor.had_power = true;
+    const bool lost_power = motor.had_power && motor.status == status_disabled;
+    const bool refuses = motor.tries >= most_tries;
+    if (now != MotorFault::none && (motor.had_power || refuses || silent)) motor.latched = now;
+    if (now == MotorFault::none && (lost_power || refuses)) motor.latched = MotorFault::refused;
+  }
+  motor.reading.fault = motor.latched != MotorFault::none ? motor.latched : now;
+}
+
+bool DamiaoBus::all_answered() const noexcept {
+  bool any = false;
+  for (const Motor& motor : motors_) {
+    if (motor.missed >= missed_is_silent) continue;
+    if (motor.owed) return false;
+    any = true;
+  }
+  return any;
+}
+
+void DamiaoBus::begin_cycle(std::int64_t now_ns) noexcept {
+  in_cycle_ = true;
+  cycle_began_ns_ = progress_ns_ = now_ns;
+  // Silent ones first: when the others have answered, nothing is left on its way.
+  for (const bool silent : {true, false}) {
+    for (Motor& motor : motors_) {
+      if ((motor.missed >= missed_is_silent) != silent) continue;
+      if (silent && now_ns < motor.asked_again_ns) continue;
+      motor.asked_again_ns = now_ns + silent_asked_every_ns;
+      motor.owed = true;
+      send(frame_for(motor), now_ns);
+    }
+  }
+}
+
+void DamiaoBus::end_cycle() noexcept {
+  in_cycle_ = false;
+  ++cycles_;
+  for (Motor& motor : motors_) {
+    if (!std::exchange(motor.owed, false)) continue;
+    ++motor.missed;
+    judge(motor);
+  }
+}
+
+CanFrame DamiaoBus::frame_for(Motor& motor) noexcept {
+  const auto id = static_cast<std::uint16_t>(motor.params.id);
+  const bool wanted = motor.command.enabled != 0;
+  if (wanted && !motor.was_wanted) {
+    if (motor.latched != MotorFault::encoder) motor.latched = MotorFault::none;
+    motor.had_power = false;
+    motor.tries = 0;
+  }
+  motor.was_wanted = wanted;
+  const bool silent = motor.missed >= missed_is_silent;
+  if (!wanted || motor.latched != MotorFault::none || silent) {
+    return motor.status == status_enabled ? order_frame(id, Order::disable) : refresh_frame(id);
+  }
+  if (motor.status == status_enabled) return mit_frame(id, motor.scale, {.torque_Nm = motor.command.torque_Nm});
+  ++motor.tries;
+  return order_frame(id, motor.status == status_disabled ? Order::enable : Order::clear_fault);
+}
+
+}  // namespace tactus::devices::damiao

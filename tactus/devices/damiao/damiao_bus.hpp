@@ -1,0 +1,110 @@
+#pragma once
+
+#include <tactus/devices/damiao/framing.hpp>
+#include <tactus/devices/damiao/questions.hpp>
+#include <tactus/devices/motor_bus.hpp>
+#include <tactus/wire/outbox.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace tactus::devices::damiao {
+
+struct DamiaoBusParams {
+  Framing framing = Framing::usb2can;
+  double watchdog_s = 0.05;
+  double patience_s = 0.002;
+  double shortest_cycle_s = 0.0005;
+  std::vector<MotorParams> motors;  ///< 1 to 15
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("framing", &DamiaoBusParams::framing, "How frames of CAN become bytes."),
+        field("watchdog_s", &DamiaoBusParams::watchdog_s, units::second, between(0.002, 1.0),
+              "A motor lets go when it hears nothing for so long: its register TIMEOUT, set before it gets power."),
+        field("patience_s", &DamiaoBusParams::patience_s, units::second, between(0.0002, 0.05),
+              "The longest wait for the next answer of a cycle."),
+        field("shortest_cycle_s", &DamiaoBusParams::shortest_cycle_s, units::second, between(0.0001, 0.1),
+              "A cycle takes at least that, where the wire allows more.")};
+  }
+};
+
+/// Damiao motors behind one adapter, driven by torque alone.
+///
+/// At first each motor is switched off and asked: identifier of its feedback, scales, firmware, mode, watchdog. One
+/// that is not what the parameters say makes the bus `refused`. Then each cycle sends one frame to every motor at once,
+/// each of which is answered by feedback, and ends when all have answered or the next one keeps it waiting too long.
+///
+/// Power: a motor gets it when its command asks for it anew; a fault from before is cleared first. A fault under power,
+/// three cycles without an answer, or power lost without being asked latch its fault: it is switched off and stays so
+/// until the command asks anew. One that was silent for so long that it could have turned by half the range of its
+/// number has the fault `encoder` for good. A motor that does not answer is asked rarely, so that it costs the others
+/// nothing.
+class DamiaoBus final : public MotorBus {
+ public:
+  /// Errors: parameters outside their bounds; motors with the same identifier, or with one that commands have.
+  static Result<std::unique_ptr<DamiaoBus>> make(const DamiaoBusParams& params);
+
+  void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override;
+  std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override;
+  [[nodiscard]] std::int64_t wakes_ns() const noexcept override;
+
+  [[nodiscard]] std::size_t motors() const noexcept override { return motors_.size(); }
+  [[nodiscard]] BusState state() const noexcept override { return state_; }
+  [[nodiscard]] Check problem() const override;
+  [[nodiscard]] const MotorReading& reading(std::size_t motor) const noexcept override;
+  void command(std::size_t motor, const MotorCommand& wanted) noexcept override;
+  [[nodiscard]] std::int64_t cycles() const noexcept override { return cycles_; }
+
+  /// What a motor said of itself; complete unless the bus is still `asking`.
+  [[nodiscard]] const MotorFacts& facts(std::size_t motor) const noexcept { return motors_[motor].questions.facts(); }
+  /// What is wrong with it. Not real-time safe.
+  [[nodiscard]] Check problem(std::size_t motor) const { return motors_[motor].questions.problem(); }
+
+ private:
+  struct Motor {
+    MotorParams params;
+    Scale scale;
+    Questions questions;
+    MotorReading reading;
+    MotorCommand command;
+    std::uint8_t status = 0;
+    MotorFault latched = MotorFault::none;
+    bool was_wanted = false;
+    bool had_power = false;           ///< since it was wanted
+    int tries = 0;                    ///< to clear and to enable, since it was wanted
+    bool owed = false;                ///< an answer in this cycle
+    int missed = 0;                   ///< cycles without an answer, one after the other
+    std::int64_t asked_again_ns = 0;  ///< when it was silent
+    double turns = 0.0;               ///< of its number, each of twice its scale
+    double wrapped_rad = 0.0;
+  };
+
+  explicit DamiaoBus(const DamiaoBusParams& params);
+  void send(const CanFrame& frame, std::int64_t now_ns) noexcept;
+  void ask(std::int64_t now_ns) noexcept;
+  void take(const CanFrame& frame, std::int64_t now_ns) noexcept;
+  void take_feedback(Motor& motor, const CanFrame& frame, std::int64_t now_ns) noexcept;
+  void judge(Motor& motor) noexcept;
+  void begin_cycle(std::int64_t now_ns) noexcept;
+  void end_cycle() noexcept;
+  [[nodiscard]] bool all_answered() const noexcept;
+  [[nodiscard]] CanFrame frame_for(Motor& motor) noexcept;
+
+  Framing framing_;
+  std::int64_t patience_ns_, shortest_cycle_ns_;
+  FrameReader reader_;
+  wire::Outbox outbox_;
+  std::vector<Motor> motors_;
+  BusState state_ = BusState::asking;
+  bool opened_ = false;
+  std::size_t asked_ = 0;
+  bool in_cycle_ = false;
+  std::int64_t cycle_began_ns_ = 0, progress_ns_ = 0;
+  std::int64_t cycles_ = 0;
+};
+
+}  // namespace tactus::devices::damiao

@@ -1,0 +1,81 @@
+#include <tactus/devices/motor_bus_device.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace tactus::devices {
+
+namespace {
+
+using station::DeviceHealth;
+
+/// To clear a fault from before and to switch on.
+constexpr std::int64_t power_within_ns = 250'000'000;
+
+}  // namespace
+
+Result<std::unique_ptr<MotorBusDevice>> MotorBusDevice::make(BusThread& bus, const Params& params) {
+  if (params.limits.size() != bus.motors()) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "limits",
+                 .message = "limits of " + std::to_string(params.limits.size()) + " joints for a bus of " +
+                            std::to_string(bus.motors()) + " motors: state them for each",
+                 .place = {}};
+  }
+  return std::unique_ptr<MotorBusDevice>(new MotorBusDevice(bus, params));
+}
+
+MotorBusDevice::MotorBusDevice(BusThread& bus, const Params& params)
+    : bus_(&bus), params_(params), reading_(params.limits.size()) {}
+
+MotorBusDevice::~MotorBusDevice() {
+  commands_.motors = {};
+  bus_->command(commands_);
+}
+
+Joints<station::DeviceReading> MotorBusDevice::read(const station::Tick& tick) noexcept {
+  now_ns_ = tick.began_ns;
+  if (const auto newest = bus_->newest()) last_ = *newest;
+  for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
+    reading_[joint].position_m = last_.motors[joint].position_rad;
+  }
+  const DeviceHealth now = judge();
+  if (health_ != DeviceHealth::lost) health_ = now;
+  return reading_;
+}
+
+DeviceHealth MotorBusDevice::judge() noexcept {
+  std::int64_t oldest_ns = now_ns_;
+  for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
+    const MotorReading& motor = last_.motors[joint];
+    oldest_ns = std::min(oldest_ns, motor.heard_ns);
+    if (commands_.motors[joint].enabled == 0) continue;
+    if (motor.enabled != 0) had_power_[joint] = true;
+    const bool has_it = motor.enabled != 0 && motor.fault == MotorFault::none;
+    const bool in_time = !had_power_[joint] && now_ns_ - wanted_since_ns_[joint] < power_within_ns;
+    if (!has_it && !in_time) return DeviceHealth::lost;
+  }
+  const double age_s = 1e-9 * static_cast<double>(now_ns_ - oldest_ns);
+  if (!bus_->running() || last_.state == BusState::refused || age_s > params_.silence_s) return DeviceHealth::lost;
+  return age_s > params_.late_s ? DeviceHealth::degraded : DeviceHealth::good;
+}
+
+void MotorBusDevice::write(const Joints<station::DeviceCommand>& command) noexcept {
+  bool any = false;
+  for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
+    MotorCommand& motor = commands_.motors[joint];
+    const bool wanted = command[joint].enabled;
+    if (wanted && motor.enabled == 0) {
+      wanted_since_ns_[joint] = now_ns_;
+      had_power_[joint] = false;
+    }
+    motor = {.torque_Nm = command[joint].force_N, .enabled = wanted ? 1 : 0};
+    any = any || wanted;
+  }
+  if (!any && health_ == DeviceHealth::lost) health_ = judge();
+  commands_.time_ns = now_ns_;
+  bus_->command(commands_);
+}
+
+}  // namespace tactus::devices

@@ -1,0 +1,204 @@
+#pragma once
+
+#include <tactus/devices/motor_bus.hpp>
+#include <tactus/devices/servo/servo_packet.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace tactus::devices {
+
+/// A servo as its maker built it.
+struct ServoModel {
+  const char* name;
+  std::int64_t number;         ///< that it tells of itself; 0 where no page says it, and then it is not compared
+  double current_unit_A;       ///< of its goal and its present current
+  std::int64_t current_limit;  ///< the largest goal that it can be set to take, in units; 0: it takes no current
+  double torque_Nm_per_A;      ///< at the output; friction of the gear is not in it
+  double velocity_unit_rad_per_s;
+};
+
+/// Some bytes of a servo's control table.
+struct Register {
+  std::uint16_t address;
+  std::uint8_t bytes;
+};
+
+/// What is done with a register of a servo before it has power.
+struct ServoStep {
+  enum class Kind : std::uint8_t {
+    check,  ///< read, and judged by the driver of the make
+    keep,   ///< read, and written only where it differs: its memory wears out
+    write
+  } kind;
+  Register place;
+  std::int64_t value;
+};
+
+/// How servos of one make are spoken to.
+struct ServoTable {
+  std::span<const ServoStep> hush;      ///< written to all at once before anything is asked; nobody answers
+  std::span<const ServoStep> enabling;  ///< for each servo, when it is given power; only writes
+  std::span<const Register> looks;      ///< read now and then, of one servo at a time; the first tells its error
+  Register power, goal;
+  std::int64_t steps_per_turn;
+  std::int64_t steps_until_wrap;  ///< of the position on the wire
+  std::int64_t silence_ns;        ///< after that long without an answer a servo is silent
+};
+
+/// The bus of servos on one half-duplex line: what is the same whatever their make. A cycle is one packet with the
+/// goals of all, one that asks all for their state, and their answers; now and then one question to one servo stands
+/// between two cycles. A make gives its packets and its table.
+///
+/// A fault takes the power of its servo until a command asks for none and the cause is gone; it does not come back by
+/// itself. Real-time safe but for `problem`.
+class ServoBus : public MotorBus {
+ public:
+  static constexpr std::size_t most_servos = 16;
+
+  [[nodiscard]] std::size_t motors() const noexcept final { return count_; }
+  [[nodiscard]] BusState state() const noexcept final { return state_; }
+  [[nodiscard]] Check problem() const final;
+  [[nodiscard]] const MotorReading& reading(std::size_t motor) const noexcept final { return servos_[motor].reading; }
+  void command(std::size_t motor, const MotorCommand& wanted) noexcept final;
+  [[nodiscard]] std::int64_t cycles() const noexcept final { return cycles_; }
+  /// Commands that were beyond a servo's limit, and were sent as the limit.
+  [[nodiscard]] std::int64_t limited() const noexcept { return limited_; }
+
+  void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept final;
+  std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept final;
+  [[nodiscard]] std::int64_t wakes_ns() const noexcept final;
+
+ protected:
+  /// What came from a servo.
+  struct Answer {
+    std::uint8_t id;
+    bool alert;            ///< something is wrong with the servo
+    std::uint8_t refusal;  ///< what was wrong with the question; 0: nothing
+    std::span<const std::uint8_t> data;
+  };
+  /// A servo's state, in the units of the wire.
+  struct State {
+    std::int64_t current, velocity, position;
+    double temperature_C;  ///< NaN: not told
+  };
+  /// What was found while asking.
+  enum class Wrong : std::uint8_t { nothing, silent, model, limit, refused };
+
+  ServoBus(const ServoTable& table, std::int64_t bits_per_s) : table_(table), bits_per_s_(bits_per_s) {}
+  /// Before anything is said, with what it is asked before the bus is ready. At most `most_servos`.
+  void add(std::uint8_t id, const ServoModel& model, std::span<const ServoStep> asking);
+
+  [[nodiscard]] const ServoModel& model(std::size_t motor) const noexcept { return servos_[motor].model; }
+  [[nodiscard]] std::uint8_t id(std::size_t motor) const noexcept { return servos_[motor].id; }
+  /// Whose state is asked for in this cycle: of all but those that were silent a moment ago.
+  [[nodiscard]] std::span<const std::uint8_t> asked() const noexcept { return {asked_ids_.data(), asked_count_}; }
+  /// Only where the servo's own limit is narrower than its model's.
+  void limit(std::size_t motor, std::int64_t current) noexcept { servos_[motor].limit = current; }
+  /// What ails a servo, by its registers; `none` where nothing does any more.
+  void ails(std::size_t motor, MotorFault fault) noexcept;
+  /// It has power no more, or gives no force for its power, though nothing ails it.
+  void lost_power(std::size_t motor, MotorFault fault) noexcept;
+  void set_temperature(std::size_t motor, double celsius) noexcept { servos_[motor].reading.temperature_C = celsius; }
+  /// Whether it said that it has.
+  [[nodiscard]] bool has_power(std::size_t motor) const noexcept { return servos_[motor].reading.enabled != 0; }
+  void heard(const Answer& answer) noexcept;
+
+  // Of the make.
+  /// Each answer that is whole in the bytes goes to `heard`.
+  virtual void find(std::span<const std::uint8_t> bytes) noexcept = 0;
+  /// The answer that began does not end.
+  virtual void give_up() noexcept = 0;
+  virtual ServoPacket read(std::uint8_t id, Register place) noexcept = 0;
+  virtual ServoPacket write(std::uint8_t id, Register place, std::int64_t value) noexcept = 0;
+  /// Each servo's value, but for those that take no goal; empty where none does.
+  virtual ServoPacket write_all(Register place, std::span<const std::int64_t> values) const noexcept = 0;
+  /// Asks those that are `asked` for their state.
+  virtual ServoPacket read_states() noexcept = 0;
+  /// The cycle that `read_states` began is over.
+  virtual void read_ended(bool all_answered) noexcept = 0;
+  /// Of the answer to a read of so many bytes, and of the answers to `read_states`.
+  [[nodiscard]] virtual std::size_t answer_bytes(std::size_t data) const noexcept = 0;
+  [[nodiscard]] virtual std::size_t states_bytes() const noexcept = 0;
+  /// False where the data are no state.
+  virtual bool read_state(std::size_t motor, std::span<const std::uint8_t> data, State& state) const noexcept = 0;
+  /// What a step `check` read.
+  virtual Wrong check(std::size_t motor, Register place, std::int64_t value) noexcept = 0;
+  /// What a look showed.
+  virtual void looked(std::size_t motor, Register place, std::int64_t value) noexcept = 0;
+  /// The name of the model that tells this number, empty where no page says it.
+  [[nodiscard]] virtual std::string model_named(std::int64_t number) const = 0;
+
+ private:
+  struct Servo {
+    MotorReading reading;
+    MotorCommand wanted;
+    ServoModel model{};
+    std::span<const ServoStep> asking;
+    std::uint8_t id = 0;
+    std::int64_t limit = 0;
+    std::int64_t place = 0, last = 0;  ///< unwrapped, and as on the wire
+    bool placed = false;
+    bool power = false;                    ///< it may have power; `reading.enabled` says that it told so
+    bool asked = false, answered = false;  ///< in this cycle
+    std::size_t missed = 0;                ///< cycles in a row
+    MotorFault ails = MotorFault::none;
+    std::size_t step = 0;    ///< of its enabling
+    std::size_t tries = 0;   ///< of that step
+    std::uint8_t looks = 0;  ///< that are due, a bit each
+    Wrong wrong = Wrong::nothing;
+    std::int64_t found = 0;  ///< the value that is wrong, or the code of the refusal
+    Register found_at{};
+  };
+  enum class Waiting : std::uint8_t { nothing, states, errand };
+  enum class Purpose : std::uint8_t { asking, enabling, power_off, look };
+  struct Errand {
+    Purpose purpose;
+    std::size_t motor;
+    Register place;
+    bool reads;
+    std::size_t which;  ///< step or look
+  };
+
+  std::span<const std::uint8_t> ask() noexcept;
+  std::span<const std::uint8_t> cycle() noexcept;
+  std::span<const std::uint8_t> send_errand(const Errand& errand, std::int64_t value) noexcept;
+  std::span<const std::uint8_t> next_errand() noexcept;
+  void ask_next(bool same_servo) noexcept;
+  void wait(Waiting for_what, std::size_t answer_bytes) noexcept;
+  void ask_for_states() noexcept;
+  void cycle_ended() noexcept;
+  void errand_answered(std::span<const std::uint8_t> data) noexcept;
+  void errand_failed(Wrong how, std::uint8_t code) noexcept;
+  void take(Servo& servo, const State& state) noexcept;
+  void answered(Servo& servo) noexcept;
+  void fail(Servo& servo, MotorFault fault) noexcept;
+  [[nodiscard]] static bool wants_power(const Servo& servo) noexcept;
+  [[nodiscard]] static std::int64_t goal(const Servo& servo) noexcept;
+  void found_wrong(Wrong wrong, std::int64_t value) noexcept;
+  [[nodiscard]] std::span<const std::uint8_t> sent() const noexcept { return packet_.bytes(); }
+
+  ServoTable table_;
+  std::int64_t bits_per_s_;
+  std::array<Servo, most_servos> servos_{};
+  std::array<std::uint8_t, most_servos> ids_{}, asked_ids_{};
+  std::size_t count_ = 0, asked_count_ = 0, missing_ = 0;
+  std::int64_t asked_again_ns_ = 0;
+  BusState state_ = BusState::asking;
+  ServoPacket packet_;
+  Errand errand_{};
+  Waiting waiting_ = Waiting::nothing;
+  bool read_due_ = false;      ///< goals are said, states are not asked for yet
+  bool errand_turn_ = false;   ///< a cycle ended, one question to one servo may follow
+  bool refused_said_ = false;  ///< all were told to let go
+  bool keeping_ = false;       ///< the register that was read is to be written
+  std::size_t hushed_ = 0, asked_ = 0, asked_step_ = 0;
+  std::size_t turn_ = 0, look_turn_ = 0;
+  std::int64_t now_ns_ = 0, deadline_ns_ = 0, said_bytes_ = 0;
+  std::int64_t cycles_ = 0, limited_ = 0;
+};
+
+}  // namespace tactus::devices

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <tactus/core/parameters.hpp>
+#include <tactus/core/result.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace tactus::emulation {
+
+/// What may be wrong with an emulated servo.
+enum class ServoFault : std::int64_t {
+  none,
+  silent,       ///< it hears and does not answer
+  power_cycle,  ///< it is off for 0.3 s, and begins anew
+  hot,          ///< it tells so, and takes its own torque away
+  wrong_model,  ///< it is another one than its owner believes
+  low_limit     ///< it was set to a tenth of its current
+};
+constexpr auto enumerators(ServoFault) {
+  return std::array{Enumerator{ServoFault::none, "none"},
+                    Enumerator{ServoFault::silent, "silent"},
+                    Enumerator{ServoFault::power_cycle, "power-cycle"},
+                    Enumerator{ServoFault::hot, "hot"},
+                    Enumerator{ServoFault::wrong_model, "wrong-model"},
+                    Enumerator{ServoFault::low_limit, "low-limit"}};
+}
+
+/// What may be wrong with the line of emulated servos. Shares are those of all answers, drawn from a seed.
+struct LineFaults {
+  double corrupt = 0.0;   ///< a bit of the answer is wrong
+  double garbage = 0.0;   ///< bytes that nobody sent stand before it
+  double split = 0.0;     ///< it comes in two pieces, 0.3 ms apart
+  std::int64_t echo = 0;  ///< 1: what is sent comes back, as some adapters do
+};
+
+/// A fault as a person writes it.
+struct WrittenFault {
+  ServoFault servo = ServoFault::none;
+  std::int64_t id = -1;      ///< of the servo; negative: of all
+  std::int64_t from_ns = 0;  ///< after the first byte that the peer hears
+  LineFaults line;           ///< where it is one of the line
+};
+/// Reads `KIND[:ID][@SECONDS]`: an enumerator of `ServoFault`, of which servo and from when, as `hot:2@5`; or
+/// `corrupt`, `garbage` and `split` for a hundredth of all answers, or `echo`. Errors: `syntax`, with the text and what
+/// there is.
+Result<WrittenFault> parse_servo_fault(std::string_view text);
+
+}  // namespace tactus::emulation

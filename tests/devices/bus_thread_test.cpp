@@ -1,0 +1,215 @@
+#include <tactus/devices/bus_thread.hpp>
+#include <tactus/devices/damiao/damiao_bus.hpp>
+#include <tactus/devices/motor_bus_device.hpp>
+#include <tactus/emulation/damiao/damiao_peer.hpp>
+#include <tactus/wire/paced.hpp>
+#include <tactus/wire/talk.hpp>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <tests/allocation_counter.hpp>
+
+namespace tactus::devices {
+namespace bus_thread_test {
+
+using emulation::damiao::DamiaoPeer;
+using emulation::damiao::FaultKind;
+using station::DeviceHealth;
+
+/// Emulated motors at a pseudo-terminal, at the real clock.
+class Motors {
+ public:
+  explicit Motors(std::vector<emulation::damiao::Fault> faults = {})
+      : peer_(make(std::move(faults))),
+        line_(*peer_, wire::byte_ns(921'600), wire::Paced::Line::full_duplex),
+        port_(*wire::Port::pseudo_terminal()),
+        thread_([this] { wire::talk(line_, *port_, [this] { return stopping_.load(); }); }) {}
+  ~Motors() { fall_silent(); }
+
+  [[nodiscard]] std::string path() const { return path_; }
+  void fall_silent() {
+    stopping_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+  void unplug() {
+    fall_silent();
+    port_.reset();
+  }
+  /// Once it fell silent.
+  [[nodiscard]] const DamiaoPeer& peer() const { return *peer_; }
+
+ private:
+  static std::unique_ptr<DamiaoPeer> make(std::vector<emulation::damiao::Fault> faults) {
+    emulation::damiao::PeerSettings settings;
+    settings.motors = {{.id = 1, .feedback_id = 0x11}, {.id = 2, .feedback_id = 0x12}};
+    settings.faults = std::move(faults);
+    return *DamiaoPeer::make(settings);
+  }
+
+  std::unique_ptr<DamiaoPeer> peer_;
+  wire::Paced line_;
+  std::optional<wire::Port> port_;
+  std::string path_ = port_->path();
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+/// With patience for a machine that does other things too.
+std::unique_ptr<BusThread> bus_at(const Motors& motors, double silence_s = 5.0) {
+  damiao::DamiaoBusParams params;
+  params.watchdog_s = 1.0;
+  params.patience_s = 0.05;
+  params.motors = {{.id = 1, .feedback_id = 0x11}, {.id = 2, .feedback_id = 0x12}};
+  auto port = wire::Port::serial(motors.path(), 921'600);
+  EXPECT_TRUE(port.ok());
+  auto thread = BusThread::start(*damiao::DamiaoBus::make(params), *std::move(port), {.silence_s = silence_s});
+  EXPECT_TRUE(thread.ok());
+  return *std::move(thread);
+}
+
+std::unique_ptr<MotorBusDevice> device_of(BusThread& bus) {
+  auto device = MotorBusDevice::make(
+      bus, {.limits = Joints<station::DeviceLimits>(bus.motors()), .late_s = 0.5, .silence_s = 2.0});
+  EXPECT_TRUE(device.ok());
+  return *std::move(device);
+}
+
+station::Tick tick_now() {
+  static std::int64_t number = 0;
+  const std::int64_t now_ns = wire::monotonic_ns();
+  return {.number = ++number, .deadline_ns = now_ns, .began_ns = now_ns};
+}
+
+constexpr Seconds long_enough{20.0};
+
+/// Ticks until it is so. False where it never is.
+bool tick_until(MotorBusDevice& device, double torque_Nm, bool enabled, const std::function<bool()>& holds) {
+  const std::int64_t until_ns = wire::monotonic_ns() + std::int64_t{20'000'000'000};
+  const Joints<station::DeviceCommand> command(2, {.force_N = torque_Nm, .enabled = enabled});
+  do {
+    device.read(tick_now());
+    if (holds()) return true;
+    device.write(command);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } while (wire::monotonic_ns() < until_ns);
+  return false;
+}
+
+TEST(BusThread, MotorsBecomeADeviceAndLoseTheirPowerWhenItEnds) {
+  Motors motors;
+  auto bus = bus_at(motors);
+  const Check wrong = bus->wait_until_asked(long_enough);
+  ASSERT_FALSE(wrong) << describe(*wrong);
+  auto device = device_of(*bus);
+  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::good; }));
+  Joints<station::DeviceReading> reading(2);
+  EXPECT_TRUE(tick_until(*device, 0.5, true, [&] {
+    reading = device->read(tick_now());
+    return reading[0].position_m > 0.1 && reading[1].position_m > 0.1;
+  }));
+  EXPECT_EQ(device->health(), DeviceHealth::good);
+  bus->stop();
+  motors.fall_silent();
+  for (const std::size_t motor : {0U, 1U}) {
+    EXPECT_FALSE(motors.peer().motor(motor).enabled());
+    EXPECT_NEAR(motors.peer().motor(motor).most_torque_Nm(), 0.5, 0.01);
+  }
+}
+
+TEST(BusThread, AServoTickNeverWaitsNorAllocates) {
+  Motors motors;
+  auto bus = bus_at(motors);
+  ASSERT_FALSE(bus->wait_until_asked(long_enough));
+  auto device = device_of(*bus);
+  const Joints<station::DeviceCommand> command(2, {.force_N = 0.1, .enabled = true});
+  const std::uint64_t before = laws::own_allocation_count();
+  std::int64_t fastest_ns = 1'000'000'000;
+  for (int tick = 0; tick < 1000; ++tick) {
+    const std::int64_t start_ns = wire::monotonic_ns();
+    device->read(tick_now());
+    device->write(command);
+    fastest_ns = std::min(fastest_ns, wire::monotonic_ns() - start_ns);
+  }
+  EXPECT_EQ(laws::own_allocation_count(), before);
+  EXPECT_LT(fastest_ns, 100'000);
+}
+
+TEST(BusThread, CommandsThatStopTakeThePowerAndDoNotGiveItBackByThemselves) {
+  Motors motors;
+  auto bus = bus_at(motors, 1.0);
+  ASSERT_FALSE(bus->wait_until_asked(long_enough));
+  auto device = device_of(*bus);
+  const auto all_on = [&] {
+    const auto now = bus->newest();
+    return now && now->motors[0].enabled != 0 && now->motors[1].enabled != 0;
+  };
+  const auto all_off = [&] {
+    const auto now = bus->newest();
+    return now && now->motors[0].enabled == 0 && now->motors[1].enabled == 0;
+  };
+  ASSERT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::good; }));
+  ASSERT_TRUE(tick_until(*device, 0.1, true, all_on));
+  const std::int64_t until_ns = wire::monotonic_ns() + std::int64_t{20'000'000'000};
+  while (!all_off() && wire::monotonic_ns() < until_ns) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  ASSERT_TRUE(all_off());
+  const std::int64_t cycles = bus->newest()->cycles;
+  EXPECT_TRUE(tick_until(*device, 0.1, true, [&] { return bus->newest()->cycles > cycles + 50; }));
+  EXPECT_TRUE(all_off());
+  EXPECT_EQ(device->health(), DeviceHealth::lost);
+  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] {
+    return device->health() == DeviceHealth::good && bus->newest()->cycles > cycles + 100;
+  }));
+  EXPECT_TRUE(tick_until(*device, 0.1, true, all_on));
+}
+
+TEST(BusThread, ABusThatFallsSilentIsDegradedThenLost) {
+  Motors motors;
+  auto bus = bus_at(motors);
+  ASSERT_FALSE(bus->wait_until_asked(long_enough));
+  auto device = device_of(*bus);
+  ASSERT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::good; }));
+  motors.fall_silent();
+  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::degraded; }));
+  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::lost; }));
+}
+
+TEST(BusThread, AMotorWithAFaultUnderPowerIsLost) {
+  Motors motors({{.kind = FaultKind::hot_drive, .motor = 2, .from_ns = 1'500'000'000}});
+  auto bus = bus_at(motors);
+  ASSERT_FALSE(bus->wait_until_asked(long_enough));
+  auto device = device_of(*bus);
+  ASSERT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::good; }));
+  EXPECT_TRUE(tick_until(*device, 0.1, true, [&] { return device->health() == DeviceHealth::lost; }));
+  EXPECT_EQ(bus->newest()->motors[1].fault, MotorFault::hot);
+}
+
+TEST(BusThread, APortThatIsUnpluggedEndsItAndTheDeviceIsLost) {
+  Motors motors;
+  auto bus = bus_at(motors);
+  ASSERT_FALSE(bus->wait_until_asked(long_enough));
+  auto device = device_of(*bus);
+  motors.unplug();
+  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return !bus->running(); }));
+  EXPECT_EQ(device->health(), DeviceHealth::lost);
+  const Check wrong = bus->wait_until_asked(long_enough);
+  ASSERT_TRUE(wrong);
+  EXPECT_EQ(describe(*wrong).find(motors.path() + ": the port was closed"), 0U) << describe(*wrong);
+}
+
+TEST(BusThread, MotorsThatAreNotWhatIsStatedAreToldWithThePort) {
+  Motors motors({{.kind = FaultKind::wrong_scale, .motor = 1}});
+  auto bus = bus_at(motors);
+  const Check wrong = bus->wait_until_asked(long_enough);
+  ASSERT_TRUE(wrong);
+  EXPECT_EQ(describe(*wrong).find(motors.path() + ": motor 1 (DM4310): its register 22 (VMAX) reads 45"), 0U)
+      << describe(*wrong);
+}
+
+}  // namespace bus_thread_test
+}  // namespace tactus::devices
