@@ -15,7 +15,7 @@ namespace tactus::cli {
 namespace {
 
 /// A kind of motors is a line here.
-constexpr std::array kinds{
+constexpr std::array emulated_kinds{
     EmulatedKind{"damiao", "Motors of Damiao's DM series behind a serial CAN adapter", &add_damiao_options},
 };
 
@@ -37,7 +37,7 @@ Check emulate(const std::function<Result<EmulatedPeer>()>& make) {
 void add_emulate(CLI::App& app, int& status) {
   CLI::App* verb = app.add_subcommand("emulate", "Be motors at a pseudo-terminal, whose path it prints");
   verb->require_subcommand(1);
-  for (const EmulatedKind& kind : kinds) {
+  for (const EmulatedKind& kind : emulated_kinds) {
     CLI::App* chosen = verb->add_subcommand(kind.name, kind.summary);
     chosen->callback([make = kind.add_options(*chosen), &app, &status] {
       if (const auto error = emulate(make)) {
