@@ -21,7 +21,7 @@ struct DamiaoBusParams {
   std::vector<MotorParams> motors;  ///< 1 to 15
 
   static constexpr auto fields() {
-    return std::tuple{
+    return List{
         field("framing", &DamiaoBusParams::framing, "How frames of CAN become bytes."),
         field("watchdog_s", &DamiaoBusParams::watchdog_s, units::second, between(0.002, 1.0),
               "A motor lets go when it hears nothing for so long: its register TIMEOUT, set before it gets power."),
