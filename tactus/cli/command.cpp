@@ -72,6 +72,7 @@ int run(int argc, char** argv) {
   add_plant(app, status);
   add_relay(app, status);
   add_replay(app, status);
+  add_device(app, status);
   add_emulate(app, status);
   add_faults(app, command, status);
   add_stability(app, command, status);

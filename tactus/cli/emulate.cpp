@@ -17,7 +17,7 @@ namespace tactus::cli {
 namespace {
 
 /// A kind of motors is a line here.
-constexpr std::array kinds{
+constexpr std::array emulated_kinds{
     EmulatedKind{"damiao", "Motors of Damiao's DM series behind a serial CAN adapter", &add_damiao_options},
     EmulatedKind{"dynamixel", "Dynamixel servos of the X series behind a serial line", &add_dynamixel_options},
     EmulatedKind{"feetech", "Feetech's STS3215 or HLS3625 behind a serial line", &add_feetech_options},
@@ -61,7 +61,7 @@ void add_emulate(CLI::App& app, int& status) {
       }
     });
   };
-  for (const EmulatedKind& kind : kinds) {
+  for (const EmulatedKind& kind : emulated_kinds) {
     CLI::App* chosen = verb->add_subcommand(kind.name, kind.summary);
     run(*chosen, [make = kind.add_options(*chosen)] { return emulate(make); });
   }

@@ -14,6 +14,7 @@ namespace tactus::cli {
 /// `command` is the whole command line as a person would type it again, for the report.
 void add_run(CLI::App& app, const std::string& command, int& status);
 void add_advise(CLI::App& app, const std::string& command, int& status);
+void add_device(CLI::App& app, int& status);
 void add_diagnose(CLI::App& app, const std::string& command, int& status);
 void add_doctor(CLI::App& app, const std::string& command, int& status);
 void add_emulate(CLI::App& app, int& status);

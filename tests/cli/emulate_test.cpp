@@ -11,7 +11,6 @@ class Emulate : public Command {
  protected:
   void shell(const std::string& script) {
     write("script", R"(
-      trap 'kill -KILL $(jobs -p) 2>/dev/null' EXIT
       # Damiao's adapter: ask motor 1 for its register 22; its answer of 16 bytes, hexadecimal.
       ask() { printf '\125\252\036\003\001\000\000\000\012\000\000\000\000\377\007\000\000\000\010\000\000\001\000\063\026\000\000\000\000\000' >&3
               timeout 20 head -c 16 <&3 | od -An -tx1 | tr -d ' \n'; }
@@ -25,6 +24,7 @@ TEST_F(Emulate, DamiaoPrintsItsPathAtOnceAnswersOneClientAfterAnotherAndEndsOnAS
   shell(R"(
     mkfifo said
     $TACTUS emulate damiao >said 2>emulate.log </dev/null & peer=$!
+    trap "kill -KILL $peer 2>/dev/null" EXIT
     read -r path <said || exit 3
     [ -c "$path" ] || exit 4
     for client in 1 2; do
