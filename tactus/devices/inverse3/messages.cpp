@@ -14,7 +14,9 @@ using nlohmann::json;
 constexpr std::array<const char*, 3> axes{"x", "y", "z"};
 
 std::string message_of(std::string_view device_id, const char* command, json content) {
-  return json{{"inverse3", {{{"device_id", device_id}, {"commands", {{command, std::move(content)}}}}}}}.dump();
+  const json message{{"inverse3", {{{"device_id", device_id}, {"commands", {{command, std::move(content)}}}}}}};
+  // An id that is not text would throw.
+  return message.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
 Error wrong(const std::string& what, const char* should) {

@@ -30,6 +30,10 @@ TEST(Inverse3Messages, ACommandHasTheKeysOfItsDialect) {
   EXPECT_EQ(force_message("049D", {0.0, std::numeric_limits<double>::quiet_NaN(), 0.0}, Dialect::named), probe);
 }
 
+TEST(Inverse3Messages, AnIdThatIsNoTextDoesNoHarm) {
+  EXPECT_NE(probe_message("\xff\xfe").find("probe_position"), std::string::npos);
+}
+
 TEST(Inverse3Messages, TheVersionTellsTheDialect) {
   const auto of = [](const char* version) {
     return dialect_of(std::string(R"({"ok":true,"data":{"version":")") + version + R"("}})").value();
