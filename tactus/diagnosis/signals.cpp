@@ -349,7 +349,7 @@ double step_of(std::vector<double> values) {
 
 Result<Signals> read_signals(const SignalRoles& roles) {
   constexpr std::size_t fewest_samples = 200;
-  constexpr double shortest_s = 0.5;
+  constexpr double shortest_recording_s = 0.5;
   std::error_code ignored;
   const bool log =
       std::filesystem::is_directory(roles.file, ignored) || lower(roles.file.extension().string()) == ".mcap";
@@ -363,7 +363,7 @@ Result<Signals> read_signals(const SignalRoles& roles) {
   }
   signals.sample_time = Seconds{*found->sample_time_s};
   signals.rotary = found->rotary.value_or(false);
-  if (signals.samples < fewest_samples || signals.duration_s() < shortest_s) {
+  if (signals.samples < fewest_samples || signals.duration_s() < shortest_recording_s) {
     return refuse(ErrorCode::inconsistent, roles,
                   "the recording has " + std::to_string(signals.samples) + " samples in " +
                       format_number(signals.duration_s()) +
