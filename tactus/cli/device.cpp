@@ -139,7 +139,7 @@ Result<bool> check_bus(const DeviceOptions& options) {
   }
   const bool well = wrongs.empty() && readings.has_value();
   if (well) {
-    std::cout << "Clean: each motor is what was stated; " << cell(std::round(rate_Hz)) << " cycles a second.\n\n";
+    std::cout << "Clean: each motor is what was stated; " << std::llround(rate_Hz) << " cycles a second.\n\n";
   } else {
     std::cout << "Not clean; no motor got power.\n";
     if (!readings && !wrong) std::cout << "The port was closed meanwhile.\n";

@@ -171,7 +171,10 @@ void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t 
   }
   motor.wrapped_rad = told->position_rad;
   motor.status = told->status;
-  if (std::exchange(motor.owed, false)) progress_ns_ = now_ns;
+  if (motor.owed > 0) {
+    --motor.owed;
+    progress_ns_ = now_ns;
+  }
   motor.missed = 0;
   reading.position_rad = told->position_rad + motor.turns * turn_rad;
   reading.velocity_rad_per_s = told->velocity_rad_per_s;
@@ -201,7 +204,7 @@ bool DamiaoBus::all_answered() const noexcept {
   bool any = false;
   for (const Motor& motor : motors_) {
     if (motor.missed >= missed_is_silent) continue;
-    if (motor.owed) return false;
+    if (motor.owed > 0) return false;
     any = true;
   }
   return any;
@@ -216,7 +219,7 @@ void DamiaoBus::begin_cycle(std::int64_t now_ns) noexcept {
       if ((motor.missed >= missed_is_silent) != silent) continue;
       if (silent && now_ns < motor.asked_again_ns) continue;
       motor.asked_again_ns = now_ns + silent_asked_every_ns;
-      motor.owed = true;
+      ++motor.owed;
       send(frame_for(motor), now_ns);
     }
   }
@@ -226,8 +229,12 @@ void DamiaoBus::end_cycle() noexcept {
   in_cycle_ = false;
   ++cycles_;
   for (Motor& motor : motors_) {
-    if (!std::exchange(motor.owed, false)) continue;
-    ++motor.missed;
+    if (motor.owed == 0) continue;
+    // What is late comes in a later cycle and must not be taken for the answer to that one: each would begin too soon
+    // from then on. What is lost is waited for once more.
+    const bool heard = motor.reading.heard_ns >= cycle_began_ns_;
+    if (!heard) ++motor.missed;
+    if (heard || motor.missed >= missed_is_silent) motor.owed = 0;
     judge(motor);
   }
 }

@@ -76,7 +76,7 @@ class DamiaoBus final : public MotorBus {
     bool was_wanted = false;
     bool had_power = false;           ///< since it was wanted
     int tries = 0;                    ///< to clear and to enable, since it was wanted
-    bool owed = false;                ///< an answer in this cycle
+    int owed = 0;                     ///< answers
     int missed = 0;                   ///< cycles without an answer, one after the other
     std::int64_t asked_again_ns = 0;  ///< when it was silent
     double turns = 0.0;               ///< of its number, each of twice its scale

@@ -243,6 +243,45 @@ TEST(DamiaoBus, WhereAllAreSilentEachIsAskedEvery10msSoThatNothingPilesUpInAnAda
   EXPECT_GE(counted.packets - before, 7 * 8);
 }
 
+/// Holds back what the peer says, and counts what is under way.
+class Held final : public wire::WireEnd {
+ public:
+  explicit Held(wire::WireEnd& peer) : peer_(&peer) {}
+  void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override {
+    most_under_way = std::max(most_under_way, ++under_way);
+    peer_->hear(bytes, now_ns);
+  }
+  std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override {
+    for (auto said = peer_->say(now_ns); !said.empty(); said = peer_->say(now_ns)) held_.put(said, now_ns + by_ns);
+    const auto said = held_.take(now_ns);
+    if (!said.empty()) --under_way;
+    return said;
+  }
+  [[nodiscard]] std::int64_t wakes_ns() const noexcept override { return std::min(peer_->wakes_ns(), held_.due_ns()); }
+  std::int64_t by_ns = 0;
+  int under_way = 0, most_under_way = 0;
+
+ private:
+  wire::WireEnd* peer_;
+  wire::Outbox held_{1 << 14};
+};
+
+TEST(DamiaoBus, AnAnswerThatWasLateIsNotTakenForThatOfALaterCycle) {
+  for (std::int64_t by_ns = ms / 2; by_ns < 4 * ms; by_ns += ms / 8) {
+    Bench bench({.motors = 3, .framing = Framing::socketcan});
+    Held held(*bench.peer);
+    wire::join(*bench.bus, held, 0, 200 * ms);
+    ASSERT_EQ(bench.bus->state(), BusState::ready);
+    held.by_ns = by_ns;
+    wire::join(*bench.bus, held, 200 * ms, 201 * ms);
+    held.by_ns = 0;
+    wire::join(*bench.bus, held, 201 * ms, 250 * ms);
+    held.most_under_way = 0;
+    wire::join(*bench.bus, held, 250 * ms, 300 * ms);
+    EXPECT_EQ(held.most_under_way, 3) << by_ns;
+  }
+}
+
 TEST(DamiaoBus, ASilentMotorIsToldAndComesBackWithoutPower) {
   const EmulatedFault silence{.kind = FaultKind::silence, .motor = 2, .from_ns = 300 * ms, .until_ns = 400 * ms};
   Bench bench({.faults = {silence}});
