@@ -33,7 +33,7 @@ TEST_F(DeviceServos, AreCheckedAgainstWhatIsStated) {
   EXPECT_NE(clean.out.find("1.75 A"), std::string::npos) << clean.out;
   const Outcome other = check("dynamixel --fault wrong-model:2", "--bus dynamixel --motors 1:xl330-m288,2:xl330-m288");
   EXPECT_EQ(other.status, 1);
-  EXPECT_EQ(other.out.find("Not clean; no motor got power.\nservo 2 tells model number 1220, a XC330-T288, where a "
+  EXPECT_EQ(other.out.find("Not clean; no motor got power.\nservo 2 tells model number 1220 (XC330-T288) where "
                            "XL330-M288 is stated: state the model that is there, or change the servo.\n"),
             0U)
       << other.out;

@@ -346,14 +346,14 @@ Check ServoBus::problem(std::size_t motor) const {
       return Error{ErrorCode::inconsistent,
                    {},
                    who + " tells model number " + std::to_string(servo.found) +
-                       (other.empty() ? std::string(", which is not known here") : std::string(", a ") + other) +
-                       ", where a " + name + " is stated: state the model that is there, or change the servo",
+                       (other.empty() ? std::string(", which is not known here,") : std::string(" (") + other + ")") +
+                       " where " + name + " is stated: state the model that is there, or change the servo",
                    {}};
     }
     case Wrong::limit:
       return Error{ErrorCode::inconsistent,
                    {},
-                   who + " has a current limit of " + std::to_string(servo.found) + ", where that of a " + name +
+                   who + " has a current limit of " + std::to_string(servo.found) + ", where that of " + name +
                        " lies between 1 and " + std::to_string(servo.model.current_limit) +
                        ": state the model that is there, or set the limit (register " +
                        std::to_string(servo.found_at.address) + ")",
