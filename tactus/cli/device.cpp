@@ -23,7 +23,8 @@ using devices::BusReadings;
 using devices::MotorFault;
 
 /// A kind of bus is a line here.
-constexpr std::array bus_kinds{BusKind{"damiao", &make_damiao_bus}};
+constexpr std::array bus_kinds{BusKind{"damiao", &make_damiao_bus}, BusKind{"dynamixel", &make_dynamixel_bus},
+                               BusKind{"feetech", &make_feetech_bus}};
 
 struct DeviceOptions {
   StatedBus bus{.kind = {}, .port = {}, .motors = {}, .framing = "usb2can"};
@@ -168,6 +169,7 @@ void add_device(CLI::App& app, int& status) {
       ->required();
   chosen->add_option("--framing", options->bus.framing, "Of CAN: usb2can, slcan, slcan-fd, socketcan or socketcan-fd")
       ->capture_default_str();
+  chosen->add_option("--bits-per-s", options->bus.bits_per_s, "Of servos: what each has set")->capture_default_str();
   chosen->callback([options, &app, &status] {
     const auto well = check_bus(*options);
     if (!well) std::cerr << app.get_name() << ": " << describe(well.error()) << "\n";

@@ -24,7 +24,8 @@ struct StatedBus {
   std::string kind;
   std::string port;
   std::vector<StatedMotor> motors;
-  std::string framing;  ///< of CAN
+  std::string framing;                  ///< of CAN
+  std::int64_t bits_per_s = 1'000'000;  ///< of servos
 };
 
 /// What a motor said of itself, for a table.
@@ -48,5 +49,10 @@ struct BusKind {
 };
 
 Result<BusToCheck> make_damiao_bus(const StatedBus& stated);
+Result<BusToCheck> make_dynamixel_bus(const StatedBus& stated);
+Result<BusToCheck> make_feetech_bus(const StatedBus& stated);
+
+/// The error for a word that is none of those.
+Error unknown_word(const char* place, const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace tactus::cli

@@ -12,13 +12,6 @@ using devices::damiao::DamiaoBus;
 using devices::damiao::Framing;
 using devices::damiao::Model;
 
-Error unknown_word(const char* place, const std::string& word, const std::vector<std::string>& known) {
-  std::string all;
-  for (const std::string& one : known) all += all.empty() ? one : ", " + one;
-  return {
-      .code = ErrorCode::unknown_key, .parameter = {}, .message = "'" + word + "' is none of " + all, .place = place};
-}
-
 bool is_one_of(const std::string& word, const std::vector<std::string>& known) {
   return std::find(known.begin(), known.end(), word) != known.end();
 }
@@ -35,6 +28,13 @@ MotorSheet sheet_of(const DamiaoBus& bus, std::size_t motor) {
 }
 
 }  // namespace
+
+Error unknown_word(const char* place, const std::string& word, const std::vector<std::string>& known) {
+  std::string all;
+  for (const std::string& one : known) all += all.empty() ? one : ", " + one;
+  return {
+      .code = ErrorCode::unknown_key, .parameter = {}, .message = "'" + word + "' is none of " + all, .place = place};
+}
 
 Result<BusToCheck> make_damiao_bus(const StatedBus& stated) {
   constexpr std::int64_t bits_per_s = 921'600;

@@ -330,10 +330,14 @@ void ServoBus::found_wrong(Wrong wrong, std::int64_t value) noexcept {
 }
 
 Check ServoBus::problem() const {
-  if (state_ != BusState::refused) return {};
-  const auto found =
-      std::find_if(servos_.begin(), servos_.end(), [](const Servo& servo) { return servo.wrong != Wrong::nothing; });
-  const Servo& servo = *found;
+  for (std::size_t i = 0; state_ == BusState::refused && i < count_; ++i) {
+    if (Check found = problem(i)) return found;
+  }
+  return {};
+}
+
+Check ServoBus::problem(std::size_t motor) const {
+  const Servo& servo = servos_[motor];
   const std::string who = std::string("servo ") + std::to_string(servo.id);
   const std::string name = servo.model.name;
   switch (servo.wrong) {
@@ -342,14 +346,14 @@ Check ServoBus::problem() const {
       return Error{ErrorCode::inconsistent,
                    {},
                    who + " tells model number " + std::to_string(servo.found) +
-                       (other.empty() ? std::string(", which is not known here") : std::string(", a ") + other) +
-                       ", where a " + name + " is stated: state the model that is there, or change the servo",
+                       (other.empty() ? std::string(", which is not known here,") : std::string(" (") + other + ")") +
+                       " where " + name + " is stated: state the model that is there, or change the servo",
                    {}};
     }
     case Wrong::limit:
       return Error{ErrorCode::inconsistent,
                    {},
-                   who + " has a current limit of " + std::to_string(servo.found) + ", where that of a " + name +
+                   who + " has a current limit of " + std::to_string(servo.found) + ", where that of " + name +
                        " lies between 1 and " + std::to_string(servo.model.current_limit) +
                        ": state the model that is there, or set the limit (register " +
                        std::to_string(servo.found_at.address) + ")",
@@ -361,8 +365,9 @@ Check ServoBus::problem() const {
                        std::to_string(servo.found) + ": switch its power off and on, and look at its firmware",
                    {}};
     case Wrong::silent:
-    case Wrong::nothing:
       break;
+    case Wrong::nothing:
+      return {};
   }
   return Error{ErrorCode::missing,
                {},

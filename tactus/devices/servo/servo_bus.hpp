@@ -62,6 +62,12 @@ class ServoBus : public MotorBus {
   [[nodiscard]] std::size_t motors() const noexcept final { return count_; }
   [[nodiscard]] BusState state() const noexcept final { return state_; }
   [[nodiscard]] Check problem() const final;
+  /// What is wrong with one of them. Not real-time safe.
+  [[nodiscard]] Check problem(std::size_t motor) const;
+  /// The largest current that it is sent, in amperes; complete unless the bus is still `asking`.
+  [[nodiscard]] double current_limit_A(std::size_t motor) const noexcept {
+    return static_cast<double>(servos_[motor].limit) * servos_[motor].model.current_unit_A;
+  }
   [[nodiscard]] const MotorReading& reading(std::size_t motor) const noexcept final { return servos_[motor].reading; }
   void command(std::size_t motor, const MotorCommand& wanted) noexcept final;
   [[nodiscard]] std::int64_t cycles() const noexcept final { return cycles_; }

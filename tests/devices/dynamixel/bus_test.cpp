@@ -230,10 +230,9 @@ TEST(DynamixelBus, AnotherModelIsRefusedByItsNameBeforeAnythingHasPower) {
   rig.run(500 * ms);
   EXPECT_EQ(rig.bus.state(), BusState::refused);
   ASSERT_TRUE(rig.bus.problem());
-  EXPECT_EQ(
-      describe(*rig.bus.problem()),
-      "servo 3 tells model number 1220, a XC330-T288, where a XL330-M288 is stated: state the model that is there, "
-      "or change the servo");
+  EXPECT_EQ(describe(*rig.bus.problem()),
+            "servo 3 tells model number 1220 (XC330-T288) where XL330-M288 is stated: state the model that is there, "
+            "or change the servo");
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_FALSE(rig.torque_on(i));
     EXPECT_EQ(rig.peer.largest_current(i), 0);
