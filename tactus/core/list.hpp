@@ -36,8 +36,8 @@ constexpr const T& at(const Listed<index, T>& listed) {
 
 }  // namespace detail
 
-/// Values of different types in order: a std::tuple that takes a compiler a fraction of the time, since it can do little
-/// more than be gone through. Every parameter struct and every record is described by one.
+/// Values of different types in order: a std::tuple that takes a compiler a fraction of the time, since it can do
+/// little more than be gone through. Every parameter struct and every record is described by one.
 template <class... T>
 struct List : detail::ListOf<std::index_sequence_for<T...>, T...> {
   constexpr explicit List(T... values) : detail::ListOf<std::index_sequence_for<T...>, T...>(values...) {}

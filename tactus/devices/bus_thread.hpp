@@ -43,7 +43,7 @@ class BusThread {
     double silence_s = 0.05;
     static constexpr auto fields() {
       return List{field("silence_s", &Params::silence_s, units::second, between(0.001, 10.0),
-                              "The longest silence of the servo tick before the motors lose their power.")};
+                        "The longest silence of the servo tick before the motors lose their power.")};
     }
   };
 

@@ -105,8 +105,8 @@ Eigen::VectorXcd poles(const StateSpace& system) {
   Eigen::MatrixXd balanced = system.a;
   balance(balanced);
   const RowByRow a = balanced;
-  const auto values = signal::eigenvalues({a.data(), static_cast<std::size_t>(a.size())},
-                                          static_cast<std::size_t>(a.rows()));
+  const auto values =
+      signal::eigenvalues({a.data(), static_cast<std::size_t>(a.size())}, static_cast<std::size_t>(a.rows()));
   return Eigen::Map<const Eigen::VectorXcd>(values.data(), a.rows());
 }
 

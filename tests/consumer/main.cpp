@@ -5,7 +5,8 @@
 struct Handle {
   double mass_kg = 0.15;
   static constexpr auto fields() {
-    return tactus::List{tactus::field("mass_kg", &Handle::mass_kg, tactus::units::kilogram, tactus::positive, "Moving mass.")};
+    return tactus::List{
+        tactus::field("mass_kg", &Handle::mass_kg, tactus::units::kilogram, tactus::positive, "Moving mass.")};
   }
 };
 

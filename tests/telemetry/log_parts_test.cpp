@@ -192,7 +192,8 @@ TEST_F(LongLog, AFewKilobytesThatUnpackToManyGigabytesAreRefused) {
   // Records that nobody knows, each of a mebibyte: what takes long is to unpack them.
   std::string zeros;
   for (int i = 0; i < 64; ++i) {
-    mcap::append_record(zeros, mcap::Opcode{0x80}, std::string((std::size_t{1} << 20U) - mcap::record_head_bytes, '\0'));
+    mcap::append_record(zeros, mcap::Opcode{0x80},
+                        std::string((std::size_t{1} << 20U) - mcap::record_head_bytes, '\0'));
   }
   std::string packed(ZSTD_compressBound(zeros.size()), '\0');
   packed.resize(ZSTD_compress(packed.data(), packed.size(), zeros.data(), zeros.size(), 1));

@@ -162,7 +162,8 @@ TEST(DynamixelPacket, WhateverIsSentIsReadAgainWholeOrInPiecesAfterEchoesAndGarb
 }
 
 TEST(DynamixelPacket, APacketMaySplitAtEveryByte) {
-  for (const auto& [bytes, message] : vectors()) {
+  for (const auto& vector : vectors()) {
+    const Bytes& bytes = vector.bytes;
     for (std::size_t cut = 1; cut < bytes.size(); ++cut) {
       PacketFinder<PacketFormat> finder;
       int packets = 0;
