@@ -26,6 +26,7 @@ runtime::ServoReport run_tap(const experiments::TappingEnsemble& ensemble, std::
 
 Findings servo_step(bool quick) {
   experiments::TappingParams params;
+  params.task.supervised = false;
   params.task.taps = quick ? 3 : 12;
   const auto ensemble = experiments::TappingEnsemble::make(params);
   const auto file = std::filesystem::temp_directory_path() / ("bench_servo_" + std::to_string(getpid()) + ".mcap");

@@ -22,6 +22,7 @@ std::string loop_name(int step_us) { return "closed loop, plant step " + std::to
 
 experiments::TappingParams hard_tapping(int step_us) {
   experiments::TappingParams params;
+  params.task.supervised = false;
   params.plant.longest_step_s = 1e-6 * step_us;
   params.control.force_gain = 15.0;
   return params;

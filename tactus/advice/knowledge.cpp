@@ -230,6 +230,7 @@ Check Knowledge::fits(const control::MasterModel& model) const {
 
 TappingParams Knowledge::drawn(const TappingParams& believed, std::uint64_t draw, const Known& known) const {
   TappingParams rig = believed;
+  rig.task.supervised = false;
   signal::Random random = signal::Random(static_cast<std::uint64_t>(believed.task.seed)).fork(draw);
   // Larger than any that a person writes, so that no run has these taps.
   rig.task.seed = static_cast<std::int64_t>(random.bits() >> 1);

@@ -71,6 +71,7 @@ Result<experiments::TappingParams> params_of(const PlantOptions& options) {
   if (!document) return document.error();
   auto params = document->read<experiments::TappingParams>();
   if (!params) return params.error();
+  if (auto error = experiments::refuse_supervised(*params, "plant")) return document->locate(*std::move(error));
   if (const auto ensemble = experiments::TappingEnsemble::make(*params); !ensemble) {
     return document->locate(ensemble.error());
   }

@@ -44,6 +44,7 @@ class SupervisedMasterOf {
   Output step(const Input& input) noexcept;
 
   [[nodiscard]] SiteState state() const noexcept { return supervision_.state(); }
+  [[nodiscard]] SiteCause cause() const noexcept { return supervision_.cause(); }  ///< why it does not follow
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
   /// The packet of the other site that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
@@ -87,6 +88,7 @@ class SupervisedSlaveOf {
   Output step(const Input& input) noexcept;
 
   [[nodiscard]] SiteState state() const noexcept { return supervision_.state(); }
+  [[nodiscard]] SiteCause cause() const noexcept { return supervision_.cause(); }  ///< why it does not follow
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
   /// The packet of the other site that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }

@@ -196,6 +196,7 @@ class SupervisionOf {
   }
 
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
+  [[nodiscard]] SiteCause cause() const noexcept { return supervisor_.cause(); }
   /// Whether the motor must get no force any more: in `fault`, and in a `hold` in which the site misses too many ticks
   /// to close a loop, or because motor and force sensor contradict one another, when either may be wrong.
   [[nodiscard]] bool lets_go() const noexcept { return state() == SiteState::fault || cannot_hold_ || contradicted(); }

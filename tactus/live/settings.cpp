@@ -53,6 +53,7 @@ bool are_equal(const T& one, const T& other) {
 Result<Settings> Settings::make(const configuration::Document& document) {
   const auto params = document.read<experiments::TappingParams>();
   if (!params) return params.error();
+  if (auto error = experiments::refuse_supervised(*params, "the live page")) return document.locate(*std::move(error));
 
   Settings settings(document);
   const auto add = [&settings](ParameterDescription description, ParameterValue value) {

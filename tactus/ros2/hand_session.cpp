@@ -40,6 +40,7 @@ double TapScript::position_m(double time_s) const {
 }
 
 Result<HandSession> HandSession::make(const experiments::TappingParams& params) {
+  if (auto error = experiments::refuse_supervised(params, "run --ros2")) return *std::move(error);
   // The whole experiment is checked, as without ROS 2.
   if (const auto ensemble = experiments::TappingEnsemble::make(params); !ensemble) return ensemble.error();
   TapScript script(params);

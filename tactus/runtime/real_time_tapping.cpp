@@ -232,6 +232,9 @@ Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, co
         ServoThreadParams servo = options.servo;
         servo.rate_Hz = params.servo.rate_Hz;
         if (auto error = check_servo_thread(servo)) return *std::move(error);
+        if (auto error = experiments::refuse_supervised(params, "run --realtime without --device")) {
+          return *std::move(error);
+        }
         auto ensemble = TappingEnsemble::make(params);
         if (!ensemble) return ensemble.error();
         return Prepared{params, *std::move(ensemble), params.task.observation_s, servo};

@@ -110,6 +110,7 @@ std::string Command::quick_experiment() const {
   return write("quick.toml",
                "[task]\n"
                "kind = \"tapping\"\n"
+               "supervised = false\n"
                "taps = 1\n"
                "observation_s = 0.15\n"
                "\n"

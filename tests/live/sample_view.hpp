@@ -14,6 +14,7 @@ namespace tactus::live {
 inline Settings sample_settings() {
   constexpr std::string_view text = R"(
 task.kind = "tapping"
+task.supervised = false
 plant.longest_step_s = 2e-5
 control.force_gain = 10.0
 control.slave = { proportional_N_per_m = 100.0, derivative_N_s_per_m = 0.65, velocity = { cutoff_Hz = 300.0 } }

@@ -24,6 +24,7 @@ using Record = simulation::Teleoperator::Record;
 /// The tapping experiment of the repository in short: a firm tap on a stiff wall, with noise, tremor and cancellation.
 TappingParams short_taps(double force_gain) {
   TappingParams params;
+  params.task.supervised = false;
   params.task.taps = 2;
   params.task.observation_s = 0.15;
   params.task.slowest_m_per_s = 0.07;

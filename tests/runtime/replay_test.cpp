@@ -23,7 +23,8 @@ class Replaying : public ::testing::Test {
   void SetUp() override {
     folder_ = scratch_path();
     const auto document = configuration::Document::parse(
-        "task = { kind = \"tapping\", taps = 2, observation_s = 0.15, slowest_m_per_s = 0.07, model_error = 0.2 }\n"
+        "task = { kind = \"tapping\", supervised = false, taps = 2, observation_s = 0.15, slowest_m_per_s = 0.07, "
+        "model_error = 0.2 }\n"
         "control.force_gain = 5.0\nslave.force_sensor.noise_rms_N = 0.002\n"
         "channel.to_master = { delay_s = 0.002, jitter_s = 0.001, loss_fraction = 0.1 }\n",
         "test");
@@ -108,7 +109,8 @@ TEST_F(Replaying, AStepThatIsMissingIsSaid) {
 /// Three taps in real time, of which the end is asked for after so many.
 RealTimeOutcome ran_until(std::int64_t after) {
   const auto document = configuration::Document::parse(
-      "task = { kind = \"tapping\", taps = 3, observation_s = 0.15 }\nservo.rate_Hz = 1000.0\n", "test");
+      "task = { kind = \"tapping\", supervised = false, taps = 3, observation_s = 0.15 }\nservo.rate_Hz = 1000.0\n",
+      "test");
   EndRequest end;
   if (after == 0) end.ask();
   auto ran = run_in_real_time({.document = document.value(), .variations = {}, .name = "taps", .command = {}},

@@ -16,6 +16,7 @@ constexpr Seconds patient{5.0};
 /// A firm tap on a stiff wall with noise and tremor; at a rate that sanitizers keep up with.
 inline experiments::TappingParams short_taps(double rate_Hz = 5000.0) {
   experiments::TappingParams params;
+  params.task.supervised = false;
   params.task.taps = 2;
   params.task.observation_s = observation_s;
   params.task.slowest_m_per_s = 0.07;

@@ -60,6 +60,7 @@ TappingParams tapping_of(const simulation::Teleoperator::Params& teleoperator, c
   TappingParams params;
   static_cast<simulation::Teleoperator::Params&>(params) = teleoperator;
   static_cast<TapSeries&>(params.task) = taps;
+  params.task.supervised = false;
   return params;
 }
 

@@ -7,6 +7,15 @@ namespace tactus::experiments {
 
 namespace {
 constexpr std::string_view tapping_title = "Tapping a wall through the teleoperator";
+
+/// With the site that supervision stopped first, and why.
+std::string verdict_of(const TappingMetrics& metrics) {
+  const std::string verdict{name_of(metrics.verdict)};
+  if (metrics.verdict != Verdict::stopped) return verdict;
+  return verdict + ": " + std::string(name_of(metrics.stopped_by->site)) + ", " +
+         std::string(name_of(metrics.stopped_by->cause));
+}
+
 }  // namespace
 
 report::Table tapping_table(const std::vector<TappingRun>& runs) {
@@ -29,21 +38,25 @@ report::Table tapping_table(const std::vector<TappingRun>& runs) {
     add_row(table, run.settings,
             {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3), settling(m.settling_time_median_s),
              settling(m.settling_time_p90_s), format_number(m.contacts_median), report::number(m.peak_force_N, 3),
-             report::number(1e3 * m.residual_rms_N, 3), name_of(m.verdict)});
+             report::number(1e3 * m.residual_rms_N, 3), verdict_of(m)});
   }
   return table;
 }
 
 std::string metrics_json(const TappingMetrics& metrics) {
-  return nlohmann::ordered_json{{"taps", metrics.taps},
-                                {"settled_fraction", metrics.settled_fraction},
-                                {"settling_time_median_s", metrics.settling_time_median_s},
-                                {"settling_time_p90_s", metrics.settling_time_p90_s},
-                                {"contacts_median", metrics.contacts_median},
-                                {"peak_force_N", metrics.peak_force_N},
-                                {"residual_rms_N", metrics.residual_rms_N},
-                                {"verdict", name_of(metrics.verdict)}}
-      .dump();
+  nlohmann::ordered_json json{{"taps", metrics.taps},
+                              {"settled_fraction", metrics.settled_fraction},
+                              {"settling_time_median_s", metrics.settling_time_median_s},
+                              {"settling_time_p90_s", metrics.settling_time_p90_s},
+                              {"contacts_median", metrics.contacts_median},
+                              {"peak_force_N", metrics.peak_force_N},
+                              {"residual_rms_N", metrics.residual_rms_N},
+                              {"verdict", name_of(metrics.verdict)}};
+  if (metrics.stopped_by) {
+    json["stopped"] = metrics.stopped;
+    json["stopped_by"] = {{"site", name_of(metrics.stopped_by->site)}, {"cause", name_of(metrics.stopped_by->cause)}};
+  }
+  return json.dump();
 }
 
 std::string tapping_json(const Request& request, const std::vector<TappingRun>& runs) {
@@ -69,7 +82,8 @@ report::Page tapping_page(const Request& request, const report::Table& table,
        {"residual", "RMS of the contact force above 15 Hz over the last 100 ms, median."},
        {"verdict",
         "settled: at least 95 % of the taps settled, the median within 100 ms. limit-cycle: fewer than half "
-        "settled. diverged: a safety gate latched or a device left its workspace. ringing: all else."}});
+        "settled. diverged: a safety gate latched or a device left its workspace. stopped: supervision ended a tap; "
+        "the site is named, and why. ringing: all else."}});
   for (const report::Figure& figure : figures) page.figure(figure);
   return page;
 }

@@ -27,7 +27,8 @@ TapObserver::TapObserver(const Tap& tap, double observation_s)
   contact_force_N_.clear();
 }
 
-bool TapObserver::observe(const simulation::Teleoperator::Record& record, bool healthy) noexcept {
+bool TapObserver::observe(const simulation::Teleoperator::Record& record, bool healthy,
+                          const std::optional<simulation::StoppedSite>& stopped) noexcept {
   contact_force_N_.push_back(record.contact_force_N);
   peak_force_N_ = std::max(peak_force_N_, record.peak_contact_force_N);
   if (record.touched) {
@@ -43,13 +44,14 @@ bool TapObserver::observe(const simulation::Teleoperator::Record& record, bool h
   const bool inside =
       std::fabs(record.master_position_m) < workspace_m && std::fabs(record.tip_position_m) < slave_workspace_m_;
   result_.diverged = !inside || !healthy;
-  return ++ticks_ < last_ && !result_.diverged;
+  result_.stopped = stopped;
+  return ++ticks_ < last_ && !result_.diverged && !stopped;
 }
 
 TapResult TapObserver::result() const {
   TapResult result = result_;
   if (result.touched) result.metrics = judge_contact(contact_force_N_, first_touch_, tick_s_);
-  result.metrics.settled = result.metrics.settled && result.touched && !result.diverged;
+  result.metrics.settled = result.metrics.settled && result.touched && !result.diverged && !result.stopped;
   if (!result.metrics.settled) result.metrics.settling_time_s = observation_s_;
   result.metrics.contacts = contacts_;
   result.metrics.peak_force_N = peak_force_N_;

@@ -5,6 +5,7 @@
 #include <tactus/simulation/teleoperator.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace tactus::experiments {
@@ -19,7 +20,8 @@ struct Tap {
 struct TapResult {
   ContactMetrics metrics;
   bool touched = false;
-  bool diverged = false;  ///< a safety gate latched, or the master or the slave left its workspace of 1 m
+  bool diverged = false;  ///< a bare site's gate latched, or the master or the slave left its workspace of 1 m
+  std::optional<simulation::StoppedSite> stopped = {};  ///< by supervision, which ends the tap
   double first_touch_s = 0.0;
 };
 
@@ -28,9 +30,10 @@ class TapObserver {
  public:
   TapObserver(const Tap& tap, double observation_s);
 
-  /// Takes the next tick; `healthy` is whether no safety gate has latched. False once the tap is over. Real-time safe:
-  /// all room is taken when the observer is made.
-  bool observe(const simulation::Teleoperator::Record& record, bool healthy) noexcept;
+  /// Takes the next tick; `healthy` is whether no safety gate has latched, `stopped` which site supervision has
+  /// stopped. False once the tap is over. Real-time safe: all room is taken when the observer is made.
+  bool observe(const simulation::Teleoperator::Record& record, bool healthy,
+               const std::optional<simulation::StoppedSite>& stopped = {}) noexcept;
   /// The most ticks that it can take.
   [[nodiscard]] std::size_t most_ticks() const { return contact_force_N_.capacity(); }
   /// What the ticks so far amount to.

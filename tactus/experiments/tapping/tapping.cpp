@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 namespace tactus::experiments {
@@ -23,7 +24,40 @@ Check check_range(double lower, double upper, const char* lower_name, const char
                .place = {}};
 }
 
+template <class Teleoperator>
+TapResult run_tap(const Tap& tap, TapObserver judge, std::vector<simulation::Teleoperator::Record>* trace) {
+  constexpr bool supervised = std::is_same_v<Teleoperator, simulation::SupervisedTeleoperator>;
+  const auto& [params, path] = tap;
+  auto teleoperator = Teleoperator::make(params, path.start_m);
+  const double tick_s = teleoperator->tick_s();
+  bool more = true;
+  for (std::size_t tick = 0; more; ++tick) {
+    const double time_s = static_cast<double>(tick) * tick_s;
+    const auto record = teleoperator->step(path.position_m(time_s), path.position_m(time_s + tick_s));
+    if (trace != nullptr) trace->push_back(record);
+    // Supervision stops for a gate that has latched a tick later, and knows why.
+    const bool healthy = supervised || teleoperator->healthy();
+    more = judge.observe(record, healthy, teleoperator->stopped());
+  }
+  return judge.result();
+}
+
+/// Whether it can be made, and armed.
+Check check(const Tap& tap, bool supervised) {
+  const auto error_of = [](const auto& made) { return made ? Check{} : Check{made.error()}; };
+  return supervised ? error_of(simulation::SupervisedTeleoperator::make(tap.params, tap.path.start_m))
+                    : error_of(simulation::Teleoperator::make(tap.params, tap.path.start_m));
+}
+
 }  // namespace
+
+Check refuse_supervised(const TappingParams& params, const std::string& who) {
+  if (!params.task.supervised) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "task.supervised",
+               .message = "is true, and " + who + " runs simulated sites without supervision: set it to false",
+               .place = {}};
+}
 
 Result<TappingEnsemble> TappingEnsemble::make(const TappingParams& params) {
   if (auto error = validate(params)) return *std::move(error);
@@ -63,27 +97,15 @@ Result<TappingEnsemble> TappingEnsemble::make(const TappingParams& params) {
                 .end_m = wall + depth,
                 .start_time_s = rest_s,
                 .duration_s = mechanics::MinimumJerk::duration_for(2.0 * depth, speed)};
-    if (auto teleoperator = simulation::Teleoperator::make(tap.params, tap.path.start_m); !teleoperator) {
-      return teleoperator.error();
-    }
+    if (auto error = check(tap, task.supervised)) return *std::move(error);
     taps.push_back(tap);
   }
-  return TappingEnsemble(std::move(taps), task.observation_s);
+  return TappingEnsemble(std::move(taps), task.observation_s, task.supervised);
 }
 
 TapResult TappingEnsemble::run(std::size_t tap, std::vector<simulation::Teleoperator::Record>* trace) const {
-  const auto& [params, path] = taps_[tap];
-  Result<simulation::Teleoperator> teleoperator = simulation::Teleoperator::make(params, path.start_m);
-  const double tick_s = teleoperator->tick_s();
-  TapObserver judge = observer(tap);
-  bool more = true;
-  for (std::size_t tick = 0; more; ++tick) {
-    const double time_s = static_cast<double>(tick) * tick_s;
-    const auto record = teleoperator->step(path.position_m(time_s), path.position_m(time_s + tick_s));
-    if (trace != nullptr) trace->push_back(record);
-    more = judge.observe(record, teleoperator->healthy());
-  }
-  return judge.result();
+  return supervised_ ? run_tap<simulation::SupervisedTeleoperator>(taps_[tap], observer(tap), trace)
+                     : run_tap<simulation::Teleoperator>(taps_[tap], observer(tap), trace);
 }
 
 TappingMetrics summarise(const std::vector<TapResult>& taps) {
@@ -100,6 +122,9 @@ TappingMetrics summarise(const std::vector<TapResult>& taps) {
 
   TappingMetrics metrics;
   metrics.taps = taps.size();
+  for (const TapResult& tap : taps) {
+    if (tap.stopped && metrics.stopped++ == 0) metrics.stopped_by = tap.stopped;
+  }
   metrics.settled_fraction = static_cast<double>(settled) / static_cast<double>(taps.size());
   metrics.settling_time_median_s = simulation::quantile(settling, 0.5);
   metrics.settling_time_p90_s = simulation::quantile(settling, 0.9);
@@ -111,6 +136,8 @@ TappingMetrics summarise(const std::vector<TapResult>& taps) {
       simulation::quantile(collect([](const TapResult& tap) { return tap.metrics.residual_rms_N; }), 0.5);
   if (diverged) {
     metrics.verdict = Verdict::diverged;
+  } else if (metrics.stopped > 0) {
+    metrics.verdict = Verdict::stopped;
   } else if (metrics.settled_fraction < 0.5) {
     metrics.verdict = Verdict::limit_cycle;
   } else if (metrics.settled_fraction >= 0.95 && metrics.settling_time_median_s <= settled_within_s) {

@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 /// The main experiment: a person taps a stiff wall through the teleoperator (paper A, Fig. 13).
@@ -50,8 +52,13 @@ constexpr auto enumerators(TappingKind) { return std::array{Enumerator{TappingKi
 
 struct TappingTask : TapSeries {
   TappingKind kind = TappingKind::tapping;
+  bool supervised = true;
   static constexpr auto fields() {
-    return joined(List{field("kind", &TappingTask::kind, "Which experiment this is.")}, TapSeries::fields());
+    return joined(List{field("kind", &TappingTask::kind, "Which experiment this is."),
+                       field("supervised", &TappingTask::supervised,
+                             "Sites that are armed before each tap and watched, as on a machine; false: at work from "
+                             "the first tick on, as in the papers.")},
+                  TapSeries::fields());
   }
 };
 
@@ -62,10 +69,14 @@ struct TappingParams : simulation::Teleoperator::Params {
   }
 };
 
-enum class Verdict { settled, ringing, limit_cycle, diverged };
+/// For what runs these sites without supervision, which `who` tells, as "the live page": refuses others.
+Check refuse_supervised(const TappingParams& params, const std::string& who);
+
+enum class Verdict { settled, ringing, limit_cycle, diverged, stopped };
 constexpr auto enumerators(Verdict) {
   return std::array{Enumerator{Verdict::settled, "settled"}, Enumerator{Verdict::ringing, "ringing"},
-                    Enumerator{Verdict::limit_cycle, "limit-cycle"}, Enumerator{Verdict::diverged, "diverged"}};
+                    Enumerator{Verdict::limit_cycle, "limit-cycle"}, Enumerator{Verdict::diverged, "diverged"},
+                    Enumerator{Verdict::stopped, "stopped"}};
 }
 
 /// The longest median settling time of an ensemble that counts as settled.
@@ -79,10 +90,12 @@ struct TappingMetrics {
   double settling_time_median_s = 0.0;
   double settling_time_p90_s = 0.0;
   double contacts_median = 0.0;
-  double peak_force_N = 0.0;    ///< median over the taps
-  double residual_rms_N = 0.0;  ///< median over the taps
-  /// `diverged`: any tap did. `limit-cycle`: fewer than half of the taps settled. `settled`: at least 95 % settled, the
-  /// median within 100 ms. `ringing`: all else.
+  double peak_force_N = 0.0;                          ///< median over the taps
+  double residual_rms_N = 0.0;                        ///< median over the taps
+  std::size_t stopped = 0;                            ///< taps that supervision ended
+  std::optional<simulation::StoppedSite> stopped_by;  ///< of the first of them
+  /// `diverged`: any tap did. `stopped`: supervision ended any. `limit-cycle`: fewer than half of the taps settled.
+  /// `settled`: at least 95 % settled, the median within 100 ms. `ringing`: all else.
   Verdict verdict = Verdict::settled;
 };
 
@@ -98,13 +111,15 @@ class TappingEnsemble {
   /// What a tap is made of, for other clocks.
   [[nodiscard]] const Tap& tap(std::size_t tap) const { return taps_[tap]; }
   [[nodiscard]] TapObserver observer(std::size_t tap) const { return {taps_[tap], observation_s_}; }
+  [[nodiscard]] bool supervised() const { return supervised_; }
 
  private:
-  explicit TappingEnsemble(std::vector<Tap> taps, double observation_s)
-      : taps_(std::move(taps)), observation_s_(observation_s) {}
+  explicit TappingEnsemble(std::vector<Tap> taps, double observation_s, bool supervised)
+      : taps_(std::move(taps)), observation_s_(observation_s), supervised_(supervised) {}
 
   std::vector<Tap> taps_;
   double observation_s_;
+  bool supervised_;
 };
 
 TappingMetrics summarise(const std::vector<TapResult>& taps);

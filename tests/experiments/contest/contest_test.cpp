@@ -29,6 +29,7 @@ TappingParams taps_at(double force_gain, double force_limit_N, int taps) {
   static_cast<simulation::Teleoperator::Params&>(tapping) = params;
   static_cast<TapSeries&>(tapping.task) = params.task;
   tapping.task.taps = taps;
+  tapping.task.supervised = false;
   tapping.control.force_gain = force_gain;
   tapping.control.force_limit_N = force_limit_N;
   return tapping;
@@ -167,6 +168,7 @@ TEST(Contest, EveryMethodReachesTheWallAndStaysThereOverALineThatReordersAndLose
     TappingParams params;
     static_cast<simulation::Teleoperator::Params&>(params) = all[method];
     params.task.taps = 2;
+    params.task.supervised = false;
     for (station::Channel::Params* way : {&params.channel.to_slave, &params.channel.to_master}) {
       way->delay_s = 0.02;
       way->jitter_s = 0.01;

@@ -358,5 +358,43 @@ TEST(MedianTap, IsTheOneInTheMiddleTheLowerOfTwoTheFirstOfEqualOnes) {
   EXPECT_EQ(median_tap({tap_of(0.05)}), 0U);
 }
 
+TappingMetrics metrics_of(const TappingParams& params) {
+  const TappingEnsemble ensemble = made(params);
+  std::vector<TapResult> taps;
+  for (std::size_t i = 0; i < ensemble.size(); ++i) taps.push_back(ensemble.run(i));
+  return summarise(taps);
+}
+
+TEST(Tapping, SupervisedSitesSettleAsBareOnesDo) {
+  TappingParams params = default_params();
+  const TappingMetrics bare = metrics_of(params);
+  params.task.supervised = true;
+  const TappingMetrics supervised = metrics_of(params);
+  EXPECT_EQ(supervised.settled_fraction, bare.settled_fraction);
+  EXPECT_NEAR(supervised.settling_time_median_s, bare.settling_time_median_s, 0.003);
+  EXPECT_EQ(supervised.stopped, 0u);
+  EXPECT_NE(supervised.peak_force_N, bare.peak_force_N) << "the sites were not supervised";
+}
+
+TEST(Tapping, ATapThatSupervisionStopsHasNotSettledAndTheSiteIsNamed) {
+  TappingParams params = default_params();
+  params.task.supervised = true;
+  params.task.taps = 2;
+  params.control.cancellation = control::CancellationMode::off;
+  params.control.gate.energy = {.damp_above_J = 1e-4, .hold_above_J = 1e-3, .credit_J = 1e-4, .drain_W = 0.0};
+  const TappingMetrics metrics = metrics_of(params);
+  EXPECT_EQ(metrics.verdict, Verdict::stopped);
+  EXPECT_EQ(metrics.stopped, 2u);
+  EXPECT_EQ(metrics.settled_fraction, 0.0);
+  EXPECT_EQ(metrics.stopped_by, (simulation::StoppedSite{control::SiteRole::master, control::SiteCause::energy}));
+}
+
+TEST(Tapping, WhatRunsBareRefusesSupervisedSites) {
+  TappingParams params = default_params();
+  EXPECT_FALSE(refuse_supervised(params, "it"));
+  params.task.supervised = true;
+  EXPECT_EQ(refuse_supervised(params, "it")->parameter, "task.supervised");
+}
+
 }  // namespace tapping_test
 }  // namespace tactus::experiments
