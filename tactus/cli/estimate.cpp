@@ -1,4 +1,5 @@
 #include <tactus/cli/axis_options.hpp>
+#include <tactus/cli/estimate.hpp>
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
@@ -141,6 +142,7 @@ void add_estimate(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<EstimateOptions>();
   CLI::App* estimate = app.add_subcommand("estimate", "Estimate what no sensor measures");
   estimate->require_subcommand(1);
+  add_estimate_torque(*estimate, app.get_name(), command, status);
   CLI::App* verb = estimate->add_subcommand("force", "Force of the environment from command and position");
   add_axis_options(*verb, options->axis);
   verb->add_option("--model", options->model, "Model file, as `identify inverse --out` writes it")->required();

@@ -11,6 +11,7 @@ class App;
 /// `name`, which is what the program calls itself.
 namespace tactus::cli {
 
+void add_identify_arm(CLI::App& identify, const std::string& name, const std::string& command, int& status);
 void add_identify_frf(CLI::App& identify, const std::string& name, const std::string& command, int& status);
 void add_identify_inverse(CLI::App& identify, const std::string& name, const std::string& command, int& status);
 void add_identify_bench(CLI::App& identify, const std::string& name, const std::string& command, int& status);

@@ -29,6 +29,15 @@ std::string_view next_line(std::string_view text, std::size_t& offset) {
 std::optional<std::size_t> split(std::string_view line, char separator, std::vector<CsvField>& fields) {
   fields.clear();
   std::size_t count = 0;
+  if (separator == ' ') {
+    constexpr std::string_view blanks = " \t\r";
+    for (std::size_t at = line.find_first_not_of(blanks); at < line.size(); at = line.find_first_not_of(blanks, at)) {
+      const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
+      if (++count <= most_table_columns) fields.push_back({line.substr(at, end - at), at + 1});
+      at = end;
+    }
+    return count;
+  }
   std::size_t start = 0;
   bool quoted = false;
   for (std::size_t i = 0; i <= line.size(); ++i) {
@@ -91,6 +100,11 @@ Number parse_number(std::string_view text) {
   return number;
 }
 
+bool only_numbers(const std::vector<CsvField>& fields) {
+  return std::all_of(fields.begin(), fields.end(),
+                     [](const CsvField& field) { return parse_number(field.text).fault == nullptr; });
+}
+
 Error broken(ErrorCode code, std::string message, std::string place) {
   return {.code = code, .parameter = {}, .message = std::move(message), .place = std::move(place)};
 }
@@ -103,7 +117,7 @@ std::string CsvFile::place_of(std::size_t line, std::size_t character) const {
   return file_.string() + ":" + std::to_string(line) + ":" + std::to_string(character);
 }
 
-Result<CsvFile> CsvFile::open(const std::filesystem::path& file) {
+Result<CsvFile> CsvFile::open(const std::filesystem::path& file, Header header) {
   CsvFile table;
   table.file_ = file;
   Result<std::string> bytes = file_bytes(file, most_table_bytes);
@@ -116,16 +130,18 @@ Result<CsvFile> CsvFile::open(const std::filesystem::path& file) {
   if (table.text_.find('\0') != std::string::npos) {
     return broken(ErrorCode::syntax, "holds a zero byte, so it is no text; name a table or a .mat file", file.string());
   }
-  if (Check wrong = table.parse_header()) return *std::move(wrong);
+  if (Check wrong = table.parse_header(header)) return *std::move(wrong);
   if (Check wrong = table.count_rows()) return *std::move(wrong);
   return table;
 }
 
-Check CsvFile::parse_header() {
+Check CsvFile::parse_header(Header wanted) {
   std::size_t offset = 0;
+  std::size_t line_start = 0;
   std::size_t line_number = 0;
   std::string_view header;
   while (trim(header).empty() && offset < text_.size()) {
+    line_start = offset;
     header = next_line(text_, offset);
     if (trim(header).starts_with('#')) header = {};
     ++line_number;
@@ -136,6 +152,10 @@ Check CsvFile::parse_header() {
   }
   separator_ = separator_of(header);
   std::vector<CsvField> fields;
+  if (wanted == Header::optional && header.find_first_of(",;\t") == std::string_view::npos) {
+    split(header, ' ', fields);
+    if (only_numbers(fields)) separator_ = ' ';
+  }
   const auto count = split(header, separator_, fields);
   const std::string place = file_.string() + ":" + std::to_string(line_number);
   if (!count) return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line", place);
@@ -145,9 +165,16 @@ Check CsvFile::parse_header() {
                       std::to_string(most_table_columns) + " that are read; keep those that are needed",
                   place);
   }
-  const bool only_numbers = std::all_of(
-      fields.begin(), fields.end(), [](const CsvField& field) { return parse_number(field.text).fault == nullptr; });
-  if (only_numbers) {
+  if (only_numbers(fields)) {
+    if (wanted == Header::optional) {
+      for (std::size_t i = 1; i <= fields.size(); ++i) {
+        heads_.push_back(std::to_string(i));
+        entries_.push_back({.name = heads_.back(), .kind = "column", .columns = 1, .readable = true});
+      }
+      data_start_ = line_start;
+      data_line_ = line_number;
+      return {};
+    }
     return broken(ErrorCode::syntax,
                   "a header is needed before the numbers '" + std::string(trim(header).substr(0, 40)) +
                       "'; put a line such as 'time [s],force [N]' there, without a # before it",
@@ -201,6 +228,14 @@ Result<Column> CsvFile::read(std::string_view variable, std::int64_t column) con
                             file_.string() + "' is chosen by its name alone, so leave it out or write 1",
                  .place = {}};
   }
+  const Result<std::size_t> index = find(variable);
+  if (!index) return index.error();
+  Result<std::vector<Column>> columns = read(std::span(&*index, 1));
+  if (!columns) return columns.error();
+  return std::move(columns->front());
+}
+
+Result<std::size_t> CsvFile::find(std::string_view variable) const {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < heads_.size(); ++i) {
     if (heads_[i] == variable) found.push_back(i);
@@ -219,21 +254,61 @@ Result<Column> CsvFile::read(std::string_view variable, std::int64_t column) con
                             "with its unit",
                  .place = {}};
   }
-  const std::size_t index = found.front();
-  Column result{.values = {}, .name = entries_[index].name, .unit = entries_[index].unit};
-  result.values.reserve(rows_);
+  return found.front();
+}
+
+Result<std::vector<std::size_t>> CsvFile::choose(std::string_view choice) const {
+  using Places = std::vector<std::size_t>;
+  Result<std::size_t> one = find(choice);
+  if (one) return Places{*one};
+  if (const auto colon = choice.find(':'); colon != std::string_view::npos) {
+    const Result<Places> first = choose(choice.substr(0, colon));
+    if (!first) return first;
+    const Result<Places> last = choose(choice.substr(colon + 1));
+    if (!last) return last;
+    if (first->size() == 1 && last->size() == 1 && first->front() <= last->front()) {
+      Places places;
+      for (std::size_t i = first->front(); i <= last->front(); ++i) places.push_back(i);
+      return places;
+    }
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = in_quotes(choice) + " is no range of columns of '" + file_.string() +
+                            "'; write the first, a colon and the last, as 2:7",
+                 .place = {}};
+  }
+  // A number, where no column is called so.
+  std::size_t number = 0;
+  const auto [end, failure] = std::from_chars(choice.data(), choice.data() + choice.size(), number);
+  if (failure != std::errc{} || end != choice.data() + choice.size()) return one.error();
+  if (number >= 1 && number <= heads_.size()) return Places{number - 1};
+  return Error{.code = ErrorCode::out_of_bounds,
+               .parameter = {},
+               .message = "column " + std::string(choice) + " is asked for, but '" + file_.string() + "' has " +
+                          std::to_string(heads_.size()) + " columns; number them from 1",
+               .place = {}};
+}
+
+Result<std::vector<Column>> CsvFile::read(std::span<const std::size_t> columns) const {
+  std::vector<Column> result;
+  for (const std::size_t index : columns) {
+    result.push_back({.values = {}, .name = entries_[index].name, .unit = entries_[index].unit});
+    result.back().values.reserve(rows_);
+  }
   std::vector<CsvField> fields;
   std::size_t offset = data_start_;
   for (std::size_t row = 0; row < rows_; ++row) {
     split(next_line(text_, offset), separator_, fields);
-    const CsvField& field = fields[index];
-    const Number number = parse_number(trim(field.text));
-    if (number.fault != nullptr) {
-      return broken(ErrorCode::syntax,
-                    in_quotes(field.text.substr(0, 40)) + " in column '" + heads_[index] + "' " + number.fault,
-                    place_of(data_line_ + row, field.character));
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const CsvField& field = fields[columns[i]];
+      const Number number = parse_number(trim(field.text));
+      if (number.fault != nullptr) {
+        return broken(ErrorCode::syntax,
+                      in_quotes(field.text.substr(0, 40)) + " in column '" + heads_[columns[i]] + "' " + number.fault,
+                      place_of(data_line_ + row, field.character));
+      }
+      result[i].values.push_back(number.value);
     }
-    result.values.push_back(number.value);
   }
   return result;
 }

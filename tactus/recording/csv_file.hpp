@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,11 +16,17 @@ namespace tactus::recording {
 /// A table of comma, semicolon or tab separated text, held in memory. `read` documents the format and the errors.
 class CsvFile {
  public:
-  static Result<CsvFile> open(const std::filesystem::path& file);
+  /// Without a header the columns are called 1, 2 and so on, and blanks may stand between numbers.
+  enum class Header { needed, optional };
+  static Result<CsvFile> open(const std::filesystem::path& file, Header header = Header::needed);
 
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
   /// The samples of a column; `column` must be 1.
   [[nodiscard]] Result<Column> read(std::string_view variable, std::int64_t column) const;
+  /// The places of the columns that `read_columns` calls a choice, counted from 0.
+  [[nodiscard]] Result<std::vector<std::size_t>> choose(std::string_view choice) const;
+  /// The samples of several columns, in one pass.
+  [[nodiscard]] Result<std::vector<Column>> read(std::span<const std::size_t> columns) const;
   /// The column that holds times if nobody names one.
   [[nodiscard]] std::optional<std::string> time_beside(std::string_view variable, std::size_t samples) const;
   /// `file:line` of a sample.
@@ -28,7 +35,9 @@ class CsvFile {
  private:
   CsvFile() = default;
   [[nodiscard]] std::string place_of(std::size_t line, std::size_t character) const;
-  Check parse_header();
+  /// The column of this name.
+  [[nodiscard]] Result<std::size_t> find(std::string_view variable) const;
+  Check parse_header(Header wanted);
   Check count_rows();
 
   std::filesystem::path file_;

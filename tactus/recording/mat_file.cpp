@@ -4,6 +4,7 @@
 #include <tactus/recording/names.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -234,6 +235,41 @@ Result<Column> MatFile::read(std::string_view variable, std::int64_t column) con
                  .place = file_.string()};
   }
   return result;
+}
+
+Result<std::vector<Column>> MatFile::read_choice(std::string_view choice) const {
+  const auto named = [&](std::string_view name) {
+    return std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.name == name; });
+  };
+  std::string_view name = choice;
+  std::int64_t first = 1;
+  std::int64_t last = 0;
+  auto entry = named(name);
+  if (const auto colon = choice.find(':'); entry == entries_.end() && colon != std::string_view::npos) {
+    name = choice.substr(0, colon);
+    entry = named(name);
+    const std::string_view range = choice.substr(colon + 1);
+    const char* const end = range.data() + range.size();
+    auto read = std::from_chars(range.data(), end, first);
+    last = first;
+    if (read.ec == std::errc{} && read.ptr != end && *read.ptr == ':') read = std::from_chars(read.ptr + 1, end, last);
+    if (read.ec != std::errc{} || read.ptr != end || first < 1 || last < first || last - first > 100) {
+      return Error{.code = ErrorCode::syntax,
+                   .parameter = {},
+                   .message = in_quotes(choice) + " is no range of columns; write NAME:2 or NAME:2:7, counted from 1",
+                   .place = {}};
+    }
+  } else if (entry != entries_.end()) {
+    last = std::clamp<std::int64_t>(entry->columns, 1, 100);
+  }
+  if (entry == entries_.end()) return no_such_variable(name, file_, entries_);
+  std::vector<Column> columns;
+  for (std::int64_t i = first; i <= last; ++i) {
+    Result<Column> column = read(name, i);
+    if (!column) return column.error();
+    columns.push_back(*std::move(column));
+  }
+  return columns;
 }
 
 std::optional<std::string> MatFile::time_beside(std::string_view variable, std::size_t samples) const {

@@ -23,6 +23,8 @@ class MatFile {
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
   /// The samples of one column (from 1) of a variable.
   [[nodiscard]] Result<Column> read(std::string_view variable, std::int64_t column) const;
+  /// The columns that `read_columns` calls a choice.
+  [[nodiscard]] Result<std::vector<Column>> read_choice(std::string_view choice) const;
   /// The variable that holds times if nobody names one.
   [[nodiscard]] std::optional<std::string> time_beside(std::string_view variable, std::size_t samples) const;
   /// The file: a sample of it has no line.

@@ -9,28 +9,11 @@
 #include <array>
 #include <cctype>
 #include <exception>
+#include <iterator>
 #include <string_view>
 
 namespace tactus::recording {
 namespace {
-
-/// Seconds in one unit of a column of times.
-Result<double> seconds_in(const Column& time, const std::filesystem::path& file) {
-  struct Scale {
-    std::string_view unit;
-    double seconds;
-  };
-  constexpr std::array<Scale, 6> scales{
-      {{"", 1.0}, {"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"µs", 1e-6}, {"ns", 1e-9}}};
-  for (const Scale& scale : scales) {
-    if (scale.unit == time.unit) return scale.seconds;
-  }
-  return Error{.code = ErrorCode::wrong_type,
-               .parameter = "time",
-               .message = in_quotes(time.name) + " of '" + file.string() + "' is in '" + time.unit +
-                          "'; times are in s, ms, us or ns",
-               .place = {}};
-}
 
 template <class File>
 Result<std::optional<double>> find_sample_time(const File& file, const Source& source, std::size_t samples) {
@@ -73,7 +56,8 @@ Result<Signal> read_from(const Result<File>& file, const Source& source) {
 
 /// Calls `use` with the opened file, whatever its format; errors in opening it concern the parameter `file`.
 template <class T, class Use>
-Result<T> with_file(const std::filesystem::path& file, const Use& use) {
+Result<T> with_file(const std::filesystem::path& file, const Use& use,
+                    CsvFile::Header header = CsvFile::Header::needed) {
   const auto refuse = [](ErrorCode code, std::string message) {
     return Error{.code = code, .parameter = "file", .message = std::move(message), .place = {}};
   };
@@ -91,7 +75,7 @@ Result<T> with_file(const std::filesystem::path& file, const Use& use) {
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (ending == ".mat") return use(MatFile::open(file));
-    if (ending == ".csv" || ending == ".tsv" || ending == ".txt") return use(CsvFile::open(file));
+    if (ending == ".csv" || ending == ".tsv" || ending == ".txt") return use(CsvFile::open(file, header));
     return refuse(ErrorCode::wrong_type, in_quotes(file.string()) +
                                              " is of no format that is read; its name must end in "
                                              ".csv, .tsv, .txt (a table) or .mat (MATLAB)");
@@ -101,7 +85,65 @@ Result<T> with_file(const std::filesystem::path& file, const Use& use) {
   }
 }
 
+/// The columns of one choice, which has no comma.
+Result<std::vector<Column>> read_choice(const MatFile& file, std::string_view choice) {
+  return file.read_choice(choice);
+}
+Result<std::vector<Column>> read_choice(const CsvFile& file, std::string_view choice) {
+  const Result<std::vector<std::size_t>> places = file.choose(choice);
+  if (!places) return places.error();
+  return file.read(*places);
+}
+
+template <class File>
+Result<std::vector<Column>> read_list(const File& file, std::string_view list) {
+  std::vector<Column> all;
+  for (std::size_t start = 0; start <= list.size();) {
+    const std::size_t end = std::min(list.find(',', start), list.size());
+    Result<std::vector<Column>> some = read_choice(file, trim(list.substr(start, end - start)));
+    if (!some) return some.error();
+    std::move(some->begin(), some->end(), std::back_inserter(all));
+    start = end + 1;
+  }
+  return all;
+}
+
 }  // namespace
+
+Result<double> seconds_in(const Column& time, const std::filesystem::path& file) {
+  struct Scale {
+    std::string_view unit;
+    double seconds;
+  };
+  constexpr std::array<Scale, 6> scales{
+      {{"", 1.0}, {"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"µs", 1e-6}, {"ns", 1e-9}}};
+  for (const Scale& scale : scales) {
+    if (scale.unit == time.unit) return scale.seconds;
+  }
+  return Error{.code = ErrorCode::wrong_type,
+               .parameter = "time",
+               .message = in_quotes(time.name) + " of '" + file.string() + "' is in '" + time.unit +
+                          "'; times are in s, ms, us or ns",
+               .place = {}};
+}
+
+Result<std::vector<std::vector<Column>>> read_columns(const std::filesystem::path& file,
+                                                      std::span<const std::string> choices) {
+  using Lists = std::vector<std::vector<Column>>;
+  return with_file<Lists>(
+      file,
+      [&](const auto& opened) -> Result<Lists> {
+        if (!opened) return opened.error();
+        Lists lists;
+        for (const std::string& choice : choices) {
+          Result<std::vector<Column>> columns = read_list(*opened, choice);
+          if (!columns) return columns.error();
+          lists.push_back(*std::move(columns));
+        }
+        return lists;
+      },
+      CsvFile::Header::optional);
+}
 
 Result<Signal> read(const Source& source) {
   if (source.sample_time_s && !positive.contain(*source.sample_time_s)) {

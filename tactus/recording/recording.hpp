@@ -1,10 +1,12 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/recording/column.hpp>
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,6 +66,21 @@ struct Signal {
 ///
 /// Not real-time safe. Independent calls may run in several threads.
 Result<Signal> read(const Source& source);
+
+/// Reads the columns of several choices, those of each choice in a list of their own, without looking for times.
+///
+/// A choice is one or more of these, with commas between them: in a table the name of a column, its number from 1 where
+/// no column is called so, or a range as `2:7` or `q1:q6`, both ends included; in a MATLAB file a variable, of which
+/// all columns are meant, `NAME:2` or `NAME:2:7`. Unlike for `read`, a table may lack a header; then blanks may stand
+/// between its numbers, and columns have their numbers for names.
+///
+/// Errors: as for `read`, without those of times. A sample that is not finite is refused with its place. Not real-time
+/// safe.
+Result<std::vector<std::vector<Column>>> read_columns(const std::filesystem::path& file,
+                                                      std::span<const std::string> choices);
+
+/// Seconds in one unit of a column of times: s (also where it states none), ms, us or ns. Errors: `wrong_type`.
+Result<double> seconds_in(const Column& time, const std::filesystem::path& file);
 
 /// One variable or column of a file.
 struct Entry {

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <tactus/arm/chain.hpp>
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+/// Parameters of an arm that bodies can have, from data and from what was believed before.
+namespace tactus::arm_identification {
+
+/// Of a joint beside its body: armature, Coulomb friction, viscous friction, offset, load-dependent friction,
+/// Stribeck's excess.
+inline constexpr int local_parameters = 6;
+/// What is found for a joint: its body as a logarithm of a Cholesky factor (10), then those of the joint.
+inline constexpr int joint_coordinates = arm::body_parameters + local_parameters;
+
+/// What the data say of one joint's effort, in the sums that least squares needs: effort ≈ scale · (columns ·
+/// parameters), with the bodies of all joints as columns, then the joint's own `local_parameters`.
+struct JointSums {
+  Eigen::MatrixXd normal;  ///< columnsᵀ·columns
+  Eigen::VectorXd right;   ///< columnsᵀ·effort
+  double squares = 0.0;    ///< effortᵀ·effort
+  double rows = 0.0;
+};
+
+/// What was believed of one joint before, and how firmly.
+struct JointPrior {
+  arm::Body body = {};
+  double armature = 0.0;  ///< [kg m²], greater than 0
+  double coulomb = 0.0;   ///< [N m], greater than 0
+  double viscous = 0.0;   ///< [N m s/rad], greater than 0
+  double torque = 0.0;    ///< size of its torques [N m], greater than 0: offset and Stribeck's excess are a share of it
+  double scale = 1.0;     ///< effort for one N m, greater than 0
+  double scale_deviation = 0.0;  ///< of its logarithm; 0: known
+  bool load = false;             ///< whether there is load-dependent friction
+  bool stribeck = false;         ///< whether there is Stribeck's excess
+};
+
+struct ConsistentFit {
+  Eigen::VectorXd coordinates;  ///< `joint_coordinates` for each joint, then the logarithms of the scales
+  Eigen::MatrixXd covariance;   ///< of the coordinates
+  Eigen::VectorXd prior_deviations;
+  Eigen::VectorXd bodies;  ///< `arm::body_parameters` for each joint
+  std::vector<std::array<double, local_parameters>> local;
+  std::vector<double> scales;
+  std::vector<double> residual_rms;  ///< by joint, of the effort
+
+  /// Standard deviation of a body's or a joint's number, to first order: `k` counts the ten of the body as
+  /// `arm::linear_parameters` does, then the local ones.
+  [[nodiscard]] double deviation(int joint, int k) const;
+};
+
+/// The most probable parameters: the data with Gaussian noise of `noise` (its deviation, by joint, in the unit of the
+/// effort; that of independent samples), the bodies near those of the prior.
+///
+/// A body is a heap of masses of any density but negative, however far the data pull: its pseudo-inertia is U·Uᵀ with U
+/// upper triangular and its diagonal exponentials, and everything that cannot be negative is an exponential. Prior
+/// deviations: mass 50 %, lengths of gyration 40 %, centre half of the length of gyration; armature and friction a
+/// factor of e to e². Where data say nothing the prior stays, and `covariance` is that of the prior.
+/// Levenberg-Marquardt on the sums; deterministic; not real-time safe. Sources: Rucker and Wensing, Smooth
+/// parameterization of rigid-body inertia, IEEE RA-L 7(2), 2022; Traversaro et al., Identification of fully physical
+/// consistent inertial parameters using optimization on manifolds, IROS 2016.
+ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::vector<JointPrior>& priors,
+                               const std::vector<double>& noise);
+
+}  // namespace tactus::arm_identification

@@ -1,0 +1,190 @@
+#include <tactus/arm_identification/motion.hpp>
+#include <tactus/core/parameters.hpp>
+#include <tactus/identification/refusal.hpp>
+#include <tactus/identification/zero_phase.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <numeric>
+#include <span>
+
+namespace tactus::arm_identification {
+namespace {
+
+using identification::central_difference;
+using identification::inconsistent;
+using identification::zero_phase_low_pass;
+
+constexpr double shortest_periods = 10.0;
+constexpr double fast_factor = 4.0;         ///< of the cutoff: what friction's turning round is seen with
+constexpr double fast_rate_factor = 16.0;   ///< of the cutoff: rate at which that is kept
+constexpr double slowest_rad_per_s = 0.01;  ///< rms below which a joint tells nothing
+constexpr double most_disagreement = 0.5;   ///< of a velocity with the slope of its position
+
+std::string short_number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+double rms(std::span<const double> values) {
+  return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0) /
+                   static_cast<double>(std::max<std::size_t>(1, values.size())));
+}
+
+double rms_apart(std::span<const double> a, std::span<const double> b) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) squares += (a[i] - b[i]) * (a[i] - b[i]);
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, a.size())));
+}
+
+/// Every `stride`-th value.
+std::vector<double> every(const std::vector<double>& values, std::size_t stride) {
+  std::vector<double> kept;
+  kept.reserve(values.size() / stride + 1);
+  for (std::size_t i = 0; i < values.size(); i += stride) kept.push_back(values[i]);
+  return kept;
+}
+
+/// What one joint did, at the rate of the fast signals.
+struct Filtered {
+  std::vector<double> position, velocity, acceleration, fast_velocity, effort;
+};
+
+/// How far a measured velocity lies from a slope, as a share of the slope.
+double disagreement(std::span<const double> measured, std::span<const double> slope) {
+  const double size = rms(slope);
+  return size > 0.0 ? rms_apart(measured, slope) / size : 1e9;
+}
+
+Error wrong_velocity(const ArmRecording& recording, std::size_t joint, const std::string& name,
+                     const std::vector<double>& measured, const std::vector<std::vector<double>>& slopes) {
+  std::string remedy = "name the columns in the order of the joints, in rad/s";
+  const auto fits = std::find_if(slopes.begin(), slopes.end(), [&](const std::vector<double>& slope) {
+    return disagreement(measured, slope) < most_disagreement;
+  });
+  if (fits != slopes.end()) {
+    remedy = "it is that of '" + recording.position_names[static_cast<std::size_t>(fits - slopes.begin())] +
+             "': are columns swapped?";
+  }
+  return inconsistent("velocity", "the velocity of joint '" + name + "' is not the slope of its position '" +
+                                      recording.position_names[joint] + "': it differs by " +
+                                      short_number(100.0 * disagreement(measured, slopes[joint])) + " % of it; " +
+                                      remedy);
+}
+
+}  // namespace
+
+Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_Hz, double rows_per_s,
+                                  const std::vector<std::string>& joints) {
+  const Seconds dt = recording.sample_time;
+  const auto fail = [&](Error error) {
+    if (error.place.empty()) error.place = recording.file.string();
+    return error;
+  };
+  const double duration_s = dt.value * static_cast<double>(recording.samples());
+  if (duration_s < shortest_periods / cutoff_Hz || recording.samples() < 50) {
+    return fail(inconsistent("lasts " + short_number(duration_s) + " s with " + std::to_string(recording.samples()) +
+                             " samples, too short for motion below " + format_number(cutoff_Hz) +
+                             " Hz; record at least " + short_number(shortest_periods / cutoff_Hz) + " s"));
+  }
+  if (cutoff_Hz * dt.value > 0.2) {
+    return fail(inconsistent("cutoff_Hz", "a cutoff of " + format_number(cutoff_Hz) + " Hz is too high for " +
+                                              short_number(1.0 / dt.value) +
+                                              " samples a second; take at most a fifth of that with --cutoff-Hz"));
+  }
+  const auto fast_stride =
+      static_cast<std::size_t>(std::max(1.0, std::floor(1.0 / (fast_rate_factor * cutoff_Hz * dt.value))));
+  const double fast_cutoff_Hz = std::min(fast_factor * cutoff_Hz, 0.4 / dt.value);
+  ArmMotion motion;
+  motion.cutoff_Hz_ = cutoff_Hz;
+  motion.fast_step_ = Seconds{dt.value * static_cast<double>(fast_stride)};
+
+  std::vector<Filtered> all(recording.joints());
+  std::vector<std::vector<double>> slopes;
+  std::vector<std::vector<double>> measured;
+  std::vector<bool> by_velocity;
+  for (std::size_t j = 0; j < recording.joints(); ++j) {
+    const auto smooth = zero_phase_low_pass(recording.position[j], cutoff_Hz, dt);
+    if (!smooth) return fail(smooth.error());
+    const auto fast = zero_phase_low_pass(recording.position[j], fast_cutoff_Hz, dt);
+    const auto effort = zero_phase_low_pass(recording.effort[j], cutoff_Hz, dt);
+    if (!fast || !effort) return fail(fast ? effort.error() : fast.error());
+    slopes.push_back(central_difference(*smooth, dt));
+    if (rms(slopes.back()) < slowest_rad_per_s) {
+      return fail(inconsistent("position", "joint '" + joints[j] + "' (column '" + recording.position_names[j] +
+                                               "') hardly moves: " + short_number(rms(slopes.back())) +
+                                               " rad/s rms; record motion of all joints"));
+    }
+    bool use_velocity = false;
+    if (!recording.velocity.empty()) {
+      const auto filtered = zero_phase_low_pass(recording.velocity[j], cutoff_Hz, dt);
+      if (!filtered) return fail(filtered.error());
+      measured.push_back(*filtered);
+      const double omega = 2.0 * std::numbers::pi * cutoff_Hz;
+      // Of white noise below the cutoff: what remains of it in the acceleration.
+      const double of_position = rms_apart(recording.position[j], *smooth) * omega * std::sqrt(3.0 / 5.0);
+      use_velocity = 2.0 * rms_apart(recording.velocity[j], *filtered) < of_position;
+    }
+    by_velocity.push_back(use_velocity);
+    Filtered& f = all[j];
+    f.position = every(*smooth, fast_stride);
+    f.effort = every(*effort, fast_stride);
+    f.fast_velocity = every(central_difference(*fast, dt), fast_stride);
+  }
+  for (std::size_t j = 0; j < recording.joints(); ++j) {
+    if (!measured.empty() && disagreement(measured[j], slopes[j]) > most_disagreement) {
+      return fail(wrong_velocity(recording, j, joints[j], measured[j], slopes));
+    }
+    const std::vector<double>& velocity = by_velocity[j] ? measured[j] : slopes[j];
+    all[j].velocity = every(velocity, fast_stride);
+    all[j].acceleration = every(central_difference(velocity, dt), fast_stride);
+  }
+
+  const double fast_rate = 1.0 / motion.fast_step_.value;
+  const auto cut = static_cast<std::size_t>(std::ceil(fast_rate / cutoff_Hz));
+  const double rate = std::clamp(rows_per_s, 2.0 * cutoff_Hz, fast_rate);
+  motion.stride_ = static_cast<std::size_t>(std::max(1.0, std::floor(fast_rate / rate)));
+  motion.first_ = cut;
+  const std::size_t available = all.front().position.size();
+  if (available <= 2 * cut + motion.stride_) return fail(inconsistent("is too short; record more"));
+  motion.count_ = (available - 2 * cut - 1) / motion.stride_ + 1;
+  const auto rows = static_cast<Eigen::Index>(motion.count_);
+  const auto columns = static_cast<Eigen::Index>(recording.joints());
+  motion.position.resize(rows, columns);
+  motion.velocity.resize(rows, columns);
+  motion.acceleration.resize(rows, columns);
+  motion.effort.resize(rows, columns);
+  for (std::size_t j = 0; j < recording.joints(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    motion.position.col(column) = motion.thinned(all[j].position);
+    motion.velocity.col(column) = motion.thinned(all[j].velocity);
+    motion.acceleration.col(column) = motion.thinned(all[j].acceleration);
+    motion.effort.col(column) = motion.thinned(all[j].effort);
+    motion.fast_velocity_.push_back(std::move(all[j].fast_velocity));
+  }
+  for (std::size_t i = 0; i < motion.count_; ++i) {
+    motion.time_s.push_back(static_cast<double>(motion.first_ + i * motion.stride_) * motion.fast_step_.value);
+  }
+  return motion;
+}
+
+Eigen::VectorXd ArmMotion::thinned(const std::vector<double>& values) const {
+  Eigen::VectorXd kept(static_cast<Eigen::Index>(count_));
+  for (std::size_t i = 0; i < count_; ++i) kept[static_cast<Eigen::Index>(i)] = values[first_ + i * stride_];
+  return kept;
+}
+
+Eigen::VectorXd ArmMotion::of_velocity(int joint, const std::function<double(double)>& law) const {
+  const std::vector<double>& fast = fast_velocity_[static_cast<std::size_t>(joint)];
+  std::vector<double> values(fast.size());
+  std::transform(fast.begin(), fast.end(), values.begin(), law);
+  // The cutoff is at most a fifth of the rate, so the filter takes it.
+  return thinned(*zero_phase_low_pass(values, cutoff_Hz_, fast_step_));
+}
+
+double ArmMotion::speed(int joint) const { return rms(fast_velocity_[static_cast<std::size_t>(joint)]); }
+
+}  // namespace tactus::arm_identification

@@ -1,0 +1,154 @@
+#include <tactus/arm_identification/recording.hpp>
+#include <tactus/core/parameters.hpp>
+#include <tactus/identification/refusal.hpp>
+#include <tactus/recording/recording.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+namespace tactus::arm_identification {
+namespace {
+
+using identification::inconsistent;
+
+using recording::Column;
+
+constexpr double longest_pause_steps = 10.0;
+constexpr double longest_pause_s = 0.03;
+
+struct ArmUnit {
+  std::string_view symbol;
+  double factor;
+};
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr std::array arm_position_units{ArmUnit{"", 1.0}, ArmUnit{"rad", 1.0}, ArmUnit{"deg", degree},
+                                        ArmUnit{"m", 1.0}, ArmUnit{"mm", 1e-3}};
+constexpr std::array arm_velocity_units{ArmUnit{"", 1.0}, ArmUnit{"rad/s", 1.0}, ArmUnit{"deg/s", degree},
+                                        ArmUnit{"m/s", 1.0}, ArmUnit{"mm/s", 1e-3}};
+
+Error at_file(Error error, const std::filesystem::path& file) {
+  if (error.place.empty()) error.place = file.string();
+  return error;
+}
+
+/// Multiplies each column by what its unit is worth.
+template <std::size_t size>
+Check into_si(std::vector<Column>& columns, const std::array<ArmUnit, size>& units, const char* role) {
+  for (Column& column : columns) {
+    const auto unit =
+        std::find_if(units.begin(), units.end(), [&](const ArmUnit& u) { return u.symbol == column.unit; });
+    if (unit == units.end()) {
+      return Error{.code = ErrorCode::wrong_type,
+                   .parameter = role,
+                   .message = "column '" + column.name + "' is in " + column.unit + ", which is no unit of a " + role +
+                              "; use rad or deg (m or mm), a velocity per s",
+                   .place = {}};
+    }
+    for (double& value : column.values) value *= unit->factor;
+  }
+  return {};
+}
+
+Check check_count(const std::vector<Column>& columns, std::size_t joints, const std::string& role) {
+  if (columns.size() == joints) return {};
+  return inconsistent(role, "--" + role + " names " + std::to_string(columns.size()) + " columns, but the arm has " +
+                                std::to_string(joints) + " joints that move; name one for each, the first joint first");
+}
+
+/// Times in seconds, from the first sample on.
+Check check_times(const std::vector<double>& time_s) {
+  std::vector<double> steps(time_s.size() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    steps[i] = time_s[i + 1] - time_s[i];
+    if (steps[i] > 0.0) continue;
+    return inconsistent("time", "times do not increase: " + format_number(time_s[i]) + " s of sample " +
+                                    std::to_string(i + 1) + " is followed by " + format_number(time_s[i + 1]) +
+                                    " s; is this the column of times? Remove doubled samples");
+  }
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double longest = std::max(longest_pause_steps * *middle, longest_pause_s);
+  const auto pause = std::max_element(steps.begin(), steps.end());
+  if (*pause <= longest) return {};
+  const auto at = static_cast<std::size_t>(pause - steps.begin());
+  return inconsistent("time", "nothing was recorded for " + format_number(*pause) + " s after sample " +
+                                  std::to_string(at + 1) + " (" + format_number(time_s[at]) + " s), more than the " +
+                                  format_number(longest) +
+                                  " s that are bridged; cut the file there and name both parts");
+}
+
+/// The values at equal steps, on straight lines between samples.
+std::vector<double> at_equal_steps(const std::vector<double>& time_s, const std::vector<double>& values,
+                                   double step_s) {
+  std::vector<double> result(values.size());
+  std::size_t before = 0;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const double t = time_s.front() + static_cast<double>(i) * step_s;
+    while (before + 2 < time_s.size() && time_s[before + 1] < t) ++before;
+    const double share = std::clamp((t - time_s[before]) / (time_s[before + 1] - time_s[before]), 0.0, 1.0);
+    result[i] = values[before] + share * (values[before + 1] - values[before]);
+  }
+  return result;
+}
+
+std::vector<std::string> names_of(const std::vector<Column>& columns) {
+  std::vector<std::string> names;
+  for (const Column& column : columns) names.push_back(column.name);
+  return names;
+}
+
+}  // namespace
+
+Result<ArmRecording> read_arm(const std::filesystem::path& file, const ArmColumns& columns,
+                              const std::vector<std::string>& joints) {
+  std::vector<std::string> choices{columns.time, columns.position, columns.effort};
+  if (!columns.velocity.empty()) choices.push_back(columns.velocity);
+  auto lists = recording::read_columns(file, choices);
+  if (!lists) return at_file(lists.error(), file);
+  std::vector<Column>& times = (*lists)[0];
+  std::vector<Column>& positions = (*lists)[1];
+  std::vector<Column>& efforts = (*lists)[2];
+  Check wrong = check_count(positions, joints.size(), "position");
+  if (!wrong) wrong = check_count(efforts, joints.size(), "effort");
+  if (!wrong && !columns.velocity.empty()) wrong = check_count((*lists)[3], joints.size(), "velocity");
+  if (!wrong && times.size() != 1) {
+    wrong = inconsistent("time", "--time names " + std::to_string(times.size()) + " columns; name one");
+  }
+  for (const auto& list : *lists) {
+    for (const Column& column : list) {
+      if (wrong || column.values.size() == times[0].values.size()) continue;
+      wrong = inconsistent("'" + column.name + "' has " + std::to_string(column.values.size()) +
+                           " samples where the times are " + std::to_string(times[0].values.size()));
+    }
+  }
+  if (!wrong) wrong = into_si(positions, arm_position_units, "position");
+  if (!wrong && !columns.velocity.empty()) wrong = into_si((*lists)[3], arm_velocity_units, "velocity");
+  if (wrong) return at_file(*std::move(wrong), file);
+  const Result<double> second = recording::seconds_in(times[0], file);
+  if (!second) return at_file(second.error(), file);
+
+  std::vector<double>& time_s = times[0].values;
+  const double first = time_s.front();
+  // Times since 1970 have few digits left behind the point.
+  for (double& t : time_s) t = (t - first) * *second;
+  if (Check bad = check_times(time_s)) return at_file(*std::move(bad), file);
+  const double step_s = time_s.back() / static_cast<double>(time_s.size() - 1);
+  ArmRecording result{.file = file,
+                      .position_names = names_of(positions),
+                      .effort_names = names_of(efforts),
+                      .effort_unit = efforts.front().unit,
+                      .start_s = first * *second,
+                      .sample_time = Seconds{step_s}};
+  for (const Column& c : positions) result.position.push_back(at_equal_steps(time_s, c.values, step_s));
+  for (const Column& c : efforts) result.effort.push_back(at_equal_steps(time_s, c.values, step_s));
+  if (!columns.velocity.empty()) {
+    for (const Column& c : (*lists)[3]) result.velocity.push_back(at_equal_steps(time_s, c.values, step_s));
+  }
+  return result;
+}
+
+}  // namespace tactus::arm_identification

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <tactus/arm_identification/recording.hpp>
+#include <tactus/cli/output_folder.hpp>
+
+#include <string>
+#include <vector>
+
+namespace CLI {  // NOLINT: the name is not ours
+class App;
+}
+
+/// What the verbs that read recordings of an arm share.
+namespace tactus::cli {
+
+struct ArmOptions {
+  std::vector<std::string> time, position, velocity, effort;
+  OutputOptions output;
+
+  /// An option that is given more than once names more columns.
+  [[nodiscard]] arm_identification::ArmColumns columns() const;
+};
+
+/// Adds the roles of columns, `--out` and `--json` to a verb.
+void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& out_help);
+
+/// Prints `text` or `json`, then writes `files`, named beforehand as the output's own, results.json and report.html.
+struct NamedText {
+  std::string name;
+  std::string text;
+};
+Check present(const ArmOptions& options, const std::string& text, const std::string& json, const std::string& html,
+              const std::vector<NamedText>& files);
+
+}  // namespace tactus::cli

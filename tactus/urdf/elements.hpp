@@ -1,0 +1,58 @@
+#pragma once
+
+#include <tactus/arm/joint.hpp>
+#include <tactus/core/result.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tactus::urdf {
+
+/// A body as `<inertial>` gives it: mass, its centre and inertia along axes that are turned against the link's.
+struct Inertial {
+  double mass_kg = 0.0;
+  arm::JointOrigin origin = {};
+  /// About the centre: only the moments are set.
+  arm::Body moments = {};
+  int line = 0;
+};
+
+struct Link {
+  std::string name;
+  std::optional<Inertial> inertial;
+  int line = 0;
+};
+
+struct Joint {
+  std::string name;
+  std::string type;
+  std::string parent;
+  std::string child;
+  bool mimics = false;
+  arm::JointOrigin origin = {};
+  arm::JointAxis axis = {};
+  arm::JointLimits limits = {};
+  double damping = 0.0;
+  double friction = 0.0;
+  int line = 0;
+};
+
+/// All that a file says of links and joints, in its order.
+struct Robot {
+  std::string name;
+  std::vector<Link> links;
+  std::vector<Joint> joints;
+  std::map<std::string, std::size_t> link_by_name;
+};
+
+/// Reads the elements; `read` in urdf.hpp tells the errors. A joint's links are known to be there.
+Result<Robot> read_elements(const std::filesystem::path& file);
+
+/// `file:line`.
+std::string place(const std::filesystem::path& file, int line);
+
+}  // namespace tactus::urdf
