@@ -91,6 +91,9 @@ std::string cell(double value) {
   return std::isfinite(value) ? report::number(value, digits) : "not told";
 }
 
+/// Of all joints of a side.
+bool slides(const Checked& checked) { return checked.side != nullptr && checked.side->joints.front().slides; }
+
 report::Table table_of(const Checked& checked) {
   using Align = report::Column::Align;
   std::vector<report::Column> columns;
@@ -99,7 +102,7 @@ report::Table table_of(const Checked& checked) {
                                  {"model", "", Align::left},
                                  {"scales", "", Align::left},
                                  {"firmware"},
-                                 {"position", "rad"},
+                                 {"position", slides(checked) ? "m" : "rad"},
                                  {"temperature", "°C"},
                                  {"age", "ms"},
                                  {"state", "", Align::left}});
@@ -144,9 +147,9 @@ nlohmann::ordered_json json_of(const Checked& checked) {
                 {"model", stated.model},
                 {"scales", motor.sheet.scales},
                 {"firmware", motor.sheet.firmware},
-                {"torque_limit_Nm", motor.sheet.torque_limit_Nm}});
+                {slides(checked) ? "force_limit_N" : "torque_limit_Nm", number(motor.sheet.torque_limit_Nm)}});
     if (checked.found.heard) {
-      one.update({{"position_rad", number(position_of(checked, i))},
+      one.update({{slides(checked) ? "position_m" : "position_rad", number(position_of(checked, i))},
                   {"temperature_C", number(motor.reading.temperature_C)},
                   {"age_s", number(motor.age_s)},
                   {"state", motor.reading.fault == devices::MotorFault::none ? "well" : name_of(motor.reading.fault)}});

@@ -1,7 +1,6 @@
 #include <tactus/cli/device.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/standard_output.hpp>
-#include <tactus/devices/bus_thread.hpp>
 #include <tactus/devices/rig/rig.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -29,7 +28,6 @@ namespace tactus::cli {
 namespace {
 
 using devices::BusReadings;
-using devices::BusThread;
 using devices::MotorFault;
 using devices::Rig;
 using devices::RigJoint;
@@ -45,7 +43,7 @@ struct WatchOptions {
 /// A side whose bus runs without power, and where its joints were first.
 struct Watched {
   const RigSide* side = nullptr;
-  std::unique_ptr<BusThread> bus;
+  std::unique_ptr<devices::MotorLink> bus;
   std::array<std::optional<double>, most_joints> first_rad{};
 };
 
@@ -57,10 +55,8 @@ struct Shown {
 };
 
 Result<Watched> open(const Rig& rig, const RigSide& side) {
-  auto opened = open_bus(side.bus);
-  if (!opened) return opened.error().place.empty() ? rig.locate(side, opened.error()) : opened.error();
-  auto bus = BusThread::start(std::move(opened->bus), std::move(opened->port), {});
-  if (!bus) return bus.error();
+  auto bus = start(side.bus);
+  if (!bus) return bus.error().place.empty() ? rig.locate(side, bus.error()) : bus.error();
   constexpr Seconds longest{10.0};
   if (Check wrong = (*bus)->wait_until_asked(longest)) return *std::move(wrong);
   return Watched{.side = &side, .bus = *std::move(bus)};
@@ -99,16 +95,17 @@ std::string fixed(double value, int digits) {
 
 std::string table_of(const std::vector<Shown>& all) {
   report::Table table({{"joint", "", report::Column::Align::left},
-                       {"position", "rad"},
-                       {"moved", "rad"},
-                       {"velocity", "rad/s"},
+                       {"position"},
+                       {"moved"},
+                       {"velocity"},
+                       {"unit", "", report::Column::Align::left},
                        {"temperature", "°C"},
                        {"age", "ms"},
                        {"state", "", report::Column::Align::left}});
   for (const Shown& one : all) {
     table.add_row({one.joint->path, fixed(one.position_rad, 3), fixed(one.moved_rad, 3),
-                   fixed(one.velocity_rad_per_s, 2), fixed(one.temperature_C, 0), fixed(1e3 * one.age_s, 1),
-                   one.state});
+                   fixed(one.velocity_rad_per_s, 2), one.joint->words().velocity_unit, fixed(one.temperature_C, 0),
+                   fixed(1e3 * one.age_s, 1), one.state});
   }
   return table.to_text();
 }
@@ -116,9 +113,9 @@ std::string table_of(const std::vector<Shown>& all) {
 std::string lines_of(const std::vector<Shown>& all, double time_s) {
   std::string lines;
   for (const Shown& one : all) {
-    lines += fixed(time_s, 1) + " " + one.joint->path + " " + fixed(one.position_rad, 4) + " " +
-             fixed(one.moved_rad, 4) + " " + fixed(one.velocity_rad_per_s, 3) + " " + fixed(one.temperature_C, 0) +
-             " " + fixed(1e3 * one.age_s, 1) + " " + one.state + "\n";
+    lines += fixed(time_s, 1) + " " + one.joint->path + " " + one.joint->words().position_unit + " " +
+             fixed(one.position_rad, 4) + " " + fixed(one.moved_rad, 4) + " " + fixed(one.velocity_rad_per_s, 3) + " " +
+             fixed(one.temperature_C, 0) + " " + fixed(1e3 * one.age_s, 1) + " " + one.state + "\n";
   }
   return lines;
 }
@@ -138,7 +135,7 @@ Result<bool> watch(const WatchOptions& options) {
     all.push_back(*std::move(opened));
   }
   const bool terminal = isatty(STDOUT_FILENO) != 0;
-  if (!terminal) std::cout << "# time_s joint position_rad moved_rad velocity_rad_per_s temperature_C age_ms state\n";
+  if (!terminal) std::cout << "# time_s joint unit position moved velocity temperature_C age_ms state\n";
   const auto began = std::chrono::steady_clock::now();
   const auto time_s = [began] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();

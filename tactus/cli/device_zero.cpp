@@ -61,7 +61,8 @@ Result<bool> zero(const ZeroOptions& options) {
       const double was_rad = joint.joint.position_rad(found.motors[i].reading.position_rad);
       offsets.push_back({.joint = joint.path, .offset_rad = joint.joint.offset_rad - was_rad});
       constexpr int digits = 4;
-      told += joint.path + " was at " + report::number(was_rad, digits) + " rad and is at zero now.\n";
+      told += joint.path + " was at " + report::number(was_rad, digits) + " " + joint.words().position_unit +
+              " and is at zero now.\n";
     }
   }
   if (Check error = write_offsets(options.rig, offsets)) return *std::move(error);
@@ -91,12 +92,14 @@ Result<bool> limits(const LimitsOptions& options) {
   if (!sides) return rig->locate(sides.error());
   using Align = report::Column::Align;
   report::Table table({{"joint", "", Align::left},
-                       {"torque: motor", "N m"},
-                       {"file", "N m"},
+                       {"force: motor"},
+                       {"file"},
+                       {"unit", "", Align::left},
                        {"holds", "", Align::left},
-                       {"velocity: motor", "rad/s"},
-                       {"file", "rad/s"},
-                       {"position", "rad", Align::left},
+                       {"velocity: motor"},
+                       {"file"},
+                       {"unit", "", Align::left},
+                       {"position", "", Align::left},
                        {"heat", "°C"}});
   for (const RigSide* side : *sides) {
     const BusFinding found = examine(*rig, *side);
@@ -107,8 +110,9 @@ Result<bool> limits(const LimitsOptions& options) {
       const double most_Nm = found.motors[i].sheet.torque_limit_Nm * one.joint.gear;
       const double fastest = ability_of(side->bus.kind, one.motor).velocity_rad_per_s / one.joint.gear;
       table.add_row({one.path, number(most_Nm), one.joint.gives_force ? number(one.joint.torque_limit_Nm) : "-",
+                     one.words().force_unit,
                      one.joint.gives_force ? what_holds(most_Nm, one.joint.torque_limit_Nm) : "gives no force",
-                     number(fastest), number(one.joint.velocity_limit_rad_per_s),
+                     number(fastest), number(one.joint.velocity_limit_rad_per_s), one.words().velocity_unit,
                      format_number(one.joint.lower_rad) + " to " + format_number(one.joint.upper_rad),
                      number(one.joint.temperature_limit_C)});
     }

@@ -15,7 +15,7 @@ constexpr std::int64_t power_within_ns = 250'000'000;
 
 }  // namespace
 
-Result<std::unique_ptr<MotorBusDevice>> MotorBusDevice::make(BusThread& bus, const Params& params) {
+Result<std::unique_ptr<MotorBusDevice>> MotorBusDevice::make(MotorLink& bus, const Params& params) {
   if (params.joints.size() != bus.motors()) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "joints",
@@ -26,7 +26,7 @@ Result<std::unique_ptr<MotorBusDevice>> MotorBusDevice::make(BusThread& bus, con
   return std::unique_ptr<MotorBusDevice>(new MotorBusDevice(bus, params));
 }
 
-MotorBusDevice::MotorBusDevice(BusThread& bus, const Params& params)
+MotorBusDevice::MotorBusDevice(MotorLink& bus, const Params& params)
     : bus_(&bus), params_(params), reading_(params.joints.size()) {}
 
 MotorBusDevice::~MotorBusDevice() {

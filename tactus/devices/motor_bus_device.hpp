@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/devices/bus_thread.hpp>
 #include <tactus/devices/motor_joint.hpp>
+#include <tactus/devices/motor_link.hpp>
 #include <tactus/station/device.hpp>
 
 #include <cstdint>
@@ -24,8 +24,8 @@ class MotorBusDevice final : public station::JointDevice {
     double late_s = 0.01;
     double silence_s = 0.05;
   };
-  /// On a bus thread that outlives it, with a motor for each joint. Errors: `inconsistent`.
-  static Result<std::unique_ptr<MotorBusDevice>> make(BusThread& bus, const Params& params);
+  /// On a link that outlives it, with a motor for each joint. Errors: `inconsistent`.
+  static Result<std::unique_ptr<MotorBusDevice>> make(MotorLink& bus, const Params& params);
   MotorBusDevice(const MotorBusDevice&) = delete;
   MotorBusDevice& operator=(const MotorBusDevice&) = delete;
   /// Takes the power.
@@ -37,10 +37,10 @@ class MotorBusDevice final : public station::JointDevice {
   [[nodiscard]] station::DeviceHealth health() const noexcept override { return health_; }
 
  private:
-  MotorBusDevice(BusThread& bus, const Params& params);
+  MotorBusDevice(MotorLink& bus, const Params& params);
   [[nodiscard]] station::DeviceHealth judge() noexcept;
 
-  BusThread* bus_;
+  MotorLink* bus_;
   Params params_;
   BusReadings last_;
   BusCommands commands_;

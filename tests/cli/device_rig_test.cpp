@@ -167,15 +167,36 @@ TEST_F(DeviceRig, ZeroWritesTheOffsetWithWhichTheJointIsAtZeroWhereItIs) {
 TEST_F(DeviceRig, WatchShowsEachJointALineAndLimitsWhichOneHolds) {
   const Outcome watched = device({"dynamixel"}, servos, "watch rig.toml arm.leader.elbow --for 0.5");
   EXPECT_EQ(watched.status, 0) << watched.err;
-  EXPECT_EQ(watched.out.find("# time_s joint position_rad moved_rad velocity_rad_per_s temperature_C age_ms state\n"),
-            0U);
-  EXPECT_TRUE(says(watched, " arm.leader.elbow 0.0000 0.0000 0.000 35 ")) << watched.out;
+  EXPECT_EQ(watched.out.find("# time_s joint unit position moved velocity temperature_C age_ms state\n"), 0U);
+  EXPECT_TRUE(says(watched, " arm.leader.elbow rad 0.0000 0.0000 0.000 35 ")) << watched.out;
   EXPECT_FALSE(says(watched, "shoulder"));
   const Outcome limits = device({"dynamixel --fault low-limit:2"}, servos, "limits rig.toml");
   EXPECT_EQ(limits.status, 0) << limits.err;
   // 1.75 A and 0.175 A times 0.52 / 1.47 Nm/A.
-  EXPECT_TRUE(says(limits, "arm.leader.shoulder         0.6190  0.3000  file ")) << limits.out;
-  EXPECT_TRUE(says(limits, "arm.leader.elbow           0.06190  0.3000  motor")) << limits.out;
+  EXPECT_TRUE(says(limits, "arm.leader.shoulder        0.6190  0.3000  N m   file ")) << limits.out;
+  EXPECT_TRUE(says(limits, "arm.leader.elbow          0.06190  0.3000  N m   motor")) << limits.out;
+}
+
+TEST_F(DeviceRig, AnInverse3IsCheckedThroughItsService) {
+  std::string rig = "[desk.leader]\nbus = \"inverse3\"\nport = \"@1\"\n";
+  for (const char* axis : {"x\nmotor = 1", "y\nmotor = 2", "z\nmotor = 3"}) {
+    const std::string name(1, axis[0]);
+    rig += "[desk.leader." + name + "]" + (axis + 1) +
+           "\nmodel = \"inverse3\"\nlower_m = -0.1\nupper_m = 0.1\nvelocity_limit_m_per_s = 1.0\nforce_limit_N = "
+           "2.0\nforce_rate_limit_N_per_s = 50.0\n";
+  }
+  // Its address is a URL; the rig has host and port.
+  const std::string no_scheme = "x rig.toml >/dev/null 2>&1; sed -i 's|ws://||' rig.toml; $TACTUS device ";
+  const Outcome clean = device({"inverse3 --port 0"}, rig, no_scheme + "check rig.toml --json");
+  EXPECT_EQ(clean.status, 0) << clean.out << clean.err;
+  const auto told = nlohmann::json::parse(clean.out);
+  EXPECT_EQ(told["buses"][0]["motors"][2]["joint"], "desk.leader.z");
+  EXPECT_EQ(told["buses"][0]["motors"][2]["position_m"], 0.0);
+  EXPECT_EQ(told["buses"][0]["motors"][2]["firmware"], "3.5.0");
+  const Outcome uncalibrated = device({"inverse3 --port 0 --uncalibrated"}, rig, no_scheme + "check rig.toml");
+  EXPECT_EQ(uncalibrated.status, 1);
+  EXPECT_TRUE(says(uncalibrated, "rig.toml:5:9: desk.leader.x.motor: device 049D is not calibrated and gives no force"))
+      << uncalibrated.out;
 }
 
 TEST_F(DeviceRig, ListAsksOnlyWhereItIsTold) {

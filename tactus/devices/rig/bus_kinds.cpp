@@ -1,10 +1,12 @@
+#include <tactus/devices/bus_thread.hpp>
 #include <tactus/devices/damiao/damiao_bus.hpp>
 #include <tactus/devices/dynamixel/dynamixel_bus.hpp>
 #include <tactus/devices/feetech/feetech_bus.hpp>
+#include <tactus/devices/inverse3/inverse3_link.hpp>
 #include <tactus/devices/rig/bus_kinds.hpp>
+#include <tactus/wire/port.hpp>
 
-#include <algorithm>
-#include <string_view>
+#include <limits>
 #include <utility>
 
 namespace tactus::devices {
@@ -77,6 +79,12 @@ Result<FeetechBus::Params> feetech_params(const StatedBus& stated) {
   return params;
 }
 
+inverse3::LinkParams inverse3_params(const StatedBus& stated) {
+  inverse3::LinkParams params{.address = stated.port, .device = stated.device, .axes = {}};
+  for (const StatedMotor& motor : stated.motors) params.axes.push_back(motor.id);
+  return params;
+}
+
 /// On the heap, whatever `make` gives.
 template <class Bus>
 Result<std::unique_ptr<MotorBus>> on_heap(Result<Bus> made) {
@@ -101,6 +109,8 @@ Result<std::unique_ptr<MotorBus>> make_bus(const StatedBus& stated) {
       const auto params = feetech_params(stated);
       return params ? on_heap(FeetechBus::make(*params)) : params.error();
     }
+    case BusKind::inverse3:
+      break;  // is no bus of ours
   }
   return Error{};
 }
@@ -115,6 +125,8 @@ std::vector<std::string> models_of(BusKind kind) {
       return words_of<dynamixel::DynamixelModel>();
     case BusKind::feetech:
       return words_of<feetech::FeetechModel>();
+    case BusKind::inverse3:
+      return {"inverse3"};
   }
   return {};
 }
@@ -136,33 +148,43 @@ MotorAbility ability_of(BusKind kind, const StatedMotor& motor) {
       const ServoModel& servo = feetech::servo_model(model ? *model : feetech::FeetechModel{});
       return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * motor.torque_Nm_per_A};
     }
+    case BusKind::inverse3:
+      return {.torque_Nm = std::numeric_limits<double>::infinity()};
   }
   return {};
 }
 
 Check check(const StatedBus& stated) {
+  if (stated.kind == BusKind::inverse3) return inverse3::check(inverse3_params(stated));
   const auto made = make_bus(stated);
   return made ? Check{} : made.error();
 }
 
-Result<OpenBus> open_bus(const StatedBus& stated) {
+Result<std::unique_ptr<MotorLink>> start(const StatedBus& stated) {
+  if (stated.kind == BusKind::inverse3) {
+    auto link = inverse3::Inverse3Link::start(inverse3_params(stated));
+    if (!link) return link.error();
+    return std::unique_ptr<MotorLink>(*std::move(link));
+  }
   auto bus = make_bus(stated);
   if (!bus) return bus.error();
   // What an adapter of CAN is set to at its serial side is the same for all; most take no notice of it.
   constexpr std::int64_t adapter_bits_per_s = 921'600;
+  const bool is_damiao = stated.kind == BusKind::damiao;
   const bool flexible = stated.framing == name_of(damiao::Framing::socketcan_fd);
-  const bool of_linux =
-      stated.kind == BusKind::damiao && (flexible || stated.framing == name_of(damiao::Framing::socketcan));
+  const bool of_linux = is_damiao && (flexible || stated.framing == name_of(damiao::Framing::socketcan));
   auto port = of_linux ? wire::Port::can(stated.port, flexible)
-                       : wire::Port::serial(stated.port,
-                                            stated.kind == BusKind::damiao ? adapter_bits_per_s : stated.bits_per_s);
+                       : wire::Port::serial(stated.port, is_damiao ? adapter_bits_per_s : stated.bits_per_s);
   if (!port) return port.error();
-  return OpenBus{.bus = *std::move(bus), .port = *std::move(port)};
+  auto thread = BusThread::start(*std::move(bus), *std::move(port), {});
+  if (!thread) return thread.error();
+  return std::unique_ptr<MotorLink>(*std::move(thread));
 }
 
 std::vector<std::int64_t> bit_rates_of(BusKind kind) {
   switch (kind) {
     case BusKind::damiao:
+    case BusKind::inverse3:
       return {};
     case BusKind::dynamixel:
       return {dynamixel::bit_rates.begin(), dynamixel::bit_rates.end()};

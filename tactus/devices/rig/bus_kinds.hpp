@@ -2,8 +2,7 @@
 
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
-#include <tactus/devices/motor_bus.hpp>
-#include <tactus/wire/port.hpp>
+#include <tactus/devices/motor_link.hpp>
 
 #include <array>
 #include <cstddef>
@@ -16,10 +15,10 @@
 namespace tactus::devices {
 
 /// A word for each kind of bus whose motors have a driver.
-enum class BusKind : std::int64_t { damiao, dynamixel, feetech };
+enum class BusKind : std::int64_t { damiao, dynamixel, feetech, inverse3 };
 constexpr auto enumerators(BusKind) {
   return std::array{Enumerator{BusKind::damiao, "damiao"}, Enumerator{BusKind::dynamixel, "dynamixel"},
-                    Enumerator{BusKind::feetech, "feetech"}};
+                    Enumerator{BusKind::feetech, "feetech"}, Enumerator{BusKind::inverse3, "inverse3"}};
 }
 
 struct StatedMotor {
@@ -31,7 +30,8 @@ struct StatedMotor {
 
 struct StatedBus {
   BusKind kind = BusKind::damiao;
-  std::string port;
+  std::string port;                     ///< of Haply's service HOST:PORT
+  std::string device = {};              ///< which one of that service; empty: the first
   std::string framing = "usb2can";      ///< of CAN
   std::int64_t bits_per_s = 1'000'000;  ///< of servos
   std::vector<StatedMotor> motors;
@@ -42,7 +42,7 @@ std::vector<std::string> models_of(BusKind kind);
 
 /// What a motor of this model can do, at its output.
 struct MotorAbility {
-  double torque_Nm = 0.0;           ///< 0: it takes no command
+  double torque_Nm = 0.0;           ///< 0: it takes no command; infinite: not known
   double velocity_rad_per_s = 0.0;  ///< that its numbers end at; 0: not known
 };
 /// Of a motor that `check` passed.
@@ -52,13 +52,9 @@ MotorAbility ability_of(BusKind kind, const StatedMotor& motor);
 /// `motors` or `motors[i].id`, `.model` and so on.
 Check check(const StatedBus& stated);
 
-/// A bus that is as it was stated, and its port. Nothing is said yet.
-struct OpenBus {
-  std::unique_ptr<MotorBus> bus;
-  wire::Port port;
-};
-/// Errors: those of `check`; of the port, with its path as the place.
-Result<OpenBus> open_bus(const StatedBus& stated);
+/// Begins to drive it: opens the port, and asks. Errors: those of `check`; of the port, with its path as the place; no
+/// thread.
+Result<std::unique_ptr<MotorLink>> start(const StatedBus& stated);
 
 /// The bit rates that servos of a kind can be set to; empty where the wire has its own.
 std::vector<std::int64_t> bit_rates_of(BusKind kind);

@@ -1,4 +1,3 @@
-#include <tactus/devices/bus_thread.hpp>
 #include <tactus/devices/rig/examination.hpp>
 #include <tactus/wire/latency_timer.hpp>
 
@@ -32,7 +31,7 @@ bool may_be(const std::string& told, const std::string& model) {
 }
 
 /// Cycles without power for so long. False where the bus ended meanwhile.
-bool run_cycles(const BusThread& bus, BusFinding& found) {
+bool run_cycles(const MotorLink& bus, BusFinding& found) {
   constexpr std::chrono::milliseconds duration{500};
   const auto before = bus.newest();
   std::this_thread::sleep_for(duration);
@@ -55,14 +54,13 @@ std::optional<std::int64_t> answering_rate(StatedBus stated) {
   for (const std::int64_t rate : bit_rates_of(stated.kind)) {
     if (rate == tried) continue;
     stated.bits_per_s = rate;
-    auto opened = open_bus(stated);
-    if (!opened) continue;  // not every adapter does every rate
-    auto bus = BusThread::start(std::move(opened->bus), std::move(opened->port), {});
-    if (!bus) return std::nullopt;
+    auto bus = start(stated);
+    if (!bus) continue;  // not every adapter does every rate
     static_cast<void>((*bus)->wait_until_asked(longest_asking));
     (*bus)->stop();
-    for (std::size_t motor = 0; motor < stated.motors.size(); ++motor) {
-      if ((*bus)->bus().reading(motor).answers > 0) return rate;
+    const auto told = (*bus)->newest();
+    for (std::size_t motor = 0; told && motor < stated.motors.size(); ++motor) {
+      if (told->motors[motor].answers > 0) return rate;
     }
   }
   return std::nullopt;
@@ -116,16 +114,15 @@ bool BusFinding::well() const {
 Result<BusFinding> examine(const StatedBus& stated) {
   BusFinding found;
   found.motors.resize(stated.motors.size());
-  auto opened = open_bus(stated);
-  if (!opened) return opened.error();
+  auto bus = start(stated);
+  if (!bus) return bus.error();
   if (Check slow = wire::check_latency_timer(stated.port)) {
     slow->parameter = "port";
     found.problems.push_back(*std::move(slow));
   }
-  auto bus = BusThread::start(std::move(opened->bus), std::move(opened->port), {});
-  if (!bus) return bus.error();
   Check wrong = (*bus)->wait_until_asked(longest_asking);
-  const bool refused = wrong && (*bus)->bus().state() == BusState::refused;
+  const auto asked = (*bus)->newest();
+  const bool refused = wrong && asked && asked->state == BusState::refused;
   if (!wrong) {
     found.heard = run_cycles(**bus, found);
     if (!found.heard) wrong = Error{ErrorCode::failed, "port", "the port was closed meanwhile", stated.port};
@@ -134,8 +131,8 @@ Result<BusFinding> examine(const StatedBus& stated) {
   bool all_silent = true;
   for (std::size_t i = 0; i < found.motors.size(); ++i) {
     MotorFinding& motor = found.motors[i];
-    motor.sheet = (*bus)->bus().sheet(i);
-    all_silent = all_silent && (*bus)->bus().reading(i).answers == 0 && motor.sheet.firmware.empty();
+    motor.sheet = (*bus)->sheet(i);
+    all_silent = all_silent && asked && asked->motors[i].answers == 0 && motor.sheet.firmware.empty();
     if (motor.sheet.problem) {
       Error problem = *motor.sheet.problem;
       problem.parameter = motor_key(i, motor.sheet.model.empty() ? "id" : "model");
@@ -146,7 +143,7 @@ Result<BusFinding> examine(const StatedBus& stated) {
     }
   }
   if (wrong && !refused) found.problems.push_back(*wrong);
-  bus->reset();  // the port is free for another rate
+  bus->reset();  // so that the port is free for another rate
   note_swaps(stated, found);
   if (!refused || !all_silent) return found;
   if (const auto rate = answering_rate(stated)) {
@@ -162,6 +159,8 @@ Result<BusFinding> examine(const StatedBus& stated) {
 std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const std::string& file) {
   std::vector<Error> problems;
   const MotorJoint& joint = one.joint;
+  const JointWords& words = one.words();
+  const std::string unit = std::string(" ") + words.position_unit;
   const auto add = [&](const char* key, std::string message) {
     problems.push_back({ErrorCode::inconsistent, join(one.path, key), std::move(message), {}});
   };
@@ -171,13 +170,13 @@ std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const s
     MotorJoint turned = joint;
     turned.sign = -joint.sign;
     const double turned_rad = turned.position_rad(found.reading.position_rad);
-    add("offset_rad",
-        "it is at " + rounded(position_rad) + " rad, where it may be from " + rounded(joint.lower_rad) + " to " +
+    add(words.offset,
+        "it is at " + rounded(position_rad) + unit + ", where it may be from " + rounded(joint.lower_rad) + " to " +
             rounded(joint.upper_rad) +
             ": move it there by hand; where it is there, put it to its zero and run 'tactus device zero " + file + " " +
             one.path + "'" +
             (turned.contains(turned_rad) ? ", or state sign = " + std::to_string(turned.sign) +
-                                               ", with which it were at " + rounded(turned_rad) + " rad"
+                                               ", with which it were at " + rounded(turned_rad) + unit
                                          : std::string()));
   }
   if (found.reading.temperature_C > joint.temperature_limit_C) {
@@ -186,7 +185,7 @@ std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const s
   }
   const double most_Nm = found.sheet.torque_limit_Nm * joint.gear;
   if (joint.gives_force && joint.torque_limit_Nm > most_Nm * (1.0 + 1e-9)) {
-    add("torque_limit_Nm", format_number(joint.torque_limit_Nm) + " N m is more than its motor is set to give, " +
+    add(words.force_limit, format_number(joint.torque_limit_Nm) + " N m is more than its motor is set to give, " +
                                rounded(most_Nm) +
                                " N m: lower it, or raise the limit in the motor with its maker's tool");
   }

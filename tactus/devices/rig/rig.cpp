@@ -45,6 +45,18 @@ struct ServoSide {
   }
 };
 
+struct Inverse3Side {
+  BusKind bus = BusKind::inverse3;
+  std::string port;
+  std::string device;
+  static constexpr auto fields() {
+    return List{field("bus", &Inverse3Side::bus, "Kind of device."),
+                field("port", &Inverse3Side::port, "Where Haply's service listens, HOST:PORT."),
+                field("device", &Inverse3Side::device, "Its identifier, as 049D; empty: the first one.")};
+  }
+  void put_into(StatedBus& stated) const { stated = {.kind = bus, .port = port, .device = device, .motors = {}}; }
+};
+
 constexpr const char* motor_doc = "Its identifier on the bus.";
 constexpr const char* model_doc = "As its maker calls it.";
 
@@ -87,6 +99,51 @@ struct FeetechMotor {
     stated = {.id = motor, .model = name_of(model), .torque_Nm_per_A = torque_Nm_per_A};
   }
 };
+
+enum class Inverse3Model : std::int64_t { inverse3 };
+constexpr auto enumerators(Inverse3Model) { return std::array{Enumerator{Inverse3Model::inverse3, "inverse3"}}; }
+
+/// An axis in m and N.
+struct Inverse3Axis {
+  std::int64_t motor = 0;
+  Inverse3Model model = Inverse3Model::inverse3;
+  std::int64_t sign = 1;
+  double offset_m = 0.0, lower_m = 0.0, upper_m = 0.0, velocity_limit_m_per_s = 0.0, force_limit_N = 0.0,
+         force_rate_limit_N_per_s = 0.0;
+  static constexpr auto fields() {
+    constexpr Bounds places = between(-10.0, 10.0);
+    using P = Inverse3Axis;
+    return List{field("motor", &P::motor, between(1.0, 3.0), "1 is x, 2 is y, 3 is z."),
+                field("model", &P::model, model_doc),
+                field("sign", &P::sign, between(-1.0, 1.0), "1, or -1 where the axis points against the joint."),
+                field("offset_m", &P::offset_m, units::metre, places, "Where the joint is at zero of the axis."),
+                field("lower_m", &P::lower_m, units::metre, places, "The joint has no force below that."),
+                field("upper_m", &P::upper_m, units::metre, places, "The joint has no force above that."),
+                field("velocity_limit_m_per_s", &P::velocity_limit_m_per_s, units::metre_per_second,
+                      positive_up_to(100.0), "A joint that is faster loses its force."),
+                field("force_limit_N", &P::force_limit_N, units::newton, positive_up_to(100.0),
+                      "The largest force, either way."),
+                field("force_rate_limit_N_per_s", &P::force_rate_limit_N_per_s, units::newton_per_second,
+                      positive_up_to(1e6), "The fastest change of that force.")};
+  }
+  void put_into(RigJoint& one) const {
+    one.motor = {.id = motor, .model = name_of(model)};
+    one.joint.sign = sign;
+    one.joint.offset_rad = offset_m;
+    one.joint.lower_rad = lower_m;
+    one.joint.upper_rad = upper_m;
+    one.joint.velocity_limit_rad_per_s = velocity_limit_m_per_s;
+    one.joint.torque_limit_Nm = force_limit_N;
+    one.joint.torque_rate_limit_Nm_per_s = force_rate_limit_N_per_s;
+  }
+};
+
+constexpr JointWords turning{
+    "offset_rad", "lower_rad", "upper_rad", "velocity_limit_rad_per_s", "torque_limit_Nm", "torque_rate_limit_Nm_per_s",
+    "rad",        "rad/s",     "N m"};
+constexpr JointWords sliding{
+    "offset_m", "lower_m", "upper_m", "velocity_limit_m_per_s", "force_limit_N", "force_rate_limit_N_per_s",
+    "m",        "m/s",     "N"};
 
 /// A struct that the document fills, and where it goes then.
 class Filled {
@@ -139,6 +196,8 @@ std::string own_port(const std::string& port) {
 
 }  // namespace
 
+const JointWords& RigJoint::words() const { return slides ? sliding : turning; }
+
 Joints<MotorJoint> RigSide::motor_joints() const {
   Joints<MotorJoint> all(joints.size());
   for (std::size_t i = 0; i < joints.size(); ++i) all[i] = joints[i].joint;
@@ -190,8 +249,11 @@ Check Rig::read() {
         return error;
       }
       const bool damiao = *kind == name_of(BusKind::damiao), feetech = *kind == name_of(BusKind::feetech);
+      const bool slides = *kind == name_of(BusKind::inverse3);
       if (damiao) {
         fill(DamiaoSide{}, here.bus, here.path);
+      } else if (slides) {
+        fill(Inverse3Side{}, here.bus, here.path);
       } else {
         fill(ServoSide{}, here.bus, here.path);
       }
@@ -200,10 +262,13 @@ Check Rig::read() {
           fill(DamiaoMotor{}, joint.motor, joint.path);
         } else if (feetech) {
           fill(FeetechMotor{}, joint.motor, joint.path);
+        } else if (slides) {
+          joint.slides = true;
+          fill(Inverse3Axis{}, joint, joint.path);
         } else {
           fill(DynamixelMotor{}, joint.motor, joint.path);
         }
-        append_bindings(joint.joint, joint.path, bindings);
+        if (!slides) append_bindings(joint.joint, joint.path, bindings);
       }
     }
   }
@@ -251,12 +316,13 @@ Check Rig::check_keys(const RigSide& side) const {
       const std::string model = "\"" + models_of(side.bus.kind).front() + "\"";
       error = needed(joint.path, "model", model.c_str());
     }
-    if (!error) error = needed(joint.path, "lower_rad", "-1.5");
-    if (!error) error = needed(joint.path, "upper_rad", "1.5");
-    if (!error) error = needed(joint.path, "velocity_limit_rad_per_s", "3.0");
+    const JointWords& words = joint.words();
+    if (!error) error = needed(joint.path, words.lower, joint.slides ? "-0.1" : "-1.5");
+    if (!error) error = needed(joint.path, words.upper, joint.slides ? "0.1" : "1.5");
+    if (!error) error = needed(joint.path, words.velocity_limit, joint.slides ? "1.0" : "3.0");
     if (!error && ability_of(side.bus.kind, joint.motor).torque_Nm > 0.0) {
-      error = needed(joint.path, "torque_limit_Nm", "1.0");
-      if (!error) error = needed(joint.path, "torque_rate_limit_Nm_per_s", "50.0");
+      error = needed(joint.path, words.force_limit, "1.0");
+      if (!error) error = needed(joint.path, words.rate_limit, "50.0");
     }
     if (error) return error;
   }
@@ -276,14 +342,15 @@ Check Rig::check_side(const RigSide& side) const {
   for (const RigJoint& one : side.joints) {
     const MotorJoint& joint = one.joint;
     const MotorAbility ability = ability_of(side.bus.kind, one.motor);
+    const JointWords& words = one.words();
     if (joint.sign == 0) {
       return at(join(one.path, "sign"), ErrorCode::out_of_bounds,
                 "0 must be 1, or -1 where the motor turns against the joint");
     }
     if (!(joint.lower_rad < joint.upper_rad)) {
-      return at(
-          join(one.path, "upper_rad"), ErrorCode::inconsistent,
-          format_number(joint.upper_rad) + " rad must be above lower_rad, " + format_number(joint.lower_rad) + " rad");
+      return at(join(one.path, "upper_rad"), ErrorCode::inconsistent,
+                format_number(joint.upper_rad) + " " + words.position_unit + " must be above " + words.lower + ", " +
+                    format_number(joint.lower_rad) + " rad");
     }
     const auto beyond = [&](const char* key, double limit, double most, const char* unit) {
       return at(join(one.path, key), ErrorCode::inconsistent,
@@ -293,11 +360,11 @@ Check Rig::check_side(const RigSide& side) const {
     };
     const double most_Nm = ability.torque_Nm * joint.gear;
     if (ability.torque_Nm > 0.0 && joint.torque_limit_Nm > most_Nm) {
-      return beyond("torque_limit_Nm", joint.torque_limit_Nm, most_Nm, " N m");
+      return beyond(words.force_limit, joint.torque_limit_Nm, most_Nm, " N m");
     }
     const double fastest = ability.velocity_rad_per_s / joint.gear;
     if (ability.velocity_rad_per_s > 0.0 && joint.velocity_limit_rad_per_s > fastest) {
-      return beyond("velocity_limit_rad_per_s", joint.velocity_limit_rad_per_s, fastest, " rad/s");
+      return beyond(words.velocity_limit, joint.velocity_limit_rad_per_s, fastest, " rad/s");
     }
   }
   return std::nullopt;

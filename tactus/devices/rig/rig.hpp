@@ -14,13 +14,21 @@
 
 namespace tactus::devices {
 
+/// How the keys and units of a joint are called.
+struct JointWords {
+  const char *offset, *lower, *upper, *velocity_limit, *force_limit, *rate_limit;
+  const char *position_unit, *velocity_unit, *force_unit;
+};
+
 /// A joint of a rig and its motor.
 struct RigJoint {
-  std::string path;  ///< its section: `arm.leader.elbow`
+  std::string path;     ///< its section: `arm.leader.elbow`
+  bool slides = false;  ///< in m and N; else it turns, in rad and N m
   StatedMotor motor;
   MotorJoint joint;
 
   [[nodiscard]] std::string_view name() const { return key_of(path); }
+  [[nodiscard]] const JointWords& words() const;
 };
 
 /// A leader or a follower: one bus, and a joint for each motor behind it.

@@ -53,10 +53,11 @@ const RigJoint* joint_of(const Rig& rig, const std::string& path) {
   return nullptr;
 }
 
-Error by_hand(const Rig& rig, const NewOffset& offset, const std::string& value) {
+Error by_hand(const Rig& rig, const RigJoint& joint, const std::string& value) {
+  const std::string key = joint.words().offset;
   return rig.locate({.code = ErrorCode::inconsistent,
-                     .parameter = join(offset.joint, "offset_rad"),
-                     .message = "this layout is not changed by a program: write offset_rad = " + value + " yourself",
+                     .parameter = join(joint.path, key),
+                     .message = "this layout is not changed by a program: write " + key + " = " + value + " yourself",
                      .place = {}});
 }
 
@@ -65,6 +66,11 @@ Error by_hand(const Rig& rig, const NewOffset& offset, const std::string& value)
 Result<std::string> with_offset(std::string_view text, const std::string& name, const NewOffset& offset) {
   const auto rig = Rig::parse(text, name);
   if (!rig) return rig.error();
+  const RigJoint* one = joint_of(*rig, offset.joint);
+  if (one == nullptr) {
+    return Error{.code = ErrorCode::missing, .parameter = offset.joint, .message = "is no joint of it", .place = name};
+  }
+  const std::string key_word = one->words().offset;
   constexpr double step = 1e6;
   const double rounded_rad = std::round(offset.offset_rad * step) / step;
   const std::string value = configuration::toml_float(rounded_rad + 0.0);
@@ -74,8 +80,8 @@ Result<std::string> with_offset(std::string_view text, const std::string& name, 
             .place);
   };
   std::string changed(text);
-  if (rig->has(join(offset.joint, "offset_rad"))) {
-    const Position at = place_of("offset_rad");
+  if (rig->has(join(offset.joint, key_word))) {
+    const Position at = place_of(key_word.c_str());
     const std::size_t begin = begin_of(text, at.line) + at.column - 1;
     const auto end = std::find_if_not(text.begin() + static_cast<std::ptrdiff_t>(std::min(begin, text.size())),
                                       text.end(), of_a_number);
@@ -83,10 +89,10 @@ Result<std::string> with_offset(std::string_view text, const std::string& name, 
   } else {
     const std::size_t begin = begin_of(text, place_of("motor").line);
     const std::size_t key = text.find_first_not_of(" \t", begin);
-    if (key == std::string_view::npos || !text.substr(key).starts_with("motor")) return by_hand(*rig, offset, value);
+    if (key == std::string_view::npos || !text.substr(key).starts_with("motor")) return by_hand(*rig, *one, value);
     const std::size_t end = text.find('\n', begin);
     const bool returns = end != std::string_view::npos && end > 0 && text[end - 1] == '\r';
-    const std::string line = std::string(text.substr(begin, key - begin)) + "offset_rad = " + value;
+    const std::string line = std::string(text.substr(begin, key - begin)) + key_word + " = " + value;
     if (end == std::string_view::npos) {
       changed += "\n" + line + "\n";
     } else {
@@ -96,7 +102,7 @@ Result<std::string> with_offset(std::string_view text, const std::string& name, 
   // What a layout of another kind would make of that.
   const auto reread = Rig::parse(changed, name);
   const RigJoint* joint = reread ? joint_of(*reread, offset.joint) : nullptr;
-  if (joint == nullptr || joint->joint.offset_rad != rounded_rad) return by_hand(*rig, offset, value);
+  if (joint == nullptr || joint->joint.offset_rad != rounded_rad) return by_hand(*rig, *one, value);
   return changed;
 }
 

@@ -78,7 +78,8 @@ void ServoBus::heard(const Answer& answer) noexcept {
   const auto motor = static_cast<std::size_t>(found - ids_.begin());
   if (motor == count_ || waiting_ == Waiting::nothing) return;
   if (waiting_ == Waiting::second_answer) {
-    if (motor == errand_.motor) found_wrong(Wrong::twice, 0);
+    // Where it was asked again, both answers may be of one servo.
+    if (motor == errand_.motor && asked_once_) found_wrong(Wrong::twice, 0);
     return;
   }
   Servo& servo = servos_[motor];
@@ -311,6 +312,7 @@ void ServoBus::errand_answered(std::span<const std::uint8_t> data) noexcept {
         keeping_ = true;
         return;
       }
+      asked_once_ = servo.tries == 0;
       ask_next(true);
       if (errand_.which == 0) {
         // Another servo with this id answers too; later its answer would be taken for that to another question.

@@ -203,6 +203,7 @@ class ServoBus : public MotorBus {
   std::size_t hushed_ = 0, asked_ = 0, asked_step_ = 0;
   std::size_t turn_ = 0, look_turn_ = 0;
   std::size_t heard_bytes_ = 0;  ///< since the latest errand
+  bool asked_once_ = false;      ///< the question that was answered last
   bool heard_noise_ = false;     ///< bytes that are no answer came for the servo that is asked
   std::int64_t now_ns_ = 0, deadline_ns_ = 0, said_bytes_ = 0;
   std::int64_t cycles_ = 0, limited_ = 0;

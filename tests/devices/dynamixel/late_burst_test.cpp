@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -89,6 +90,28 @@ TEST(DynamixelBus, ALateBurstDoesNotLeaveItACycleBehind) {
       wire::join(bus, adapter, settled_ns, end_ns);
       EXPECT_GT(adapter.cycles() - cycles, 40);
       EXPECT_EQ(adapter.early() - early, 0) << (fast ? "fast, " : "plain, ") << stall_ns / 1000 << " us";
+    }
+  }
+}
+
+/// Asked again because the first answer was late, a servo answers twice, and is no two servos.
+TEST(DynamixelBus, AServoWhoseAnswerWasLateIsNotTakenForTwo) {
+  for (std::int64_t begin_ns = 0; begin_ns < 20 * ms; begin_ns += ms / 2) {
+    for (const std::int64_t stall_ns : {2 * ms, 3 * ms, 5 * ms}) {
+      DynamixelPeer::Params there;
+      DynamixelBus::Params here;
+      there.servos.clear();
+      for (std::int64_t id = 1; id <= Stalling::servos; ++id) {
+        there.servos.push_back({.id = id});
+        here.motors.push_back({.id = id});
+      }
+      auto peer = DynamixelPeer::make(there).value();
+      auto bus = DynamixelBus::make(here).value();
+      wire::Paced line(peer, wire::byte_ns(there.bits_per_s), wire::Paced::Line::half_duplex);
+      Stalling adapter(line, begin_ns, begin_ns + stall_ns);
+      wire::join(bus, adapter, 0, 200 * ms);
+      EXPECT_EQ(bus.state(), BusState::ready)
+          << begin_ns / 1000 << " us: " << (bus.problem() ? describe(*bus.problem()) : std::string());
     }
   }
 }

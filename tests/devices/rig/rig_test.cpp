@@ -76,8 +76,8 @@ TEST(Rig, EveryMistakeIsToldWithItsLineAndRemedy) {
   EXPECT_EQ(problem_of(side + "bits_per_s = 1000000\n" + one),
             "rig.toml:4:1: arm.leader.bits_per_s: unknown key: [arm.leader] can have bus, port, framing, elbow");
   EXPECT_EQ(problem_of("[arm.leader]\nbus = \"damiau\"\nport = \"/dev/a\"\n" + one),
-            "rig.toml:2:7: arm.leader.bus: \"damiau\" is no choice here: it must be \"damiao\", \"dynamixel\" or "
-            "\"feetech\"; did you mean \"damiao\"?");
+            "rig.toml:2:7: arm.leader.bus: \"damiau\" is no choice here: it must be \"damiao\", \"dynamixel\", "
+            "\"feetech\" or \"inverse3\"; did you mean \"damiao\"?");
   EXPECT_EQ(problem_of("[arm.leader]\nport = \"/dev/a\"\n" + one),
             "rig.toml:1:6: arm.leader.bus: this key is needed: write bus = \"...\" under [arm.leader]");
   EXPECT_EQ(problem_of("[arm.leader]\nbus = \"damiao\"\n" + one),
@@ -165,6 +165,31 @@ TEST(Rig, ServosHaveTheirOwnKeys) {
   EXPECT_NE(problem_of(rate).find("rig.toml:4:14: arm.leader.bits_per_s: 100000 bit/s: the servos do 38400"),
             std::string::npos)
       << problem_of(rate);
+}
+
+TEST(Rig, AxesOfAnInverse3SlideAndHaveKeysInMetres) {
+  const auto axis = [](const std::string& name, int motor, const std::string& force) {
+    return "[desk.leader." + name + "]\nmotor = " + std::to_string(motor) +
+           "\nmodel = \"inverse3\"\nsign = -1\noffset_m = 0.02\nlower_m = -0.1\nupper_m = 0.1\n"
+           "velocity_limit_m_per_s = 1.0\n" +
+           force + "force_rate_limit_N_per_s = 50.0\n";
+  };
+  const std::string side = "[desk.leader]\nbus = \"inverse3\"\nport = \"127.0.0.1:10001\"\ndevice = \"049D\"\n";
+  const auto rig = Rig::parse(side + axis("z", 3, "force_limit_N = 2.0\n"), "rig.toml");
+  ASSERT_TRUE(rig) << describe(rig.error());
+  const RigSide& desk = *rig->pairs()[0].leader;
+  EXPECT_EQ(desk.bus.device, "049D");
+  EXPECT_EQ(desk.joints[0].joint.torque_limit_Nm, 2.0);
+  EXPECT_DOUBLE_EQ(desk.joints[0].joint.position_rad(0.05), -0.03);
+  EXPECT_EQ(problem_of(side + axis("z", 3, "")),
+            "rig.toml:5:1: desk.leader.z: force_limit_N is needed: write for instance force_limit_N = 1.0 under "
+            "[desk.leader.z]");
+  EXPECT_EQ(problem_of(side + axis("z", 3, "torque_limit_Nm = 2.0\n"))
+                .find("rig.toml:13:1: desk.leader.z.torque_limit_Nm: "
+                      "unknown key"),
+            0U);
+  EXPECT_EQ(
+      problem_of(side + axis("z", 4, "force_limit_N = 2.0\n")).find("rig.toml:6:9: desk.leader.z.motor: 4 is out"), 0U);
 }
 
 TEST(Rig, APartIsFoundByItsName) {
