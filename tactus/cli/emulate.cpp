@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <iostream>
+#include <span>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -23,6 +24,23 @@ constexpr std::array emulated_kinds{
     EmulatedKind{"feetech", "Feetech's STS3215 or HLS3625 behind a serial line", &add_feetech_options},
 };
 
+/// Hears nothing while whoever opened the terminal has set it to another bit rate, as motors behind a line do.
+class OnlyAtItsRate final : public wire::WireEnd {
+ public:
+  OnlyAtItsRate(wire::WireEnd& end, const wire::Port& port, std::int64_t bits_per_s)
+      : end_(&end), port_(&port), bits_per_s_(bits_per_s) {}
+  void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override {
+    if (port_->bits_per_s() == bits_per_s_) end_->hear(bytes, now_ns);
+  }
+  std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override { return end_->say(now_ns); }
+  [[nodiscard]] std::int64_t wakes_ns() const noexcept override { return end_->wakes_ns(); }
+
+ private:
+  wire::WireEnd* end_;
+  const wire::Port* port_;
+  std::int64_t bits_per_s_;
+};
+
 Check emulate(const std::function<Result<EmulatedPeer>()>& make) {
   const auto peer = make();
   if (!peer) return peer.error();
@@ -33,7 +51,9 @@ Check emulate(const std::function<Result<EmulatedPeer>()>& make) {
   if (!port) return port.error();
   std::cout << port->path() << "\n";
   if (Check error = flush_standard_output()) return error;
-  return wire::talk(*peer->line, *port, [&end] { return end.asked(); });
+  OnlyAtItsRate deaf(*peer->line, *port, peer->only_at_bits_per_s);
+  wire::WireEnd& line = peer->only_at_bits_per_s > 0 ? static_cast<wire::WireEnd&>(deaf) : *peer->line;
+  return wire::talk(line, *port, [&end] { return end.asked(); });
 }
 
 Check serve_inverse3(const std::function<Result<emulation::inverse3::Inverse3Server>()>& start) {

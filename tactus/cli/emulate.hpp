@@ -5,6 +5,9 @@
 #include <tactus/emulation/inverse3/inverse3_server.hpp>
 #include <tactus/wire/wire_end.hpp>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,6 +23,7 @@ namespace tactus::cli {
 struct EmulatedPeer {
   std::unique_ptr<wire::WireEnd> motors;
   std::unique_ptr<wire::WireEnd> line;
+  std::int64_t only_at_bits_per_s = 0;  ///< it hears nothing while the line is set to another rate; 0: at each
 };
 
 /// What `tactus emulate` can be: a word of its command line, and its options.
@@ -35,6 +39,12 @@ std::function<Result<EmulatedPeer>()> add_dynamixel_options(CLI::App& verb);
 std::function<Result<EmulatedPeer>()> add_feetech_options(CLI::App& verb);
 /// A server, not a line: it has no path but an address.
 std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_options(CLI::App& verb);
+
+/// Of a list of models, in which the last one goes on, that of the motor with this identifier, from 1.
+inline const std::string& of_motor(const std::vector<std::string>& models, std::int64_t id) {
+  return models[std::min(static_cast<std::size_t>(id), models.size()) - 1];
+}
+inline constexpr const char* models_help = "Model of each, with commas between; the last one goes on";
 
 /// The words of an enum, for an option that takes one.
 template <NamedEnum E>

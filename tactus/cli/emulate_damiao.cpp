@@ -16,7 +16,7 @@ constexpr std::int64_t bits_per_s = 921'600;
 
 struct DamiaoOptions {
   std::uint32_t motors = 2;
-  std::string model = name_of(MotorType::dm4310);
+  std::vector<std::string> models{name_of(MotorType::dm4310)};
   std::string framing = name_of(AdapterType::usb2can);
   std::vector<std::string> faults;
   std::uint64_t seed = 1;
@@ -27,7 +27,8 @@ Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
   settings.adapter = value_of<AdapterType>(options.framing);
   settings.seed = options.seed;
   for (std::uint32_t id = 1; id <= options.motors; ++id) {
-    settings.motors.push_back({.id = id, .feedback_id = id + 0x10, .type = value_of<MotorType>(options.model)});
+    settings.motors.push_back(
+        {.id = id, .feedback_id = id + 0x10, .type = value_of<MotorType>(of_motor(options.models, id))});
   }
   for (const std::string& word : options.faults) {
     const auto fault = emulation::damiao::parse_fault(word);
@@ -52,7 +53,8 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
   verb.add_option("--motors", options->motors, "How many, with the ids 1 and on")
       ->check(CLI::Range(1, 15))
       ->capture_default_str();
-  verb.add_option("--model", options->model, "Model of each")
+  verb.add_option("--model", options->models, models_help)
+      ->delimiter(',')
       ->check(CLI::IsMember(words_of<MotorType>()))
       ->capture_default_str();
   // A terminal passes no frames of Linux.
@@ -64,7 +66,7 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
           "--fault", options->faults,
           "What goes wrong, as KIND[:MOTOR][@SECONDS][+SECONDS]: of which motor, from when and how long; may be "
           "given again. Kinds: silence, wrong-scale, over-voltage, under-voltage, over-current, hot-drive, "
-          "hot-winding, communication-lost, overload, register-answer, wrap, garbage, heartbeat, bus-off, split")
+          "hot-winding, communication-lost, overload, register-answer, twin, wrap, garbage, heartbeat, bus-off, split")
       ->type_name("FAULT");
   verb.add_option("--seed", options->seed, "Of delays and garbage")->capture_default_str();
   return [options] { return make_peer(*options); };

@@ -18,10 +18,11 @@ using emulation::feetech::FeetechPeer;
 
 struct ServoOptions {
   std::int64_t servos = 2;
-  std::string model;
+  std::vector<std::string> models;
   std::int64_t bits_per_s = 1'000'000;
   std::vector<std::string> faults;
   bool old_firmware = false;
+  bool deaf_otherwise = false;
   std::int64_t seed = 1;
 };
 
@@ -38,7 +39,7 @@ Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Par
   params.servos.clear();
   for (std::int64_t id = 1; id <= options.servos; ++id) {
     typename Peer::Servo servo{.id = id};
-    set_model(servo);
+    set_model(servo, of_motor(options.models, id));
     params.servos.push_back(servo);
   }
   params.bits_per_s = options.bits_per_s;
@@ -68,6 +69,7 @@ Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Par
   auto peer = Peer::make(params);
   if (!peer) return peer.error();
   EmulatedPeer made{.motors = std::make_unique<Peer>(*std::move(peer)), .line = nullptr};
+  if (options.deaf_otherwise) made.only_at_bits_per_s = options.bits_per_s;
   made.line =
       std::make_unique<wire::Paced>(*made.motors, wire::byte_ns(options.bits_per_s), wire::Paced::Line::half_duplex);
   return made;
@@ -76,21 +78,25 @@ Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Par
 std::shared_ptr<ServoOptions> add_servo_options(CLI::App& verb, const std::string& model,
                                                 const std::vector<std::string>& models, std::int64_t most_bits_per_s) {
   auto options = std::make_shared<ServoOptions>();
-  options->model = model;
+  options->models = {model};
   verb.add_option("--motors", options->servos, "How many, with the ids 1 and on")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
-  verb.add_option("--model", options->model, "Model of each")->check(CLI::IsMember(models))->capture_default_str();
+  verb.add_option("--model", options->models, models_help)
+      ->delimiter(',')
+      ->check(CLI::IsMember(models))
+      ->capture_default_str();
   verb.add_option("--bits-per-s", options->bits_per_s, "Pace of the line")
       ->check(CLI::Range(std::int64_t{9600}, most_bits_per_s))
       ->capture_default_str();
   verb.add_option(
           "--fault", options->faults,
           "What goes wrong, as KIND[:ID][@SECONDS]: of which servo, and from when; may be given again. Kinds of "
-          "a servo: silent, power-cycle, hot, wrong-model, low-limit; of the line, without id and time: "
+          "a servo: silent, power-cycle, hot, wrong-model, low-limit, twin, clash; of the line, without id and time: "
           "corrupt, garbage, split, echo")
       ->type_name("FAULT");
   verb.add_option("--seed", options->seed, "Of what goes wrong on the line")->capture_default_str();
+  verb.add_flag("--deaf-otherwise", options->deaf_otherwise, "Hears nothing while the line is set to another pace");
   return options;
 }
 
@@ -102,11 +108,12 @@ std::function<Result<EmulatedPeer>()> add_dynamixel_options(CLI::App& verb) {
   const auto options = add_servo_options(verb, "xl330-m288", models, 4'000'000);
   verb.add_flag("--old-firmware", options->old_firmware, "Does not know fast sync read");
   return [options] {
-    const auto* const model =
-        std::ranges::find(dynamixel_models, options->model, [](const auto& each) { return std::string(each.first); });
     DynamixelPeer::Params params;
     params.knows_fast_sync_read = !options->old_firmware;
-    return make_servos<DynamixelPeer>(*options, params, [&](auto& servo) { servo.model_number = model->second; });
+    return make_servos<DynamixelPeer>(*options, params, [](auto& servo, const std::string& model) {
+      const auto same = [&model](const auto& each) { return each.first == model; };
+      servo.model_number = std::ranges::find_if(dynamixel_models, same)->second;
+    });
   };
 }
 
@@ -114,7 +121,8 @@ std::function<Result<EmulatedPeer>()> add_feetech_options(CLI::App& verb) {
   using emulation::feetech::Make;
   const auto options = add_servo_options(verb, name_of(Make::sts3215), words_of<Make>(), 1'000'000);
   return [options] {
-    return make_servos<FeetechPeer>(*options, {}, [&](auto& servo) { servo.make = value_of<Make>(options->model); });
+    return make_servos<FeetechPeer>(*options, {},
+                                    [](auto& servo, const std::string& model) { servo.make = value_of<Make>(model); });
   };
 }
 

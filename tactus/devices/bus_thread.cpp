@@ -1,7 +1,6 @@
 #include <tactus/devices/bus_thread.hpp>
 #include <tactus/wire/talk.hpp>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <system_error>
@@ -19,7 +18,7 @@ constexpr std::int64_t farewell_ns = 100'000'000;
 /// The bus, with the tick's commands put in and its readings taken out on the way. It lives on the thread.
 class BusThread::Exchange final : public wire::WireEnd {
  public:
-  explicit Exchange(BusThread& owner) : owner_(&owner), bus_(owner.bus_.get()) {}
+  explicit Exchange(BusThread& owner) : owner_(&owner), bus_(owner.bus_.get()), watch_(owner.silence_ns_) {}
 
   void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override { bus_->hear(bytes, now_ns); }
   std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override {
@@ -42,15 +41,9 @@ class BusThread::Exchange final : public wire::WireEnd {
  private:
   void take_commands(std::int64_t now_ns) noexcept {
     if (const auto newest = owner_->commands_.newest()) commands_ = *newest;
-    const bool nothing = std::none_of(commands_.motors.begin(), commands_.motors.end(),
-                                      [](const MotorCommand& command) { return command.enabled != 0; });
-    if (commands_.time_ns > 0 && now_ns - commands_.time_ns > owner_->silence_ns_) {
-      silenced_ = true;
-    } else if (nothing) {
-      silenced_ = false;
-    }
+    const bool counts = watch_.trusts(commands_, now_ns) && !leaving_;
     for (std::size_t motor = 0; motor < owner_->motors_; ++motor) {
-      bus_->command(motor, silenced_ || leaving_ ? MotorCommand{} : commands_.motors[motor]);
+      bus_->command(motor, counts ? commands_.motors[motor] : MotorCommand{});
     }
   }
   void tell(std::int64_t now_ns) noexcept {
@@ -63,9 +56,9 @@ class BusThread::Exchange final : public wire::WireEnd {
 
   BusThread* owner_;
   MotorBus* bus_;
+  CommandWatch watch_;
   BusCommands commands_;
   BusReadings told_{.motors = {}, .state = BusState::asking, .cycles = -1, .time_ns = 0};
-  bool silenced_ = false;  ///< until a tick asks for nothing
   bool leaving_ = false;
 };
 

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <tactus/core/joints.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
-#include <tactus/devices/motor_bus.hpp>
+#include <tactus/devices/motor_link.hpp>
 #include <tactus/runtime/shared_slots.hpp>
 #include <tactus/wire/port.hpp>
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -17,27 +15,8 @@
 
 namespace tactus::devices {
 
-/// All motors of a bus after one of its cycles.
-struct BusReadings {
-  std::array<MotorReading, most_joints> motors{};
-  BusState state = BusState::asking;
-  std::int64_t cycles = 0;
-  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, when the cycle ended
-};
-
-/// What a tick wants of all motors.
-struct BusCommands {
-  std::array<MotorCommand, most_joints> motors{};
-  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, of the tick
-};
-
-/// A thread that drives a bus of motors at its port, and exchanges the newest readings and commands with a servo tick,
-/// which never waits for it.
-///
-/// Commands that are older than the silence allowed take the power from all motors; it does not come back by itself:
-/// commands that enable nothing must come first. When it is destroyed, or told to stop, the motors lose their power
-/// before it ends, as far as they answer.
-class BusThread {
+/// A thread that drives a bus of motors at its port.
+class BusThread final : public MotorLink {
  public:
   struct Params {
     double silence_s = 0.05;
@@ -51,22 +30,15 @@ class BusThread {
   static Result<std::unique_ptr<BusThread>> start(std::unique_ptr<MotorBus> bus, wire::Port port, const Params& params);
   BusThread(const BusThread&) = delete;
   BusThread& operator=(const BusThread&) = delete;
-  ~BusThread();
+  ~BusThread() override;
 
-  [[nodiscard]] std::size_t motors() const noexcept { return motors_; }
-  /// One thread, the servo's. Wait-free.
-  void command(const BusCommands& commands) noexcept { commands_.publish(commands); }
-  /// None before it began. Any thread. Wait-free.
-  [[nodiscard]] std::optional<BusReadings> newest() const noexcept { return readings_.newest(); }
-  /// False once the port was closed or it was stopped. Any thread. Wait-free.
-  [[nodiscard]] bool running() const noexcept { return running_.load(std::memory_order_acquire); }
-
-  /// Ends it; the motors lose their power first. Not real-time safe, as all that follows.
-  void stop();
-  /// Waits until the motors were asked, so long at most. Errors: what is wrong with them, or with the port.
-  Check wait_until_asked(Seconds longest);
-  /// Once it is not running.
-  [[nodiscard]] const MotorBus& bus() const noexcept { return *bus_; }
+  [[nodiscard]] std::size_t motors() const noexcept override { return motors_; }
+  void command(const BusCommands& commands) noexcept override { commands_.publish(commands); }
+  [[nodiscard]] std::optional<BusReadings> newest() const noexcept override { return readings_.newest(); }
+  [[nodiscard]] bool running() const noexcept override { return running_.load(std::memory_order_acquire); }
+  void stop() override;
+  Check wait_until_asked(Seconds longest) override;
+  [[nodiscard]] MotorSheet sheet(std::size_t motor) const override { return bus_->sheet(motor); }
 
  private:
   class Exchange;

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <string>
 
 /// Motors and handles that people own: what is said to them, and what their answers mean.
 namespace tactus::devices {
@@ -52,6 +53,15 @@ struct MotorCommand {
   std::int64_t enabled = 0;  ///< 0: no power
 };
 
+/// What a motor said of itself when it was asked, for a person. Empty: not told.
+struct MotorSheet {
+  std::string model;             ///< what it must be by what it told, where that is not what was stated
+  std::string scales;            ///< of its numbers
+  std::string firmware;          ///< its version
+  double torque_limit_Nm = 0.0;  ///< the largest that it is sent, at its output; 0: it gives no force
+  Check problem;                 ///< what is wrong with it, with the remedy
+};
+
 /// How far a bus is with its motors.
 enum class BusState : std::int64_t {
   asking,  ///< who is there, and whether they are what the file says; no motor has power
@@ -67,13 +77,16 @@ constexpr auto enumerators(BusState) {
 /// then it runs cycles: commands to all motors at once, answers collected until all are there or a deadline passed, and
 /// the next. A motor that is silent costs no other its data.
 ///
-/// Real-time safe but for `problem`. Thread: that of the wire; `tactus/devices/bus_thread.hpp` exchanges with a tick.
+/// Real-time safe but for `problem` and `sheet`. Thread: that of the wire; `tactus/devices/bus_thread.hpp` exchanges
+/// with a tick.
 class MotorBus : public wire::WireEnd {
  public:
   [[nodiscard]] virtual std::size_t motors() const noexcept = 0;
   [[nodiscard]] virtual BusState state() const noexcept = 0;
   /// Why it is `refused`, with the motor and the remedy. Not real-time safe.
   [[nodiscard]] virtual Check problem() const = 0;
+  /// Of a motor below `motors()`, complete unless the bus is still `asking`. Not real-time safe.
+  [[nodiscard]] virtual MotorSheet sheet(std::size_t motor) const = 0;
   /// Of a motor below `motors()`.
   [[nodiscard]] virtual const MotorReading& reading(std::size_t motor) const noexcept = 0;
   /// From the next cycle on. A torque that is no number, or beyond what the motor takes, is never sent: it counts as no

@@ -15,30 +15,37 @@ constexpr std::int64_t power_within_ns = 250'000'000;
 
 }  // namespace
 
-Result<std::unique_ptr<MotorBusDevice>> MotorBusDevice::make(BusThread& bus, const Params& params) {
-  if (params.limits.size() != bus.motors()) {
+Result<std::unique_ptr<MotorBusDevice>> MotorBusDevice::make(MotorLink& bus, const Params& params) {
+  if (params.joints.size() != bus.motors()) {
     return Error{.code = ErrorCode::inconsistent,
-                 .parameter = "limits",
-                 .message = "limits of " + std::to_string(params.limits.size()) + " joints for a bus of " +
-                            std::to_string(bus.motors()) + " motors: state them for each",
+                 .parameter = "joints",
+                 .message = std::to_string(params.joints.size()) + " joints for a bus of " +
+                            std::to_string(bus.motors()) + " motors: state one for each",
                  .place = {}};
   }
   return std::unique_ptr<MotorBusDevice>(new MotorBusDevice(bus, params));
 }
 
-MotorBusDevice::MotorBusDevice(BusThread& bus, const Params& params)
-    : bus_(&bus), params_(params), reading_(params.limits.size()) {}
+MotorBusDevice::MotorBusDevice(MotorLink& bus, const Params& params)
+    : bus_(&bus), params_(params), reading_(params.joints.size()) {}
 
 MotorBusDevice::~MotorBusDevice() {
   commands_.motors = {};
   bus_->command(commands_);
 }
 
+Joints<station::DeviceLimits> MotorBusDevice::limits() const {
+  Joints<station::DeviceLimits> limits(params_.joints.size());
+  for_each_joint([](station::DeviceLimits& to, const MotorJoint& joint) { to = joint.limits(); }, limits,
+                 params_.joints);
+  return limits;
+}
+
 Joints<station::DeviceReading> MotorBusDevice::read(const station::Tick& tick) noexcept {
   now_ns_ = tick.began_ns;
   if (const auto newest = bus_->newest()) last_ = *newest;
   for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
-    reading_[joint].position_m = last_.motors[joint].position_rad;
+    reading_[joint].position_m = params_.joints[joint].position_rad(last_.motors[joint].position_rad);
   }
   const DeviceHealth now = judge();
   if (health_ != DeviceHealth::lost) health_ = now;
@@ -52,6 +59,7 @@ DeviceHealth MotorBusDevice::judge() noexcept {
     oldest_ns = std::min(oldest_ns, motor.heard_ns);
     if (commands_.motors[joint].enabled == 0) continue;
     if (motor.enabled != 0) had_power_[joint] = true;
+    if (!params_.joints[joint].allows(motor)) return DeviceHealth::lost;
     const bool has_it = motor.enabled != 0 && motor.fault == MotorFault::none;
     const bool in_time = !had_power_[joint] && now_ns_ - wanted_since_ns_[joint] < power_within_ns;
     if (!has_it && !in_time) return DeviceHealth::lost;
@@ -65,12 +73,13 @@ void MotorBusDevice::write(const Joints<station::DeviceCommand>& command) noexce
   bool any = false;
   for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
     MotorCommand& motor = commands_.motors[joint];
-    const bool wanted = command[joint].enabled;
+    const MotorJoint& own = params_.joints[joint];
+    const bool wanted = command[joint].enabled && own.gives_force;
     if (wanted && motor.enabled == 0) {
       wanted_since_ns_[joint] = now_ns_;
       had_power_[joint] = false;
     }
-    motor = {.torque_Nm = command[joint].force_N, .enabled = wanted ? 1 : 0};
+    motor = {.torque_Nm = own.motor_torque_Nm(command[joint].force_N), .enabled = wanted ? 1 : 0};
     any = any || wanted;
   }
   if (!any && health_ == DeviceHealth::lost) health_ = judge();

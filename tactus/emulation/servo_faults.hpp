@@ -16,7 +16,9 @@ enum class ServoFault : std::int64_t {
   power_cycle,  ///< it is off for 0.3 s, and begins anew
   hot,          ///< it tells so, and takes its own torque away
   wrong_model,  ///< it is another one than its owner believes
-  low_limit     ///< it was set to a tenth of its current
+  low_limit,    ///< it was set to a tenth of its current
+  twin,         ///< another servo has its id and answers behind it
+  clash         ///< another servo has its id and answers at the same time, so that no answer is whole
 };
 constexpr auto enumerators(ServoFault) {
   return std::array{Enumerator{ServoFault::none, "none"},
@@ -24,7 +26,9 @@ constexpr auto enumerators(ServoFault) {
                     Enumerator{ServoFault::power_cycle, "power-cycle"},
                     Enumerator{ServoFault::hot, "hot"},
                     Enumerator{ServoFault::wrong_model, "wrong-model"},
-                    Enumerator{ServoFault::low_limit, "low-limit"}};
+                    Enumerator{ServoFault::low_limit, "low-limit"},
+                    Enumerator{ServoFault::twin, "twin"},
+                    Enumerator{ServoFault::clash, "clash"}};
 }
 
 /// What may be wrong with the line of emulated servos. Shares are those of all answers, drawn from a seed.

@@ -16,10 +16,19 @@ class ServoLine {
  public:
   ServoLine(const LineFaults& faults, std::uint64_t seed) : faults_(faults), random_(seed), outbox_(1 << 14) {}
 
-  /// An answer that begins at this time. What has no room is lost, as in an adapter.
-  void answer(std::span<const std::uint8_t> packet, std::int64_t at_ns) noexcept {
+  /// An answer that begins at this time, of a servo with this fault. What has no room is lost, as in an adapter.
+  void answer(std::span<const std::uint8_t> packet, std::int64_t at_ns, ServoFault fault = ServoFault::none) noexcept {
     std::array<std::uint8_t, 512> bytes{};
     if (packet.empty() || packet.size() > bytes.size()) return;
+    if (fault == ServoFault::clash) {
+      // Two talk at once, one a little later: whoever pulls the line low is heard, which are bits of 0.
+      for (std::size_t i = 0; i < packet.size(); ++i) {
+        const std::uint8_t later = i == 0 ? std::uint8_t{0xff} : packet[i - 1];
+        bytes[i] = static_cast<std::uint8_t>(packet[i] & later);
+      }
+      outbox_.put({bytes.data(), packet.size()}, at_ns);
+      return;
+    }
     if (random_.uniform() < faults_.garbage) {
       const std::size_t size = 1 + random_.bits() % 12;
       // Half of them are what headers are made of.
@@ -37,6 +46,7 @@ class ServoLine {
     if (random_.uniform() < faults_.split) first = 1 + random_.bits() % packet.size();
     outbox_.put({bytes.data(), first}, at_ns);
     if (first < packet.size()) outbox_.put({bytes.data() + first, packet.size() - first}, at_ns + pause_ns);
+    if (fault == ServoFault::twin) outbox_.put(packet, at_ns + pause_ns);
   }
   void echo(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {
     if (faults_.echo != 0) outbox_.put(bytes, now_ns);

@@ -1,6 +1,7 @@
 #include <tactus/wire/paced.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::wire {
 
@@ -40,6 +41,8 @@ std::int64_t Paced::next_ns() const noexcept {
 std::int64_t Paced::wakes_ns() const noexcept { return std::min(next_ns(), going_.due_ns()); }
 
 void Paced::live_until(std::int64_t now_ns) noexcept {
+  // Its end begins when it is called first, not when the clock did.
+  if (!std::exchange(began_, true)) lived_until_ns_ = now_ns - 1;
   for (std::int64_t at_ns = next_ns(); at_ns <= now_ns; at_ns = next_ns()) {
     lived_until_ns_ = at_ns;
     if (count_ > 0 && coming_[first_].there_ns <= at_ns) {

@@ -47,6 +47,7 @@ class Paced final : public WireEnd {
   std::vector<Coming> coming_;  ///< a ring
   std::size_t first_ = 0, count_ = 0;
   Outbox going_;
+  bool began_ = false;  ///< it was called
   std::int64_t lived_until_ns_ = -1;
   std::int64_t there_free_ns_ = 0, back_free_ns_ = 0;
 };

@@ -186,6 +186,11 @@ std::size_t Port::write(std::span<const std::uint8_t> bytes) const noexcept {
   return written > 0 ? static_cast<std::size_t>(written) : 0;
 }
 
+std::int64_t Port::bits_per_s() const noexcept {
+  struct termios2 mode {};
+  return ioctl(kept_open_ >= 0 ? kept_open_ : descriptor_, TCGETS2, &mode) == 0 ? mode.c_ospeed : 0;
+}
+
 Port::Port(Port&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       kind_(other.kind_),

@@ -33,6 +33,8 @@ class Port {
 
   /// What a person opens, or is told of.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  /// Of a terminal, as whoever opened it has set it; 0 where it is none. One system call.
+  [[nodiscard]] std::int64_t bits_per_s() const noexcept;
   [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
   /// How many of the bytes it had room for. Real-time safe: one system call.
   std::size_t write(std::span<const std::uint8_t> bytes) const noexcept;

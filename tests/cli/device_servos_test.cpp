@@ -52,8 +52,7 @@ TEST_F(DeviceServos, AWrongModelOrRateIsRefusedWithWhatThereIs) {
   const Outcome rate = tactus({"device", "check", "--bus", "feetech", "--port", "/dev/null", "--motors", "1:sts3215",
                                "--bits-per-s", "4000000"});
   EXPECT_EQ(rate.status, 2);
-  EXPECT_NE(rate.err.find("--bits-per-s: bits_per_s: 4000000 bit/s: the servos do 38400, "), std::string::npos)
-      << rate.err;
+  EXPECT_NE(rate.err.find("--bits-per-s: 4000000 bit/s: the servos do 38400, "), std::string::npos) << rate.err;
 }
 
 }  // namespace device_servos_test

@@ -74,8 +74,13 @@ std::unique_ptr<BusThread> bus_at(const Motors& motors, double silence_s = 5.0) 
 }
 
 std::unique_ptr<MotorBusDevice> device_of(BusThread& bus) {
-  auto device = MotorBusDevice::make(
-      bus, {.limits = Joints<station::DeviceLimits>(bus.motors()), .late_s = 0.5, .silence_s = 2.0});
+  MotorJoint joint;
+  joint.lower_rad = -1000.0;
+  joint.upper_rad = 1000.0;
+  joint.velocity_limit_rad_per_s = 100.0;
+  joint.torque_limit_Nm = 10.0;
+  auto device =
+      MotorBusDevice::make(bus, {.joints = Joints<MotorJoint>(bus.motors(), joint), .late_s = 0.5, .silence_s = 2.0});
   EXPECT_TRUE(device.ok());
   return *std::move(device);
 }

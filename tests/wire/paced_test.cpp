@@ -90,5 +90,13 @@ TEST(Paced, WhatComesWhenAnAdapterIsFullIsLost) {
   EXPECT_EQ(peer.heard.size(), 16'384U);
 }
 
+TEST(Paced, ItsEndBeginsWhenItIsCalledFirstAndNotWhenTheClockDid) {
+  ScriptedEnd peer;
+  Paced paced(peer, 10, Paced::Line::full_duplex);
+  peer.script = {{0, {1, 2, 3}}};
+  EXPECT_TRUE(paced.say(5000).empty());
+  EXPECT_EQ(paced.say(5030).size(), 3U);
+}
+
 }  // namespace
 }  // namespace tactus::wire

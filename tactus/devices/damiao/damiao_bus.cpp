@@ -18,11 +18,12 @@ constexpr double timeout_unit_s = 50e-6;
 
 std::int64_t ns_of(double seconds) { return std::llround(seconds * 1e9); }
 
-Error bad_motor(const MotorParams& motor, const char* key, std::string message) {
-  return {.code = ErrorCode::inconsistent,
-          .parameter = std::string("motor_") + std::to_string(motor.id) + "." + key,
-          .message = std::move(message),
-          .place = {}};
+std::string key_of(std::size_t motor, const char* key) {
+  return std::string("motors[") + std::to_string(motor) + "]." + key;
+}
+
+Error bad_motor(std::size_t motor, const char* key, std::string message) {
+  return {.code = ErrorCode::inconsistent, .parameter = key_of(motor, key), .message = std::move(message), .place = {}};
 }
 
 Check check(const DamiaoBusParams& params) {
@@ -31,22 +32,22 @@ Check check(const DamiaoBusParams& params) {
   if (count < 1 || count > most_motors) {
     return out_of_bounds("motors", static_cast<double>(count), between(1, most_motors), units::none);
   }
-  for (const MotorParams& motor : params.motors) {
+  for (std::size_t i = 0; i < params.motors.size(); ++i) {
+    const MotorParams& motor = params.motors[i];
     constexpr Bounds ids = between(1, most_motors), feedback_ids = between(0, 0x7fe);
     if (!ids.contain(static_cast<double>(motor.id))) {
-      return out_of_bounds("id", static_cast<double>(motor.id), ids, units::none);
+      return out_of_bounds(key_of(i, "id"), static_cast<double>(motor.id), ids, units::none);
     }
     if (!feedback_ids.contain(static_cast<double>(motor.feedback_id))) {
-      return out_of_bounds("feedback_id", static_cast<double>(motor.feedback_id), feedback_ids, units::none);
+      return out_of_bounds(key_of(i, "feedback_id"), static_cast<double>(motor.feedback_id), feedback_ids, units::none);
     }
     const auto same_id = [&motor](const MotorParams& other) { return other.id == motor.id; };
-    if (std::count_if(params.motors.begin(), params.motors.end(), same_id) > 1) {
-      return bad_motor(motor, "id", "two motors have this identifier: give each one of its own");
+    if (std::any_of(params.motors.begin(), params.motors.begin() + static_cast<std::ptrdiff_t>(i), same_id)) {
+      return bad_motor(i, "id", "two motors have this identifier: give each one of its own");
     }
     const auto commanded = [&motor](const MotorParams& other) { return other.id == motor.feedback_id; };
     if (std::any_of(params.motors.begin(), params.motors.end(), commanded)) {
-      return bad_motor(motor, "feedback_id",
-                       "a motor takes commands with this identifier: by convention it is id + 16");
+      return bad_motor(i, "feedback_id", "a motor takes commands with this identifier: by convention it is id + 16");
     }
   }
   return std::nullopt;
@@ -80,6 +81,22 @@ Check DamiaoBus::problem() const {
     if (Check found = motor.questions.problem()) return found;
   }
   return std::nullopt;
+}
+
+MotorSheet DamiaoBus::sheet(std::size_t motor) const {
+  const Motor& asked = motors_[motor];
+  const MotorFacts& facts = asked.questions.facts();
+  MotorSheet sheet{.model = asked.questions.model_told(),
+                   .scales = {},
+                   .firmware = {},
+                   .torque_limit_Nm = asked.scale.torque_Nm,
+                   .problem = asked.questions.problem()};
+  if (facts.software_version >= 0) {
+    sheet.firmware = std::to_string(facts.software_version);
+    sheet.scales = format_number(facts.position_scale_rad) + " rad, " + format_number(facts.velocity_scale_rad_per_s) +
+                   " rad/s, " + format_number(facts.torque_scale_Nm) + " Nm";
+  }
+  return sheet;
 }
 
 const MotorReading& DamiaoBus::reading(std::size_t motor) const noexcept { return motors_[motor].reading; }

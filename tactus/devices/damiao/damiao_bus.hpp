@@ -55,14 +55,13 @@ class DamiaoBus final : public MotorBus {
   [[nodiscard]] std::size_t motors() const noexcept override { return motors_.size(); }
   [[nodiscard]] BusState state() const noexcept override { return state_; }
   [[nodiscard]] Check problem() const override;
+  [[nodiscard]] MotorSheet sheet(std::size_t motor) const override;
   [[nodiscard]] const MotorReading& reading(std::size_t motor) const noexcept override;
   void command(std::size_t motor, const MotorCommand& wanted) noexcept override;
   [[nodiscard]] std::int64_t cycles() const noexcept override { return cycles_; }
 
   /// What a motor said of itself; complete unless the bus is still `asking`.
   [[nodiscard]] const MotorFacts& facts(std::size_t motor) const noexcept { return motors_[motor].questions.facts(); }
-  /// What is wrong with it. Not real-time safe.
-  [[nodiscard]] Check problem(std::size_t motor) const { return motors_[motor].questions.problem(); }
 
  private:
   struct Motor {

@@ -93,8 +93,14 @@ bool Questions::take(const CanFrame& frame) noexcept {
     if (own) go_on();
     return own;
   }
-  if (!answer || answer->motor != stated_.id || answer->which != static_cast<std::uint8_t>(step.which) ||
-      answer->written != (step.what == What::write)) {
+  if (!answer || answer->motor != stated_.id) return false;
+  const auto answers = [&answer](const Step& question) {
+    return answer->which == static_cast<std::uint8_t>(question.which) &&
+           answer->written == (question.what == What::write);
+  };
+  if (!answers(step)) {
+    // To a question that was asked once and answered. Where it was asked again, both may be of one motor.
+    if (at_ > 0 && asked_once_ && answers(steps[at_ - 1])) blame(Wrong::twice, step.which, 0.0, 0.0);
     return false;
   }
   note(step.which, answer->value);
@@ -104,6 +110,7 @@ bool Questions::take(const CanFrame& frame) noexcept {
 
 void Questions::go_on() noexcept {
   ++at_;
+  asked_once_ = tries_ == 1;
   tries_ = 0;
   deadline_ns_ = 0;
 }
@@ -155,6 +162,21 @@ void Questions::blame(Wrong wrong, Register which, double found, double expected
   expected_ = expected;
 }
 
+std::string Questions::model_told() const {
+  const auto near = [](double told, double of_model) { return std::fabs(told - of_model) <= equal_enough * of_model; };
+  std::string found;
+  for (const auto& [model, name] : enumerators(Model{})) {
+    const Scale scale = scale_of(model);
+    if (!near(facts_.position_scale_rad, scale.position_rad) || !near(facts_.torque_scale_Nm, scale.torque_Nm) ||
+        !near(facts_.velocity_scale_rad_per_s, scale.velocity_rad_per_s)) {
+      continue;
+    }
+    if (model == stated_.model) return {};
+    found += (found.empty() ? "" : " or ") + std::string(name);
+  }
+  return found;
+}
+
 Check Questions::problem() const {
   const std::string motor = "motor " + std::to_string(stated_.id) + " (" + name_of(stated_.model) + ")";
   const std::string reg =
@@ -166,7 +188,13 @@ Check Questions::problem() const {
       return std::nullopt;
     case Wrong::silent:
       message = motor + " does not answer" + (which_ == Register::motor_id ? std::string() : " when asked for " + reg) +
-                ": look at its power, its two wires, 120 ohm at both ends of them, its identifier and the bit rate";
+                ": look at its power, its two wires, 120 ohm at both ends of them, its identifier (two motors with one "
+                "destroy "
+                "each other's answers) and the bit rate";
+      break;
+    case Wrong::twice:
+      message = motor + " answers twice to one question: two motors have the identifier " + std::to_string(stated_.id) +
+                ": unplug one of them, and give the other one of its own (register 8, ESC_ID) with the maker's tool";
       break;
     case Wrong::feedback_id:
       message = motor + " gives feedback with the identifier " + found + " where " + expected +

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 
 namespace tactus::devices::damiao {
 
@@ -44,6 +45,9 @@ class Questions {
   bool take(const CanFrame& frame) noexcept;
 
   [[nodiscard]] const MotorFacts& facts() const noexcept { return facts_; }
+  /// The models with the scales that it told, where the stated one is none of them; empty where it is, and where no
+  /// model has them. Not real-time safe.
+  [[nodiscard]] std::string model_told() const;
   /// The first thing that is wrong, with the remedy. Not real-time safe.
   [[nodiscard]] Check problem() const;
   [[nodiscard]] bool is_well() const noexcept { return wrong_ == Wrong::nothing; }
@@ -59,7 +63,7 @@ class Questions {
       Step{What::read, Register::position_scale}, Step{What::read, Register::velocity_scale},
       Step{What::read, Register::torque_scale},   Step{What::read, Register::software_version},
       Step{What::write, Register::control_mode},  Step{What::write, Register::timeout}};
-  enum class Wrong { nothing, silent, feedback_id, scale, written };
+  enum class Wrong { nothing, silent, twice, feedback_id, scale, written };
 
   [[nodiscard]] double scale_stated(Register which) const noexcept;
   [[nodiscard]] std::uint32_t wanted(Register which) const noexcept;
@@ -71,6 +75,7 @@ class Questions {
   std::uint32_t wanted_timeout_;
   std::size_t at_ = 0;
   int tries_ = 0;
+  bool asked_once_ = false;  ///< the step before this one
   std::int64_t deadline_ns_ = 0;
   MotorFacts facts_;
   Wrong wrong_ = Wrong::nothing;

@@ -9,6 +9,7 @@ namespace tactus::devices::dynamixel {
 namespace {
 
 constexpr Register model_number{0, 2};
+constexpr Register firmware{6, 1};
 constexpr Register return_delay{9, 1};
 constexpr Register operating_mode{11, 1};
 constexpr Register current_limit{38, 2};
@@ -23,9 +24,9 @@ constexpr Register voltage_and_heat{144, 3};  // voltage of two bytes, temperatu
 using enum ServoStep::Kind;
 // A servo that answers to pings alone would seem silent: all are told to answer to everything.
 constexpr std::array hush{ServoStep{write, torque_enable, 0}, ServoStep{write, status_return_level, 2}};
-constexpr std::array asking{ServoStep{check, model_number, 0}, ServoStep{check, current_limit, 0},
-                            ServoStep{write, torque_enable, 0}, ServoStep{keep, return_delay, 0},
-                            ServoStep{keep, operating_mode, 0}};
+constexpr std::array asking{ServoStep{check, model_number, 0},  ServoStep{check, firmware, 0},
+                            ServoStep{check, current_limit, 0}, ServoStep{write, torque_enable, 0},
+                            ServoStep{keep, return_delay, 0},   ServoStep{keep, operating_mode, 0}};
 // The watchdog's 0 undoes its latch, behind which a goal is refused. Goal current is the limit when power comes on.
 constexpr std::array enabling{ServoStep{write, bus_watchdog, 0}, ServoStep{write, goal_current, 0},
                               ServoStep{write, bus_watchdog, 5}, ServoStep{write, torque_enable, 1}};
@@ -74,8 +75,7 @@ Result<DynamixelBus> DynamixelBus::make(const Params& params) {
                  std::to_string(params.motors.size()) + " motors: a bus has 1 to " + std::to_string(most_servos),
                  {}};
   }
-  static constexpr std::array<std::int64_t, 7> rates{9600, 57'600, 115'200, 1'000'000, 2'000'000, 3'000'000, 4'000'000};
-  if (std::ranges::find(rates, params.bits_per_s) == rates.end()) {
+  if (std::ranges::find(bit_rates, params.bits_per_s) == bit_rates.end()) {
     return Error{ErrorCode::out_of_bounds,
                  "bits_per_s",
                  std::to_string(params.bits_per_s) +
@@ -189,6 +189,10 @@ bool DynamixelBus::read_state(std::size_t, std::span<const std::uint8_t> data, S
 
 ServoBus::Wrong DynamixelBus::check(std::size_t motor, Register place, std::int64_t value) noexcept {
   if (place.address == model_number.address) return value == model(motor).number ? Wrong::nothing : Wrong::model;
+  if (place.address == firmware.address) {
+    set_firmware(motor, value);
+    return Wrong::nothing;
+  }
   // More than its model can be set to is that of another model; 0 gives no force.
   if (value < 1 || value > model(motor).current_limit) return Wrong::limit;
   limit(motor, value);

@@ -22,6 +22,9 @@ constexpr auto enumerators(DynamixelModel) {
       Enumerator{DynamixelModel::xc330_m288, "xc330-m288"}, Enumerator{DynamixelModel::xc330_t288, "xc330-t288"},
       Enumerator{DynamixelModel::xm430_w210, "xm430-w210"}, Enumerator{DynamixelModel::xm430_w350, "xm430-w350"}};
 }
+/// That a servo can be set to.
+inline constexpr std::array<std::int64_t, 7> bit_rates{9600,      57'600,    115'200,  1'000'000,
+                                                       2'000'000, 3'000'000, 4'000'000};
 /// Model numbers, units and limits are the e-Manual's. The torque of a current is that of stall, but for XC330-T288 and
 /// XM430-W210, where it is what GELLO and FACTR use. A gear of 77 to 350 : 1 rubs: what reaches the hand is less.
 const ServoModel& servo_model(DynamixelModel model) noexcept;

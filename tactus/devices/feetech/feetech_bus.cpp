@@ -61,6 +61,8 @@ Error of_motor(ErrorCode code, std::size_t motor, const char* key, std::string m
 
 }  // namespace
 
+const ServoModel& servo_model(FeetechModel model) noexcept { return models[static_cast<std::size_t>(model)]; }
+
 Result<FeetechBus> FeetechBus::make(const Params& params) {
   if (params.motors.empty() || params.motors.size() > most_servos) {
     return Error{ErrorCode::out_of_bounds,
@@ -68,9 +70,7 @@ Result<FeetechBus> FeetechBus::make(const Params& params) {
                  std::to_string(params.motors.size()) + " motors: a bus has 1 to " + std::to_string(most_servos),
                  {}};
   }
-  static constexpr std::array<std::int64_t, 8> rates{38'400,  57'600,  76'800,  115'200,
-                                                     128'000, 250'000, 500'000, 1'000'000};
-  if (std::ranges::find(rates, params.bits_per_s) == rates.end()) {
+  if (std::ranges::find(bit_rates, params.bits_per_s) == bit_rates.end()) {
     return Error{ErrorCode::out_of_bounds,
                  "bits_per_s",
                  std::to_string(params.bits_per_s) +

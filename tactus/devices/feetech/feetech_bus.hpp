@@ -20,6 +20,12 @@ constexpr auto enumerators(FeetechModel) {
                     Enumerator{FeetechModel::hls3625, "hls3625"}};
 }
 
+/// That a servo can be set to.
+inline constexpr std::array<std::int64_t, 8> bit_rates{38'400,  57'600,  76'800,  115'200,
+                                                       128'000, 250'000, 500'000, 1'000'000};
+/// Of an HLS the torque of a current is stated by who has it.
+const ServoModel& servo_model(FeetechModel model) noexcept;
+
 /// Feetech servos behind one serial line: STS as the leader of an arm, HLS with a constant current.
 ///
 /// **STS3215 and STS3250 give no force.** They take positions, not currents, so a torque that is commanded of one is

@@ -64,6 +64,12 @@ void ServoBus::lost_power(std::size_t motor, MotorFault fault) noexcept { fail(s
 
 void ServoBus::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {
   now_ns_ = now_ns;
+  for (const std::uint8_t byte : bytes) {
+    // What an adapter sends back of the question is no noise. What turns out to be an answer ends this errand.
+    const bool echo = heard_bytes_ < packet_.size() && packet_.bytes()[heard_bytes_] == byte;
+    if (!echo) heard_noise_ = true;
+    ++heard_bytes_;
+  }
   find(bytes);
 }
 
@@ -71,6 +77,11 @@ void ServoBus::heard(const Answer& answer) noexcept {
   const auto found = std::find(ids_.begin(), ids_.begin() + static_cast<std::ptrdiff_t>(count_), answer.id);
   const auto motor = static_cast<std::size_t>(found - ids_.begin());
   if (motor == count_ || waiting_ == Waiting::nothing) return;
+  if (waiting_ == Waiting::second_answer) {
+    // Where it was asked again, both answers may be of one servo.
+    if (motor == errand_.motor && asked_once_) found_wrong(Wrong::twice, 0);
+    return;
+  }
   Servo& servo = servos_[motor];
   if (answer.alert && servo.ails == MotorFault::none) servo.looks |= 1;  // else it is known
   if (waiting_ == Waiting::errand) {
@@ -81,8 +92,14 @@ void ServoBus::heard(const Answer& answer) noexcept {
   }
   State state{};
   if (!servo.asked || servo.answered || answer.refusal != 0 || !read_state(motor, answer.data, state)) return;
-  servo.answered = true;
   take(servo, state);
+  servo.heard = true;
+  // What is late must not be taken for the answer to this cycle: each answer would be a cycle old from then on.
+  if (servo.owed > 0) {
+    --servo.owed;
+    return;
+  }
+  servo.answered = true;
   if (--missing_ == 0) cycle_ended();
 }
 
@@ -131,6 +148,7 @@ std::span<const std::uint8_t> ServoBus::say(std::int64_t now_ns) noexcept {
   if (waiting_ != Waiting::nothing) {
     if (now_ns < deadline_ns_) return {};
     give_up();
+    if (waiting_ == Waiting::second_answer) waiting_ = Waiting::nothing;
     if (waiting_ == Waiting::states) cycle_ended();
     if (waiting_ == Waiting::errand) errand_failed(Wrong::silent, 0);
   }
@@ -149,6 +167,7 @@ std::span<const std::uint8_t> ServoBus::send_errand(const Errand& errand, std::i
   errand_ = errand;
   const std::uint8_t id = servos_[errand.motor].id;
   packet_ = errand.reads ? read(id, errand.place) : write(id, errand.place, value);
+  heard_bytes_ = 0;
   wait(Waiting::errand, answer_bytes(errand.reads ? errand.place.bytes : 0U));
   return sent();
 }
@@ -165,6 +184,7 @@ std::span<const std::uint8_t> ServoBus::ask() noexcept {
   if (asked_ < count_) {
     const ServoStep& step = servos_[asked_].asking[asked_step_];
     const bool reads = step.kind != ServoStep::Kind::write && !keeping_;
+    if (servos_[asked_].tries == 0) heard_noise_ = false;
     return send_errand({Purpose::asking, asked_, step.place, reads, asked_step_}, step.value);
   }
   const bool right = std::all_of(servos_.begin(), servos_.begin() + static_cast<std::ptrdiff_t>(count_),
@@ -210,7 +230,7 @@ void ServoBus::ask_for_states() noexcept {
   if (again) asked_again_ns_ = now_ns_;
   missing_ = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    servos_[i].answered = false;
+    servos_[i].heard = servos_[i].answered = false;
     servos_[i].asked = again || servos_[i].missed < servo::most_tries;
     if (servos_[i].asked) asked_ids_[missing_++] = servos_[i].id;
   }
@@ -225,7 +245,16 @@ void ServoBus::cycle_ended() noexcept {
   ++cycles_;
   for (std::size_t i = 0; i < count_; ++i) {
     Servo& servo = servos_[i];
-    if (servo.asked) servo.missed = servo.answered ? 0 : servo.missed + 1;
+    // What is lost is waited for once.
+    if (servo.heard && !servo.answered) {
+      servo.answered = true;
+      servo.owed = 0;
+      --missing_;
+    }
+    if (servo.asked) {
+      servo.missed = servo.answered ? 0 : servo.missed + 1;
+      servo.owed = servo.answered ? 0 : std::min(servo.owed + 1, servo::most_tries);
+    }
     // Once is not enough: where this program stood still, it was not the servo that was silent.
     if (servo.missed > 1 && now_ns_ - servo.reading.heard_ns > table_.silence_ns) fail(servo, MotorFault::silent);
     const bool gone = servo.answered && servo.ails == MotorFault::none && servo.looks == 0;
@@ -283,7 +312,14 @@ void ServoBus::errand_answered(std::span<const std::uint8_t> data) noexcept {
         keeping_ = true;
         return;
       }
-      return ask_next(true);
+      asked_once_ = servo.tries == 0;
+      ask_next(true);
+      if (errand_.which == 0) {
+        // Another servo with this id answers too; later its answer would be taken for that to another question.
+        waiting_ = Waiting::second_answer;
+        deadline_ns_ = now_ns_ + servo::patience_ns;
+      }
+      return;
     }
     case Purpose::enabling:
       servo.tries = 0;
@@ -307,7 +343,7 @@ void ServoBus::errand_failed(Wrong how, std::uint8_t code) noexcept {
   switch (errand_.purpose) {
     case Purpose::asking:
       if (how == Wrong::silent && ++servo.tries < servo::most_tries) return;
-      return found_wrong(how, code);
+      return found_wrong(how == Wrong::silent && heard_noise_ ? Wrong::garbled : how, code);
     case Purpose::enabling:
       if (how == Wrong::silent && ++servo.tries < servo::most_tries) return;
       return fail(servo, MotorFault::refused);
@@ -320,60 +356,14 @@ void ServoBus::errand_failed(Wrong how, std::uint8_t code) noexcept {
 }
 
 void ServoBus::found_wrong(Wrong wrong, std::int64_t value) noexcept {
+  waiting_ = Waiting::nothing;
   Servo& servo = servos_[asked_];
   servo.wrong = wrong;
   servo.found = value;
   servo.found_at = errand_.place;
-  if (wrong == Wrong::silent) fail(servo, MotorFault::silent);
+  if (wrong == Wrong::silent || wrong == Wrong::garbled) fail(servo, MotorFault::silent);
   if (wrong == Wrong::refused) fail(servo, MotorFault::refused);
   ask_next(false);
-}
-
-Check ServoBus::problem() const {
-  for (std::size_t i = 0; state_ == BusState::refused && i < count_; ++i) {
-    if (Check found = problem(i)) return found;
-  }
-  return {};
-}
-
-Check ServoBus::problem(std::size_t motor) const {
-  const Servo& servo = servos_[motor];
-  const std::string who = std::string("servo ") + std::to_string(servo.id);
-  const std::string name = servo.model.name;
-  switch (servo.wrong) {
-    case Wrong::model: {
-      const std::string other = model_named(servo.found);
-      return Error{ErrorCode::inconsistent,
-                   {},
-                   who + " tells model number " + std::to_string(servo.found) +
-                       (other.empty() ? std::string(", which is not known here,") : std::string(" (") + other + ")") +
-                       " where " + name + " is stated: state the model that is there, or change the servo",
-                   {}};
-    }
-    case Wrong::limit:
-      return Error{ErrorCode::inconsistent,
-                   {},
-                   who + " has a current limit of " + std::to_string(servo.found) + ", where that of " + name +
-                       " lies between 1 and " + std::to_string(servo.model.current_limit) +
-                       ": state the model that is there, or set the limit (register " +
-                       std::to_string(servo.found_at.address) + ")",
-                   {}};
-    case Wrong::refused:
-      return Error{ErrorCode::failed,
-                   {},
-                   who + " refuses register " + std::to_string(servo.found_at.address) + " with error " +
-                       std::to_string(servo.found) + ": switch its power off and on, and look at its firmware",
-                   {}};
-    case Wrong::silent:
-      break;
-    case Wrong::nothing:
-      return {};
-  }
-  return Error{ErrorCode::missing,
-               {},
-               who + " does not answer at " + std::to_string(bits_per_s_) +
-                   " bit/s: look at its power, its cable, its id and its bit rate",
-               {}};
 }
 
 }  // namespace tactus::devices

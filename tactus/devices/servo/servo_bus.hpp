@@ -54,7 +54,7 @@ struct ServoTable {
 /// between two cycles. A make gives its packets and its table.
 ///
 /// A fault takes the power of its servo until a command asks for none and the cause is gone; it does not come back by
-/// itself. Real-time safe but for `problem`.
+/// itself. Real-time safe but for `problem` and `sheet`.
 class ServoBus : public MotorBus {
  public:
   static constexpr std::size_t most_servos = 16;
@@ -62,12 +62,7 @@ class ServoBus : public MotorBus {
   [[nodiscard]] std::size_t motors() const noexcept final { return count_; }
   [[nodiscard]] BusState state() const noexcept final { return state_; }
   [[nodiscard]] Check problem() const final;
-  /// What is wrong with one of them. Not real-time safe.
-  [[nodiscard]] Check problem(std::size_t motor) const;
-  /// The largest current that it is sent, in amperes; complete unless the bus is still `asking`.
-  [[nodiscard]] double current_limit_A(std::size_t motor) const noexcept {
-    return static_cast<double>(servos_[motor].limit) * servos_[motor].model.current_unit_A;
-  }
+  [[nodiscard]] MotorSheet sheet(std::size_t motor) const final;
   [[nodiscard]] const MotorReading& reading(std::size_t motor) const noexcept final { return servos_[motor].reading; }
   void command(std::size_t motor, const MotorCommand& wanted) noexcept final;
   [[nodiscard]] std::int64_t cycles() const noexcept final { return cycles_; }
@@ -92,7 +87,7 @@ class ServoBus : public MotorBus {
     double temperature_C;  ///< NaN: not told
   };
   /// What was found while asking.
-  enum class Wrong : std::uint8_t { nothing, silent, model, limit, refused };
+  enum class Wrong : std::uint8_t { nothing, silent, garbled, twice, model, limit, refused };
 
   ServoBus(const ServoTable& table, std::int64_t bits_per_s) : table_(table), bits_per_s_(bits_per_s) {}
   /// Before anything is said, with what it is asked before the bus is ready. At most `most_servos`.
@@ -109,6 +104,7 @@ class ServoBus : public MotorBus {
   /// It has power no more, or gives no force for its power, though nothing ails it.
   void lost_power(std::size_t motor, MotorFault fault) noexcept;
   void set_temperature(std::size_t motor, double celsius) noexcept { servos_[motor].reading.temperature_C = celsius; }
+  void set_firmware(std::size_t motor, std::int64_t version) noexcept { servos_[motor].firmware = version; }
   /// Whether it said that it has.
   [[nodiscard]] bool has_power(std::size_t motor) const noexcept { return servos_[motor].reading.enabled != 0; }
   void heard(const Answer& answer) noexcept;
@@ -148,18 +144,20 @@ class ServoBus : public MotorBus {
     std::int64_t limit = 0;
     std::int64_t place = 0, last = 0;  ///< unwrapped, and as on the wire
     bool placed = false;
-    bool power = false;                    ///< it may have power; `reading.enabled` says that it told so
-    bool asked = false, answered = false;  ///< in this cycle
-    std::size_t missed = 0;                ///< cycles in a row
+    bool power = false;                                   ///< it may have power; `reading.enabled` says that it told so
+    bool asked = false, heard = false, answered = false;  ///< in this cycle
+    std::size_t owed = 0;                                 ///< answers to cycles before, which may still come
+    std::size_t missed = 0;                               ///< cycles in a row
     MotorFault ails = MotorFault::none;
-    std::size_t step = 0;    ///< of its enabling
-    std::size_t tries = 0;   ///< of that step
-    std::uint8_t looks = 0;  ///< that are due, a bit each
+    std::int64_t firmware = -1;  ///< negative: not told
+    std::size_t step = 0;        ///< of its enabling
+    std::size_t tries = 0;       ///< of that step
+    std::uint8_t looks = 0;      ///< that are due, a bit each
     Wrong wrong = Wrong::nothing;
     std::int64_t found = 0;  ///< the value that is wrong, or the code of the refusal
     Register found_at{};
   };
-  enum class Waiting : std::uint8_t { nothing, states, errand };
+  enum class Waiting : std::uint8_t { nothing, states, errand, second_answer };
   enum class Purpose : std::uint8_t { asking, enabling, power_off, look };
   struct Errand {
     Purpose purpose;
@@ -185,6 +183,7 @@ class ServoBus : public MotorBus {
   [[nodiscard]] static bool wants_power(const Servo& servo) noexcept;
   [[nodiscard]] static std::int64_t goal(const Servo& servo) noexcept;
   void found_wrong(Wrong wrong, std::int64_t value) noexcept;
+  [[nodiscard]] Check problem(std::size_t motor) const;
   [[nodiscard]] std::span<const std::uint8_t> sent() const noexcept { return packet_.bytes(); }
 
   ServoTable table_;
@@ -203,6 +202,9 @@ class ServoBus : public MotorBus {
   bool keeping_ = false;       ///< the register that was read is to be written
   std::size_t hushed_ = 0, asked_ = 0, asked_step_ = 0;
   std::size_t turn_ = 0, look_turn_ = 0;
+  std::size_t heard_bytes_ = 0;  ///< since the latest errand
+  bool asked_once_ = false;      ///< the question that was answered last
+  bool heard_noise_ = false;     ///< bytes that are no answer came for the servo that is asked
   std::int64_t now_ns_ = 0, deadline_ns_ = 0, said_bytes_ = 0;
   std::int64_t cycles_ = 0, limited_ = 0;
 };

@@ -198,6 +198,10 @@ void DamiaoPeer::finish_frame() noexcept {
       wait(motors_[i].stray_answer(), static_cast<int>(i), ready_ns);
     }
     wait(*answer, static_cast<int>(i), ready_ns);
+    if (suffers(FaultKind::twin, id, at_ns)) {
+      const auto later_ns = static_cast<std::int64_t>(random_.uniform(soonest_answer_ns, latest_answer_ns));
+      wait(*answer, static_cast<int>(motors_.size() + i), at_ns + later_ns);
+    }
   }
 }
 

@@ -20,6 +20,7 @@ enum class FaultKind : std::int64_t {
   communication_lost,
   overload,
   register_answer,  ///< among feedback, as if another program asked
+  twin,             ///< another motor has its identifiers and answers too
   wrap,             ///< turns steadily beyond the end of its number; from the start
   garbage,          ///< of the adapter: bytes, or frames of nobody, between those of the motors
   heartbeat,        ///< of the adapter: notices every 10 ms
@@ -37,6 +38,7 @@ constexpr auto enumerators(FaultKind) {
                     Enumerator{FaultKind::communication_lost, "communication-lost"},
                     Enumerator{FaultKind::overload, "overload"},
                     Enumerator{FaultKind::register_answer, "register-answer"},
+                    Enumerator{FaultKind::twin, "twin"},
                     Enumerator{FaultKind::wrap, "wrap"},
                     Enumerator{FaultKind::garbage, "garbage"},
                     Enumerator{FaultKind::heartbeat, "heartbeat"},

@@ -222,7 +222,7 @@ void FeetechPeer::status(const State& servo, Bytes data, std::int64_t at_ns) noe
   unsigned sum = 0;
   for (std::size_t i = 2; i < 5 + data.size(); ++i) sum += packet[i];
   packet[5 + data.size()] = static_cast<std::uint8_t>(255 - sum % 256);
-  line_.answer(Bytes(packet).first(6 + data.size()), at_ns);
+  line_.answer(Bytes(packet).first(6 + data.size()), at_ns, servo.fault);
 }
 
 }  // namespace tactus::emulation::feetech

@@ -73,7 +73,7 @@ TEST(DamiaoBus, FaultsThatAreThereAtTheStartAreToldAndNoMotorGetsPower) {
         EXPECT_EQ(why.find("motor 2 (DM4310): its register 22 (VMAX) reads 45 where this model has 30 rad/s: "), 0U)
             << why;
       }
-      EXPECT_FALSE(bench.bus->problem(0));
+      EXPECT_FALSE(bench.bus->sheet(0).problem);
       EXPECT_EQ(bench.bus->facts(2).torque_scale_Nm, 10.0);
       for (std::size_t motor = 0; motor < 3; ++motor) EXPECT_EQ(bench.peer->motor(motor).most_torque_Nm(), 0.0);
       EXPECT_EQ(bench.bus->wakes_ns(), wire::never_ns);
@@ -183,6 +183,19 @@ TEST(DamiaoBus, WhenItFallsSilentTheMotorsOwnWatchdogTakesThePower) {
   bench.now_ns += 51 * ms;  // killed
   bench.peer->say(bench.now_ns);
   EXPECT_EQ(bench.peer->motor(0).status(), 0xd);
+}
+
+TEST(DamiaoBus, TwoMotorsWithOneIdentifierAreTold) {
+  for (const Framing framing : all_framings) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Bench bench({.motors = 3, .framing = framing, .faults = {{.kind = FaultKind::twin, .motor = 2}}, .seed = seed});
+      bench.run(1000 * ms);
+      EXPECT_EQ(bench.bus->state(), BusState::refused) << name_of(framing) << " " << seed;
+      EXPECT_EQ(
+          bench.problem().find("motor 2 (DM4310) answers twice to one question: two motors have the identifier 2"), 0U)
+          << name_of(framing) << " " << seed << " " << bench.problem();
+    }
+  }
 }
 
 TEST(DamiaoBus, AnIdentifierThatDiffersIsNamedWithBoth) {

@@ -251,6 +251,26 @@ TEST(DynamixelBus, AServoThatIsNotThereIsNamed) {
   for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(rig.peer.largest_current(i), 0);
 }
 
+TEST(DynamixelBus, TwoServosWithOneIdAreToldWhetherTheirAnswersMeetOrNot) {
+  Rig twins({.fault = ServoFault::twin});
+  twins.run(500 * ms);
+  EXPECT_EQ(twins.bus.state(), BusState::refused);
+  EXPECT_EQ(describe(*twins.bus.problem()),
+            "servo 3 answers twice: two servos have this id: unplug one of them, and give the other one of its own");
+  Rig clash({.fault = ServoFault::clash});
+  clash.run(500 * ms);
+  EXPECT_EQ(clash.bus.state(), BusState::refused);
+  EXPECT_EQ(describe(*clash.bus.problem())
+                .find("servo 3 is answered for by bytes that are no packet: two servos have "
+                      "this id and talk at once, or the line is disturbed"),
+            0U)
+      << describe(*clash.bus.problem());
+  // What an adapter sends back of a question is no such bytes.
+  Rig echo({.line = {.echo = 1}, .fault = ServoFault::silent});
+  echo.run(500 * ms);
+  EXPECT_EQ(describe(*echo.bus.problem()).find("servo 3 does not answer at 1000000 bit/s"), 0U);
+}
+
 TEST(DynamixelBus, AHotServoTellsSoAndStaysOffUntilItHasCooled) {
   Rig rig({.fault = ServoFault::hot, .fault_from_ns = 700 * ms});
   rig.run(300 * ms);

@@ -190,6 +190,18 @@ TEST(FeetechBus, ATorqueBeyondTheProtectionCurrentIsSentAsThatAndCounted) {
   EXPECT_EQ(rig.bus.reading(2).fault, MotorFault::none);
 }
 
+TEST(FeetechBus, TwoServosWithOneIdAreToldWhetherTheirAnswersMeetOrNot) {
+  for (const std::int64_t echo : {0, 1}) {
+    Rig twins({.line = {.echo = echo}, .fault = ServoFault::twin});
+    twins.run(500 * ms);
+    EXPECT_EQ(twins.bus.state(), BusState::refused);
+    EXPECT_EQ(describe(*twins.bus.problem()).find("servo 3 answers twice: two servos have this id"), 0U);
+    Rig clash({.line = {.echo = echo}, .fault = ServoFault::clash});
+    clash.run(500 * ms);
+    EXPECT_EQ(describe(*clash.bus.problem()).find("servo 3 is answered for by bytes that are no packet: "), 0U);
+  }
+}
+
 TEST(FeetechBus, AnotherModelIsRefusedByItsName) {
   Rig rig({.fault = ServoFault::wrong_model});
   rig.command_all(0.05, 1);

@@ -1,0 +1,74 @@
+#include <tactus/cli/device.hpp>
+#include <tactus/cli/standard_output.hpp>
+#include <tactus/devices/rig/probe.hpp>
+#include <tactus/report/text.hpp>
+
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+struct ListOptions {
+  std::vector<std::string> ports;
+  bool probe = false;
+};
+
+std::string described(const devices::Answering& found) {
+  std::string text = std::string("  ") + name_of(found.bus.kind);
+  if (found.bus.kind == devices::BusKind::damiao) {
+    text += ", framing = \"" + found.bus.framing + "\"";
+  } else {
+    text += ", bits_per_s = " + std::to_string(found.bus.bits_per_s);
+  }
+  text += ":";
+  for (std::size_t i = 0; i < found.bus.motors.size(); ++i) {
+    text += (i == 0 ? " " : ", ") + std::to_string(found.bus.motors[i].id) + " (" + found.said[i] + ")";
+  }
+  return text;
+}
+
+Result<bool> list(const ListOptions& options) {
+  std::vector<devices::FoundPort> ports;
+  if (options.ports.empty()) ports = devices::list_ports();
+  for (const std::string& path : options.ports) ports.push_back({.path = path, .name = {}, .remark = {}});
+  if (ports.empty()) {
+    std::cout << "No serial adapter and no CAN interface: plug one in, and look at what dmesg says.\n";
+  }
+  bool well = true;
+  for (const devices::FoundPort& port : ports) {
+    std::cout << report::printable(port.path) << (port.name.empty() ? "" : "  " + report::printable(port.name)) << "\n";
+    if (!port.remark.empty()) std::cout << "  " << report::printable(port.remark) << "\n";
+    const bool serial = port.path.starts_with("/");
+    if (!options.probe || !serial) continue;
+    const auto found = devices::probe(port.path);
+    if (!found) {
+      std::cout << "  " << report::printable(found.error().message) << "\n";
+      well = false;
+      continue;
+    }
+    if (found->empty()) std::cout << "  nobody answers: look at the power of the motors\n";
+    for (const devices::Answering& one : *found) std::cout << described(one) << "\n";
+  }
+  if (Check error = flush_standard_output()) return *std::move(error);
+  return well;
+}
+
+}  // namespace
+
+void add_device_list(CLI::App& device, const CLI::App& app, int& status) {
+  auto options = std::make_shared<ListOptions>();
+  CLI::App* verb = device.add_subcommand("list", "Serial adapters and CAN interfaces; with --probe who answers there");
+  verb->add_option("PORT", options->ports, "These alone");
+  verb->add_flag("--probe", options->probe,
+                 "Ask at each port who is there. Motors change nothing of that; leave it out where a port has a device "
+                 "that is none of yours to ask");
+  verb->callback([options, &app, &status] { end_verb(app, list(*options), status); });
+}
+
+}  // namespace tactus::cli

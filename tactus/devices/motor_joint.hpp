@@ -1,0 +1,92 @@
+#pragma once
+
+#include <tactus/core/parameters.hpp>
+#include <tactus/devices/motor_bus.hpp>
+#include <tactus/station/device.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace tactus::devices {
+
+namespace joint_units {
+inline constexpr Unit radian{"rad", "_rad"};
+inline constexpr Unit radian_per_second{"rad/s", "_rad_per_s"};
+inline constexpr Unit newton_metre{"N m", "_Nm"};
+inline constexpr Unit newton_metre_per_second{"N m/s", "_Nm_per_s"};
+inline constexpr Unit degree_celsius{"degC", "_C"};
+}  // namespace joint_units
+
+/// A joint, the motor that moves it, and what it may do:
+///
+///     joint = sign · motor / gear + offset,   torque of the motor = sign · torque of the joint / gear
+///
+/// The motor's numbers are those at the output of its own gear. Where the joint slides, read m for rad and N for N m.
+struct MotorJoint {
+  std::int64_t sign = 1;
+  double offset_rad = 0.0;
+  double gear = 1.0;
+  double lower_rad = 0.0;
+  double upper_rad = 0.0;
+  double velocity_limit_rad_per_s = 0.0;
+  double torque_limit_Nm = 0.0;
+  double torque_rate_limit_Nm_per_s = 0.0;
+  double temperature_limit_C = 70.0;
+  bool gives_force = true;  ///< false: it tells where it is and takes no command
+
+  static constexpr auto fields() {
+    using namespace joint_units;
+    return List{
+        field("sign", &MotorJoint::sign, between(-1.0, 1.0), "1, or -1 where the motor turns against the joint."),
+        field("offset_rad", &MotorJoint::offset_rad, radian, between(-1000.0, 1000.0),
+              "Where the joint is when its motor reads zero; `tactus device zero` writes it."),
+        field("gear", &MotorJoint::gear, units::none, between(0.01, 1000.0),
+              "Turns of the motor's output for one of the joint."),
+        field("lower_rad", &MotorJoint::lower_rad, radian, between(-1000.0, 1000.0),
+              "The joint has no power below that."),
+        field("upper_rad", &MotorJoint::upper_rad, radian, between(-1000.0, 1000.0),
+              "The joint has no power above that."),
+        field("velocity_limit_rad_per_s", &MotorJoint::velocity_limit_rad_per_s, radian_per_second,
+              positive_up_to(1000.0), "A joint that is faster loses its power."),
+        field("torque_limit_Nm", &MotorJoint::torque_limit_Nm, newton_metre, positive_up_to(1000.0),
+              "The largest torque at the joint, either way."),
+        field("torque_rate_limit_Nm_per_s", &MotorJoint::torque_rate_limit_Nm_per_s, newton_metre_per_second,
+              positive_up_to(1e6), "The fastest change of that torque."),
+        field("temperature_limit_C", &MotorJoint::temperature_limit_C, degree_celsius, between(20.0, 150.0),
+              "A motor that is hotter loses its power.")};
+  }
+
+  [[nodiscard]] double position_rad(double of_motor_rad) const noexcept {
+    return static_cast<double>(sign) * of_motor_rad / gear + offset_rad;
+  }
+  [[nodiscard]] double velocity_rad_per_s(double of_motor_rad_per_s) const noexcept {
+    return static_cast<double>(sign) * of_motor_rad_per_s / gear;
+  }
+  /// Within the joint's limit; what is no number stays none.
+  [[nodiscard]] double motor_torque_Nm(double of_joint_Nm) const noexcept {
+    const double held_Nm =
+        std::isnan(of_joint_Nm) ? of_joint_Nm : std::clamp(of_joint_Nm, -torque_limit_Nm, torque_limit_Nm);
+    return static_cast<double>(sign) * held_Nm / gear;
+  }
+  [[nodiscard]] bool contains(double position_rad) const noexcept {
+    return position_rad >= lower_rad && position_rad <= upper_rad;
+  }
+  /// Whether it may have power where its motor says to be. What a motor does not tell counts for it.
+  [[nodiscard]] bool allows(const MotorReading& motor) const noexcept {
+    return contains(position_rad(motor.position_rad)) &&
+           std::fabs(velocity_rad_per_s(motor.velocity_rad_per_s)) <= velocity_limit_rad_per_s &&
+           !(motor.temperature_C > temperature_limit_C);
+  }
+  /// As its device states them. A motor that gives no force has next to none, so that nobody believes in more.
+  [[nodiscard]] station::DeviceLimits limits() const noexcept {
+    constexpr double no_force_N = 1e-9, no_rate_N_per_s = 1.0;
+    return {.force_N = gives_force ? torque_limit_Nm : no_force_N,
+            .handle_force_N = 0.0,
+            .rate_N_per_s = gives_force ? torque_rate_limit_Nm_per_s : no_rate_N_per_s,
+            .velocity_m_per_s = velocity_limit_rad_per_s,
+            .position_m = std::max(std::fabs(lower_rad), std::fabs(upper_rad))};
+  }
+};
+
+}  // namespace tactus::devices

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <tactus/core/joints.hpp>
+#include <tactus/core/result.hpp>
+#include <tactus/core/units.hpp>
+#include <tactus/devices/motor_bus.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace tactus::devices {
+
+/// All motors of a bus after one of its cycles.
+struct BusReadings {
+  std::array<MotorReading, most_joints> motors{};
+  BusState state = BusState::asking;
+  std::int64_t cycles = 0;
+  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, when the cycle ended
+};
+
+/// What a tick wants of all motors.
+struct BusCommands {
+  std::array<MotorCommand, most_joints> motors{};
+  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, of the tick
+};
+
+/// Motors that are driven by a thread of their own, with which a servo tick exchanges newest values and never waits:
+/// behind a port, or behind a service.
+///
+/// Commands that are older than the silence allowed take the power from all motors; it does not come back by itself:
+/// commands that enable nothing must come first. When it is destroyed, or told to stop, the motors lose their power
+/// before it ends, as far as they answer.
+class MotorLink {
+ public:
+  virtual ~MotorLink() = default;
+  [[nodiscard]] virtual std::size_t motors() const noexcept = 0;
+  /// One thread, the servo's. Wait-free.
+  virtual void command(const BusCommands& commands) noexcept = 0;
+  /// None before it began. Any thread. Wait-free.
+  [[nodiscard]] virtual std::optional<BusReadings> newest() const noexcept = 0;
+  /// False once it ended, by itself or because it was told to. Any thread. Wait-free.
+  [[nodiscard]] virtual bool running() const noexcept = 0;
+
+  /// Ends it; the motors lose their power first. Not real-time safe, as all that follows.
+  virtual void stop() = 0;
+  /// Waits until the motors were asked, so long at most; where that did not go well, it is stopped. Errors: what is
+  /// wrong with them, or with the way to them.
+  virtual Check wait_until_asked(Seconds longest) = 0;
+  /// Once it is not running.
+  [[nodiscard]] virtual MotorSheet sheet(std::size_t motor) const = 0;
+};
+
+/// Whether a tick's commands count: they are not older than the silence allowed, and have not been since a tick that
+/// enabled nothing.
+class CommandWatch {
+ public:
+  explicit CommandWatch(std::int64_t silence_ns) noexcept : silence_ns_(silence_ns) {}
+  /// Real-time safe.
+  bool trusts(const BusCommands& commands, std::int64_t now_ns) noexcept {
+    bool nothing = true;
+    for (const MotorCommand& command : commands.motors) nothing = nothing && command.enabled == 0;
+    if (commands.time_ns > 0 && now_ns - commands.time_ns > silence_ns_) {
+      silenced_ = true;
+    } else if (nothing) {
+      silenced_ = false;
+    }
+    return !silenced_;
+  }
+
+ private:
+  std::int64_t silence_ns_;
+  bool silenced_ = false;
+};
+
+}  // namespace tactus::devices

@@ -1,0 +1,197 @@
+#include <tactus/devices/bus_thread.hpp>
+#include <tactus/devices/damiao/damiao_bus.hpp>
+#include <tactus/devices/dynamixel/dynamixel_bus.hpp>
+#include <tactus/devices/feetech/feetech_bus.hpp>
+#include <tactus/devices/inverse3/inverse3_link.hpp>
+#include <tactus/devices/rig/bus_kinds.hpp>
+#include <tactus/wire/port.hpp>
+
+#include <limits>
+#include <utility>
+
+namespace tactus::devices {
+
+namespace {
+
+using damiao::DamiaoBus;
+using dynamixel::DynamixelBus;
+using feetech::FeetechBus;
+
+template <NamedEnum E>
+std::vector<std::string> words_of() {
+  std::vector<std::string> words;
+  for (const auto& entry : enumerators(E{})) words.emplace_back(entry.name);
+  return words;
+}
+
+template <NamedEnum E>
+Result<E> value_of(const std::string& key, const std::string& word) {
+  std::string all;
+  for (const auto& entry : enumerators(E{})) {
+    if (entry.name == word) return entry.value;
+    all += (all.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return Error{
+      .code = ErrorCode::unknown_key, .parameter = key, .message = "'" + word + "' is none of " + all, .place = {}};
+}
+
+std::string key_of_motor(std::size_t motor, const char* key) {
+  return std::string("motors[") + std::to_string(motor) + "]." + key;
+}
+
+Result<damiao::DamiaoBusParams> damiao_params(const StatedBus& stated) {
+  damiao::DamiaoBusParams params;
+  const auto framing = value_of<damiao::Framing>("framing", stated.framing);
+  if (!framing) return framing.error();
+  params.framing = *framing;
+  for (std::size_t i = 0; i < stated.motors.size(); ++i) {
+    const StatedMotor& motor = stated.motors[i];
+    const auto model = value_of<damiao::Model>(key_of_motor(i, "model"), motor.model);
+    if (!model) return model.error();
+    constexpr std::int64_t convention = 0x10;
+    params.motors.push_back({.id = motor.id,
+                             .feedback_id = motor.feedback_id < 0 ? motor.id + convention : motor.feedback_id,
+                             .model = *model});
+  }
+  return params;
+}
+
+Result<DynamixelBus::Params> dynamixel_params(const StatedBus& stated) {
+  DynamixelBus::Params params;
+  params.bits_per_s = stated.bits_per_s;
+  for (std::size_t i = 0; i < stated.motors.size(); ++i) {
+    const auto model = value_of<dynamixel::DynamixelModel>(key_of_motor(i, "model"), stated.motors[i].model);
+    if (!model) return model.error();
+    params.motors.push_back({.id = stated.motors[i].id, .model = *model});
+  }
+  return params;
+}
+
+Result<FeetechBus::Params> feetech_params(const StatedBus& stated) {
+  FeetechBus::Params params;
+  params.bits_per_s = stated.bits_per_s;
+  for (std::size_t i = 0; i < stated.motors.size(); ++i) {
+    const StatedMotor& motor = stated.motors[i];
+    const auto model = value_of<feetech::FeetechModel>(key_of_motor(i, "model"), motor.model);
+    if (!model) return model.error();
+    params.motors.push_back({.id = motor.id, .model = *model, .torque_Nm_per_A = motor.torque_Nm_per_A});
+  }
+  return params;
+}
+
+inverse3::LinkParams inverse3_params(const StatedBus& stated) {
+  inverse3::LinkParams params{.address = stated.port, .device = stated.device, .axes = {}};
+  for (const StatedMotor& motor : stated.motors) params.axes.push_back(motor.id);
+  return params;
+}
+
+/// On the heap, whatever `make` gives.
+template <class Bus>
+Result<std::unique_ptr<MotorBus>> on_heap(Result<Bus> made) {
+  if (!made) return made.error();
+  return std::unique_ptr<MotorBus>(std::make_unique<Bus>(*std::move(made)));
+}
+
+Result<std::unique_ptr<MotorBus>> make_bus(const StatedBus& stated) {
+  switch (stated.kind) {
+    case BusKind::damiao: {
+      const auto params = damiao_params(stated);
+      if (!params) return params.error();
+      auto made = DamiaoBus::make(*params);
+      if (!made) return made.error();
+      return std::unique_ptr<MotorBus>(*std::move(made));
+    }
+    case BusKind::dynamixel: {
+      const auto params = dynamixel_params(stated);
+      return params ? on_heap(DynamixelBus::make(*params)) : params.error();
+    }
+    case BusKind::feetech: {
+      const auto params = feetech_params(stated);
+      return params ? on_heap(FeetechBus::make(*params)) : params.error();
+    }
+    case BusKind::inverse3:
+      break;  // is no bus of ours
+  }
+  return Error{};
+}
+
+}  // namespace
+
+std::vector<std::string> models_of(BusKind kind) {
+  switch (kind) {
+    case BusKind::damiao:
+      return words_of<damiao::Model>();
+    case BusKind::dynamixel:
+      return words_of<dynamixel::DynamixelModel>();
+    case BusKind::feetech:
+      return words_of<feetech::FeetechModel>();
+    case BusKind::inverse3:
+      return {"inverse3"};
+  }
+  return {};
+}
+
+MotorAbility ability_of(BusKind kind, const StatedMotor& motor) {
+  switch (kind) {
+    case BusKind::damiao: {
+      const auto model = value_of<damiao::Model>("model", motor.model);
+      const damiao::Scale scale = damiao::scale_of(model ? *model : damiao::Model{});
+      return {.torque_Nm = scale.torque_Nm, .velocity_rad_per_s = scale.velocity_rad_per_s};
+    }
+    case BusKind::dynamixel: {
+      const auto model = value_of<dynamixel::DynamixelModel>("model", motor.model);
+      const ServoModel& servo = dynamixel::servo_model(model ? *model : dynamixel::DynamixelModel{});
+      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * servo.torque_Nm_per_A};
+    }
+    case BusKind::feetech: {
+      const auto model = value_of<feetech::FeetechModel>("model", motor.model);
+      const ServoModel& servo = feetech::servo_model(model ? *model : feetech::FeetechModel{});
+      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * motor.torque_Nm_per_A};
+    }
+    case BusKind::inverse3:
+      return {.torque_Nm = std::numeric_limits<double>::infinity()};
+  }
+  return {};
+}
+
+Check check(const StatedBus& stated) {
+  if (stated.kind == BusKind::inverse3) return inverse3::check(inverse3_params(stated));
+  const auto made = make_bus(stated);
+  return made ? Check{} : made.error();
+}
+
+Result<std::unique_ptr<MotorLink>> start(const StatedBus& stated) {
+  if (stated.kind == BusKind::inverse3) {
+    auto link = inverse3::Inverse3Link::start(inverse3_params(stated));
+    if (!link) return link.error();
+    return std::unique_ptr<MotorLink>(*std::move(link));
+  }
+  auto bus = make_bus(stated);
+  if (!bus) return bus.error();
+  // What an adapter of CAN is set to at its serial side is the same for all; most take no notice of it.
+  constexpr std::int64_t adapter_bits_per_s = 921'600;
+  const bool is_damiao = stated.kind == BusKind::damiao;
+  const bool flexible = stated.framing == name_of(damiao::Framing::socketcan_fd);
+  const bool of_linux = is_damiao && (flexible || stated.framing == name_of(damiao::Framing::socketcan));
+  auto port = of_linux ? wire::Port::can(stated.port, flexible)
+                       : wire::Port::serial(stated.port, is_damiao ? adapter_bits_per_s : stated.bits_per_s);
+  if (!port) return port.error();
+  auto thread = BusThread::start(*std::move(bus), *std::move(port), {});
+  if (!thread) return thread.error();
+  return std::unique_ptr<MotorLink>(*std::move(thread));
+}
+
+std::vector<std::int64_t> bit_rates_of(BusKind kind) {
+  switch (kind) {
+    case BusKind::damiao:
+    case BusKind::inverse3:
+      return {};
+    case BusKind::dynamixel:
+      return {dynamixel::bit_rates.begin(), dynamixel::bit_rates.end()};
+    case BusKind::feetech:
+      return {feetech::bit_rates.begin(), feetech::bit_rates.end()};
+  }
+  return {};
+}
+
+}  // namespace tactus::devices

@@ -1,0 +1,447 @@
+#include <tactus/devices/damiao/framing.hpp>
+#include <tactus/devices/damiao/models.hpp>
+#include <tactus/devices/dynamixel/dynamixel_bus.hpp>
+#include <tactus/devices/feetech/feetech_bus.hpp>
+#include <tactus/devices/rig/rig.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace tactus::devices {
+
+namespace {
+
+constexpr Bounds pair_counts = between(1.0, 2.0), joint_counts = between(1.0, static_cast<double>(most_joints));
+
+struct DamiaoSide {
+  BusKind bus = BusKind::damiao;
+  std::string port;
+  damiao::Framing framing = damiao::Framing::usb2can;
+  static constexpr auto fields() {
+    return List{field("bus", &DamiaoSide::bus, "Kind of motors."),
+                field("port", &DamiaoSide::port, "Serial port of the adapter, or interface of CAN."),
+                field("framing", &DamiaoSide::framing, "How frames of CAN become bytes.")};
+  }
+  void put_into(StatedBus& stated) const {
+    stated = {.kind = bus, .port = port, .framing = name_of(framing), .motors = {}};
+  }
+};
+
+struct ServoSide {
+  BusKind bus = BusKind::dynamixel;
+  std::string port;
+  std::int64_t bits_per_s = 1'000'000;
+  static constexpr auto fields() {
+    return List{field("bus", &ServoSide::bus, "Kind of motors."), field("port", &ServoSide::port, "Serial port."),
+                field("bits_per_s", &ServoSide::bits_per_s, between(9600.0, 4e6), "What each servo is set to.")};
+  }
+  void put_into(StatedBus& stated) const {
+    stated = {.kind = bus, .port = port, .bits_per_s = bits_per_s, .motors = {}};
+  }
+};
+
+struct Inverse3Side {
+  BusKind bus = BusKind::inverse3;
+  std::string port;
+  std::string device;
+  static constexpr auto fields() {
+    return List{field("bus", &Inverse3Side::bus, "Kind of device."),
+                field("port", &Inverse3Side::port, "Where Haply's service listens, HOST:PORT."),
+                field("device", &Inverse3Side::device, "Its identifier, as 049D; empty: the first one.")};
+  }
+  void put_into(StatedBus& stated) const { stated = {.kind = bus, .port = port, .device = device, .motors = {}}; }
+};
+
+constexpr const char* motor_doc = "Its identifier on the bus.";
+constexpr const char* model_doc = "As its maker calls it.";
+
+struct DamiaoMotor {
+  std::int64_t motor = 0;
+  damiao::Model model = damiao::Model::dm4310;
+  std::int64_t feedback_id = -1;
+  static constexpr auto fields() {
+    return List{field("motor", &DamiaoMotor::motor, between(1.0, 15.0), motor_doc),
+                field("model", &DamiaoMotor::model, model_doc),
+                field("feedback_id", &DamiaoMotor::feedback_id, between(-1.0, 0x7fe),
+                      "The identifier of its feedback, its register MST_ID; -1: `motor` + 16.")};
+  }
+  void put_into(StatedMotor& stated) const {
+    stated = {.id = motor, .model = name_of(model), .feedback_id = feedback_id};
+  }
+};
+
+struct DynamixelMotor {
+  std::int64_t motor = 0;
+  dynamixel::DynamixelModel model = dynamixel::DynamixelModel::xl330_m288;
+  static constexpr auto fields() {
+    return List{field("motor", &DynamixelMotor::motor, between(0.0, 252.0), motor_doc),
+                field("model", &DynamixelMotor::model, model_doc)};
+  }
+  void put_into(StatedMotor& stated) const { stated = {.id = motor, .model = name_of(model)}; }
+};
+
+struct FeetechMotor {
+  std::int64_t motor = 0;
+  feetech::FeetechModel model = feetech::FeetechModel::sts3215;
+  double torque_Nm_per_A = 0.0;
+  static constexpr auto fields() {
+    return List{field("motor", &FeetechMotor::motor, between(0.0, 253.0), motor_doc),
+                field("model", &FeetechMotor::model, model_doc),
+                field("torque_Nm_per_A", &FeetechMotor::torque_Nm_per_A, Unit{"N m/A", "_Nm_per_A"},
+                      positive_up_to(100.0), "Of a servo that takes a current: stall torque over stall current.")};
+  }
+  void put_into(StatedMotor& stated) const {
+    stated = {.id = motor, .model = name_of(model), .torque_Nm_per_A = torque_Nm_per_A};
+  }
+};
+
+enum class Inverse3Model : std::int64_t { inverse3 };
+constexpr auto enumerators(Inverse3Model) { return std::array{Enumerator{Inverse3Model::inverse3, "inverse3"}}; }
+
+/// An axis in m and N.
+struct Inverse3Axis {
+  std::int64_t motor = 0;
+  Inverse3Model model = Inverse3Model::inverse3;
+  std::int64_t sign = 1;
+  double offset_m = 0.0, lower_m = 0.0, upper_m = 0.0, velocity_limit_m_per_s = 0.0, force_limit_N = 0.0,
+         force_rate_limit_N_per_s = 0.0;
+  static constexpr auto fields() {
+    constexpr Bounds places = between(-10.0, 10.0);
+    using P = Inverse3Axis;
+    return List{field("motor", &P::motor, between(1.0, 3.0), "1 is x, 2 is y, 3 is z."),
+                field("model", &P::model, model_doc),
+                field("sign", &P::sign, between(-1.0, 1.0), "1, or -1 where the axis points against the joint."),
+                field("offset_m", &P::offset_m, units::metre, places, "Where the joint is at zero of the axis."),
+                field("lower_m", &P::lower_m, units::metre, places, "The joint has no force below that."),
+                field("upper_m", &P::upper_m, units::metre, places, "The joint has no force above that."),
+                field("velocity_limit_m_per_s", &P::velocity_limit_m_per_s, units::metre_per_second,
+                      positive_up_to(100.0), "A joint that is faster loses its force."),
+                field("force_limit_N", &P::force_limit_N, units::newton, positive_up_to(100.0),
+                      "The largest force, either way."),
+                field("force_rate_limit_N_per_s", &P::force_rate_limit_N_per_s, units::newton_per_second,
+                      positive_up_to(1e6), "The fastest change of that force.")};
+  }
+  void put_into(RigJoint& one) const {
+    one.motor = {.id = motor, .model = name_of(model)};
+    one.joint.sign = sign;
+    one.joint.offset_rad = offset_m;
+    one.joint.lower_rad = lower_m;
+    one.joint.upper_rad = upper_m;
+    one.joint.velocity_limit_rad_per_s = velocity_limit_m_per_s;
+    one.joint.torque_limit_Nm = force_limit_N;
+    one.joint.torque_rate_limit_Nm_per_s = force_rate_limit_N_per_s;
+  }
+};
+
+constexpr JointWords turning{
+    "offset_rad", "lower_rad", "upper_rad", "velocity_limit_rad_per_s", "torque_limit_Nm", "torque_rate_limit_Nm_per_s",
+    "rad",        "rad/s",     "N m"};
+constexpr JointWords sliding{
+    "offset_m", "lower_m", "upper_m", "velocity_limit_m_per_s", "force_limit_N", "force_rate_limit_N_per_s",
+    "m",        "m/s",     "N"};
+
+/// A struct that the document fills, and where it goes then.
+class Filled {
+ public:
+  template <Described T, class Into>
+  Filled(T params, Into& into, const std::string& section, std::vector<Binding>& bindings) {
+    auto held = std::make_shared<T>(std::move(params));
+    for (Binding& binding : tactus::bind(*held, section)) bindings.push_back(std::move(binding));
+    put_ = [held, &into] { held->put_into(into); };
+  }
+  void put() const { put_(); }
+
+ private:
+  std::function<void()> put_;
+};
+
+/// `arm`, `leader`, `elbow`, `motor` of `arm.leader.elbow.motor`.
+std::vector<std::string_view> parts_of(std::string_view path) {
+  std::vector<std::string_view> parts;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    parts.push_back(path.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+/// The element of that path, added where there is none.
+template <class T>
+T& named(std::vector<T>& all, std::string T::*name, std::string_view wanted) {
+  const auto found = std::ranges::find(all, wanted, name);
+  if (found != all.end()) return *found;
+  T& added = all.emplace_back();
+  added.*name = wanted;
+  return added;
+}
+
+Error at(const std::string& parameter, ErrorCode code, std::string message) {
+  return {.code = code, .parameter = parameter, .message = std::move(message), .place = {}};
+}
+
+std::string in_quotes(std::string_view text) { return std::string("'").append(text).append("'"); }
+
+/// What tells one port from another, whatever link it is named by.
+std::string own_port(const std::string& port) {
+  std::error_code problem;
+  const auto real = std::filesystem::canonical(port, problem);
+  return problem ? port : real.string();
+}
+
+}  // namespace
+
+const JointWords& RigJoint::words() const { return slides ? sliding : turning; }
+
+Joints<MotorJoint> RigSide::motor_joints() const {
+  Joints<MotorJoint> all(joints.size());
+  for (std::size_t i = 0; i < joints.size(); ++i) all[i] = joints[i].joint;
+  return all;
+}
+
+Result<Rig> Rig::load(const std::filesystem::path& file) {
+  auto document = configuration::Document::load(file);
+  if (!document) return document.error();
+  Rig rig(*std::move(document), file.string());
+  if (Check error = rig.read()) return rig.locate(*std::move(error));
+  return rig;
+}
+
+Result<Rig> Rig::parse(std::string_view text, std::string name) {
+  auto document = configuration::Document::parse(text, name);
+  if (!document) return document.error();
+  Rig rig(*std::move(document), std::move(name));
+  if (Check error = rig.read()) return rig.locate(*std::move(error));
+  return rig;
+}
+
+Check Rig::read() {
+  // Which sections there are.
+  for (const std::string& key : document_.keys()) {
+    const auto parts = parts_of(key);
+    constexpr std::size_t of_side = 3, of_joint = 4;
+    if (parts.size() < of_side || parts.size() > of_joint) continue;
+    const bool leads = parts[1] == "leader";
+    if (!leads && parts[1] != "follower") continue;
+    RigPair& pair = named(pairs_, &RigPair::name, parts[0]);
+    auto& side = leads ? pair.leader : pair.follower;
+    if (!side) side.emplace().path = join(parts[0], parts[1]);
+    if (parts.size() == of_joint) named(side->joints, &RigJoint::path, section_of(key));
+  }
+  std::vector<Binding> bindings;
+  std::vector<Filled> filled;
+  const auto fill = [&](auto params, auto& into, const std::string& path) {
+    filled.emplace_back(std::move(params), into, path, bindings);
+  };
+  for (RigPair& pair : pairs_) {
+    for (auto* side : {&pair.leader, &pair.follower}) {
+      if (!*side) continue;
+      RigSide& here = **side;
+      const auto kind = document_.text_at(join(here.path, "bus"));
+      if (!kind) {
+        Error error = kind.error();
+        if (error.code == ErrorCode::missing) error.place.clear();
+        return error;
+      }
+      const bool damiao = *kind == name_of(BusKind::damiao), feetech = *kind == name_of(BusKind::feetech);
+      const bool slides = *kind == name_of(BusKind::inverse3);
+      if (damiao) {
+        fill(DamiaoSide{}, here.bus, here.path);
+      } else if (slides) {
+        fill(Inverse3Side{}, here.bus, here.path);
+      } else {
+        fill(ServoSide{}, here.bus, here.path);
+      }
+      for (RigJoint& joint : here.joints) {
+        if (damiao) {
+          fill(DamiaoMotor{}, joint.motor, joint.path);
+        } else if (feetech) {
+          fill(FeetechMotor{}, joint.motor, joint.path);
+        } else if (slides) {
+          joint.slides = true;
+          fill(Inverse3Axis{}, joint, joint.path);
+        } else {
+          fill(DynamixelMotor{}, joint.motor, joint.path);
+        }
+        if (!slides) append_bindings(joint.joint, joint.path, bindings);
+      }
+    }
+  }
+  if (Check error = document_.read(bindings)) return error;
+  for (const Filled& one : filled) one.put();
+  if (!pair_counts.contain(static_cast<double>(pairs_.size()))) {
+    return at({}, ErrorCode::missing,
+              pairs_.empty() ? "there is no leader and no follower in it: write [arm.leader] with bus and port, and "
+                               "[arm.leader.JOINT] for each joint"
+                             : "there are " + std::to_string(pairs_.size()) + " pairs in it: a rig has one or two");
+  }
+  for (RigPair& pair : pairs_) {
+    if (Check error = match_joints(pair)) return error;
+    for (auto* side : {&pair.leader, &pair.follower}) {
+      if (!*side) continue;
+      RigSide& here = **side;
+      if (Check error = check_keys(here)) return error;
+      for (const RigJoint& joint : here.joints) here.bus.motors.push_back(joint.motor);
+      if (Check error = check_side(here)) return error;
+      for (RigJoint& joint : here.joints) {
+        joint.joint.gives_force = ability_of(here.bus.kind, joint.motor).torque_Nm > 0.0;
+      }
+    }
+  }
+  return check_ports();
+}
+
+/// What has no default that could be right.
+Check Rig::check_keys(const RigSide& side) const {
+  const auto needed = [this](const std::string& section, const char* key, const char* example) -> Check {
+    if (has(join(section, key))) return std::nullopt;
+    return at(
+        section, ErrorCode::missing,
+        std::string(key) + " is needed: write for instance " + key + " = " + example + " under [" + section + "]");
+  };
+  if (Check error = needed(side.path, "port", "\"/dev/serial/by-id/...\"")) return error;
+  if (!joint_counts.contain(static_cast<double>(side.joints.size()))) {
+    return at(side.path, ErrorCode::out_of_bounds,
+              std::to_string(side.joints.size()) + " joints: one to " + std::to_string(most_joints) +
+                  " must follow, as [" + side.path + ".elbow]");
+  }
+  for (const RigJoint& joint : side.joints) {
+    Check error = needed(joint.path, "motor", "1");
+    if (!error) {
+      const std::string model = "\"" + models_of(side.bus.kind).front() + "\"";
+      error = needed(joint.path, "model", model.c_str());
+    }
+    const JointWords& words = joint.words();
+    if (!error) error = needed(joint.path, words.lower, joint.slides ? "-0.1" : "-1.5");
+    if (!error) error = needed(joint.path, words.upper, joint.slides ? "0.1" : "1.5");
+    if (!error) error = needed(joint.path, words.velocity_limit, joint.slides ? "1.0" : "3.0");
+    if (!error && ability_of(side.bus.kind, joint.motor).torque_Nm > 0.0) {
+      error = needed(joint.path, words.force_limit, "1.0");
+      if (!error) error = needed(joint.path, words.rate_limit, "50.0");
+    }
+    if (error) return error;
+  }
+  return std::nullopt;
+}
+
+Check Rig::check_side(const RigSide& side) const {
+  for (std::size_t i = 0; i < side.joints.size(); ++i) {
+    for (std::size_t other = 0; other < i; ++other) {
+      if (side.joints[other].motor.id != side.joints[i].motor.id) continue;
+      return at(join(side.joints[i].path, "motor"), ErrorCode::inconsistent,
+                std::to_string(side.joints[i].motor.id) + " is the motor of " + side.joints[other].path +
+                    " too: each motor has an identifier of its own");
+    }
+  }
+  if (Check error = check(side.bus)) return locate(side, *std::move(error));
+  for (const RigJoint& one : side.joints) {
+    const MotorJoint& joint = one.joint;
+    const MotorAbility ability = ability_of(side.bus.kind, one.motor);
+    const JointWords& words = one.words();
+    if (joint.sign == 0) {
+      return at(join(one.path, "sign"), ErrorCode::out_of_bounds,
+                "0 must be 1, or -1 where the motor turns against the joint");
+    }
+    if (!(joint.lower_rad < joint.upper_rad)) {
+      return at(join(one.path, "upper_rad"), ErrorCode::inconsistent,
+                format_number(joint.upper_rad) + " " + words.position_unit + " must be above " + words.lower + ", " +
+                    format_number(joint.lower_rad) + " rad");
+    }
+    const auto beyond = [&](const char* key, double limit, double most, const char* unit) {
+      return at(join(one.path, key), ErrorCode::inconsistent,
+                format_number(limit) + unit + " is beyond what a " + one.motor.model +
+                    (joint.gear == 1.0 ? std::string() : " behind a gear of " + format_number(joint.gear)) +
+                    " can do, " + format_number(most) + unit + ": lower it, or state the model that is there");
+    };
+    const double most_Nm = ability.torque_Nm * joint.gear;
+    if (ability.torque_Nm > 0.0 && joint.torque_limit_Nm > most_Nm) {
+      return beyond(words.force_limit, joint.torque_limit_Nm, most_Nm, " N m");
+    }
+    const double fastest = ability.velocity_rad_per_s / joint.gear;
+    if (ability.velocity_rad_per_s > 0.0 && joint.velocity_limit_rad_per_s > fastest) {
+      return beyond(words.velocity_limit, joint.velocity_limit_rad_per_s, fastest, " rad/s");
+    }
+  }
+  return std::nullopt;
+}
+
+Check Rig::check_ports() const {
+  std::map<std::string, const RigSide*> taken;
+  for (const RigPair& pair : pairs_) {
+    for (const auto* side : {&pair.leader, &pair.follower}) {
+      if (!*side) continue;
+      const auto [earlier, fresh] = taken.emplace(own_port((*side)->bus.port), &**side);
+      if (fresh) continue;
+      return at(join((*side)->path, "port"), ErrorCode::inconsistent,
+                in_quotes((*side)->bus.port) + " is the port of " + earlier->second->path + " too" +
+                    ((*side)->bus.port == earlier->second->bus.port ? "" : ", by another name") +
+                    ": leader and follower each have a bus of their own");
+    }
+  }
+  return std::nullopt;
+}
+
+Check Rig::match_joints(RigPair& pair) {
+  if (!pair.leader || !pair.follower) return std::nullopt;
+  const auto lone = [](const RigSide& side, const RigSide& other) -> Check {
+    for (const RigJoint& joint : side.joints) {
+      const auto same = [&joint](const RigJoint& one) { return one.name() == joint.name(); };
+      if (std::ranges::any_of(other.joints, same)) continue;
+      return at(joint.path, ErrorCode::inconsistent,
+                other.path + " has no joint of this name to be coupled with: write [" + join(other.path, joint.name()) +
+                    "], or leave this one out");
+    }
+    return std::nullopt;
+  };
+  if (Check error = lone(*pair.leader, *pair.follower)) return error;
+  if (Check error = lone(*pair.follower, *pair.leader)) return error;
+  const auto place = [&pair](const RigJoint& joint) {
+    return std::ranges::find(pair.leader->joints, joint.name(), &RigJoint::name) - pair.leader->joints.begin();
+  };
+  std::ranges::sort(pair.follower->joints, {}, place);
+  return std::nullopt;
+}
+
+bool Rig::has(std::string_view key) const {
+  const auto written = document_.keys();
+  return std::ranges::find(written, key) != written.end();
+}
+
+bool Rig::holds(std::string_view name, std::string_view path) {
+  return name.empty() || path == name || (path.starts_with(name) && path[name.size()] == '.');
+}
+
+Result<std::vector<const RigSide*>> Rig::sides(std::string_view name) const {
+  std::vector<const RigSide*> found;
+  std::string all;
+  for (const RigPair& pair : pairs_) {
+    for (const auto* side : {&pair.leader, &pair.follower}) {
+      if (!*side) continue;
+      const auto named = [name](const RigJoint& joint) { return holds(name, joint.path); };
+      if (std::ranges::any_of((*side)->joints, named)) found.push_back(&**side);
+      for (const RigJoint& joint : (*side)->joints) all += (all.empty() ? "" : ", ") + joint.path;
+    }
+  }
+  if (!found.empty()) return found;
+  return at({}, ErrorCode::missing, in_quotes(name) + " is no part of the rig: its joints are " + all);
+}
+
+Error Rig::locate(const RigSide& side, Error error) const {
+  // `motors[2].id` is the motor of the joint with that number.
+  constexpr std::string_view of_motor = "motors[";
+  if (error.parameter.starts_with(of_motor)) {
+    const auto number = static_cast<std::size_t>(std::strtoul(error.parameter.c_str() + of_motor.size(), nullptr, 10));
+    const std::string key(error.parameter.substr(error.parameter.find("].") + 2));
+    if (number < side.joints.size()) error.parameter = join(side.joints[number].path, key == "id" ? "motor" : key);
+  } else {
+    error.parameter = join(side.path, error.parameter);
+  }
+  return document_.locate(std::move(error));
+}
+
+}  // namespace tactus::devices

@@ -1,0 +1,210 @@
+#include <tactus/devices/rig/rig.hpp>
+
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <tests/devices/rig/rig_files.hpp>
+#include <tests/scratch_path.hpp>
+
+namespace tactus::devices {
+namespace rig_test {
+
+/// What is said of a file; empty where it is a rig.
+std::string problem_of(const std::string& text) {
+  const auto rig = Rig::parse(text, "rig.toml");
+  return rig ? std::string() : describe(rig.error());
+}
+
+const std::string pair_of_two = damiao_side("arm.leader", "/dev/a") + joint("arm.leader.shoulder", 1, "DM4340") +
+                                joint("arm.leader.elbow", 2, "DM4310", "sign = -1\noffset_rad = 0.5\ngear = 2.0\n") +
+                                damiao_side("arm.follower", "/dev/b") + "framing = \"slcan\"\n" +
+                                joint("arm.follower.elbow", 2, "DM4310") + joint("arm.follower.shoulder", 1, "DM4340");
+
+TEST(Rig, NamesBusesMotorsAndJointsAndCouplesJointsOfOneName) {
+  const auto rig = Rig::parse(pair_of_two, "rig.toml");
+  ASSERT_TRUE(rig) << describe(rig.error());
+  ASSERT_EQ(rig->pairs().size(), 1U);
+  const RigPair& arm = rig->pairs()[0];
+  EXPECT_EQ(arm.name, "arm");
+  ASSERT_TRUE(arm.leader && arm.follower);
+  EXPECT_EQ(arm.leader->bus.port, "/dev/a");
+  EXPECT_EQ(arm.leader->bus.framing, "usb2can");
+  EXPECT_EQ(arm.follower->bus.framing, "slcan");
+  ASSERT_EQ(arm.leader->joints.size(), 2U);
+  const RigJoint& elbow = arm.leader->joints[1];
+  EXPECT_EQ(elbow.path, "arm.leader.elbow");
+  EXPECT_EQ(elbow.name(), "elbow");
+  EXPECT_EQ(elbow.motor.id, 2);
+  EXPECT_EQ(elbow.motor.model, "DM4310");
+  EXPECT_EQ(elbow.joint.sign, -1);
+  EXPECT_EQ(elbow.joint.torque_limit_Nm, 2.0);
+  EXPECT_TRUE(elbow.joint.gives_force);
+  // In the leader's order, whatever that of the file; and the bus has the motors in that order.
+  EXPECT_EQ(arm.follower->joints[0].path, "arm.follower.shoulder");
+  EXPECT_EQ(arm.follower->bus.motors[0].model, "DM4340");
+}
+
+TEST(Rig, SignOffsetAndGearTranslateBetweenMotorAndJoint) {
+  MotorJoint joint;
+  joint.sign = -1;
+  joint.offset_rad = 0.5;
+  joint.gear = 2.0;
+  joint.torque_limit_Nm = 3.0;
+  // The motor has turned by 1 rad: the joint half as far, the other way, from half a radian on.
+  EXPECT_DOUBLE_EQ(joint.position_rad(1.0), 0.0);
+  EXPECT_DOUBLE_EQ(joint.velocity_rad_per_s(4.0), -2.0);
+  // What the joint gets is what the gear makes of the motor's torque; power is the same on both sides.
+  EXPECT_DOUBLE_EQ(joint.motor_torque_Nm(1.0), -0.5);
+  EXPECT_DOUBLE_EQ(joint.motor_torque_Nm(1.0) * 4.0, 1.0 * joint.velocity_rad_per_s(4.0));
+  EXPECT_DOUBLE_EQ(joint.motor_torque_Nm(-7.0), 1.5);
+}
+
+TEST(Rig, EveryMistakeIsToldWithItsLineAndRemedy) {
+  const std::string side = damiao_side("arm.leader", "/dev/a");  // three lines
+  const std::string one = joint("arm.leader.elbow", 1, "DM4310");
+  EXPECT_EQ(problem_of(side + one), "");
+  EXPECT_EQ(problem_of(side + joint("arm.leader.elbow", 1, "DM4311")),
+            "rig.toml:6:9: arm.leader.elbow.model: \"DM4311\" is no choice here: it must be \"DM3507\", \"DM4310\", "
+            "\"DM4310-48V\", \"DM4340\", \"DM6006\", \"DM8006\", \"DM8009\", \"DM10010L\", \"DM10010\", \"DMH6215\" or "
+            "\"DMG6220\"; did you mean \"DM4310\"?");
+  EXPECT_EQ(problem_of(side + one + joint("arm.leader.wrist", 1, "DM4310")),
+            "rig.toml:13:9: arm.leader.wrist.motor: 1 is the motor of arm.leader.elbow too: each motor has an "
+            "identifier of its own");
+  EXPECT_EQ(problem_of(side + one + "lower_red = 1.0\n"),
+            "rig.toml:12:1: arm.leader.elbow.lower_red: unknown key: did you mean lower_rad?");
+  EXPECT_EQ(problem_of(side + "bits_per_s = 1000000\n" + one),
+            "rig.toml:4:1: arm.leader.bits_per_s: unknown key: [arm.leader] can have bus, port, framing, elbow");
+  EXPECT_EQ(problem_of("[arm.leader]\nbus = \"damiau\"\nport = \"/dev/a\"\n" + one),
+            "rig.toml:2:7: arm.leader.bus: \"damiau\" is no choice here: it must be \"damiao\", \"dynamixel\", "
+            "\"feetech\" or \"inverse3\"; did you mean \"damiao\"?");
+  EXPECT_EQ(problem_of("[arm.leader]\nport = \"/dev/a\"\n" + one),
+            "rig.toml:1:6: arm.leader.bus: this key is needed: write bus = \"...\" under [arm.leader]");
+  EXPECT_EQ(problem_of("[arm.leader]\nbus = \"damiao\"\n" + one),
+            "rig.toml:1:1: arm.leader: port is needed: write for instance port = \"/dev/serial/by-id/...\" under "
+            "[arm.leader]");
+  EXPECT_EQ(problem_of(side + "[arm.leader.elbow]\nmotor = 1\nmodel = \"DM4310\"\n"),
+            "rig.toml:4:1: arm.leader.elbow: lower_rad is needed: write for instance lower_rad = -1.5 under "
+            "[arm.leader.elbow]");
+  EXPECT_EQ(problem_of(side + joint("arm.leader.elbow", 1, "DM4310", "sign = 0\n")),
+            "rig.toml:12:8: arm.leader.elbow.sign: 0 must be 1, or -1 where the motor turns against the joint");
+  EXPECT_EQ(problem_of(side), "rig.toml:1:1: arm.leader: 0 joints: one to 8 must follow, as [arm.leader.elbow]");
+  EXPECT_EQ(problem_of("title = \"x\"\n"), "rig.toml:1:1: title: unknown key: remove it");
+}
+
+TEST(Rig, ALimitBeyondTheMotorsIsRefused) {
+  const std::string side = damiao_side("arm.leader", "/dev/a");
+  const auto with = [&side](const std::string& line, const std::string& other) {
+    std::string text = side + joint("arm.leader.elbow", 1, "DM4310");
+    text.replace(text.find(line), line.size(), other);
+    return text;
+  };
+  // The page: a DM4310 ends at 10 N m and 30 rad/s.
+  EXPECT_EQ(problem_of(with("torque_limit_Nm = 2.0", "torque_limit_Nm = 10.0")), "");
+  EXPECT_EQ(problem_of(with("torque_limit_Nm = 2.0", "torque_limit_Nm = 10.5")),
+            "rig.toml:10:19: arm.leader.elbow.torque_limit_Nm: 10.5 N m is beyond what a DM4310 can do, 10 N m: lower "
+            "it, or state the model that is there");
+  EXPECT_EQ(problem_of(with("torque_limit_Nm = 2.0", "torque_limit_Nm = 10.5\ngear = 2.0")), "");
+  EXPECT_EQ(problem_of(with("velocity_limit_rad_per_s = 3.0", "velocity_limit_rad_per_s = 20.0\ngear = 2.0")),
+            "rig.toml:9:28: arm.leader.elbow.velocity_limit_rad_per_s: 20 rad/s is beyond what a DM4310 behind a gear "
+            "of 2 can do, 15 rad/s: lower it, or state the model that is there");
+  EXPECT_EQ(problem_of(with("upper_rad = 1.5", "upper_rad = -1.5")),
+            "rig.toml:8:13: arm.leader.elbow.upper_rad: -1.5 rad must be above lower_rad, -1.5 rad");
+}
+
+TEST(Rig, APortOfTwoSidesIsRefusedByWhateverNameItGoes) {
+  const auto folder = scratch_path();
+  std::filesystem::create_directories(folder);
+  const std::string link = (folder / "link").string();
+  std::filesystem::create_symlink("/dev/null", link);
+  const auto both = [](const std::string& first, const std::string& second) {
+    return damiao_side("arm.leader", first) + joint("arm.leader.elbow", 1, "DM4310") +
+           damiao_side("arm.follower", second) + joint("arm.follower.elbow", 1, "DM4310");
+  };
+  EXPECT_EQ(problem_of(both("/dev/null", "/dev/zero")), "");
+  EXPECT_EQ(problem_of(both("/dev/null", "/dev/null")),
+            "rig.toml:14:8: arm.follower.port: '/dev/null' is the port of arm.leader too: leader and follower each "
+            "have a bus of their own");
+  EXPECT_NE(problem_of(both("/dev/null", link)).find("is the port of arm.leader too, by another name: "),
+            std::string::npos);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Rig, AJointWithoutItsLikeIsRefusedAndOneSideAloneIsNot) {
+  const std::string leader = damiao_side("arm.leader", "/dev/a") + joint("arm.leader.elbow", 1, "DM4310");
+  EXPECT_EQ(problem_of(leader + damiao_side("arm.follower", "/dev/b") + joint("arm.follower.wrist", 1, "DM4310")),
+            "rig.toml:4:1: arm.leader.elbow: arm.follower has no joint of this name to be coupled with: write "
+            "[arm.follower.elbow], or leave this one out");
+  EXPECT_EQ(problem_of(leader), "");
+  std::string three;
+  for (const char* pair : {"a", "b", "c"}) {
+    const std::string path = std::string(pair) + ".leader";
+    three += damiao_side(path, std::string("/dev/") + pair) + joint(path + ".elbow", 1, "DM4310");
+  }
+  EXPECT_NE(problem_of(three).find("there are 3 pairs in it: a rig has one or two"), std::string::npos);
+}
+
+TEST(Rig, ServosHaveTheirOwnKeys) {
+  const std::string sts =
+      "[arm.leader]\nbus = \"feetech\"\nport = \"/dev/a\"\n[arm.leader.elbow]\nmotor = 1\nmodel = \"sts3215\"\n"
+      "lower_rad = 0.0\nupper_rad = 3.0\nvelocity_limit_rad_per_s = 5.0\n";
+  const auto rig = Rig::parse(sts, "rig.toml");
+  ASSERT_TRUE(rig) << describe(rig.error());
+  const MotorJoint& joint = rig->pairs()[0].leader->joints[0].joint;
+  EXPECT_FALSE(joint.gives_force);
+  // Nobody may believe that it displays anything.
+  EXPECT_LT(joint.limits().force_N, 1e-6);
+  EXPECT_GT(joint.limits().force_N, 0.0);
+  std::string hls = sts;
+  hls.replace(hls.find("sts3215"), 7, "hls3625");
+  EXPECT_EQ(problem_of(hls + "torque_limit_Nm = 1.0\ntorque_rate_limit_Nm_per_s = 20.0\n"),
+            "rig.toml:4:13: arm.leader.elbow.torque_Nm_per_A: state how much torque a current of this servo gives: its "
+            "stall torque over its stall current");
+  std::string rate = sts;
+  rate.replace(rate.find("[arm.leader.elbow]"), 0, "bits_per_s = 100000\n");
+  EXPECT_NE(problem_of(rate).find("rig.toml:4:14: arm.leader.bits_per_s: 100000 bit/s: the servos do 38400"),
+            std::string::npos)
+      << problem_of(rate);
+}
+
+TEST(Rig, AxesOfAnInverse3SlideAndHaveKeysInMetres) {
+  const auto axis = [](const std::string& name, int motor, const std::string& force) {
+    return "[desk.leader." + name + "]\nmotor = " + std::to_string(motor) +
+           "\nmodel = \"inverse3\"\nsign = -1\noffset_m = 0.02\nlower_m = -0.1\nupper_m = 0.1\n"
+           "velocity_limit_m_per_s = 1.0\n" +
+           force + "force_rate_limit_N_per_s = 50.0\n";
+  };
+  const std::string side = "[desk.leader]\nbus = \"inverse3\"\nport = \"127.0.0.1:10001\"\ndevice = \"049D\"\n";
+  const auto rig = Rig::parse(side + axis("z", 3, "force_limit_N = 2.0\n"), "rig.toml");
+  ASSERT_TRUE(rig) << describe(rig.error());
+  const RigSide& desk = *rig->pairs()[0].leader;
+  EXPECT_EQ(desk.bus.device, "049D");
+  EXPECT_EQ(desk.joints[0].joint.torque_limit_Nm, 2.0);
+  EXPECT_DOUBLE_EQ(desk.joints[0].joint.position_rad(0.05), -0.03);
+  EXPECT_EQ(problem_of(side + axis("z", 3, "")),
+            "rig.toml:5:1: desk.leader.z: force_limit_N is needed: write for instance force_limit_N = 1.0 under "
+            "[desk.leader.z]");
+  EXPECT_EQ(problem_of(side + axis("z", 3, "torque_limit_Nm = 2.0\n"))
+                .find("rig.toml:13:1: desk.leader.z.torque_limit_Nm: "
+                      "unknown key"),
+            0U);
+  EXPECT_EQ(
+      problem_of(side + axis("z", 4, "force_limit_N = 2.0\n")).find("rig.toml:6:9: desk.leader.z.motor: 4 is out"), 0U);
+}
+
+TEST(Rig, APartIsFoundByItsName) {
+  const auto rig = Rig::parse(pair_of_two, "rig.toml");
+  ASSERT_TRUE(rig);
+  EXPECT_EQ(rig->sides()->size(), 2U);
+  EXPECT_EQ(rig->sides("arm")->size(), 2U);
+  ASSERT_EQ(rig->sides("arm.follower.elbow")->size(), 1U);
+  EXPECT_EQ(rig->sides("arm.follower.elbow").value()[0]->path, "arm.follower");
+  // No part of a name is a name.
+  EXPECT_FALSE(rig->sides("arm.follow"));
+  EXPECT_EQ(describe(rig->sides("leg").error()),
+            "'leg' is no part of the rig: its joints are arm.leader.shoulder, arm.leader.elbow, "
+            "arm.follower.shoulder, arm.follower.elbow");
+}
+
+}  // namespace rig_test
+}  // namespace tactus::devices
