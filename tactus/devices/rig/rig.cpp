@@ -350,7 +350,7 @@ Check Rig::check_side(const RigSide& side) const {
     if (!(joint.lower_rad < joint.upper_rad)) {
       return at(join(one.path, "upper_rad"), ErrorCode::inconsistent,
                 format_number(joint.upper_rad) + " " + words.position_unit + " must be above " + words.lower + ", " +
-                    format_number(joint.lower_rad) + " rad");
+                    format_number(joint.lower_rad) + " " + words.position_unit);
     }
     const auto beyond = [&](const char* key, double limit, double most, const char* unit) {
       return at(join(one.path, key), ErrorCode::inconsistent,
