@@ -18,16 +18,16 @@ using Eigen::Matrix4d;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double log_mass_deviation = 0.25;  // of half its logarithm
-constexpr double gyration_deviation = 0.4;
-constexpr double centre_deviation = 0.5;
+constexpr double log_mass_deviation = 0.75;  // of half its logarithm
+constexpr double gyration_deviation = 1.2;
+constexpr double centre_deviation = 1.5;
 constexpr double least_gyration_m = 0.01;
 constexpr double log_armature_deviation = 1.5;
 constexpr double log_friction_deviation = 2.0;
 constexpr double usual_load_share = 0.02;
 constexpr double known = 1e-9;
-constexpr int most_steps = 200;
-constexpr double settled = 1e-9;
+constexpr int most_steps = 1000;
+constexpr double settled = 1e-3;  ///< gain of the sum of squares over the noise's that tells nothing any more
 
 // Places among the coordinates of a body: half the logarithm of the mass, three of the gyration, three shears, and the
 // centre.
@@ -103,7 +103,7 @@ BodyCoordinates coordinates_of(const arm::Body& body) {
 
 struct Problem {
   const std::vector<JointSums>& sums;
-  const std::vector<double>& noise;
+  std::vector<double> noise;
   const std::vector<JointPrior>& priors;
   VectorXd centre;      ///< of the prior
   VectorXd deviations;  ///< of the prior
@@ -257,8 +257,8 @@ double ConsistentFit::deviation(int joint, int k) const {
 }
 
 ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::vector<JointPrior>& priors,
-                               const std::vector<double>& noise) {
-  const Problem problem = problem_of(sums, priors, noise);
+                               const std::vector<double>& noise, const std::vector<double>& correlation) {
+  Problem problem = problem_of(sums, priors, noise);
   VectorXd x = problem.centre;
   double cost = cost_of(problem, x);
   double damping = 1e-3;
@@ -281,12 +281,13 @@ ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::ve
       cost = tried;
       damping = std::max(1e-9, damping / 5.0);
     }
-    if (!better || gained <= settled * cost) break;
+    if (!better || gained <= settled) break;
   }
 
   ConsistentFit fit;
   fit.coordinates = x;
   fit.prior_deviations = problem.deviations;
+  for (std::size_t j = 0; j < correlation.size(); ++j) problem.noise[j] *= std::sqrt(correlation[j]);
   const MatrixXd curvature = normal_equations(problem, x).first;
   fit.covariance = Eigen::LDLT<MatrixXd>(curvature).solve(MatrixXd::Identity(problem.size(), problem.size()));
   const VectorXd parameters = parameters_of(problem, x);

@@ -53,7 +53,9 @@ struct ConsistentFit {
 };
 
 /// The most probable parameters: the data with Gaussian noise of `noise` (its deviation, by joint, in the unit of the
-/// effort; that of independent samples), the bodies near those of the prior.
+/// effort), the bodies near those of the prior. `correlation`: how many rows in a row have about the same noise, by
+/// joint; the covariance grows with it. It does not weigh the joints: what stays of a joint's effort for long is rather
+/// a fault of the model, for which the joint should not count less.
 ///
 /// A body is a heap of masses of any density but negative, however far the data pull: its pseudo-inertia is U·Uᵀ with U
 /// upper triangular and its diagonal exponentials, and everything that cannot be negative is an exponential. Prior
@@ -63,6 +65,6 @@ struct ConsistentFit {
 /// parameterization of rigid-body inertia, IEEE RA-L 7(2), 2022; Traversaro et al., Identification of fully physical
 /// consistent inertial parameters using optimization on manifolds, IROS 2016.
 ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::vector<JointPrior>& priors,
-                               const std::vector<double>& noise);
+                               const std::vector<double>& noise, const std::vector<double>& correlation);
 
 }  // namespace tactus::arm_identification

@@ -28,7 +28,7 @@ constexpr int rounds = 4;
 constexpr int folds = 4;
 constexpr double worthwhile = 0.98;      ///< of the error: what a further friction term must bring it to
 constexpr double usual_torque = 0.4;     ///< scales from here to its inverse are those of torques
-constexpr double scale_deviation = 0.3;  ///< of the logarithm of a torque's scale, where it is not known
+constexpr double scale_deviation = 0.1;  ///< of the logarithm of a torque's scale, where it is not known
 constexpr double current_deviation = 0.7;
 constexpr double worth_a_scale = 0.97;
 constexpr double least_explained = 0.75;  ///< relative residual beyond which a model is refused
@@ -140,6 +140,7 @@ Fit fit_rows(const ArmData& data, Span span, std::vector<JointPrior> priors, boo
   const int count = data.joints();
   Fit fit{.found = {}, .shapes = std::vector<FrictionShape>(static_cast<std::size_t>(count))};
   std::vector<double> noise;
+  std::vector<double> correlation(static_cast<std::size_t>(count), 1.0);
   for (int j = 0; j < count; ++j) {
     noise.push_back(0.1 * rms(data.effort.col(j).segment(span.first, span.count)) + 1e-12);
   }
@@ -158,13 +159,14 @@ Fit fit_rows(const ArmData& data, Span span, std::vector<JointPrior> priors, boo
                              local.middleRows(span.first, span.count),
                              data.effort.col(j).segment(span.first, span.count)));
     }
-    fit.found = fit_consistently(sums, priors, noise);
+    fit.found = fit_consistently(sums, priors, noise, correlation);
     for (int j = 0; j < count; ++j) {
       const auto at = static_cast<std::size_t>(j);
       rigid[at] = data.rigid_torque(j, fit.found);
       const VectorXd left =
           (data.effort.col(j) - data.predicted(j, fit.found, fit.shapes[at])).segment(span.first, span.count);
-      noise[at] = std::max(rms(left) * std::sqrt(correlation_of(left)), 1e-6 * rms(data.effort.col(j)) + 1e-12);
+      noise[at] = std::max(rms(left), 1e-6 * rms(data.effort.col(j)) + 1e-12);
+      correlation[at] = correlation_of(left);
       if (round < 2) fit.shapes[at] = choose_shape(data, j, fit.found, span);
     }
   }
@@ -256,10 +258,9 @@ Check check_efforts(const ArmData& data, const VectorXd& bodies, const std::vect
                                         "') is 0 throughout; name another column");
     }
     for (int k = i + 1; k < count; ++k) {
-      const double as_named = std::max(look(data, bodies, i, i).explained, look(data, bodies, k, k).explained);
-      const double least = std::min(look(data, bodies, i, i).explained, look(data, bodies, k, k).explained);
-      const double other = std::min(look(data, bodies, i, k).explained, look(data, bodies, k, i).explained);
-      if (other < least + clearly || other < 0.5 || as_named > other + clearly) continue;
+      const double left = 2.0 - look(data, bodies, i, i).explained - look(data, bodies, k, k).explained;
+      const double exchanged = 2.0 - look(data, bodies, i, k).explained - look(data, bodies, k, i).explained;
+      if (left < 0.1 || left < 3.0 * exchanged) continue;
       return inconsistent("effort", "the efforts of joints '" + joints[at] + "' and '" +
                                         joints[static_cast<std::size_t>(k)] + "' (columns '" +
                                         recording.effort_names[at] + "' and '" +
@@ -448,8 +449,8 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
     error.place = recordings.front().file.string();
     return error;
   };
-  // Half of the rows say something new at this rate, and half are held out.
-  if (static_cast<double>(data.rows() * data.joints()) < 4.0 * (result.base_parameters + 3 * data.joints())) {
+  // Half of the rows say something new at this rate, half are held out, and a number needs two.
+  if (static_cast<double>(data.rows() * data.joints()) < 8.0 * (result.base_parameters + 3 * data.joints())) {
     return in_file(inconsistent(short_text(result.duration_s) + " s are too short to tell " +
                                 std::to_string(result.base_parameters) +
                                 " parameters and friction, and to hold half of it out; record more motion"));
@@ -486,7 +487,7 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
     used[j].load = whole.shapes[j].load;
     used[j].stribeck = whole.shapes[j].stribeck >= 0;
   }
-  const ConsistentFit nothing = fit_consistently(no_sums, used, std::vector<double>(joints.size(), 1.0));
+  const ConsistentFit nothing = fit_consistently(no_sums, used, std::vector<double>(joints.size(), 1.0), {});
 
   std::vector<double> thresholds;
   for (int j = 0; j < data.joints(); ++j) {
