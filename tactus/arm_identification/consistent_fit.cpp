@@ -248,12 +248,25 @@ double ConsistentFit::deviation(int joint, int k) const {
   if (k >= body_parameters) {
     // Exponentials but for offset and excess.
     const int own = k - body_parameters;
-    const double slope =
+    const double steepness =
         own == 3 || own == 5 ? 1.0 : local[static_cast<std::size_t>(joint)][static_cast<std::size_t>(own)];
-    return std::fabs(slope) * std::sqrt(covariance(at + k, at + k));
+    return std::fabs(steepness) * std::sqrt(covariance(at + k, at + k));
   }
-  const VectorXd slope = body_slope(coordinates.segment<body_parameters>(at)).row(k);
-  return std::sqrt(slope.dot(covariance.block<body_parameters, body_parameters>(at, at) * slope));
+  const VectorXd by_coordinate = body_slope(coordinates.segment<body_parameters>(at)).row(k);
+  return std::sqrt(by_coordinate.dot(covariance.block<body_parameters, body_parameters>(at, at) * by_coordinate));
+}
+
+VectorXd ConsistentFit::prediction_deviation(int joint, const MatrixXd& columns) const {
+  const auto at = static_cast<std::size_t>(joint);
+  const Index place = bodies.size() + local_parameters * joint;
+  MatrixXd by_coordinate = MatrixXd::Zero(columns.rows(), coordinates.size());
+  by_coordinate.leftCols(slope.cols()) =
+      scales[at] * (columns.leftCols(bodies.size()) * slope.topRows(bodies.size()) +
+                    columns.rightCols(local_parameters) * slope.middleRows(place, local_parameters));
+  const Eigen::Map<const VectorXd> own(local[at].data(), local_parameters);
+  by_coordinate.col(slope.cols() + joint) =
+      scales[at] * (columns.leftCols(bodies.size()) * bodies + columns.rightCols(local_parameters) * own);
+  return (by_coordinate * covariance).cwiseProduct(by_coordinate).rowwise().sum().cwiseMax(0.0).cwiseSqrt();
 }
 
 ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::vector<JointPrior>& priors,
@@ -291,6 +304,7 @@ ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::ve
   const MatrixXd curvature = normal_equations(problem, x).first;
   fit.covariance = Eigen::LDLT<MatrixXd>(curvature).solve(MatrixXd::Identity(problem.size(), problem.size()));
   const VectorXd parameters = parameters_of(problem, x);
+  fit.slope = slope_of(problem, x, parameters);
   fit.bodies = parameters.head(problem.bodies());
   for (Index j = 0; j < problem.joints; ++j) {
     auto& local = fit.local.emplace_back();

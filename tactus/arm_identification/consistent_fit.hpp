@@ -42,6 +42,7 @@ struct ConsistentFit {
   Eigen::VectorXd coordinates;  ///< `joint_coordinates` for each joint, then the logarithms of the scales
   Eigen::MatrixXd covariance;   ///< of the coordinates
   Eigen::VectorXd prior_deviations;
+  Eigen::MatrixXd slope;   ///< of bodies and then local parameters, by the coordinates without scales
   Eigen::VectorXd bodies;  ///< `arm::body_parameters` for each joint
   std::vector<std::array<double, local_parameters>> local;
   std::vector<double> scales;
@@ -50,6 +51,9 @@ struct ConsistentFit {
   /// Standard deviation of a body's or a joint's number, to first order: `k` counts the ten of the body as
   /// `arm::linear_parameters` does, then the local ones.
   [[nodiscard]] double deviation(int joint, int k) const;
+  /// Standard deviation of each row of what the fit says of a joint's effort, as far as the parameters are uncertain.
+  /// `columns`: those of the bodies, then the local ones.
+  [[nodiscard]] Eigen::VectorXd prediction_deviation(int joint, const Eigen::MatrixXd& columns) const;
 };
 
 /// The most probable parameters: the data with Gaussian noise of `noise` (its deviation, by joint, in the unit of the

@@ -58,7 +58,8 @@ TEST_F(ArmVerbs, an_arm_identified_in_free_motion_tells_when_it_is_pushed) {
     EXPECT_LT(joint["relative"].get<double>(), 0.03);
     EXPECT_LT(joint["held_out_relative"].get<double>(), 1.05 * joint["least_squares_held_out_relative"].get<double>());
   }
-  EXPECT_EQ(files(), (std::vector<std::string>{"results/model.toml", "results/report.html", "results/results.json"}));
+  EXPECT_EQ(files(),
+            (std::vector<std::string>{"results", "results/model.toml", "results/report.html", "results/results.json"}));
 
   const Outcome estimated = tactus(with(
       {"estimate", "torque", example("arm-pushed.csv"), "--model", "results/model.toml", "--json", "--out", "torque"},
