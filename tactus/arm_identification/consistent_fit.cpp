@@ -18,16 +18,16 @@ using Eigen::Matrix4d;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double log_mass_deviation = 0.25;  // of half its logarithm
-constexpr double gyration_deviation = 0.4;
-constexpr double centre_deviation = 0.5;
+constexpr double log_mass_deviation = 0.75;  // of half its logarithm
+constexpr double gyration_deviation = 1.2;
+constexpr double centre_deviation = 1.5;
 constexpr double least_gyration_m = 0.01;
 constexpr double log_armature_deviation = 1.5;
 constexpr double log_friction_deviation = 2.0;
 constexpr double usual_load_share = 0.02;
 constexpr double known = 1e-9;
-constexpr int most_steps = 200;
-constexpr double settled = 1e-9;
+constexpr int most_steps = 1000;
+constexpr double settled = 1e-3;  ///< gain of the sum of squares over the noise's that tells nothing any more
 
 // Places among the coordinates of a body: half the logarithm of the mass, three of the gyration, three shears, and the
 // centre.
@@ -103,7 +103,7 @@ BodyCoordinates coordinates_of(const arm::Body& body) {
 
 struct Problem {
   const std::vector<JointSums>& sums;
-  const std::vector<double>& noise;
+  std::vector<double> noise;
   const std::vector<JointPrior>& priors;
   VectorXd centre;      ///< of the prior
   VectorXd deviations;  ///< of the prior
@@ -248,17 +248,30 @@ double ConsistentFit::deviation(int joint, int k) const {
   if (k >= body_parameters) {
     // Exponentials but for offset and excess.
     const int own = k - body_parameters;
-    const double slope =
+    const double steepness =
         own == 3 || own == 5 ? 1.0 : local[static_cast<std::size_t>(joint)][static_cast<std::size_t>(own)];
-    return std::fabs(slope) * std::sqrt(covariance(at + k, at + k));
+    return std::fabs(steepness) * std::sqrt(covariance(at + k, at + k));
   }
-  const VectorXd slope = body_slope(coordinates.segment<body_parameters>(at)).row(k);
-  return std::sqrt(slope.dot(covariance.block<body_parameters, body_parameters>(at, at) * slope));
+  const VectorXd by_coordinate = body_slope(coordinates.segment<body_parameters>(at)).row(k);
+  return std::sqrt(by_coordinate.dot(covariance.block<body_parameters, body_parameters>(at, at) * by_coordinate));
+}
+
+VectorXd ConsistentFit::prediction_deviation(int joint, const MatrixXd& columns) const {
+  const auto at = static_cast<std::size_t>(joint);
+  const Index place = bodies.size() + local_parameters * joint;
+  MatrixXd by_coordinate = MatrixXd::Zero(columns.rows(), coordinates.size());
+  by_coordinate.leftCols(slope.cols()) =
+      scales[at] * (columns.leftCols(bodies.size()) * slope.topRows(bodies.size()) +
+                    columns.rightCols(local_parameters) * slope.middleRows(place, local_parameters));
+  const Eigen::Map<const VectorXd> own(local[at].data(), local_parameters);
+  by_coordinate.col(slope.cols() + joint) =
+      scales[at] * (columns.leftCols(bodies.size()) * bodies + columns.rightCols(local_parameters) * own);
+  return (by_coordinate * covariance).cwiseProduct(by_coordinate).rowwise().sum().cwiseMax(0.0).cwiseSqrt();
 }
 
 ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::vector<JointPrior>& priors,
-                               const std::vector<double>& noise) {
-  const Problem problem = problem_of(sums, priors, noise);
+                               const std::vector<double>& noise, const std::vector<double>& correlation) {
+  Problem problem = problem_of(sums, priors, noise);
   VectorXd x = problem.centre;
   double cost = cost_of(problem, x);
   double damping = 1e-3;
@@ -281,15 +294,17 @@ ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::ve
       cost = tried;
       damping = std::max(1e-9, damping / 5.0);
     }
-    if (!better || gained <= settled * cost) break;
+    if (!better || gained <= settled) break;
   }
 
   ConsistentFit fit;
   fit.coordinates = x;
   fit.prior_deviations = problem.deviations;
+  for (std::size_t j = 0; j < correlation.size(); ++j) problem.noise[j] *= std::sqrt(correlation[j]);
   const MatrixXd curvature = normal_equations(problem, x).first;
   fit.covariance = Eigen::LDLT<MatrixXd>(curvature).solve(MatrixXd::Identity(problem.size(), problem.size()));
   const VectorXd parameters = parameters_of(problem, x);
+  fit.slope = slope_of(problem, x, parameters);
   fit.bodies = parameters.head(problem.bodies());
   for (Index j = 0; j < problem.joints; ++j) {
     auto& local = fit.local.emplace_back();

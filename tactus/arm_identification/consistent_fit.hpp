@@ -42,6 +42,7 @@ struct ConsistentFit {
   Eigen::VectorXd coordinates;  ///< `joint_coordinates` for each joint, then the logarithms of the scales
   Eigen::MatrixXd covariance;   ///< of the coordinates
   Eigen::VectorXd prior_deviations;
+  Eigen::MatrixXd slope;   ///< of bodies and then local parameters, by the coordinates without scales
   Eigen::VectorXd bodies;  ///< `arm::body_parameters` for each joint
   std::vector<std::array<double, local_parameters>> local;
   std::vector<double> scales;
@@ -50,10 +51,15 @@ struct ConsistentFit {
   /// Standard deviation of a body's or a joint's number, to first order: `k` counts the ten of the body as
   /// `arm::linear_parameters` does, then the local ones.
   [[nodiscard]] double deviation(int joint, int k) const;
+  /// Standard deviation of each row of what the fit says of a joint's effort, as far as the parameters are uncertain.
+  /// `columns`: those of the bodies, then the local ones.
+  [[nodiscard]] Eigen::VectorXd prediction_deviation(int joint, const Eigen::MatrixXd& columns) const;
 };
 
 /// The most probable parameters: the data with Gaussian noise of `noise` (its deviation, by joint, in the unit of the
-/// effort; that of independent samples), the bodies near those of the prior.
+/// effort), the bodies near those of the prior. `correlation`: how many rows in a row have about the same noise, by
+/// joint; the covariance grows with it. It does not weigh the joints: what stays of a joint's effort for long is rather
+/// a fault of the model, for which the joint should not count less.
 ///
 /// A body is a heap of masses of any density but negative, however far the data pull: its pseudo-inertia is U·Uᵀ with U
 /// upper triangular and its diagonal exponentials, and everything that cannot be negative is an exponential. Prior
@@ -63,6 +69,6 @@ struct ConsistentFit {
 /// parameterization of rigid-body inertia, IEEE RA-L 7(2), 2022; Traversaro et al., Identification of fully physical
 /// consistent inertial parameters using optimization on manifolds, IROS 2016.
 ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::vector<JointPrior>& priors,
-                               const std::vector<double>& noise);
+                               const std::vector<double>& noise, const std::vector<double>& correlation);
 
 }  // namespace tactus::arm_identification

@@ -1,5 +1,6 @@
-#include <tactus/arm_identification/data.hpp>
+#include <tactus/arm_identification/first_look.hpp>
 #include <tactus/arm_identification/fit.hpp>
+#include <tactus/arm_identification/rows_fit.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/identification/refusal.hpp>
 #include <tactus/signal/random.hpp>
@@ -24,292 +25,14 @@ using Eigen::VectorXd;
 constexpr double most_rows = 12'000.0;
 constexpr double rows_per_cutoff = 4.0;
 constexpr double normal_95 = 1.96;
-constexpr int rounds = 4;
-constexpr int folds = 4;
-constexpr double worthwhile = 0.98;      ///< of the error: what a further friction term must bring it to
-constexpr double usual_torque = 0.4;     ///< scales from here to its inverse are those of torques
-constexpr double scale_deviation = 0.3;  ///< of the logarithm of a torque's scale, where it is not known
-constexpr double current_deviation = 0.7;
 constexpr double worth_a_scale = 0.97;
 constexpr double least_explained = 0.75;  ///< relative residual beyond which a model is refused
 constexpr double threshold_margin = 1.25;
-
-double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
 
 std::string short_text(double value) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.2g", value);
   return buffer.data();
-}
-
-/// Which rows: from, and how many.
-struct Span {
-  Index first;
-  Index count;
-};
-
-struct Fit {
-  ConsistentFit found;
-  std::vector<FrictionShape> shapes;
-};
-
-JointSums sums_of(const MatrixXd& bodies, const MatrixXd& local, const VectorXd& effort) {
-  const Index own = bodies.cols();
-  JointSums sums;
-  sums.normal.resize(own + local.cols(), own + local.cols());
-  sums.normal.topLeftCorner(own, own) = bodies.transpose() * bodies;
-  sums.normal.topRightCorner(own, local.cols()) = bodies.transpose() * local;
-  sums.normal.bottomLeftCorner(local.cols(), own) = sums.normal.topRightCorner(own, local.cols()).transpose();
-  sums.normal.bottomRightCorner(local.cols(), local.cols()) = local.transpose() * local;
-  sums.right.resize(own + local.cols());
-  sums.right << bodies.transpose() * effort, local.transpose() * effort;
-  sums.squares = effort.squaredNorm();
-  sums.rows = static_cast<double>(effort.size());
-  return sums;
-}
-
-/// How many rows in a row say about the same: 1 + 2·(sum of the autocorrelation), as long as that is there.
-double correlation_of(const VectorXd& residual) {
-  const double squares = residual.squaredNorm();
-  double sum = 1.0;
-  for (Index lag = 1; lag < residual.size() / 20 && squares > 0.0; ++lag) {
-    const double rho = residual.head(residual.size() - lag).dot(residual.tail(residual.size() - lag)) / squares;
-    if (rho < 0.05) break;
-    sum += 2.0 * rho;
-  }
-  return sum;
-}
-
-VectorXd least_squares(const MatrixXd& columns, const VectorXd& right) {
-  return Eigen::ColPivHouseholderQR<MatrixXd>(columns).solve(right);
-}
-
-/// What is left of `right` where each of four blocks is judged by the fit of the other three.
-double cross_validated(const MatrixXd& columns, const VectorXd& right) {
-  double squares = 0.0;
-  const Index rows = right.size();
-  for (Index fold = 0; fold < folds; ++fold) {
-    const Index first = rows * fold / folds;
-    const Index count = rows * (fold + 1) / folds - first;
-    MatrixXd others(rows - count, columns.cols());
-    VectorXd others_right(rows - count);
-    others << columns.topRows(first), columns.bottomRows(rows - first - count);
-    others_right << right.head(first), right.tail(rows - first - count);
-    const VectorXd found = least_squares(others, others_right);
-    squares += (right.segment(first, count) - columns.middleRows(first, count) * found).squaredNorm();
-  }
-  return std::sqrt(squares / static_cast<double>(rows));
-}
-
-FrictionShape choose_shape(const ArmData& data, int joint, const ConsistentFit& fit, Span span) {
-  const VectorXd rigid = data.rigid_torque(joint, fit);
-  const VectorXd left =
-      (data.effort.col(joint) / fit.scales[static_cast<std::size_t>(joint)] - rigid).segment(span.first, span.count);
-  const auto error_of = [&](const FrictionShape& shape) {
-    const MatrixXd all = data.local(joint, shape, rigid).middleRows(span.first, span.count);
-    std::vector<Index> used{1, 2, 3};
-    if (shape.load) used.push_back(4);
-    if (shape.stribeck >= 0) used.push_back(5);
-    MatrixXd columns(span.count, static_cast<Index>(used.size()));
-    for (std::size_t i = 0; i < used.size(); ++i) columns.col(static_cast<Index>(i)) = all.col(used[i]);
-    return cross_validated(columns, left);
-  };
-  FrictionShape best;
-  double least = error_of(best);
-  const auto consider = [&](const FrictionShape& shape, double margin) {
-    const double error = error_of(shape);
-    if (error >= margin * least) return;
-    least = error;
-    best = shape;
-  };
-  for (std::size_t d = 0; d < ArmData::directions.size(); ++d) consider({.direction = d}, 1.0);
-  FrictionShape with_load = best;
-  with_load.load = true;
-  consider(with_load, worthwhile);
-  const FrictionShape so_far = best;
-  for (int s = 0; s < static_cast<int>(ArmData::slownesses.size()); ++s) {
-    FrictionShape with_excess = so_far;
-    with_excess.stribeck = s;
-    consider(with_excess, worthwhile);
-  }
-  return best;
-}
-
-/// The whole fit on some of the rows, none of which sees the others.
-Fit fit_rows(const ArmData& data, Span span, std::vector<JointPrior> priors, bool scales_known) {
-  const int count = data.joints();
-  Fit fit{.found = {}, .shapes = std::vector<FrictionShape>(static_cast<std::size_t>(count))};
-  std::vector<double> noise;
-  for (int j = 0; j < count; ++j) {
-    noise.push_back(0.1 * rms(data.effort.col(j).segment(span.first, span.count)) + 1e-12);
-  }
-  if (scales_known) {
-    for (JointPrior& prior : priors) prior.scale_deviation = 0.0;
-  }
-  std::vector<VectorXd> rigid(static_cast<std::size_t>(count), VectorXd::Zero(data.rows()));
-  for (int round = 0; round < rounds; ++round) {
-    std::vector<JointSums> sums;
-    for (int j = 0; j < count; ++j) {
-      const auto at = static_cast<std::size_t>(j);
-      const MatrixXd local = data.local(j, fit.shapes[at], rigid[at]);
-      priors[at].load = fit.shapes[at].load;
-      priors[at].stribeck = fit.shapes[at].stribeck >= 0;
-      sums.push_back(sums_of(data.bodies[at].middleRows(span.first, span.count),
-                             local.middleRows(span.first, span.count),
-                             data.effort.col(j).segment(span.first, span.count)));
-    }
-    fit.found = fit_consistently(sums, priors, noise);
-    for (int j = 0; j < count; ++j) {
-      const auto at = static_cast<std::size_t>(j);
-      rigid[at] = data.rigid_torque(j, fit.found);
-      const VectorXd left =
-          (data.effort.col(j) - data.predicted(j, fit.found, fit.shapes[at])).segment(span.first, span.count);
-      noise[at] = std::max(rms(left) * std::sqrt(correlation_of(left)), 1e-6 * rms(data.effort.col(j)) + 1e-12);
-      if (round < 2) fit.shapes[at] = choose_shape(data, j, fit.found, span);
-    }
-  }
-  return fit;
-}
-
-VectorXd residual_of(const ArmData& data, const Fit& fit, int joint, Span span) {
-  return (data.effort.col(joint) - data.predicted(joint, fit.found, fit.shapes[static_cast<std::size_t>(joint)]))
-      .segment(span.first, span.count);
-}
-
-/// Of each joint, what ordinary least squares leaves over `judged` when it has seen `seen`: all joints together, base
-/// parameters by leaving out what the data do not tell, friction with the sign of the velocity.
-std::vector<double> ordinary_least_squares(const ArmData& data, Span seen, Span judged) {
-  const Index count = data.joints();
-  const Index body = data.bodies.front().cols();
-  const Index own = 4;
-  const FrictionShape shape{.direction = 0};
-  MatrixXd normal = MatrixXd::Zero(body + own * count, body + own * count);
-  VectorXd right = VectorXd::Zero(normal.rows());
-  std::vector<MatrixXd> locals;
-  for (Index j = 0; j < count; ++j) {
-    const auto at = static_cast<std::size_t>(j);
-    locals.push_back(data.local(static_cast<int>(j), shape, VectorXd::Zero(data.rows())).leftCols(own));
-    const JointSums sums =
-        sums_of(data.bodies[at].middleRows(seen.first, seen.count), locals.back().middleRows(seen.first, seen.count),
-                data.effort.col(j).segment(seen.first, seen.count));
-    const Index place = body + own * j;
-    normal.topLeftCorner(body, body) += sums.normal.topLeftCorner(body, body);
-    normal.block(0, place, body, own) = sums.normal.topRightCorner(body, own);
-    normal.block(place, 0, own, body) = sums.normal.bottomLeftCorner(own, body);
-    normal.block(place, place, own, own) = sums.normal.bottomRightCorner(own, own);
-    right.head(body) += sums.right.head(body);
-    right.segment(place, own) = sums.right.tail(own);
-  }
-  VectorXd lengths = normal.diagonal().cwiseSqrt();
-  for (double& length : lengths) length = length > 0.0 ? 1.0 / length : 0.0;
-  const MatrixXd scaled = lengths.asDiagonal() * normal * lengths.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
-  const double least = 1e-9 * solver.eigenvalues().maxCoeff();
-  const VectorXd inverse = solver.eigenvalues().unaryExpr([=](double v) { return v > least ? 1.0 / v : 0.0; });
-  const VectorXd found =
-      lengths.asDiagonal() * (solver.eigenvectors() * (inverse.asDiagonal() * (solver.eigenvectors().transpose() *
-                                                                               (lengths.asDiagonal() * right))));
-  std::vector<double> relative;
-  for (Index j = 0; j < count; ++j) {
-    const auto at = static_cast<std::size_t>(j);
-    const VectorXd effort = data.effort.col(j).segment(judged.first, judged.count);
-    const VectorXd left = effort - data.bodies[at].middleRows(judged.first, judged.count) * found.head(body) -
-                          locals[at].middleRows(judged.first, judged.count) * found.segment(body + own * j, own);
-    relative.push_back(rms(left) / rms(effort));
-  }
-  return relative;
-}
-
-/// What one joint's effort says of the URDF's bodies before anything is fitted.
-struct FirstLook {
-  double scale = 0.0;         ///< effort for a N m
-  double share = 0.0;         ///< of the effort that the URDF's bodies make, by their rms and this scale
-  double friction_share = 0;  ///< the same of Coulomb friction, negative where it would give energy
-  double explained = 0.0;     ///< share of the effort's squares about zero
-};
-
-FirstLook look(const ArmData& data, const VectorXd& bodies, int joint, int effort_of) {
-  const auto at = static_cast<std::size_t>(joint);
-  const VectorXd torque = data.bodies[at] * bodies;
-  const VectorXd effort = data.effort.col(effort_of);
-  MatrixXd columns(data.rows(), 5);
-  columns << torque, data.local(joint, {}, torque).leftCols(4);
-  const VectorXd found = least_squares(columns, effort);
-  FirstLook result;
-  const double size = rms(effort);
-  if (!(size > 0.0)) return result;
-  result.scale = found[0];
-  result.share = found[0] * rms(torque) / size;
-  result.friction_share = found[2] * rms(columns.col(2)) / size;
-  result.explained = 1.0 - (effort - columns * found).squaredNorm() / effort.squaredNorm();
-  return result;
-}
-
-Check check_efforts(const ArmData& data, const VectorXd& bodies, const std::vector<std::string>& joints,
-                    const ArmRecording& recording) {
-  const int count = data.joints();
-  constexpr double clearly = 0.3;
-  for (int i = 0; i < count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    if (!(rms(data.effort.col(i)) > 0.0)) {
-      return inconsistent("effort", "the effort of joint '" + joints[at] + "' (column '" + recording.effort_names[at] +
-                                        "') is 0 throughout; name another column");
-    }
-    for (int k = i + 1; k < count; ++k) {
-      const double as_named = std::max(look(data, bodies, i, i).explained, look(data, bodies, k, k).explained);
-      const double least = std::min(look(data, bodies, i, i).explained, look(data, bodies, k, k).explained);
-      const double other = std::min(look(data, bodies, i, k).explained, look(data, bodies, k, i).explained);
-      if (other < least + clearly || other < 0.5 || as_named > other + clearly) continue;
-      return inconsistent("effort", "the efforts of joints '" + joints[at] + "' and '" +
-                                        joints[static_cast<std::size_t>(k)] + "' (columns '" +
-                                        recording.effort_names[at] + "' and '" +
-                                        recording.effort_names[static_cast<std::size_t>(k)] +
-                                        "') look swapped: each fits the other joint; exchange them");
-    }
-    const FirstLook own = look(data, bodies, i, i);
-    if (own.share < -clearly || own.friction_share < -clearly) {
-      return inconsistent("effort", "the effort of joint '" + joints[at] + "' (column '" + recording.effort_names[at] +
-                                        "') has the wrong sign: it must push toward +position as the URDF has it; turn "
-                                        "the column round");
-    }
-  }
-  return {};
-}
-
-std::vector<JointPrior> priors_of(const ArmData& data, const arm::Chain& chain, const arm::Chain::Params& urdf,
-                                  const VectorXd& bodies, bool& scaled) {
-  const int count = data.joints();
-  std::vector<FirstLook> looks;
-  scaled = false;
-  for (int j = 0; j < count; ++j) {
-    looks.push_back(look(data, bodies, j, j));
-    const bool clear = looks.back().share > 0.3;
-    scaled = scaled || (clear && (looks.back().scale < usual_torque || looks.back().scale > 1.0 / usual_torque));
-  }
-  const arm::JointMatrix mass = chain.mass_matrix(arm::JointVector::Zero(count));
-  std::vector<JointPrior> priors;
-  for (int j = 0; j < count; ++j) {
-    const auto at = static_cast<std::size_t>(j);
-    const arm::JointParams& joint = urdf.joints[at];
-    const FirstLook& seen = looks[at];
-    JointPrior prior;
-    prior.body = joint.body;
-    if (scaled) {
-      const double by_size = rms(data.effort.col(j)) / std::max(rms(data.bodies[at] * bodies), 1e-9);
-      prior.scale = seen.share > 0.3 ? seen.scale : by_size;
-      prior.scale_deviation = current_deviation;
-    } else {
-      prior.scale_deviation = scale_deviation;
-    }
-    prior.torque = rms(data.effort.col(j)) / prior.scale;
-    const double armature = joint.drive.reflected_kg_m2();
-    prior.armature = armature > 0.0 ? armature : std::max(0.1 * mass(j, j), 1e-6);
-    prior.coulomb = joint.friction.coulomb_N_m > 0.0 ? joint.friction.coulomb_N_m : 0.1 * prior.torque;
-    prior.viscous = joint.friction.viscous_N_m_s_per_rad > 0.0 ? joint.friction.viscous_N_m_s_per_rad
-                                                               : 0.1 * prior.torque / data.speed[at];
-    priors.push_back(prior);
-  }
-  return priors;
 }
 
 /// How many combinations of parameters torques depend on, from the singular values of the regressor at random states.
@@ -391,7 +114,7 @@ void add_parameters(const ConsistentFit& fit, const ConsistentFit& nothing, int 
   }
 }
 
-ArmModel model_of(const ArmData& data, const Fit& fit, const std::vector<std::string>& joints,
+ArmModel model_of(const ArmData& data, const RowsFit& fit, const std::vector<std::string>& joints,
                   const arm::Chain::Params& urdf, double cutoff_Hz, const std::vector<double>& thresholds) {
   ArmModel model{
       .head = {.joints = static_cast<std::int64_t>(joints.size()), .cutoff_Hz = cutoff_Hz, .gravity = urdf.gravity},
@@ -448,8 +171,8 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
     error.place = recordings.front().file.string();
     return error;
   };
-  // Half of the rows say something new at this rate, and half are held out.
-  if (static_cast<double>(data.rows() * data.joints()) < 4.0 * (result.base_parameters + 3 * data.joints())) {
+  // Half of the rows say something new at this rate, half are held out, and a number needs two.
+  if (static_cast<double>(data.rows() * data.joints()) < 8.0 * (result.base_parameters + 3 * data.joints())) {
     return in_file(inconsistent(short_text(result.duration_s) + " s are too short to tell " +
                                 std::to_string(result.base_parameters) +
                                 " parameters and friction, and to hold half of it out; record more motion"));
@@ -462,19 +185,19 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
   if (Check wrong = check_efforts(data, bodies, joints, recordings.front())) return in_file(*std::move(wrong));
 
   const std::vector<JointPrior> priors = priors_of(data, *chain, urdf, bodies, result.scaled_efforts);
-  const Span all{0, data.rows()};
-  const Span seen{0, data.rows() / 2};
-  const Span judged{seen.count, data.rows() - seen.count};
+  const RowSpan all{0, data.rows()};
+  const RowSpan seen{0, data.rows() / 2};
+  const RowSpan judged{seen.count, data.rows() - seen.count};
   if (!result.scaled_efforts) {
-    const Fit as_torques = fit_rows(data, seen, priors, true);
-    const Fit free = fit_rows(data, seen, priors, false);
+    const RowsFit as_torques = fit_rows(data, seen, priors, true);
+    const RowsFit free = fit_rows(data, seen, priors, false);
     for (std::size_t j = 0; j < joints.size(); ++j) {
       const bool better = free.found.residual_rms[j] < worth_a_scale * as_torques.found.residual_rms[j];
       result.scaled_efforts = result.scaled_efforts || better;
     }
   }
-  const Fit half = fit_rows(data, seen, priors, !result.scaled_efforts);
-  const Fit whole = fit_rows(data, all, priors, !result.scaled_efforts);
+  const RowsFit half = fit_rows(data, seen, priors, !result.scaled_efforts);
+  const RowsFit whole = fit_rows(data, all, priors, !result.scaled_efforts);
   const std::vector<double> ordinary = ordinary_least_squares(data, seen, judged);
   std::vector<JointSums> no_sums;
   const Index columns = bodies.size() + local_parameters;
@@ -486,7 +209,7 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
     used[j].load = whole.shapes[j].load;
     used[j].stribeck = whole.shapes[j].stribeck >= 0;
   }
-  const ConsistentFit nothing = fit_consistently(no_sums, used, std::vector<double>(joints.size(), 1.0));
+  const ConsistentFit nothing = fit_consistently(no_sums, used, std::vector<double>(joints.size(), 1.0), {});
 
   std::vector<double> thresholds;
   for (int j = 0; j < data.joints(); ++j) {
@@ -499,7 +222,12 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
     fit.relative = fit.residual_rms / fit.effort_rms;
     fit.held_out_relative = rms(held_out) / rms(data.effort.col(j).segment(judged.first, judged.count));
     fit.least_squares_relative = ordinary[at];
-    const double bound = normal_95 * half.found.residual_rms[at];
+    MatrixXd seen_by(judged.count, data.bodies[at].cols() + local_parameters);
+    seen_by << data.bodies[at].middleRows(judged.first, judged.count),
+        data.local(j, half.shapes[at], data.rigid_torque(j, half.found)).middleRows(judged.first, judged.count);
+    const Eigen::ArrayXd uncertain = half.found.prediction_deviation(j, seen_by);
+    const double left_alone = half.found.residual_rms[at];
+    const Eigen::ArrayXd bound = normal_95 * (uncertain.square() + left_alone * left_alone).sqrt();
     fit.held_out_coverage = (held_out.array().abs() <= bound).cast<double>().mean();
     fit.effort_per_N_m = whole.found.scales[at];
     if (fit.relative > least_explained) {

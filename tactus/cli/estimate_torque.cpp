@@ -107,8 +107,10 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
                     report::number(model->joints[j].contact_threshold_N_m, 3)});
   }
   const report::Table contacts = contacts_table(*found);
-  const std::string verdict = found->contacts.empty() ? std::string("No contact found.")
-                                                      : std::to_string(found->contacts.size()) + " contacts found.";
+  const std::size_t count = found->contacts.size();
+  const std::string verdict = count == 0   ? std::string("No contact found.")
+                              : count == 1 ? std::string("One contact found.")
+                                           : std::to_string(count) + " contacts found.";
   report::Page page("External torque, " + options.file);
   page.table(joints);
   page.paragraph(verdict);

@@ -8,6 +8,7 @@
 #include <tactus/report/text.hpp>
 #include <tactus/urdf/urdf.hpp>
 
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -118,7 +119,14 @@ std::string words_of(const ArmIdentification& found) {
                      std::to_string(told) + " of " + std::to_string(all) +
                      " single parameters. The others stay near the URDF: other values would give the same torques.";
   if (found.scaled_efforts) {
-    text += " Efforts are not torques in N m as they stand: each joint has its own scale, which the URDF's masses fix.";
+    double least = found.joints.front().effort_per_N_m;
+    double most = least;
+    for (const ArmJointFit& joint : found.joints) {
+      least = std::min(least, joint.effort_per_N_m);
+      most = std::max(most, joint.effort_per_N_m);
+    }
+    text += " Each joint's effort has a scale of its own, " + report::number(least, 3) + " to " +
+            report::number(most, 3) + " for 1 N m, for which the masses of the URDF are taken.";
   }
   return text;
 }

@@ -153,5 +153,28 @@ TEST_F(Csv, AFileThatIsNotThereOrOfNoKnownFormatIsRefusedByName) {
   EXPECT_FALSE(contents(path("no.csv")));
 }
 
+TEST_F(Csv, ColumnsAreChosenByNameNumberAndRangeWithAHeaderOrWithout) {
+  const auto with_header = write("a.csv", "t,q1 [rad],q2 [rad]\n0,1,2\n1,3,4\n");
+  const std::vector<std::string> choices{"t", "q1:q2", "3,q1"};
+  const auto lists = read_columns(with_header, choices);
+  ASSERT_TRUE(lists) << describe(lists.error());
+  ASSERT_EQ((*lists)[1].size(), 2U);
+  EXPECT_EQ((*lists)[1][0].unit, "rad");
+  EXPECT_EQ((*lists)[1][1].values, (std::vector<double>{2.0, 4.0}));
+  EXPECT_EQ((*lists)[2][0].name, "q2");
+  EXPECT_EQ((*lists)[2][1].name, "q1");
+  for (const char* text : {"0,1,2\n1,3,4\n", "# t q1 q2\n 0  1 2\n1 3\t4 \n", "0;1;2\n1;3;4\n"}) {
+    const auto plain = read_columns(write("b.txt", text), std::vector<std::string>{"1", "2:3"});
+    ASSERT_TRUE(plain) << describe(plain.error());
+    EXPECT_EQ((*plain)[0][0].values, (std::vector<double>{0.0, 1.0}));
+    EXPECT_EQ((*plain)[1][1].values, (std::vector<double>{2.0, 4.0}));
+  }
+  for (const char* wrong : {"q3", "0", "4", "q2:q1", "q1:", "", "t,", "2:x", "-1"}) {
+    const auto refused = read_columns(with_header, std::vector<std::string>{wrong});
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_FALSE(refused.error().message.empty());
+  }
+}
+
 }  // namespace
 }  // namespace tactus::recording

@@ -193,5 +193,20 @@ TEST_F(Mat, AFileThatIsNoVersionFiveFileIsRefusedWithTheRemedy) {
   EXPECT_TRUE(says(refusal({.file = path("e.mat"), .variable = "x"}), "is not a MATLAB file of version 5"));
 }
 
+TEST_F(Mat, ColumnsOfAVariableAreChosenTogether) {
+  const auto file = write_mat(path("a.mat"), {matrix("q", 2, 3, {1, 2, 3, 4, 5, 6}), matrix("t", 2, 1, {0, 1})},
+                              MAT_COMPRESSION_NONE);
+  const auto lists = read_columns(file, std::vector<std::string>{"t", "q", "q:2", "q:2:3"});
+  ASSERT_TRUE(lists) << describe(lists.error());
+  EXPECT_EQ((*lists)[0].size(), 1U);
+  EXPECT_EQ((*lists)[1].size(), 3U);
+  EXPECT_EQ((*lists)[2][0].values, (Values{3, 4}));
+  ASSERT_EQ((*lists)[3].size(), 2U);
+  EXPECT_EQ((*lists)[3][1].values, (Values{5, 6}));
+  for (const char* wrong : {"p", "q:4", "q:0", "q:2:1", "q:x", "p:1"}) {
+    EXPECT_FALSE(read_columns(file, std::vector<std::string>{wrong})) << wrong;
+  }
+}
+
 }  // namespace
 }  // namespace tactus::recording

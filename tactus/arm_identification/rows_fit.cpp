@@ -1,0 +1,190 @@
+#include <tactus/arm_identification/rows_fit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Dense>
+
+namespace tactus::arm_identification {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int rounds = 4;
+constexpr int folds = 4;
+constexpr double worthwhile = 0.98;  ///< of the error: what a further friction term must bring it to
+
+JointSums sums_of(const MatrixXd& bodies, const MatrixXd& local, const VectorXd& effort) {
+  const Index own = bodies.cols();
+  JointSums sums;
+  sums.normal.resize(own + local.cols(), own + local.cols());
+  sums.normal.topLeftCorner(own, own) = bodies.transpose() * bodies;
+  sums.normal.topRightCorner(own, local.cols()) = bodies.transpose() * local;
+  sums.normal.bottomLeftCorner(local.cols(), own) = sums.normal.topRightCorner(own, local.cols()).transpose();
+  sums.normal.bottomRightCorner(local.cols(), local.cols()) = local.transpose() * local;
+  sums.right.resize(own + local.cols());
+  sums.right << bodies.transpose() * effort, local.transpose() * effort;
+  sums.squares = effort.squaredNorm();
+  sums.rows = static_cast<double>(effort.size());
+  return sums;
+}
+
+/// How many rows in a row say about the same: 1 + 2·(sum of the autocorrelation), as long as that is there.
+double correlation_of(const VectorXd& residual) {
+  const double squares = residual.squaredNorm();
+  double sum = 1.0;
+  for (Index lag = 1; lag < residual.size() / 20 && squares > 0.0; ++lag) {
+    const double rho = residual.head(residual.size() - lag).dot(residual.tail(residual.size() - lag)) / squares;
+    if (rho < 0.05) break;
+    sum += 2.0 * rho;
+  }
+  return sum;
+}
+
+/// What is left of `right` where each of four blocks is judged by the fit of the other three.
+double cross_validated(const MatrixXd& columns, const VectorXd& right) {
+  double squares = 0.0;
+  const Index rows = right.size();
+  for (Index fold = 0; fold < folds; ++fold) {
+    const Index first = rows * fold / folds;
+    const Index count = rows * (fold + 1) / folds - first;
+    MatrixXd others(rows - count, columns.cols());
+    VectorXd others_right(rows - count);
+    others << columns.topRows(first), columns.bottomRows(rows - first - count);
+    others_right << right.head(first), right.tail(rows - first - count);
+    const VectorXd found = least_squares(others, others_right);
+    squares += (right.segment(first, count) - columns.middleRows(first, count) * found).squaredNorm();
+  }
+  return std::sqrt(squares / static_cast<double>(rows));
+}
+
+FrictionShape choose_shape(const ArmData& data, int joint, const ConsistentFit& fit, RowSpan span) {
+  const VectorXd rigid = data.rigid_torque(joint, fit);
+  const VectorXd left =
+      (data.effort.col(joint) / fit.scales[static_cast<std::size_t>(joint)] - rigid).segment(span.first, span.count);
+  const auto error_of = [&](const FrictionShape& shape) {
+    const MatrixXd all = data.local(joint, shape, rigid).middleRows(span.first, span.count);
+    std::vector<Index> used{1, 2, 3};
+    if (shape.load) used.push_back(4);
+    if (shape.stribeck >= 0) used.push_back(5);
+    MatrixXd columns(span.count, static_cast<Index>(used.size()));
+    for (std::size_t i = 0; i < used.size(); ++i) columns.col(static_cast<Index>(i)) = all.col(used[i]);
+    return cross_validated(columns, left);
+  };
+  FrictionShape best;
+  double least = error_of(best);
+  const auto consider = [&](const FrictionShape& shape, double margin) {
+    const double error = error_of(shape);
+    if (error >= margin * least) return;
+    least = error;
+    best = shape;
+  };
+  for (std::size_t d = 0; d < ArmData::directions.size(); ++d) consider({.direction = d}, 1.0);
+  FrictionShape with_load = best;
+  with_load.load = true;
+  consider(with_load, worthwhile);
+  const FrictionShape so_far = best;
+  for (int s = 0; s < static_cast<int>(ArmData::slownesses.size()); ++s) {
+    FrictionShape with_excess = so_far;
+    with_excess.stribeck = s;
+    consider(with_excess, worthwhile);
+  }
+  return best;
+}
+
+}  // namespace
+
+double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
+
+VectorXd least_squares(const MatrixXd& columns, const VectorXd& right) {
+  return Eigen::ColPivHouseholderQR<MatrixXd>(columns).solve(right);
+}
+
+RowsFit fit_rows(const ArmData& data, RowSpan span, std::vector<JointPrior> priors, bool scales_known) {
+  const int count = data.joints();
+  RowsFit fit{.found = {}, .shapes = std::vector<FrictionShape>(static_cast<std::size_t>(count))};
+  std::vector<double> noise;
+  std::vector<double> correlation(static_cast<std::size_t>(count), 1.0);
+  for (int j = 0; j < count; ++j) {
+    noise.push_back(0.1 * rms(data.effort.col(j).segment(span.first, span.count)) + 1e-12);
+  }
+  if (scales_known) {
+    for (JointPrior& prior : priors) prior.scale_deviation = 0.0;
+  }
+  std::vector<VectorXd> rigid(static_cast<std::size_t>(count), VectorXd::Zero(data.rows()));
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<JointSums> sums;
+    for (int j = 0; j < count; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      const MatrixXd local = data.local(j, fit.shapes[at], rigid[at]);
+      priors[at].load = fit.shapes[at].load;
+      priors[at].stribeck = fit.shapes[at].stribeck >= 0;
+      sums.push_back(sums_of(data.bodies[at].middleRows(span.first, span.count),
+                             local.middleRows(span.first, span.count),
+                             data.effort.col(j).segment(span.first, span.count)));
+    }
+    fit.found = fit_consistently(sums, priors, noise, correlation);
+    for (int j = 0; j < count; ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      rigid[at] = data.rigid_torque(j, fit.found);
+      const VectorXd left =
+          (data.effort.col(j) - data.predicted(j, fit.found, fit.shapes[at])).segment(span.first, span.count);
+      noise[at] = std::max(rms(left), 1e-6 * rms(data.effort.col(j)) + 1e-12);
+      correlation[at] = correlation_of(left);
+      if (round < 2) fit.shapes[at] = choose_shape(data, j, fit.found, span);
+    }
+  }
+  return fit;
+}
+
+VectorXd residual_of(const ArmData& data, const RowsFit& fit, int joint, RowSpan span) {
+  return (data.effort.col(joint) - data.predicted(joint, fit.found, fit.shapes[static_cast<std::size_t>(joint)]))
+      .segment(span.first, span.count);
+}
+
+std::vector<double> ordinary_least_squares(const ArmData& data, RowSpan seen, RowSpan judged) {
+  const Index count = data.joints();
+  const Index body = data.bodies.front().cols();
+  const Index own = 4;
+  const FrictionShape shape{.direction = 0};
+  MatrixXd normal = MatrixXd::Zero(body + own * count, body + own * count);
+  VectorXd right = VectorXd::Zero(normal.rows());
+  std::vector<MatrixXd> locals;
+  for (Index j = 0; j < count; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    locals.push_back(data.local(static_cast<int>(j), shape, VectorXd::Zero(data.rows())).leftCols(own));
+    const JointSums sums =
+        sums_of(data.bodies[at].middleRows(seen.first, seen.count), locals.back().middleRows(seen.first, seen.count),
+                data.effort.col(j).segment(seen.first, seen.count));
+    const Index place = body + own * j;
+    normal.topLeftCorner(body, body) += sums.normal.topLeftCorner(body, body);
+    normal.block(0, place, body, own) = sums.normal.topRightCorner(body, own);
+    normal.block(place, 0, own, body) = sums.normal.bottomLeftCorner(own, body);
+    normal.block(place, place, own, own) = sums.normal.bottomRightCorner(own, own);
+    right.head(body) += sums.right.head(body);
+    right.segment(place, own) = sums.right.tail(own);
+  }
+  VectorXd lengths = normal.diagonal().cwiseSqrt();
+  for (double& length : lengths) length = length > 0.0 ? 1.0 / length : 0.0;
+  const MatrixXd scaled = lengths.asDiagonal() * normal * lengths.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
+  const double least = 1e-9 * solver.eigenvalues().maxCoeff();
+  const VectorXd inverse = solver.eigenvalues().unaryExpr([=](double v) { return v > least ? 1.0 / v : 0.0; });
+  const VectorXd found =
+      lengths.asDiagonal() * (solver.eigenvectors() * (inverse.asDiagonal() * (solver.eigenvectors().transpose() *
+                                                                               (lengths.asDiagonal() * right))));
+  std::vector<double> relative;
+  for (Index j = 0; j < count; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const VectorXd effort = data.effort.col(j).segment(judged.first, judged.count);
+    const VectorXd left = effort - data.bodies[at].middleRows(judged.first, judged.count) * found.head(body) -
+                          locals[at].middleRows(judged.first, judged.count) * found.segment(body + own * j, own);
+    relative.push_back(rms(left) / rms(effort));
+  }
+  return relative;
+}
+
+}  // namespace tactus::arm_identification

@@ -1,0 +1,290 @@
+#include <tactus/arm_identification/external_torque.hpp>
+#include <tactus/arm_identification/fit.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/arm_identification/kdl_arm.hpp"
+#include "tests/scratch_path.hpp"
+#include <gtest/gtest.h>
+
+namespace tactus::arm_identification {
+namespace {
+
+const std::vector<std::string> names{"j1", "j2", "j3", "j4", "j5", "j6", "j7"};
+const ArmColumns numbered{.time = "1", .position = "2:8", .velocity = "9:15", .effort = "16:22"};
+
+/// A simulation as the recording that its file would give.
+ArmRecording recorded(const Samples& samples) {
+  ArmRecording recording{.file = "simulated.csv",
+                         .position_names = names,
+                         .effort_names = names,
+                         .sample_time = Seconds{samples.time_s[1]}};
+  recording.position = samples.position;
+  recording.velocity = samples.velocity;
+  recording.effort = samples.torque;
+  return recording;
+}
+
+const arm::Chain::Params& truth() {
+  static const arm::Chain::Params params = open_arm();
+  return params;
+}
+const ArmRecording& free_motion(std::uint64_t seed) {
+  static std::vector<ArmRecording> made(8);
+  ArmRecording& recording = made.at(seed);
+  if (recording.joints() == 0) recording = recorded(simulate(truth(), {.seed = seed}));
+  return recording;
+}
+const ArmIdentification& identified() {
+  static const ArmIdentification found =
+      *identify_arm(std::array{free_motion(1), free_motion(2)}, names, believed(truth(), 3));
+  return found;
+}
+
+TEST(ArmIdentification, TorquesOfUnseenMotionArePredictedWithinTwoPercent) {
+  const auto unseen = estimate_external_torque(identified().model, free_motion(5));
+  ASSERT_TRUE(unseen) << describe(unseen.error());
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    EXPECT_LT(unseen->joints[j].relative, 0.02) << names[j];
+    EXPECT_LT(identified().joints[j].held_out_relative, 1.05 * identified().joints[j].least_squares_relative);
+  }
+  EXPECT_FALSE(identified().scaled_efforts);
+}
+
+TEST(ArmIdentification, IntervalsHoldWhatTheSimulationHas) {
+  int told = 0;
+  int held = 0;
+  int all = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const auto found =
+        identify_arm(std::array{free_motion(seed), free_motion(seed + 1)}, names, believed(truth(), 10 + seed));
+    ASSERT_TRUE(found) << describe(found.error());
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      const arm::JointParams& joint = truth().joints[j];
+      const arm::BodyVector body = arm::linear_parameters(joint.body);
+      std::vector<double> values(body.begin(), body.end());
+      values.insert(values.end(), {joint.drive.armature_kg_m2, joint.friction.coulomb_N_m,
+                                   joint.friction.viscous_N_m_s_per_rad, joint.friction.offset_N_m});
+      EXPECT_GT(found->joints[j].held_out_coverage, 0.9) << names[j];
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        const ArmParameter& p = found->joints[j].parameters[k];
+        const bool holds = values[k] >= p.lower && values[k] <= p.upper;
+        ++all;
+        told += p.told ? 1 : 0;
+        held += holds ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(told, all / 4);
+  EXPECT_GE(held, all * 9 / 10) << told << " told, " << held << " of " << all << " held";
+}
+
+TEST(ArmIdentification, EveryBodyIsOneThatCanExist) {
+  for (const ArmJointModel& joint : identified().model.joints) {
+    EXPECT_FALSE(arm::check(joint.arm.body)) << joint.name;
+    EXPECT_GT(joint.arm.body.mass_kg, 0.0);
+    EXPECT_GE(joint.arm.friction.coulomb_N_m, 0.0);
+  }
+}
+
+TEST(ArmIdentification, CurrentsWithAScaleForEachJointAreExplainedAsWellAsTorques) {
+  const std::array<double, 7> scales{0.4, 7.0, 0.05, 120.0, 3.0, 0.9, 15.0};
+  ArmRecording currents = free_motion(1);
+  for (std::size_t j = 0; j < scales.size(); ++j) {
+    for (double& value : currents.effort[j]) value *= scales[j];
+  }
+  const auto torques = identify_arm(std::array{free_motion(1)}, names, believed(truth(), 3));
+  const auto found = identify_arm(std::array{currents}, names, believed(truth(), 3));
+  ASSERT_TRUE(torques) << describe(torques.error());
+  ASSERT_TRUE(found) << describe(found.error());
+  EXPECT_TRUE(found->scaled_efforts);
+  for (std::size_t j = 0; j < scales.size(); ++j) {
+    EXPECT_NEAR(found->joints[j].relative, torques->joints[j].relative, 0.05 * torques->joints[j].relative) << names[j];
+    EXPECT_LT(found->joints[j].relative, 0.02) << names[j];
+  }
+}
+
+TEST(ArmIdentification, APushIsFoundWithinFiftyMillisecondsAndNoneInFreeMotion) {
+  const std::vector<Push> pushes{{4.0, 4.6, 15.0}, {7.0, 8.0, -12.0}, {11.5, 11.8, 20.0}};
+  const ArmRecording pushed = recorded(simulate(truth(), {.duration_s = 14.0, .seed = 6, .pushes = pushes}));
+  const auto found = estimate_external_torque(identified().model, pushed);
+  ASSERT_TRUE(found) << describe(found.error());
+  ASSERT_EQ(found->contacts.size(), pushes.size());
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    EXPECT_NEAR(found->contacts[i].from_s, pushes[i].from_s, 0.05);
+    EXPECT_NEAR(found->contacts[i].to_s, pushes[i].to_s, 0.05);
+    EXPECT_FALSE(found->contacts[i].joints.empty());
+  }
+  // Free motion beside the pushes is explained as before.
+  for (const ArmJointResidual& joint : found->joints) EXPECT_LT(joint.relative, 0.03) << joint.name;
+  for (const std::uint64_t seed : {5U, 7U}) {
+    EXPECT_TRUE(estimate_external_torque(identified().model, free_motion(seed))->contacts.empty()) << seed;
+  }
+}
+
+TEST(ArmIdentification, TheExternalTorqueIsThatOfTheForceOnTheTool) {
+  const ArmRecording pushed = recorded(simulate(truth(), {.duration_s = 8.0, .seed = 6, .pushes = {{3.0, 5.0, 15.0}}}));
+  const auto found = estimate_external_torque(identified().model, pushed);
+  ASSERT_TRUE(found) << describe(found.error());
+  const auto row = static_cast<Eigen::Index>(std::lower_bound(found->time_s.begin(), found->time_s.end(), 4.0) -
+                                             found->time_s.begin());
+  const auto sample = static_cast<std::size_t>(std::lround(found->time_s[static_cast<std::size_t>(row)] * 500.0));
+  arm::JointVector q(7);
+  for (int j = 0; j < 7; ++j) q[j] = pushed.position[static_cast<std::size_t>(j)][sample];
+  const arm::JointVector expected = arm::Chain::make(truth())->jacobian(q, 6, arm::Vector3::Zero()).transpose() *
+                                    (Eigen::Matrix<double, 6, 1>() << 0.0, 0.0, 15.0, 0.0, 0.0, 0.0).finished();
+  EXPECT_LT((found->torque_N_m.row(row).transpose() - expected).norm(), 0.1 * expected.norm());
+}
+
+TEST(ArmIdentification, AModelReadsBackAsItWasWritten) {
+  const std::filesystem::path file = scratch_path();
+  std::ofstream(file) << to_toml(identified().model, "made by a test");
+  const auto back = load_arm_model(file);
+  ASSERT_TRUE(back) << describe(back.error());
+  EXPECT_EQ(to_toml(*back, "made by a test"), to_toml(identified().model, "made by a test"));
+  std::ofstream(file) << "a = 1\n";
+  EXPECT_FALSE(load_arm_model(file));
+  std::filesystem::remove(file);
+}
+
+std::string refusal(const std::function<void(ArmRecording&)>& spoil) {
+  ArmRecording recording = free_motion(1);
+  spoil(recording);
+  const auto found = identify_arm(std::array{recording}, names, believed(truth(), 3));
+  return found ? "nothing" : describe(found.error());
+}
+
+TEST(ArmIdentification, RecordingsThatCannotBeTrustedAreRefusedWithTheReason) {
+  const auto expect = [](const std::string& told, const std::vector<std::string>& words) {
+    for (const std::string& word : words) EXPECT_NE(told.find(word), std::string::npos) << word << " in " << told;
+  };
+  expect(refusal([](ArmRecording& r) { std::swap(r.velocity[1], r.velocity[3]); }),
+         {"j2", "j4", "velocity", "swapped"});
+  expect(refusal([](ArmRecording& r) { std::swap(r.position, r.velocity); }), {"velocity", "not the slope"});
+  expect(refusal([](ArmRecording& r) { std::swap(r.effort[1], r.effort[3]); }), {"j2", "j4", "swapped"});
+  expect(refusal([](ArmRecording& r) { std::swap(r.effort[0], r.effort[1]); }), {"j1", "swapped"});
+  expect(refusal([](ArmRecording& r) {
+           for (double& value : r.effort[1]) value = -value;
+         }),
+         {"j2", "wrong sign"});
+  expect(refusal([](ArmRecording& r) {
+           for (double& value : r.effort[4]) value = 0.0;
+         }),
+         {"j5", "0 throughout"});
+  expect(refusal([](ArmRecording& r) {
+           for (double& value : r.position[2]) value = 0.3;
+           for (double& value : r.velocity[2]) value = 0.0;
+         }),
+         {"j3", "hardly moves"});
+  const auto cut = [](std::size_t samples) {
+    return [samples](ArmRecording& r) {
+      for (auto* columns : {&r.position, &r.velocity, &r.effort}) {
+        for (auto& column : *columns) column.resize(samples);
+      }
+    };
+  };
+  expect(refusal(cut(200)), {"too short", "record at least"});
+  expect(refusal(cut(700)), {"too short"});
+}
+
+class ArmFiles : public ::testing::Test {
+ protected:
+  void TearDown() override { std::filesystem::remove(file_); }
+  /// The first second of a simulation, as text.
+  static std::string table(const std::string& header, char separator, double time_offset_s = 0.0) {
+    const ArmRecording& recording = free_motion(1);
+    std::ostringstream text;
+    text.precision(15);
+    text << header;
+    for (std::size_t i = 0; i < 500; ++i) {
+      text << time_offset_s + static_cast<double>(i) / 500.0;
+      for (const auto* columns : {&recording.position, &recording.velocity, &recording.effort}) {
+        for (const auto& column : *columns) text << separator << column[i];
+      }
+      text << "\n";
+    }
+    return text.str();
+  }
+  Result<ArmRecording> read(const std::string& text, const ArmColumns& columns) {
+    std::ofstream(file_) << text;
+    return read_arm(file_, columns, names);
+  }
+  std::string complaint(const std::string& text, const ArmColumns& columns) {
+    const auto recording = read(text, columns);
+    return recording ? "nothing" : describe(recording.error());
+  }
+  static std::string header() {
+    std::string text = "t [s]";
+    for (const char* of : {"q", "dq", "tau"}) {
+      for (int j = 1; j <= 7; ++j) text += std::string(",") + of + std::to_string(j);
+    }
+    return text + "\n";
+  }
+  const std::filesystem::path file_ = scratch_path().string() + ".csv";
+};
+
+TEST_F(ArmFiles, NamesNumbersAndRangesNameTheSameColumns) {
+  const ArmColumns by_name{.time = "t", .position = "q1:q7", .velocity = "dq1,dq2:dq7", .effort = "tau1:tau7"};
+  const auto named = read(table(header(), ','), by_name);
+  ASSERT_TRUE(named) << describe(named.error());
+  EXPECT_EQ(named->samples(), 500U);
+  EXPECT_NEAR(named->sample_time.value, 0.002, 1e-12);
+  for (const std::string& text : {table("", ','), table("", ' '), table("", '\t'), table("# comment\n", ';')}) {
+    const auto plain = read(text, numbered);
+    ASSERT_TRUE(plain) << describe(plain.error());
+    EXPECT_EQ(plain->position, named->position);
+    EXPECT_EQ(plain->effort, named->effort);
+  }
+  const auto without_velocity = read(table("", ','), {.time = "1", .position = "2:8", .effort = "16:22"});
+  ASSERT_TRUE(without_velocity);
+  EXPECT_TRUE(without_velocity->velocity.empty());
+  // Seconds since 1970 leave the same steps.
+  const auto late = read(table("", ',', 1.7e9), numbered);
+  ASSERT_TRUE(late) << describe(late.error());
+  EXPECT_NEAR(late->sample_time.value, 0.002, 1e-8);
+  EXPECT_EQ(late->start_s, 1.7e9);
+}
+
+TEST_F(ArmFiles, WhatIsWrongWithAFileIsSaid) {
+  const auto expect = [](const std::string& told, const std::vector<std::string>& words) {
+    for (const std::string& word : words) EXPECT_NE(told.find(word), std::string::npos) << word << " in " << told;
+  };
+  const std::string good = table("", ',');
+  const auto spoilt = [&](std::size_t line, const std::function<void(std::string&)>& spoil) {
+    std::istringstream lines(good);
+    std::string all;
+    std::string text;
+    for (std::size_t i = 1; std::getline(lines, text); ++i) {
+      if (i == line) spoil(text);
+      all += text.empty() ? "" : text + "\n";
+    }
+    return all;
+  };
+  ArmColumns six = numbered;
+  six.position = "2:7";
+  expect(complaint(good, six), {"--position", "6 columns", "7 joints"});
+  ArmColumns beyond = numbered;
+  beyond.effort = "16:23";
+  expect(complaint(good, beyond), {"column 23", "22 columns"});
+  ArmColumns unknown = numbered;
+  unknown.effort = "torque";
+  expect(complaint(table(header(), ','), unknown), {"'torque'"});
+  expect(complaint(spoilt(30, [](std::string& line) { line.replace(line.find(',') + 1, 3, "nan"); }), numbered),
+         {":30:", "'2'"});
+  expect(complaint(spoilt(30, [](std::string& line) { line.replace(0, line.find(','), "0.001"); }), numbered),
+         {"do not increase", "sample 2"});
+  std::string pause = good;
+  const std::size_t from = pause.find("\n0.2,");
+  pause.erase(from, pause.find("\n0.3,") - from);
+  expect(complaint(pause, numbered), {"nothing was recorded", "cut the file"});
+  expect(read_arm("no/such.csv", numbered, names).error().message, {"does not exist"});
+}
+
+}  // namespace
+}  // namespace tactus::arm_identification
