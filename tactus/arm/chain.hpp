@@ -43,6 +43,23 @@ Check check(const Body& body);
 /// `Rz(yaw)·Ry(pitch)·Rx(roll)`.
 Matrix3 rotation_of(const JointOrigin& origin) noexcept;
 
+namespace detail {
+
+/// A joint and its link, as the recursions need them.
+struct ChainLink {
+  Matrix3 mounting = Matrix3::Identity();  ///< turns vectors of this link, at position 0, into the link before
+  Vector3 origin_m = Vector3::Zero();
+  Vector3 axis = Vector3::UnitZ();
+  bool slides = false;
+  double mass_kg = 0.0;
+  Vector3 first_moment_kg_m = Vector3::Zero();  ///< mass times centre
+  Matrix3 inertia_kg_m2 = Matrix3::Zero();      ///< about the link's origin
+  double armature_kg_m2 = 0.0;
+  JointFriction friction = {};
+};
+
+}  // namespace detail
+
 /// A serial arm on a base that does not move.
 ///
 /// Signs: a torque is that which the motor must give, positive in the direction in which the position grows. External
@@ -91,17 +108,7 @@ class Chain {
   [[nodiscard]] ParameterVector parameters() const noexcept;
 
  private:
-  struct Link {
-    Matrix3 mounting = Matrix3::Identity();  ///< turns vectors of this link, at position 0, into the link before
-    Vector3 origin_m = Vector3::Zero();
-    Vector3 axis = Vector3::UnitZ();
-    bool slides = false;
-    double mass_kg = 0.0;
-    Vector3 first_moment_kg_m = Vector3::Zero();  ///< mass times centre
-    Matrix3 inertia_kg_m2 = Matrix3::Zero();      ///< about the link's origin
-    double armature_kg_m2 = 0.0;
-    JointFriction friction = {};
-  };
+  using Link = detail::ChainLink;
   /// How a link stands in the link before.
   struct Step {
     Matrix3 rotation;
