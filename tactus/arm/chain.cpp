@@ -283,11 +283,11 @@ JointVector Chain::motor_torque(const JointVector& position, const JointVector& 
 
 Regressor Chain::regressor(const JointVector& position, const JointVector& velocity,
                            const JointVector& acceleration) const noexcept {
-  const int count = joints();
+  const Eigen::Index count = joints();
   Regressor found = Regressor::Zero(count, count * joint_parameters);
   std::array<Step, most_joints> steps;
   Motion motion = base();
-  for (int k = 0; k < count; ++k) {
+  for (Eigen::Index k = 0; k < count; ++k) {
     const auto at = static_cast<std::size_t>(k);
     const Link& link = links_[at];
     steps[at] = step_to(link, position[k]);
@@ -301,8 +301,8 @@ Regressor Chain::regressor(const JointVector& position, const JointVector& veloc
     moment.middleCols<3>(1) = -skew(motion.acceleration);
     moment.rightCols<6>() =
         product_with_inertia(motion.turning_acceleration) + around * product_with_inertia(motion.turning);
-    const int first = k * joint_parameters;
-    for (int i = k; i >= 0; --i) {
+    const Eigen::Index first = k * joint_parameters;
+    for (Eigen::Index i = k; i >= 0; --i) {
       const auto on = static_cast<std::size_t>(i);
       found.block<1, body_parameters>(i, first) = links_[on].axis.transpose() * (links_[on].slides ? force : moment);
       force = steps[on].rotation * force;
@@ -317,8 +317,9 @@ Regressor Chain::regressor(const JointVector& position, const JointVector& veloc
 }
 
 ParameterVector Chain::parameters() const noexcept {
-  ParameterVector found(joints() * joint_parameters);
-  for (int k = 0; k < joints(); ++k) {
+  const Eigen::Index count = joints();
+  ParameterVector found(count * joint_parameters);
+  for (Eigen::Index k = 0; k < count; ++k) {
     const Link& link = links_[static_cast<std::size_t>(k)];
     found.segment<joint_parameters>(k * joint_parameters) << link.mass_kg, link.first_moment_kg_m,
         link.inertia_kg_m2(0, 0), link.inertia_kg_m2(0, 1), link.inertia_kg_m2(0, 2), link.inertia_kg_m2(1, 1),

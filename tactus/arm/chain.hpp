@@ -43,7 +43,9 @@ Check check(const Body& body);
 /// `Rz(yaw)·Ry(pitch)·Rx(roll)`.
 Matrix3 rotation_of(const JointOrigin& origin) noexcept;
 
-/// A joint and its link as the dynamics need them; of `Chain`.
+namespace detail {
+
+/// A joint and its link, as the recursions need them.
 struct ChainLink {
   Matrix3 mounting = Matrix3::Identity();  ///< turns vectors of this link, at position 0, into the link before
   Vector3 origin_m = Vector3::Zero();
@@ -55,6 +57,8 @@ struct ChainLink {
   double armature_kg_m2 = 0.0;
   JointFriction friction = {};
 };
+
+}  // namespace detail
 
 /// A serial arm on a base that does not move.
 ///
@@ -104,7 +108,7 @@ class Chain {
   [[nodiscard]] ParameterVector parameters() const noexcept;
 
  private:
-  using Link = ChainLink;
+  using Link = detail::ChainLink;
   /// How a link stands in the link before.
   struct Step {
     Matrix3 rotation;

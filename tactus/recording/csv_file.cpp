@@ -262,9 +262,9 @@ Result<std::vector<std::size_t>> CsvFile::choose(std::string_view choice) const 
   Result<std::size_t> one = find(choice);
   if (one) return Places{*one};
   if (const auto colon = choice.find(':'); colon != std::string_view::npos) {
-    const Result<Places> first = choose(choice.substr(0, colon));
+    Result<Places> first = choose(choice.substr(0, colon));
     if (!first) return first;
-    const Result<Places> last = choose(choice.substr(colon + 1));
+    Result<Places> last = choose(choice.substr(colon + 1));
     if (!last) return last;
     if (first->size() == 1 && last->size() == 1 && first->front() <= last->front()) {
       Places places;
