@@ -286,7 +286,7 @@ void add_device_check(CLI::App& device, const CLI::App& app, int& status) {
       verb->add_option("--bits-per-s", options->bus.bits_per_s, "Of servos: what each has set")->capture_default_str();
   for (CLI::Option* one : {port, motors, framing, rate}) one->needs(bus);
   bus->needs(port)->needs(motors)->excludes(rig);
-  verb->callback([options, verb, bus, rig, &app, &status] {
+  verb->callback([options, bus, rig, &app, &status] {
     if (bus->count() + rig->count() == 0) throw CLI::RequiredError("RIG, or --bus with --port and --motors,");
     end_verb(app, rig->count() > 0 ? check_rig(*options) : check_bus(*options), status);
   });

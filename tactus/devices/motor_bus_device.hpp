@@ -4,7 +4,9 @@
 #include <tactus/devices/motor_link.hpp>
 #include <tactus/station/device.hpp>
 
+#include <array>
 #include <cstdint>
+#include <memory>
 
 namespace tactus::devices {
 
