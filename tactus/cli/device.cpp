@@ -20,6 +20,7 @@ void add_device(CLI::App& app, int& status) {
   add_device_watch(*verb, app, status);
   add_device_zero(*verb, app, status);
   add_device_limits(*verb, app, status);
+  add_device_guard(*verb, app, status);
 }
 
 }  // namespace tactus::cli

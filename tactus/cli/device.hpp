@@ -15,6 +15,7 @@ void add_device_list(CLI::App& device, const CLI::App& app, int& status);
 void add_device_watch(CLI::App& device, const CLI::App& app, int& status);
 void add_device_zero(CLI::App& device, const CLI::App& app, int& status);
 void add_device_limits(CLI::App& device, const CLI::App& app, int& status);
+void add_device_guard(CLI::App& device, const CLI::App& app, int& status);
 
 /// Says an error and sets the exit status; where `well` is false, 1.
 void end_verb(const CLI::App& app, const Result<bool>& well, int& status);

@@ -83,7 +83,7 @@ Result<StatedBus> bus_of(const CheckOptions& options) {
 
 double position_of(const Checked& checked, std::size_t motor) {
   const double of_motor_rad = checked.found.motors[motor].reading.position_rad;
-  return checked.side == nullptr ? of_motor_rad : checked.side->joints[motor].joint.position_rad(of_motor_rad);
+  return checked.side == nullptr ? of_motor_rad : checked.side->joints[motor].joint.first_position_rad(of_motor_rad);
 }
 
 std::string cell(double value) {

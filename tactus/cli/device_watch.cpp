@@ -68,7 +68,7 @@ std::vector<Shown> look(Watched& watched, const BusReadings& now, const std::str
     const RigJoint& joint = watched.side->joints[i];
     if (!Rig::holds(name, joint.path)) continue;
     const auto& motor = now.motors[i];
-    const double position_rad = joint.joint.position_rad(motor.position_rad);
+    const double position_rad = joint.joint.first_position_rad(motor.position_rad);
     const bool heard = motor.answers > 0;
     if (heard && !watched.first_rad[i]) watched.first_rad[i] = position_rad;
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

@@ -58,7 +58,7 @@ Result<bool> zero(const ZeroOptions& options) {
       const RigJoint& joint = side->joints[i];
       const auto holds = [&joint](const std::string& name) { return Rig::holds(name, joint.path); };
       if (std::ranges::none_of(options.joints, holds)) continue;
-      const double was_rad = joint.joint.position_rad(found.motors[i].reading.position_rad);
+      const double was_rad = joint.joint.first_position_rad(found.motors[i].reading.position_rad);
       offsets.push_back({.joint = joint.path, .offset_rad = joint.joint.offset_rad - was_rad});
       constexpr int digits = 4;
       told += joint.path + " was at " + report::number(was_rad, digits) + " " + joint.words().position_unit +

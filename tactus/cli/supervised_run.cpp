@@ -2,6 +2,7 @@
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/person.hpp>
+#include <tactus/cli/rig_run.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/cli/supervised_report.hpp>
 #include <tactus/cli/supervised_run.hpp>
@@ -12,6 +13,7 @@
 #include <tactus/runtime/site_loop.hpp>
 #include <tactus/station/device_registry.hpp>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -237,8 +239,9 @@ void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
     return verb.add_option(name, value, help)->type_name(type)->group(group);
   };
   add("--device", options.devices,
-      "Drive this device, which the program must bring, in place of the simulated one, at both sites or at one",
-      "[SITE=]NAME")
+      "Drive this device, which the program must bring, in place of the simulated one, at both sites or at one; or the "
+      "leader and follower of a rig file, or of a pair of it",
+      "[SITE=]NAME|RIG.toml[:PAIR]")
       ->allow_extra_args(false);
   add("--site", options.site, "Run only this site, the other being elsewhere", "SITE")
       ->check(CLI::IsMember({"master", "slave"}));
@@ -260,6 +263,17 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
   if ((*experiment)->kind() != "tapping") {
     return refused(ErrorCode::inconsistent, here.one ? "--site" : "--device",
                    "only an experiment of the kind tapping runs as two sites");
+  }
+  if (std::ranges::any_of(options.devices, names_a_rig)) {
+    if (here.one) {
+      return refused(ErrorCode::inconsistent, "--site",
+                     "a rig has a leader and a follower, which run in one program: leave out --site");
+    }
+    if (looking_on.ros2 || looking_on.live) {
+      return refused(ErrorCode::inconsistent, looking_on.live ? "--live" : "--ros2",
+                     "several joints are shown by neither yet: leave it out, and look at the log of --out");
+    }
+    return run_rig(options, servo, request, folder, log_limit_bytes);
   }
   const auto params = document.read<TappingParams>();
   if (!params) return params.error();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace tactus::devices {
 
@@ -45,7 +46,13 @@ Joints<station::DeviceReading> MotorBusDevice::read(const station::Tick& tick) n
   now_ns_ = tick.began_ns;
   if (const auto newest = bus_->newest()) last_ = *newest;
   for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
-    reading_[joint].position_m = params_.joints[joint].position_rad(last_.motors[joint].position_rad);
+    const MotorJoint& own = params_.joints[joint];
+    const MotorReading& motor = last_.motors[joint];
+    const double told_rad = own.position_rad(motor.position_rad);
+    if (motor.answers > 0 && !std::exchange(placed_[joint], true)) {
+      turns_rad_[joint] = own.first_position_rad(motor.position_rad) - told_rad;
+    }
+    reading_[joint].position_m = told_rad + turns_rad_[joint];
   }
   const DeviceHealth now = judge();
   if (health_ != DeviceHealth::lost) health_ = now;
@@ -59,7 +66,7 @@ DeviceHealth MotorBusDevice::judge() noexcept {
     oldest_ns = std::min(oldest_ns, motor.heard_ns);
     if (commands_.motors[joint].enabled == 0) continue;
     if (motor.enabled != 0) had_power_[joint] = true;
-    if (!params_.joints[joint].allows(motor)) return DeviceHealth::lost;
+    if (!params_.joints[joint].allows(motor, reading_[joint].position_m)) return DeviceHealth::lost;
     const bool has_it = motor.enabled != 0 && motor.fault == MotorFault::none;
     const bool in_time = !had_power_[joint] && now_ns_ - wanted_since_ns_[joint] < power_within_ns;
     if (!has_it && !in_time) return DeviceHealth::lost;

@@ -4,7 +4,9 @@
 #include <tactus/devices/motor_link.hpp>
 #include <tactus/station/device.hpp>
 
+#include <array>
 #include <cstdint>
+#include <memory>
 
 namespace tactus::devices {
 
@@ -47,7 +49,8 @@ class MotorBusDevice final : public station::JointDevice {
   Joints<station::DeviceReading> reading_;
   std::int64_t now_ns_ = 0;
   std::array<std::int64_t, most_joints> wanted_since_ns_{};
-  std::array<bool, most_joints> had_power_{};
+  std::array<bool, most_joints> had_power_{}, placed_{};
+  std::array<double, most_joints> turns_rad_{};  ///< whole turns between the motor's number and the joint
   station::DeviceHealth health_ = station::DeviceHealth::degraded;
 };
 

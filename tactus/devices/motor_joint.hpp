@@ -34,6 +34,7 @@ struct MotorJoint {
   double torque_rate_limit_Nm_per_s = 0.0;
   double temperature_limit_C = 70.0;
   bool gives_force = true;  ///< false: it tells where it is and takes no command
+  double turn_rad = 0.0;    ///< of the motor, after which its number begins anew at each start; 0: it does not
 
   static constexpr auto fields() {
     using namespace joint_units;
@@ -60,6 +61,14 @@ struct MotorJoint {
   [[nodiscard]] double position_rad(double of_motor_rad) const noexcept {
     return static_cast<double>(sign) * of_motor_rad / gear + offset_rad;
   }
+  /// The same of what a motor tells first: a number that begins anew after each turn stands for all turns, and the one
+  /// that is nearest to the middle of the joint's range is meant.
+  [[nodiscard]] double first_position_rad(double of_motor_rad) const noexcept {
+    const double told_rad = position_rad(of_motor_rad);
+    if (!(turn_rad > 0.0)) return told_rad;
+    const double of_joint_rad = turn_rad / gear;
+    return told_rad + of_joint_rad * std::round((0.5 * (lower_rad + upper_rad) - told_rad) / of_joint_rad);
+  }
   [[nodiscard]] double velocity_rad_per_s(double of_motor_rad_per_s) const noexcept {
     return static_cast<double>(sign) * of_motor_rad_per_s / gear;
   }
@@ -72,10 +81,9 @@ struct MotorJoint {
   [[nodiscard]] bool contains(double position_rad) const noexcept {
     return position_rad >= lower_rad && position_rad <= upper_rad;
   }
-  /// Whether it may have power where its motor says to be. What a motor does not tell counts for it.
-  [[nodiscard]] bool allows(const MotorReading& motor) const noexcept {
-    return contains(position_rad(motor.position_rad)) &&
-           std::fabs(velocity_rad_per_s(motor.velocity_rad_per_s)) <= velocity_limit_rad_per_s &&
+  /// Whether it may have power where it is, with what its motor says. What a motor does not tell counts for it.
+  [[nodiscard]] bool allows(const MotorReading& motor, double joint_rad) const noexcept {
+    return contains(joint_rad) && std::fabs(velocity_rad_per_s(motor.velocity_rad_per_s)) <= velocity_limit_rad_per_s &&
            !(motor.temperature_C > temperature_limit_C);
   }
   /// As its device states them. A motor that gives no force has next to none, so that nobody believes in more.

@@ -44,6 +44,8 @@ Result<damiao::DamiaoBusParams> damiao_params(const StatedBus& stated) {
   const auto framing = value_of<damiao::Framing>("framing", stated.framing);
   if (!framing) return framing.error();
   params.framing = *framing;
+  params.watchdog_s = stated.watchdog_s;
+  params.patience_s = stated.patience_s;
   for (std::size_t i = 0; i < stated.motors.size(); ++i) {
     const StatedMotor& motor = stated.motors[i];
     const auto model = value_of<damiao::Model>(key_of_motor(i, "model"), motor.model);

@@ -165,11 +165,11 @@ std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const s
     problems.push_back({ErrorCode::inconsistent, join(one.path, key), std::move(message), {}});
   };
   const auto rounded = [](double value) { return format_number(std::round(value * 1e3) * 1e-3); };
-  const double position_rad = joint.position_rad(found.reading.position_rad);
+  const double position_rad = joint.first_position_rad(found.reading.position_rad);
   if (!joint.contains(position_rad)) {
     MotorJoint turned = joint;
     turned.sign = -joint.sign;
-    const double turned_rad = turned.position_rad(found.reading.position_rad);
+    const double turned_rad = turned.first_position_rad(found.reading.position_rad);
     add(words.offset,
         "it is at " + rounded(position_rad) + unit + ", where it may be from " + rounded(joint.lower_rad) + " to " +
             rounded(joint.upper_rad) +

@@ -1,14 +1,9 @@
-#include <tactus/devices/damiao/framing.hpp>
-#include <tactus/devices/damiao/models.hpp>
-#include <tactus/devices/dynamixel/dynamixel_bus.hpp>
-#include <tactus/devices/feetech/feetech_bus.hpp>
 #include <tactus/devices/rig/rig.hpp>
 
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
 #include <map>
-#include <memory>
+#include <numbers>
 #include <system_error>
 #include <utility>
 
@@ -18,168 +13,12 @@ namespace {
 
 constexpr Bounds pair_counts = between(1.0, 2.0), joint_counts = between(1.0, static_cast<double>(most_joints));
 
-struct DamiaoSide {
-  BusKind bus = BusKind::damiao;
-  std::string port;
-  damiao::Framing framing = damiao::Framing::usb2can;
-  static constexpr auto fields() {
-    return List{field("bus", &DamiaoSide::bus, "Kind of motors."),
-                field("port", &DamiaoSide::port, "Serial port of the adapter, or interface of CAN."),
-                field("framing", &DamiaoSide::framing, "How frames of CAN become bytes.")};
-  }
-  void put_into(StatedBus& stated) const {
-    stated = {.kind = bus, .port = port, .framing = name_of(framing), .motors = {}};
-  }
-};
-
-struct ServoSide {
-  BusKind bus = BusKind::dynamixel;
-  std::string port;
-  std::int64_t bits_per_s = 1'000'000;
-  static constexpr auto fields() {
-    return List{field("bus", &ServoSide::bus, "Kind of motors."), field("port", &ServoSide::port, "Serial port."),
-                field("bits_per_s", &ServoSide::bits_per_s, between(9600.0, 4e6), "What each servo is set to.")};
-  }
-  void put_into(StatedBus& stated) const {
-    stated = {.kind = bus, .port = port, .bits_per_s = bits_per_s, .motors = {}};
-  }
-};
-
-struct Inverse3Side {
-  BusKind bus = BusKind::inverse3;
-  std::string port;
-  std::string device;
-  static constexpr auto fields() {
-    return List{field("bus", &Inverse3Side::bus, "Kind of device."),
-                field("port", &Inverse3Side::port, "Where Haply's service listens, HOST:PORT."),
-                field("device", &Inverse3Side::device, "Its identifier, as 049D; empty: the first one.")};
-  }
-  void put_into(StatedBus& stated) const { stated = {.kind = bus, .port = port, .device = device, .motors = {}}; }
-};
-
-constexpr const char* motor_doc = "Its identifier on the bus.";
-constexpr const char* model_doc = "As its maker calls it.";
-
-struct DamiaoMotor {
-  std::int64_t motor = 0;
-  damiao::Model model = damiao::Model::dm4310;
-  std::int64_t feedback_id = -1;
-  static constexpr auto fields() {
-    return List{field("motor", &DamiaoMotor::motor, between(1.0, 15.0), motor_doc),
-                field("model", &DamiaoMotor::model, model_doc),
-                field("feedback_id", &DamiaoMotor::feedback_id, between(-1.0, 0x7fe),
-                      "The identifier of its feedback, its register MST_ID; -1: `motor` + 16.")};
-  }
-  void put_into(StatedMotor& stated) const {
-    stated = {.id = motor, .model = name_of(model), .feedback_id = feedback_id};
-  }
-};
-
-struct DynamixelMotor {
-  std::int64_t motor = 0;
-  dynamixel::DynamixelModel model = dynamixel::DynamixelModel::xl330_m288;
-  static constexpr auto fields() {
-    return List{field("motor", &DynamixelMotor::motor, between(0.0, 252.0), motor_doc),
-                field("model", &DynamixelMotor::model, model_doc)};
-  }
-  void put_into(StatedMotor& stated) const { stated = {.id = motor, .model = name_of(model)}; }
-};
-
-struct FeetechMotor {
-  std::int64_t motor = 0;
-  feetech::FeetechModel model = feetech::FeetechModel::sts3215;
-  double torque_Nm_per_A = 0.0;
-  static constexpr auto fields() {
-    return List{field("motor", &FeetechMotor::motor, between(0.0, 253.0), motor_doc),
-                field("model", &FeetechMotor::model, model_doc),
-                field("torque_Nm_per_A", &FeetechMotor::torque_Nm_per_A, Unit{"N m/A", "_Nm_per_A"},
-                      positive_up_to(100.0), "Of a servo that takes a current: stall torque over stall current.")};
-  }
-  void put_into(StatedMotor& stated) const {
-    stated = {.id = motor, .model = name_of(model), .torque_Nm_per_A = torque_Nm_per_A};
-  }
-};
-
-enum class Inverse3Model : std::int64_t { inverse3 };
-constexpr auto enumerators(Inverse3Model) { return std::array{Enumerator{Inverse3Model::inverse3, "inverse3"}}; }
-
-/// An axis in m and N.
-struct Inverse3Axis {
-  std::int64_t motor = 0;
-  Inverse3Model model = Inverse3Model::inverse3;
-  std::int64_t sign = 1;
-  double offset_m = 0.0, lower_m = 0.0, upper_m = 0.0, velocity_limit_m_per_s = 0.0, force_limit_N = 0.0,
-         force_rate_limit_N_per_s = 0.0;
-  static constexpr auto fields() {
-    constexpr Bounds places = between(-10.0, 10.0);
-    using P = Inverse3Axis;
-    return List{field("motor", &P::motor, between(1.0, 3.0), "1 is x, 2 is y, 3 is z."),
-                field("model", &P::model, model_doc),
-                field("sign", &P::sign, between(-1.0, 1.0), "1, or -1 where the axis points against the joint."),
-                field("offset_m", &P::offset_m, units::metre, places, "Where the joint is at zero of the axis."),
-                field("lower_m", &P::lower_m, units::metre, places, "The joint has no force below that."),
-                field("upper_m", &P::upper_m, units::metre, places, "The joint has no force above that."),
-                field("velocity_limit_m_per_s", &P::velocity_limit_m_per_s, units::metre_per_second,
-                      positive_up_to(100.0), "A joint that is faster loses its force."),
-                field("force_limit_N", &P::force_limit_N, units::newton, positive_up_to(100.0),
-                      "The largest force, either way."),
-                field("force_rate_limit_N_per_s", &P::force_rate_limit_N_per_s, units::newton_per_second,
-                      positive_up_to(1e6), "The fastest change of that force.")};
-  }
-  void put_into(RigJoint& one) const {
-    one.motor = {.id = motor, .model = name_of(model)};
-    one.joint.sign = sign;
-    one.joint.offset_rad = offset_m;
-    one.joint.lower_rad = lower_m;
-    one.joint.upper_rad = upper_m;
-    one.joint.velocity_limit_rad_per_s = velocity_limit_m_per_s;
-    one.joint.torque_limit_Nm = force_limit_N;
-    one.joint.torque_rate_limit_Nm_per_s = force_rate_limit_N_per_s;
-  }
-};
-
 constexpr JointWords turning{
     "offset_rad", "lower_rad", "upper_rad", "velocity_limit_rad_per_s", "torque_limit_Nm", "torque_rate_limit_Nm_per_s",
     "rad",        "rad/s",     "N m"};
 constexpr JointWords sliding{
     "offset_m", "lower_m", "upper_m", "velocity_limit_m_per_s", "force_limit_N", "force_rate_limit_N_per_s",
     "m",        "m/s",     "N"};
-
-/// A struct that the document fills, and where it goes then.
-class Filled {
- public:
-  template <Described T, class Into>
-  Filled(T params, Into& into, const std::string& section, std::vector<Binding>& bindings) {
-    auto held = std::make_shared<T>(std::move(params));
-    for (Binding& binding : tactus::bind(*held, section)) bindings.push_back(std::move(binding));
-    put_ = [held, &into] { held->put_into(into); };
-  }
-  void put() const { put_(); }
-
- private:
-  std::function<void()> put_;
-};
-
-/// `arm`, `leader`, `elbow`, `motor` of `arm.leader.elbow.motor`.
-std::vector<std::string_view> parts_of(std::string_view path) {
-  std::vector<std::string_view> parts;
-  for (std::size_t begin = 0; begin <= path.size();) {
-    const std::size_t end = std::min(path.find('.', begin), path.size());
-    parts.push_back(path.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
-/// The element of that path, added where there is none.
-template <class T>
-T& named(std::vector<T>& all, std::string T::*name, std::string_view wanted) {
-  const auto found = std::ranges::find(all, wanted, name);
-  if (found != all.end()) return *found;
-  T& added = all.emplace_back();
-  added.*name = wanted;
-  return added;
-}
 
 Error at(const std::string& parameter, ErrorCode code, std::string message) {
   return {.code = code, .parameter = parameter, .message = std::move(message), .place = {}};
@@ -208,7 +47,7 @@ Result<Rig> Rig::load(const std::filesystem::path& file) {
   auto document = configuration::Document::load(file);
   if (!document) return document.error();
   Rig rig(*std::move(document), file.string());
-  if (Check error = rig.read()) return rig.locate(*std::move(error));
+  if (Check error = rig.read_and_check()) return rig.locate(*std::move(error));
   return rig;
 }
 
@@ -216,64 +55,12 @@ Result<Rig> Rig::parse(std::string_view text, std::string name) {
   auto document = configuration::Document::parse(text, name);
   if (!document) return document.error();
   Rig rig(*std::move(document), std::move(name));
-  if (Check error = rig.read()) return rig.locate(*std::move(error));
+  if (Check error = rig.read_and_check()) return rig.locate(*std::move(error));
   return rig;
 }
 
-Check Rig::read() {
-  // Which sections there are.
-  for (const std::string& key : document_.keys()) {
-    const auto parts = parts_of(key);
-    constexpr std::size_t of_side = 3, of_joint = 4;
-    if (parts.size() < of_side || parts.size() > of_joint) continue;
-    const bool leads = parts[1] == "leader";
-    if (!leads && parts[1] != "follower") continue;
-    RigPair& pair = named(pairs_, &RigPair::name, parts[0]);
-    auto& side = leads ? pair.leader : pair.follower;
-    if (!side) side.emplace().path = join(parts[0], parts[1]);
-    if (parts.size() == of_joint) named(side->joints, &RigJoint::path, section_of(key));
-  }
-  std::vector<Binding> bindings;
-  std::vector<Filled> filled;
-  const auto fill = [&](auto params, auto& into, const std::string& path) {
-    filled.emplace_back(std::move(params), into, path, bindings);
-  };
-  for (RigPair& pair : pairs_) {
-    for (auto* side : {&pair.leader, &pair.follower}) {
-      if (!*side) continue;
-      RigSide& here = **side;
-      const auto kind = document_.text_at(join(here.path, "bus"));
-      if (!kind) {
-        Error error = kind.error();
-        if (error.code == ErrorCode::missing) error.place.clear();
-        return error;
-      }
-      const bool damiao = *kind == name_of(BusKind::damiao), feetech = *kind == name_of(BusKind::feetech);
-      const bool slides = *kind == name_of(BusKind::inverse3);
-      if (damiao) {
-        fill(DamiaoSide{}, here.bus, here.path);
-      } else if (slides) {
-        fill(Inverse3Side{}, here.bus, here.path);
-      } else {
-        fill(ServoSide{}, here.bus, here.path);
-      }
-      for (RigJoint& joint : here.joints) {
-        if (damiao) {
-          fill(DamiaoMotor{}, joint.motor, joint.path);
-        } else if (feetech) {
-          fill(FeetechMotor{}, joint.motor, joint.path);
-        } else if (slides) {
-          joint.slides = true;
-          fill(Inverse3Axis{}, joint, joint.path);
-        } else {
-          fill(DynamixelMotor{}, joint.motor, joint.path);
-        }
-        if (!slides) append_bindings(joint.joint, joint.path, bindings);
-      }
-    }
-  }
-  if (Check error = document_.read(bindings)) return error;
-  for (const Filled& one : filled) one.put();
+Check Rig::read_and_check() {
+  if (Check error = read()) return error;
   if (!pair_counts.contain(static_cast<double>(pairs_.size()))) {
     return at({}, ErrorCode::missing,
               pairs_.empty() ? "there is no leader and no follower in it: write [arm.leader] with bus and port, and "
@@ -290,6 +77,7 @@ Check Rig::read() {
       if (Check error = check_side(here)) return error;
       for (RigJoint& joint : here.joints) {
         joint.joint.gives_force = ability_of(here.bus.kind, joint.motor).torque_Nm > 0.0;
+        if (here.bus.kind == BusKind::feetech) joint.joint.turn_rad = 2.0 * std::numbers::pi;
       }
     }
   }

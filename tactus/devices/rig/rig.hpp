@@ -85,6 +85,7 @@ class Rig {
 
  private:
   Rig(configuration::Document document, std::string name) : document_(std::move(document)), name_(std::move(name)) {}
+  Check read_and_check();
   Check read();
   Check check_keys(const RigSide& side) const;
   Check check_side(const RigSide& side) const;

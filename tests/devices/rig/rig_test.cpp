@@ -1,6 +1,7 @@
 #include <tactus/devices/rig/rig.hpp>
 
 #include <filesystem>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -60,6 +61,21 @@ TEST(Rig, SignOffsetAndGearTranslateBetweenMotorAndJoint) {
   EXPECT_DOUBLE_EQ(joint.motor_torque_Nm(-7.0), 1.5);
 }
 
+TEST(Rig, ANumberThatBeginsAnewAfterATurnStandsForTheTurnInTheRange) {
+  MotorJoint joint;
+  joint.lower_rad = -1.0;
+  joint.upper_rad = 2.0;
+  EXPECT_DOUBLE_EQ(joint.first_position_rad(6.2), 6.2);
+  joint.turn_rad = 2.0 * std::numbers::pi;
+  EXPECT_DOUBLE_EQ(joint.first_position_rad(6.2), 6.2 - 2.0 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(joint.first_position_rad(1.9), 1.9);
+  joint.sign = -1;
+  joint.gear = 2.0;
+  joint.offset_rad = 1.0;
+  // A turn of the motor is half a turn of the joint.
+  EXPECT_DOUBLE_EQ(joint.first_position_rad(6.0), -2.0 + std::numbers::pi);
+}
+
 TEST(Rig, EveryMistakeIsToldWithItsLineAndRemedy) {
   const std::string side = damiao_side("arm.leader", "/dev/a");  // three lines
   const std::string one = joint("arm.leader.elbow", 1, "DM4310");
@@ -74,7 +90,8 @@ TEST(Rig, EveryMistakeIsToldWithItsLineAndRemedy) {
   EXPECT_EQ(problem_of(side + one + "lower_red = 1.0\n"),
             "rig.toml:12:1: arm.leader.elbow.lower_red: unknown key: did you mean lower_rad?");
   EXPECT_EQ(problem_of(side + "bits_per_s = 1000000\n" + one),
-            "rig.toml:4:1: arm.leader.bits_per_s: unknown key: [arm.leader] can have bus, port, framing, elbow");
+            "rig.toml:4:1: arm.leader.bits_per_s: unknown key: [arm.leader] can have bus, port, framing, patience_s, "
+            "watchdog_s, elbow");
   EXPECT_EQ(problem_of("[arm.leader]\nbus = \"damiau\"\nport = \"/dev/a\"\n" + one),
             "rig.toml:2:7: arm.leader.bus: \"damiau\" is no choice here: it must be \"damiao\", \"dynamixel\", "
             "\"feetech\" or \"inverse3\"; did you mean \"damiao\"?");

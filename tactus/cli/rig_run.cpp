@@ -1,0 +1,241 @@
+#include <tactus/cli/interruption.hpp>
+#include <tactus/cli/line_writer.hpp>
+#include <tactus/cli/person.hpp>
+#include <tactus/cli/rig_guard.hpp>
+#include <tactus/cli/rig_run.hpp>
+#include <tactus/cli/run_log.hpp>
+#include <tactus/configuration/document.hpp>
+#include <tactus/configuration/toml_writer.hpp>
+#include <tactus/devices/motor_bus_device.hpp>
+#include <tactus/devices/rig/examination.hpp>
+#include <tactus/devices/rig/rig_loop.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
+#include <tactus/report/text.hpp>
+#include <tactus/runtime/site_log.hpp>
+#include <tactus/runtime/site_parts.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
+namespace tactus::cli {
+
+namespace {
+
+using devices::MotorBusDevice;
+using devices::Rig;
+using devices::RigLoop;
+using devices::RigPair;
+using devices::RigSecond;
+using devices::RigSide;
+
+constexpr std::string_view suffix = ".toml";
+
+Error refused(const char* option, std::string message) {
+  return {.code = ErrorCode::inconsistent, .parameter = {}, .message = std::move(message), .place = option};
+}
+
+/// A file, and the pair of it that is meant; empty where it has only one.
+std::pair<std::string, std::string> parts_of(const std::string& device) {
+  if (device.ends_with(suffix)) return {device, {}};
+  const auto colon = device.rfind(':');
+  return {device.substr(0, colon), device.substr(colon + 1)};
+}
+
+Result<const RigPair*> pair_of(const Rig& rig, const std::string& name) {
+  const auto& pairs = rig.pairs();
+  if (name.empty() && pairs.size() > 1) {
+    return refused("--device", "the rig has two pairs: name one, as " + report::printable(rig.name()) + ":" +
+                                   report::printable(pairs[0].name));
+  }
+  const auto found = name.empty() ? pairs.begin() : std::ranges::find(pairs, name, &RigPair::name);
+  if (found == pairs.end()) {
+    return refused("--device", "'" + report::printable(name) + "' is no pair of " + report::printable(rig.name()));
+  }
+  if (!found->leader || !found->follower) {
+    return rig.locate({.code = ErrorCode::missing,
+                       .parameter = found->name,
+                       .message = "a leader and a follower are driven together: write the other one too",
+                       .place = {}});
+  }
+  for (const auto* side : {&*found->leader, &*found->follower}) {
+    for (const devices::RigJoint& joint : side->joints) {
+      if (joint.joint.gives_force) continue;
+      return rig.locate({.code = ErrorCode::inconsistent,
+                         .parameter = join(joint.path, "model"),
+                         .message = "a " + joint.motor.model +
+                                    " takes no command of force, and sites try each motor before they couple: such an "
+                                    "arm can be watched and not driven",
+                         .place = {}});
+    }
+  }
+  return &*found;
+}
+
+/// Everything that is wrong with the two, in lines; nothing gets power.
+Check refuse_unclean(const Rig& rig, const RigPair& pair, LineWriter& errors) {
+  bool clean = true;
+  for (const auto* side : {&*pair.leader, &*pair.follower}) {
+    const auto found = examine(rig, *side);
+    clean = clean && found.well();
+    const auto say = [&errors](const std::vector<Error>& problems) {
+      for (const Error& problem : problems) errors.say("tactus: " + describe(problem) + "\n");
+    };
+    say(found.problems);
+    for (const auto& motor : found.motors) say(motor.problems);
+  }
+  if (clean) return std::nullopt;
+  return Error{.code = ErrorCode::failed,
+               .parameter = {},
+               .message = "it is not clean, so nothing was driven: mend what 'tactus device check' tells",
+               .place = rig.name()};
+}
+
+/// A side that is driven. The guard is there before the port is open, and goes after it is closed.
+struct Driven {
+  std::optional<RigGuard> guard;
+  std::unique_ptr<devices::MotorLink> link;
+  std::unique_ptr<MotorBusDevice> device;
+};
+
+Result<Driven> drive(const Rig& rig, const RigSide& side) {
+  Driven driven;
+  if (!has_watchdog(side.bus.kind)) {
+    auto guard = RigGuard::start(rig.name(), side);
+    if (!guard) return guard.error();
+    driven.guard.emplace(*std::move(guard));
+  }
+  auto link = start(side.bus);
+  if (!link) return rig.locate(side, link.error());
+  driven.link = *std::move(link);
+  constexpr Seconds longest{10.0};
+  if (Check wrong = driven.link->wait_until_asked(longest)) return *std::move(wrong);
+  auto device = MotorBusDevice::make(*driven.link, {.joints = side.motor_joints(), .silence_s = side.bus.watchdog_s});
+  if (!device) return device.error();
+  driven.device = *std::move(device);
+  return driven;
+}
+
+std::string fixed(double value, int digits) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+/// What a person does next, where there is something.
+std::string advice(const RigSecond& second, const RigPair& pair) {
+  using control::SiteState;
+  const auto& joint = pair.leader->joints[std::min(second.joint, pair.leader->joints.size() - 1)];
+  if (second.leader_health == station::DeviceHealth::lost || second.follower_health == station::DeviceHealth::lost) {
+    return std::string("; the ") + (second.leader_health == station::DeviceHealth::lost ? "leader" : "follower") +
+           " is lost: look at 'tactus device check'";
+  }
+  if (second.too_far) {
+    return "; too far apart to arm: move " + joint.path + " by " + fixed(second.farthest, 2) + " " +
+           joint.words().position_unit + " to where its follower is";
+  }
+  if (second.leader == SiteState::fault || second.follower == SiteState::fault) return "; type 'clear', then 'arm'";
+  const bool waits = second.leader == SiteState::configure || second.leader == SiteState::hold;
+  return waits ? "; hold the leader still and type 'arm'" : "";
+}
+
+std::string line_of(const RigSecond& second, const RigPair& pair) {
+  return fixed(second.time_s, 0) + " s: leader " + name_of(second.leader) + ", follower " + name_of(second.follower) +
+         " (" + name_of(second.cause) + "), most torque " + fixed(second.most_torque, 2) + ", farthest apart " +
+         fixed(second.farthest, 3) + advice(second, pair) + "\n";
+}
+
+std::string summary_of(const devices::RigTotals& totals, const runtime::ServoReport& servo,
+                       const std::string& ended_by) {
+  return std::to_string(totals.ticks) + " ticks in " + fixed(totals.duration_s, 1) + " s, " +
+         std::to_string(totals.active_ticks) + " of them coupled; armed " + std::to_string(totals.armings) +
+         " times, held " + std::to_string(totals.holds) + " times, a device lost in " +
+         std::to_string(totals.lost_ticks) + " ticks; " + std::to_string(servo.missed) + " deadlines missed, late " +
+         std::to_string(servo.late_ours()) + " by us and " + std::to_string(servo.late_machine()) +
+         " by the machine; ended by " + ended_by + ".\n";
+}
+
+}  // namespace
+
+bool names_a_rig(const std::string& device) {
+  return device.ends_with(suffix) || device.find(std::string(suffix) + ":") != std::string::npos;
+}
+
+Check run_rig(const SupervisedOptions& options, runtime::ServoThreadParams servo, const experiments::Request& request,
+              OutputFolder& folder, std::uint64_t log_limit_bytes) {
+  if (options.devices.size() > 1) return refused("--device", "a rig has the devices of both sites: name it alone");
+  const auto params = request.document.read<experiments::TappingParams>();
+  if (!params) return params.error();
+  const auto [file, name] = parts_of(options.devices.front());
+  const auto rig = Rig::load(file);
+  if (!rig) return rig.error();
+  const auto pair = pair_of(*rig, name);
+  if (!pair) return pair.error();
+
+  runtime::SiteExchange exchange;
+  const auto interruption = Interruption::start(exchange.end);
+  if (!interruption) return interruption.error();
+  LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
+  if (Check unclean = refuse_unclean(*rig, **pair, errors)) return unclean;
+  // The devices give up their motors before the links do, and these before the guards.
+  std::array<std::optional<Driven>, 2> driven;
+  for (std::size_t side = 0; side < driven.size(); ++side) {
+    auto made = drive(*rig, side == 0 ? *(*pair)->leader : *(*pair)->follower);
+    if (!made) return made.error();
+    driven[side].emplace(*std::move(made));
+  }
+  const std::size_t joints = (*pair)->leader->joints.size();
+  const Seconds tick{1.0 / params->servo.rate_Hz};
+  servo.rate_Hz = params->servo.rate_Hz;
+  auto loop = RigLoop::make(Joints<control::ControlParams>(joints, runtime::control_of(*params)), params->channel, tick,
+                            {.duration_s = options.duration_s, .arm_at_once = options.arm}, exchange,
+                            *driven[0]->device, *driven[1]->device);
+  if (!loop) return request.document.locate(loop.error());
+  const auto person = Person::listen_to(STDIN_FILENO, control::SiteRole::master, exchange, errors);
+  if (!person) return person.error();
+
+  runtime::JointStreams streams(joints);
+  std::optional<runtime::SiteLog> log;
+  if (folder.wanted()) {
+    if (Check error = folder.begin()) return error;
+    runtime::LogMetadata about{{"tactus", log_origin()}};
+    about["tactus"]["experiment"] = request.name;
+    about["tactus"]["configuration"] = configuration::to_toml(*params);
+    about["tactus"]["rig"] = (*pair)->name;
+    auto created = runtime::SiteLog::create(folder.log_folder(), streams, about, log_limit_bytes);
+    if (!created) return created.error();
+    log.emplace(*std::move(created));
+    loop->leave_in(streams);
+  }
+  auto thread = runtime::ServoThread<RigLoop>::start(servo, *std::move(loop));
+  if (!thread) return thread.error();
+  const auto take_seconds = [&] {
+    while (const auto second = (*thread)->step().next_second()) output.say(line_of(*second, **pair));
+  };
+  constexpr unsigned between_looks_us = 20'000;
+  while (!(*thread)->ended()) {
+    take_seconds();
+    usleep(between_looks_us);
+  }
+  const runtime::ServoReport report = (*thread)->finish();
+  take_seconds();
+  Check log_error;
+  std::string where;
+  if (log) {
+    log_error = log->close();
+    where = std::to_string(log->dropped()) + " records of the log dropped.\n" + folder.log_line(log->removed());
+  }
+  const std::string ended_by = (*interruption)->signal() != 0 ? (*interruption)->name() : "its duration";
+  const Check unread = output.finish(summary_of((*thread)->step().totals(), report, ended_by) + where);
+  return log_error ? log_error : unread;
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <tactus/cli/output_folder.hpp>
+#include <tactus/cli/supervised_run.hpp>
+#include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
+#include <tactus/runtime/servo_thread.hpp>
+
+#include <cstdint>
+#include <string>
+
+namespace tactus::cli {
+
+/// Whether a `--device` names a rig file: `FILE.toml`, or `FILE.toml:PAIR`.
+bool names_a_rig(const std::string& device);
+
+/// Drives a pair of a rig under supervision, each joint by the controller of the experiment, until it is over: what
+/// `tactus run EXPERIMENT --realtime --device FILE.toml` is. Nothing gets power before the rig is clean.
+Check run_rig(const SupervisedOptions& options, runtime::ServoThreadParams servo, const experiments::Request& request,
+              OutputFolder& folder, std::uint64_t log_limit_bytes);
+
+}  // namespace tactus::cli

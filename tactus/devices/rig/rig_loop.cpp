@@ -1,0 +1,134 @@
+#include <tactus/devices/rig/rig_loop.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus::devices {
+
+using control::SiteState;
+using station::DeviceReading;
+
+Result<RigLoop> RigLoop::make(const Joints<control::ControlParams>& control, const station::LinkParams& channel,
+                              Seconds tick, const Params& params, runtime::SiteExchange& exchange,
+                              station::JointDevice& leader, station::JointDevice& follower) {
+  auto pair = station::JointLocalTeleoperator::make(control, channel, tick, Joints<double>(control.size(), 0.0), leader,
+                                                    follower);
+  if (!pair) return pair.error();
+  Joints<double> scales(control.size());
+  for (std::size_t joint = 0; joint < scales.size(); ++joint) scales[joint] = control[joint].position_scale;
+  const runtime::SiteConsole console({.duration_s = params.duration_s,
+                                      .arm_at_once = params.arm_at_once,
+                                      .listen_before_arming_s = control[0].supervision.watchdog.timeout_s,
+                                      .tick_s = tick.value},
+                                     exchange);
+  return RigLoop(console, params, leader, follower, scales, *std::move(pair));
+}
+
+RigLoop::RigLoop(const runtime::SiteConsole& console, const Params& params, station::JointDevice& leader,
+                 station::JointDevice& follower, const Joints<double>& scales, station::JointLocalTeleoperator pair)
+    : console_(console),
+      params_(params),
+      leader_(&leader),
+      follower_(&follower),
+      scales_(scales),
+      pair_(std::move(pair)),
+      leader_read_(scales_.size()),
+      follower_read_(scales_.size()) {}
+
+/// The joint that is farthest from its leader, as both stand.
+void RigLoop::judge_distance() noexcept {
+  second_.farthest = 0.0;
+  for (std::size_t joint = 0; joint < scales_.size(); ++joint) {
+    const double apart = std::fabs(follower_read_[joint].position_m - scales_[joint] * leader_read_[joint].position_m);
+    if (apart <= second_.farthest) continue;
+    second_.farthest = apart;
+    second_.joint = joint;
+  }
+  second_.too_far = !active_ && (!seen_ || !(second_.farthest <= params_.farthest));
+}
+
+/// They align when somebody arms and not before, so that a leader that was moved meanwhile is followed from where it
+/// is.
+control::SiteRequests RigLoop::asked(const control::SiteRequests& pressed) noexcept {
+  control::SiteRequests request = pressed;
+  if (second_.too_far) request.arm = false;
+  const bool unaligned = second_.leader == SiteState::configure || second_.follower == SiteState::configure;
+  request.align = false;
+  if (unaligned) {
+    arming_ = arming_ || request.arm;
+    request.align = arming_;
+    request.arm = false;
+  } else if (arming_) {
+    arming_ = second_.leader != SiteState::align || second_.follower != SiteState::align;
+    request.arm = !arming_;
+  }
+  return request;
+}
+
+bool RigLoop::operator()(const station::Tick& tick) noexcept {
+  if (console_.insisted()) {
+    pair_.release();
+    return false;
+  }
+  const control::SiteRequests by_person =
+      console_.step(tick, second_.leader, pair_.sites().master().heard().session != 0);
+  judge_distance();
+  const control::SiteRequests pressed = asked(by_person);
+  const auto done = pair_.step(tick, pressed);
+  const auto trusted = [](const Joints<DeviceReading>& reading) {
+    return std::all_of(reading.begin(), reading.end(),
+                       [](const DeviceReading& joint) { return std::isfinite(joint.position_m); });
+  };
+  seen_ = trusted(done.master.reading) && trusted(done.slave.reading);
+  if (seen_) {
+    leader_read_ = done.master.reading;
+    follower_read_ = done.slave.reading;
+  }
+  const auto state = static_cast<SiteState>(done.slave.output.record.state);
+  const bool active = state == SiteState::active;
+  active_ = active;
+  if (streams_ != nullptr) streams_->push(tick, pressed, pair_, done);
+  keep_books(done);
+  bool works = false, gives_force = false;
+  for (const std::int64_t each : {done.master.output.record.state, done.slave.output.record.state}) {
+    const auto of_site = static_cast<SiteState>(each);
+    works = works || (of_site != SiteState::configure && of_site != SiteState::fault);
+  }
+  gives_force = !pair_.at_rest();
+  return !console_.over(tick, works, gives_force);
+}
+
+void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) noexcept {
+  const auto leader = static_cast<SiteState>(done.master.output.record.state);
+  const auto follower = static_cast<SiteState>(done.slave.output.record.state);
+  const auto cause = [](std::int64_t number) { return static_cast<control::SiteCause>(number); };
+  if (leader == SiteState::armed && second_.leader != SiteState::armed) ++totals_.armings;
+  if (leader == SiteState::hold && second_.leader != SiteState::hold) ++totals_.holds;
+  second_.leader = leader;
+  second_.follower = follower;
+  const bool of_follower = follower == SiteState::hold || follower == SiteState::fault;
+  second_.cause = cause(of_follower ? done.slave.output.record.cause : done.master.output.record.cause);
+  second_.leader_health = leader_->health();
+  second_.follower_health = follower_->health();
+  for (std::size_t joint = 0; joint < scales_.size(); ++joint) {
+    second_.most_torque = std::max({second_.most_torque, std::fabs(done.master.output.site[joint].motor_force_N),
+                                    std::fabs(done.slave.output.site[joint].motor_force_N)});
+  }
+  const auto lost = station::DeviceHealth::lost;
+  if (second_.leader_health == lost || second_.follower_health == lost) ++totals_.lost_ticks;
+  ++totals_.ticks;
+  if (active_) ++totals_.active_ticks;
+  totals_.duration_s = second_.time_s = console_.time_s();
+  if (!console_.ends_second()) return;
+  shared_->seconds.try_push(second_);
+  second_.most_torque = 0.0;
+}
+
+std::optional<RigSecond> RigLoop::next_second() noexcept {
+  RigSecond second;
+  if (!shared_->seconds.try_pop(second)) return std::nullopt;
+  return second;
+}
+
+}  // namespace tactus::devices

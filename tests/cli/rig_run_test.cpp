@@ -1,0 +1,171 @@
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "tests/cli/command.hpp"
+
+namespace tactus::cli {
+namespace rig_run_test {
+
+/// A pair of arms that are emulated, driven at the real clock.
+class RigRun : public Command {
+ protected:
+  /// One side, all joints alike, at the port `@1` or `@2`.
+  static std::string side(const std::string& name, const std::string& port, const std::string& bus,
+                          const std::string& model, int joints, const std::string& more) {
+    std::string text = "[arm." + name + "]\nbus = \"" + bus + "\"\nport = \"" + port + "\"\n";
+    if (bus == "damiao") text += "patience_s = 0.05\nwatchdog_s = 1.0\n";
+    for (int i = 1; i <= joints; ++i) {
+      const std::string number = std::to_string(i);
+      text += "[arm." + name + ".joint_" + number + "]\nmotor = " + number + "\nmodel = \"" + model +
+              "\"\nlower_rad = -3.0\nupper_rad = 3.0\nvelocity_limit_rad_per_s = 8.0\ntorque_limit_Nm = "
+              "1.5\ntorque_rate_limit_Nm_per_s = 500.0\n" +
+              more;
+    }
+    return text;
+  }
+  static std::string pair(const std::string& bus, const std::string& model, int joints, const std::string& of_leader,
+                          const std::string& of_both = {}) {
+    return side("leader", "@1", bus, model, joints, of_leader + of_both) +
+           side("follower", "@2", bus, model, joints, of_both);
+  }
+  /// The peers at `@1` and `@2`, then the rest of the script, in which `$RUN` drives the rig.
+  std::string shell(const std::string& leader, const std::string& follower, const std::string& rig,
+                    const std::string& rest) {
+    write("rig.in", rig);
+    write("script", R"sh(
+      cp rig.in rig.toml; rm -f said1 said2; mkfifo said1 said2
+      $TACTUS emulate )sh" +
+                        leader + R"sh( >said1 2>emulate.err </dev/null & peers=$!
+      $TACTUS emulate )sh" +
+                        follower + R"sh( >said2 2>emulate.err </dev/null & peers="$peers $!"
+      trap 'kill -KILL $peers 2>/dev/null' EXIT
+      read -r leader <said1; read -r follower <said2
+      sed -i "s|@1|$leader|; s|@2|$follower|" rig.toml
+      mkfifo hands; exec 9<>hands; rm hands
+      RUN="$TACTUS run $JOINTS --realtime --device rig.toml"
+      )sh" + rest);
+    setenv("TACTUS", TACTUS_COMMAND, 1);
+    setenv("JOINTS", TACTUS_JOINTS_FILE, 1);
+    EXPECT_EQ(std::system(("cd '" + folder().string() + "' && bash script >out 2>err").c_str()), 0) << content("err");
+    return content("out") + content("err");
+  }
+};
+
+TEST_F(RigRun, APairOfSevenJointsAlignsAndTeleoperatesWithALogThatIsWhole) {
+  // On a machine that does other things too, a motor may be unheard for longer than it may be.
+  const std::string whole = "; armed 1 times, held 0 times, a device lost in 0 ticks; ";
+  std::string said;
+  for (int tries = 0; tries < 3 && said.find(whole) == std::string::npos; ++tries) {
+    said = shell("damiao --motors 7", "damiao --motors 7", pair("damiao", "DM4310", 7, "offset_rad = 0.2\n"),
+                 "$RUN --arm --duration-s 6 --out run --overwrite <&9; echo status $?");
+  }
+  EXPECT_NE(said.find(whole), std::string::npos) << said;
+  EXPECT_NE(said.find("5 s: leader active, follower active (none), "), std::string::npos) << said;
+  EXPECT_NE(said.find("\n0 records of the log dropped.\nLog: run/log\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
+  EXPECT_TRUE(std::filesystem::exists(folder() / "run/log/log.mcap"));
+  // It stood 0.2 rad away; what is left holds against the friction of the joint, less than 0.02 rad at 4 N m/rad.
+  const auto apart = [&said](const std::string& second) {
+    const auto at = said.find("farthest apart ", said.find("\n" + second + " s: "));
+    return std::atof(said.c_str() + at + std::string("farthest apart ").size());
+  };
+  EXPECT_LT(apart("5"), 0.02) << said;
+}
+
+TEST_F(RigRun, ArmsThatAreTooFarApartAreNotArmedAndWhatToDoIsSaid) {
+  const std::string said = shell("damiao", "damiao", pair("damiao", "DM4310", 2, "offset_rad = 0.5\n"),
+                                 "$RUN --arm --duration-s 2 <&9; echo status $?");
+  EXPECT_NE(said.find("leader configure, follower configure (started), most torque 0.00, farthest apart 0.500; too far "
+                      "apart to arm: move arm.leader.joint_1 by 0.50 rad to where its follower is\n"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("armed 0 times"), std::string::npos) << said;
+}
+
+TEST_F(RigRun, AMotorThatIsLostEndsTheForceOfBothAndIsSaid) {
+  const std::string said = shell("damiao", "damiao --fault silence:2@4", pair("damiao", "DM4310", 2, ""),
+                                 "$RUN --arm --duration-s 6 <&9; echo status $?");
+  EXPECT_NE(said.find("follower active"), std::string::npos) << said;
+  EXPECT_NE(said.find("; the follower is lost: look at 'tactus device check'\n"), std::string::npos) << said;
+  EXPECT_EQ(said.find("a device lost in 0 ticks"), std::string::npos) << said;
+  EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
+}
+
+TEST_F(RigRun, NothingIsDrivenBeforeTheRigIsClean) {
+  const std::string said = shell("damiao", "damiao --fault hot-drive:1", pair("damiao", "DM4310", 2, ""),
+                                 "$RUN --arm --duration-s 6 <&9; echo status $?");
+  EXPECT_NE(said.find("arm.follower.joint_1.motor: motor 1: too hot: "), std::string::npos) << said;
+  EXPECT_NE(
+      said.find("tactus: rig.toml: it is not clean, so nothing was driven: mend what 'tactus device check' tells"),
+      std::string::npos)
+      << said;
+  EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
+}
+
+/// HLS servos have no watchdog: what is left of a program that was killed is its last current.
+TEST_F(RigRun, AGuardTakesThePowerFromServosWithoutAWatchdogWhenTheProgramIsKilled) {
+  const std::string killed = R"sh(
+      # Register 40 of servo 1, torque enable, once what was under way has come.
+      power() {
+        exec 3<>"$1"
+        timeout 0.3 cat <&3 >stale
+        printf '\377\377\001\004\002\050\001\317' >&3
+        timeout 5 head -c 7 <&3 | od -An -tx1 | tr -d ' \n'
+        exec 3>&-
+        echo
+      }
+      for guarded in yes no; do
+        $RUN --arm <&9 >run.out 2>&1 & run=$!
+        for try in $(seq 100); do grep -q 'follower active' run.out && break; sleep 0.1; done
+        grep -q 'follower active' run.out || cat run.out
+        for child in /proc/[0-9]*/stat; do
+          read -r pid name state parent rest <$child
+          [ $guarded = no ] && [ "$parent" = $run ] && kill -KILL $pid
+        done 2>/dev/null
+        kill -KILL $run
+        wait $run 2>/dev/null
+        sleep 1
+        echo guarded $guarded $(power $leader) $(power $follower)
+      done
+  )sh";
+  const std::string said = shell("feetech --model hls3625", "feetech --model hls3625",
+                                 pair("feetech", "hls3625", 2, "", "torque_Nm_per_A = 0.8\n"), killed);
+  EXPECT_NE(said.find("guarded yes ffff01030000fb ffff01030000fb\n"), std::string::npos) << said;
+  // The check can fail.
+  EXPECT_NE(said.find("guarded no ffff01030001fa ffff01030001fa\n"), std::string::npos) << said;
+}
+
+TEST_F(RigRun, WhatMakesNoSenseIsRefusedWithTheRemedy) {
+  const auto refusal = [this](const std::string& rig, const std::vector<std::string>& more) {
+    write("rig.toml", rig);
+    std::vector<std::string> words{"run", TACTUS_JOINTS_FILE, "--realtime", "--device", "rig.toml"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = tactus(words);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    return outcome.err;
+  };
+  const std::string rig = pair("damiao", "DM4310", 1, "");
+  EXPECT_NE(refusal(rig, {"--live"}).find("--live: several joints are shown by neither yet"), std::string::npos);
+  EXPECT_NE(refusal(rig, {"--site", "master", "--peer", "127.0.0.1:7400", "--unencrypted"})
+                .find("--site: a rig has a leader and a follower"),
+            std::string::npos);
+  EXPECT_NE(refusal(rig, {"--device", "slave=other"}).find("--device: a rig has the devices of both sites"),
+            std::string::npos);
+  std::string second = rig;
+  for (auto at = second.find("[arm."); at != std::string::npos; at = second.find("[arm.", at))
+    second.replace(at, 5, "[leg.");
+  second.replace(second.find("@1"), 2, "@3");
+  second.replace(second.find("@2"), 2, "@4");
+  EXPECT_NE(refusal(rig + second, {}).find("--device: the rig has two pairs: name one, as rig.toml:arm"),
+            std::string::npos);
+  EXPECT_NE(refusal(side("leader", "@1", "damiao", "DM4310", 1, ""), {})
+                .find("arm: a leader and a follower are driven together: write the other one too"),
+            std::string::npos);
+  EXPECT_NE(refusal(pair("feetech", "sts3215", 1, ""), {})
+                .find("arm.leader.joint_1.model: a sts3215 takes no command of force"),
+            std::string::npos);
+}
+
+}  // namespace rig_run_test
+}  // namespace tactus::cli
