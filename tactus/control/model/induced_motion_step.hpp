@@ -95,25 +95,79 @@ struct InducedMotionStep {
             .drum_N = force(drum_of_both_N, stops_drum_N, drum_per_motor, drum, motor)};
   }
 
+  /// By how much hand and linkage differ from those of `transition`.
+  struct Difference {
+    Scalar hand_stiffness_N_per_m{}, hand_damping_N_s_per_m{};
+    Scalar linkage_share{};  ///< of the linkage's force, to add to it
+  };
+
   /// One tick with the forces on motor and handle held. `hysteretic`: whether the linkage is, in any lane.
   void advance(const Scalar& motor_force_N, const Scalar& handle_force_N, const FrictionRange& range,
                bool hysteretic) noexcept {
     // The nonlinear forces where the masses will be in the middle of the tick: half a tick of lag would cost an order.
     const Scalar quintic_N = quintic_force_N(state[2] + 0.5 * dt_s * state[5]);
-    const Scalar slipped_N =
-        hysteretic ? slipped_force_N(state[1] - state[2] + 0.5 * dt_s * (state[4] - state[5])) : Scalar(0.0);
-    const Scalar on_handle_N = slipped_N - quintic_N + handle_force_N;
+    const Scalar slipped_N = hysteretic ? slipped_force_N(stretch_in_the_middle(state)) : Scalar(0.0);
+    rub(motor_force_N, coast(state, slipped_N - quintic_N + handle_force_N, slipped_N, range.offset_m_per_s), range);
+  }
 
+  /// The same tick with another hand, without the quintic spring. Returns the linkage's force in N, without its share.
+  Scalar advance_in_another_hand(const Difference& other, const Scalar& motor_force_N, const FrictionRange& range,
+                                 bool hysteretic) noexcept {
+    const Scalar stretch_m = stretch_in_the_middle(state);
+    const Scalar slipped_N = hysteretic ? slipped_force_N(stretch_m) : Scalar(0.0);
+    const Scalar linkage_N = slipped_N + linkage_stiffness_N_per_m * stretch_m;
+    const Scalar beyond_N = slipped_N + other.linkage_share * linkage_N;
+    Column next = coast(state, beyond_N, beyond_N, range.offset_m_per_s);
+    hold(other, state, Scalar(0.0), next);
+    rub(motor_force_N, next, range);
+    return linkage_N;
+  }
+
+  /// A tick of what a small change of a parameter does to the state: linear, without friction, the linkage at its
+  /// average stiffness, `softer_N_per_m` below the initial one. What the change of the parameter adds to the forces of
+  /// hand and linkage drives it.
+  [[nodiscard]] State tangent(const State& from, const Difference& other, const Scalar& softer_N_per_m,
+                              const Scalar& hand_N, const Scalar& linkage_N) const noexcept {
+    const Scalar beyond_N = linkage_N - softer_N_per_m * stretch_in_the_middle(from);
+    Column next = coast(from, beyond_N, beyond_N, Scalar(0.0));
+    hold(other, from, hand_N, next);
+    State to;
+    for (std::size_t row = 0; row < to.size(); ++row) to[row] = next[row];
+    return to;
+  }
+
+ private:
+  [[nodiscard]] Scalar stretch_in_the_middle(const State& from) const noexcept {
+    return from[1] - from[2] + 0.5 * dt_s * (from[4] - from[5]);
+  }
+
+  /// The end of a tick without forces on motor and drum from outside.
+  [[nodiscard]] Column coast(const State& from, const Scalar& on_handle_N, const Scalar& slipped_N,
+                             const Scalar& offset_m_per_s) const noexcept {
     // The sum stands in the order in which its terms become known, so that few of them are waited for.
     Column next;
     for (std::size_t row = 0; row < next.size(); ++row) {
-      const Scalar offset = offset_response[row] * range.offset_m_per_s;
+      const Scalar offset = offset_response[row] * offset_m_per_s;
       const Scalar positions =
-          transition[0][row] * state[0] + transition[1][row] * state[1] + transition[2][row] * state[2];
+          transition[0][row] * from[0] + transition[1][row] * from[1] + transition[2][row] * from[2];
       const Scalar velocities =
-          transition[3][row] * state[3] + transition[4][row] * state[4] + transition[5][row] * state[5];
+          transition[3][row] * from[3] + transition[4][row] * from[4] + transition[5][row] * from[5];
       next[row] = (offset + (positions + velocities)) + response[2][row] * on_handle_N - response[1][row] * slipped_N;
     }
+    return next;
+  }
+
+  /// Adds the force `force_N` on the handle and what another hand pulls with more: its damping acts on the mean
+  /// velocity of the tick, which makes it stable whatever its size.
+  void hold(const Difference& other, const State& from, const Scalar& force_N, Column& next) const noexcept {
+    const Scalar damping = 0.5 * other.hand_damping_N_s_per_m;
+    const Scalar wanted_N =
+        force_N - other.hand_stiffness_N_per_m * (from[2] + 0.5 * dt_s * from[5]) - damping * (from[5] + next[5]);
+    const Scalar held_N = wanted_N / (1.0 + damping * response[2][5]);
+    for (std::size_t row = 0; row < next.size(); ++row) next[row] = next[row] + response[2][row] * held_N;
+  }
+
+  void rub(const Scalar& motor_force_N, const Column& next, const FrictionRange& range) noexcept {
     const GroundForces ground = ground_forces(motor_force_N, next[6], next[7], range);
     for (std::size_t row = 0; row < state.size(); ++row) {
       state[row] = next[row] + (response[0][row] * ground.motor_N + response[1][row] * ground.drum_N);

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <tactus/control/stages/adaptive_cancellation.hpp>
 #include <tactus/control/stages/cancellation.hpp>
 #include <tactus/control/stages/stage.hpp>
 #include <tactus/core/element.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
-#include <tactus/signal/low_pass.hpp>
 
 #include <array>
 #include <cstddef>
@@ -32,20 +32,15 @@ constexpr auto enumerators(OperatorEstimate) {
 MasterModel held(MasterModel model, double grip) noexcept;
 
 /// Cancellation of induced master motion (see `Cancellation`) for a grip that changes (paper A, Sec. IX, which names
-/// this as future work): a bank of models of the same master in five hands, run side by side.
+/// this as future work).
+///
+/// *Online*: `AdaptiveCancellation`, one model that follows the hand.
+///
+/// *Scheduled*: a bank of models of the same master in five hands, run side by side,
 ///
 ///     x̂_intended = x_m − Σ wᵢ x̂ᵢ,   wᵢ ≥ 0, Σ wᵢ = 1, toward its target with a time constant of 10 ms
 ///
-/// *Online*: the residuals x_m − x̂ᵢ hold what the person does, the same in all, and what model i does not explain. A
-/// high-pass of second order at 40 Hz leaves out the first; the mean squares over 20 ms of what is left are compared.
-/// Another model is chosen where its mean square is below half that of the one chosen so far. Without a displayed force
-/// that moves anything the comparison says nothing, so the weights go back to the nominal model, over 2 s.
-///
-/// *Scheduled*: the weights interpolate between the two hands next to the sensor's, on a logarithmic scale.
-///
-/// A bank and not recursive least squares, because each model of it is valid and stable whatever the data, the
-/// nonlinear parts included, and it cannot wind up where nothing excites it; grips between two hands are rounded to
-/// either, a factor of 1.4 at most, which cancellation stands. Five model steps a tick, no more and no less.
+/// where the target interpolates between the two hands next to the sensor's, on a logarithmic scale.
 class GripCancellation {
  public:
   struct Params {
@@ -97,7 +92,7 @@ class GripCancellation {
 
   /// Where the force so far has moved the motor, in m, at the instant of the last `intended`.
   [[nodiscard]] double induced_position_m() const noexcept { return induced_m_; }
-  /// The grip that the weights stand for, over nominal: their mean on a logarithmic scale.
+  /// The grip that is cancelled for, over nominal. That of a bank is the mean of its weights on a logarithmic scale.
   [[nodiscard]] double grip() const noexcept;
 
  private:
@@ -105,37 +100,18 @@ class GripCancellation {
   template <class T>
   using Each = std::array<T, grips.size()>;
 
-  /// Two first-order high-passes in line.
-  struct HighPass {
-    signal::LowPass first, second;
-    double step(double input) noexcept {
-      const double once = input - first.step(input);
-      return once - second.step(once);
-    }
-    void settle(double value) noexcept {
-      first.settle(value);
-      second.reset();
-    }
-  };
-
   GripCancellation(OperatorEstimate estimate, const Each<InducedMotionModel>& models,
-                   const signal::FilteredDerivative& intended_velocity, const signal::LowPass& low_pass, Seconds dt);
+                   const signal::FilteredDerivative& intended_velocity, const AdaptiveCancellation& adaptive,
+                   Seconds dt);
 
-  void compare(double measured_position_m) noexcept;
   void schedule(double grip) noexcept;
-  void move_weights(const Each<double>& target, double share) noexcept;
 
   OperatorEstimate estimate_;
   Each<InducedMotionModel> models_;
   signal::FilteredDerivative intended_velocity_;
-  Each<HighPass> residual_;
-  HighPass excitation_;
-  double mean_share_, weight_share_, forget_share_;  ///< of the way that one tick takes
-  Each<double> mean_square_m2_{};
-  double excitation_m2_ = 0.0;
+  AdaptiveCancellation adaptive_;
+  double weight_share_;  ///< of the way to their target that the weights take in a tick
   Each<double> weights_{0.0, 0.0, 1.0, 0.0, 0.0};
-  std::size_t chosen_ = nominal;
-  bool primed_ = false;
   double induced_m_ = 0.0;
   double intended_velocity_m_per_s_ = 0.0;
 };

@@ -1,0 +1,180 @@
+#include <tactus/control/stages/adaptive_cancellation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tactus::control {
+
+namespace {
+
+constexpr double person_below_Hz = 40.0;
+/// An encoder's step: what lies within is no evidence, and no change of estimate moves the command by more in a tick.
+constexpr double step_m = 1e-5;
+/// What a model leaves of a sample, as if it were white: 0.12 mm each 200 µs.
+constexpr double left_m2_s = 1.2e-4 * 1.2e-4 * 200e-6;
+/// Of mobility and linkage: what was identified, how far off it may be (standard deviation), and for how long an
+/// estimate is remembered.
+constexpr std::array identified{1.0, 0.0};
+constexpr std::array deviation{2.0, 0.05};
+constexpr std::array remembered_s{3.0, 20.0};
+constexpr std::array least{1.0 / 6.0, -0.25};
+constexpr std::array most{6.0, 0.25};
+/// At which rate a tangent forgets slow motion.
+constexpr double washed_per_s = 80.0;
+/// W: see the class.
+constexpr double kept_share = 0.1;
+constexpr double person_per_s = 3.0;
+constexpr double kept_below_Hz = 15.0;
+
+}  // namespace
+
+Result<AdaptiveCancellation> AdaptiveCancellation::make(const Cancellation::Params& params, Seconds dt) {
+  if (params.model.step != CancellationStep::exact) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "model.step",
+                 .message = "an online estimate has no model that is stepped by Euler: write exact, or estimate off",
+                 .place = {}};
+  }
+  Cancellation::Params own = params;
+  own.model.master.hand.quintic_stiffness_N_per_m5 = 0.0;
+  own.model.master.linear_hand_stiffening = 1.0;
+  const auto fixed = Cancellation::make(own, dt);
+  if (!fixed) return fixed.error();
+  const auto intended_velocity = signal::FilteredDerivative::make(own.intended_velocity, dt);
+  if (!intended_velocity) return under("intended_velocity", intended_velocity.error());
+  const auto high_pass = signal::SecondOrderFilter::make(
+      {.kind = signal::FilterKind::high_pass, .frequency_Hz = person_below_Hz, .notch_width_Hz = 1.0}, dt);
+  if (!high_pass) return high_pass.error();
+  return AdaptiveCancellation(fixed->model(), own.model.master, *intended_velocity, *high_pass, dt);
+}
+
+AdaptiveCancellation::AdaptiveCancellation(const InducedMotionModel& model, const MasterModel& master,
+                                           const signal::FilteredDerivative& intended_velocity,
+                                           const signal::SecondOrderFilter& high_pass, Seconds dt)
+    : model_(model.exact_step()),
+      hysteretic_(model.hysteretic()),
+      hand_stiffness_N_per_m_(master.hand.stiffness_N_per_m),
+      hand_damping_N_s_per_m_(master.hand.damping_N_s_per_m),
+      average_linkage_N_per_m_(master.linkage.stiffness_N_per_m),
+      variance_m2_(left_m2_s / dt.value),
+      forgotten_share_{dt.value / remembered_s[mobility], dt.value / remembered_s[linkage]},
+      washed_share_(-std::expm1(-dt.value * washed_per_s)),
+      person_share_(-std::expm1(-dt.value * person_per_s)),
+      passed_share_(-std::expm1(-dt.value * 2.0 * std::numbers::pi * kept_below_Hz)),
+      intended_velocity_(intended_velocity),
+      residual_{high_pass.section()},
+      slope_{residual_, residual_} {
+  reset();
+}
+
+double AdaptiveCancellation::intended(double measured_position_m) noexcept {
+  // A start far from zero must be no transient.
+  if (!primed_) residual_.settle(measured_position_m - model_.state[0]);
+  primed_ = true;
+  double unexplained_m = residual_.step(measured_position_m - model_.state[0]);
+  Each<double> slope_m{};
+  for (std::size_t i = 0; i < parameters; ++i) {
+    slope_m[i] = slope_[i].step(tangent_[i][0]);
+    unexplained_m -= slope_m[i] * pending_[i];
+  }
+  weigh(unexplained_m - std::clamp(unexplained_m, -step_m, step_m), slope_m);
+  draw_back();
+  apply();
+
+  intended_velocity_m_per_s_ = intended_velocity_.step(measured_position_m - model_.state[0]);
+  induced_m_ = model_.state[0] - slow_part_m(model_.state[0]);
+  return measured_position_m - induced_m_;
+}
+
+void AdaptiveCancellation::weigh(double unexplained_m, const Each<double>& slope_m) noexcept {
+  Each<double> shared{};
+  for (std::size_t i = 0; i < parameters; ++i) {
+    shared[i] = covariance_[i][mobility] * slope_m[mobility] + covariance_[i][linkage] * slope_m[linkage];
+  }
+  const double per_variance =
+      1.0 / (variance_m2_ + slope_m[mobility] * shared[mobility] + slope_m[linkage] * shared[linkage]);
+  for (std::size_t i = 0; i < parameters; ++i) {
+    pending_[i] += shared[i] * per_variance * unexplained_m;
+    for (std::size_t j = 0; j < parameters; ++j) covariance_[i][j] -= shared[i] * shared[j] * per_variance;
+  }
+}
+
+void AdaptiveCancellation::draw_back() noexcept {
+  for (std::size_t i = 0; i < parameters; ++i) {
+    for (std::size_t j = 0; j < parameters; ++j) {
+      covariance_[i][j] *= 1.0 - forgotten_share_[i] - forgotten_share_[j];
+    }
+    covariance_[i][i] += 2.0 * forgotten_share_[i] * deviation[i] * deviation[i];
+    const double found = estimate_[i] + pending_[i];
+    const double drawn = found + forgotten_share_[i] * (identified[i] - found);
+    pending_[i] = std::clamp(drawn, least[i], most[i]) - estimate_[i];
+  }
+}
+
+void AdaptiveCancellation::apply() noexcept {
+  double move_m = 0.0;
+  for (std::size_t i = 0; i < parameters; ++i) move_m += tangent_[i][0] * pending_[i];
+  const double share = step_m / std::max(std::fabs(move_m), step_m);
+  for (std::size_t i = 0; i < parameters; ++i) {
+    const double change = share * pending_[i];
+    estimate_[i] += change;
+    pending_[i] -= change;
+    for (std::size_t row = 0; row < model_.state.size(); ++row) model_.state[row] += tangent_[i][row] * change;
+    residual_.section.state_1 -= slope_[i].section.state_1 * change;
+    residual_.section.state_2 -= slope_[i].section.state_2 * change;
+  }
+}
+
+double AdaptiveCancellation::slow_part_m(double induced_m) noexcept {
+  person_m_ += person_share_ * (induced_m - person_m_);
+  passed_m_ += passed_share_ * (kept_share * induced_m + (1.0 - kept_share) * person_m_ - passed_m_);
+  return passed_m_;
+}
+
+InducedMotionStep<double>::Difference AdaptiveCancellation::difference() const noexcept {
+  const double firmer = 1.0 / estimate_[mobility] - 1.0;
+  return {.hand_stiffness_N_per_m = firmer * hand_stiffness_N_per_m_,
+          .hand_damping_N_s_per_m = firmer * hand_damping_N_s_per_m_,
+          .linkage_share = estimate_[linkage]};
+}
+
+void AdaptiveCancellation::advance(double motor_force_N) noexcept {
+  const Step::Difference other = difference();
+  const double before_m = model_.state[2], before_m_per_s = model_.state[5];
+  const double linkage_N = model_.advance_in_another_hand(
+      other, motor_force_N, model_.friction_range(intended_velocity_m_per_s_), hysteretic_);
+  const double identified_hand_N = 0.5 * (hand_damping_N_s_per_m_ * (before_m_per_s + model_.state[5]) +
+                                          hand_stiffness_N_per_m_ * (before_m + model_.state[2]));
+  const double softer_N_per_m =
+      model_.linkage_stiffness_N_per_m - (1.0 + estimate_[linkage]) * average_linkage_N_per_m_;
+  const double freed_N = identified_hand_N / (estimate_[mobility] * estimate_[mobility]);
+  tangent_[mobility] = model_.tangent(tangent_[mobility], other, softer_N_per_m, freed_N, 0.0);
+  tangent_[linkage] = model_.tangent(tangent_[linkage], other, softer_N_per_m, 0.0, linkage_N);
+  for (Step::State& tangent : tangent_) {
+    const double washed_m = washed_share_ * tangent[2];
+    for (std::size_t mass = 0; mass < 3; ++mass) tangent[mass] -= washed_m;
+  }
+}
+
+void AdaptiveCancellation::reset() noexcept {
+  model_.state = {};
+  model_.linkage.deflection_m = 0.0;
+  model_.linkage.elastic_m = 0.0;
+  intended_velocity_.reset();
+  tangent_ = {};
+  residual_.settle(0.0);
+  for (HighPass& slope : slope_) slope.settle(0.0);
+  estimate_ = identified;
+  pending_ = {};
+  for (std::size_t i = 0; i < parameters; ++i) {
+    covariance_[i] = {};
+    covariance_[i][i] = deviation[i] * deviation[i];
+  }
+  person_m_ = passed_m_ = 0.0;
+  primed_ = false;
+  induced_m_ = 0.0;
+  intended_velocity_m_per_s_ = 0.0;
+}
+
+}  // namespace tactus::control
