@@ -99,7 +99,13 @@ struct InducedMotionStep {
   struct Difference {
     Scalar hand_stiffness_N_per_m{}, hand_damping_N_s_per_m{};
     Scalar linkage_share{};  ///< of the linkage's force, to add to it
+    Scalar yielding{};       ///< `yielding_of` the damping
   };
+
+  /// By which share more damping of the hand lessens its own force, because the handle slows down within the tick.
+  [[nodiscard]] Scalar yielding_of(const Scalar& hand_damping_N_s_per_m) const noexcept {
+    return 1.0 / (1.0 + 0.5 * hand_damping_N_s_per_m * response[2][5]);
+  }
 
   /// One tick with the forces on motor and handle held. `hysteretic`: whether the linkage is, in any lane.
   void advance(const Scalar& motor_force_N, const Scalar& handle_force_N, const FrictionRange& range,
@@ -118,7 +124,8 @@ struct InducedMotionStep {
     const Scalar linkage_N = slipped_N + linkage_stiffness_N_per_m * stretch_m;
     const Scalar beyond_N = slipped_N + other.linkage_share * linkage_N;
     Column next = coast(state, beyond_N, beyond_N, range.offset_m_per_s);
-    hold(other, state, Scalar(0.0), next);
+    const Scalar held_N = held_force_N(other, state, Scalar(0.0), next[5]);
+    for (std::size_t row = 0; row < next.size(); ++row) next[row] = next[row] + response[2][row] * held_N;
     rub(motor_force_N, next, range);
     return linkage_N;
   }
@@ -129,10 +136,16 @@ struct InducedMotionStep {
   [[nodiscard]] State tangent(const State& from, const Difference& other, const Scalar& softer_N_per_m,
                               const Scalar& hand_N, const Scalar& linkage_N) const noexcept {
     const Scalar beyond_N = linkage_N - softer_N_per_m * stretch_in_the_middle(from);
-    Column next = coast(from, beyond_N, beyond_N, Scalar(0.0));
-    hold(other, from, hand_N, next);
     State to;
-    for (std::size_t row = 0; row < to.size(); ++row) to[row] = next[row];
+    for (std::size_t row = 0; row < to.size(); ++row) {
+      const Scalar positions =
+          transition[0][row] * from[0] + transition[1][row] * from[1] + transition[2][row] * from[2];
+      const Scalar velocities =
+          transition[3][row] * from[3] + transition[4][row] * from[4] + transition[5][row] * from[5];
+      to[row] = (positions + velocities) + (response[2][row] - response[1][row]) * beyond_N;
+    }
+    const Scalar held_N = held_force_N(other, from, hand_N, to[5]);
+    for (std::size_t row = 0; row < to.size(); ++row) to[row] = to[row] + response[2][row] * held_N;
     return to;
   }
 
@@ -157,14 +170,14 @@ struct InducedMotionStep {
     return next;
   }
 
-  /// Adds the force `force_N` on the handle and what another hand pulls with more: its damping acts on the mean
-  /// velocity of the tick, which makes it stable whatever its size.
-  void hold(const Difference& other, const State& from, const Scalar& force_N, Column& next) const noexcept {
+  /// The force `force_N` on the handle less what another hand pulls with more: its damping acts on the mean velocity
+  /// of the tick, which makes it stable whatever its size. `free_m_per_s` is the handle's at the end without it.
+  [[nodiscard]] Scalar held_force_N(const Difference& other, const State& from, const Scalar& force_N,
+                                    const Scalar& free_m_per_s) const noexcept {
     const Scalar damping = 0.5 * other.hand_damping_N_s_per_m;
     const Scalar wanted_N =
-        force_N - other.hand_stiffness_N_per_m * (from[2] + 0.5 * dt_s * from[5]) - damping * (from[5] + next[5]);
-    const Scalar held_N = wanted_N / (1.0 + damping * response[2][5]);
-    for (std::size_t row = 0; row < next.size(); ++row) next[row] = next[row] + response[2][row] * held_N;
+        force_N - other.hand_stiffness_N_per_m * (from[2] + 0.5 * dt_s * from[5]) - damping * (from[5] + free_m_per_s);
+    return wanted_N * other.yielding;
   }
 
   void rub(const Scalar& motor_force_N, const Column& next, const FrictionRange& range) noexcept {

@@ -115,7 +115,7 @@ void AdaptiveCancellation::draw_back() noexcept {
 void AdaptiveCancellation::apply() noexcept {
   double move_m = 0.0;
   for (std::size_t i = 0; i < parameters; ++i) move_m += tangent_[i][0] * pending_[i];
-  const double share = step_m / std::max(std::fabs(move_m), step_m);
+  const double share = std::fabs(move_m) > step_m ? step_m / std::fabs(move_m) : 1.0;
   for (std::size_t i = 0; i < parameters; ++i) {
     const double change = share * pending_[i];
     estimate_[i] += change;
@@ -136,7 +136,8 @@ InducedMotionStep<double>::Difference AdaptiveCancellation::difference() const n
   const double firmer = 1.0 / estimate_[mobility] - 1.0;
   return {.hand_stiffness_N_per_m = firmer * hand_stiffness_N_per_m_,
           .hand_damping_N_s_per_m = firmer * hand_damping_N_s_per_m_,
-          .linkage_share = estimate_[linkage]};
+          .linkage_share = estimate_[linkage],
+          .yielding = model_.yielding_of(firmer * hand_damping_N_s_per_m_)};
 }
 
 void AdaptiveCancellation::advance(double motor_force_N) noexcept {
