@@ -20,7 +20,7 @@ class DeviceRig : public Command {
  protected:
   /// Emulated motors with these options, `@1` and on in the rig their ports; then what a command of `device` says.
   Outcome device(const std::vector<std::string>& emulated, const std::string& rig, const std::string& command) {
-    std::string script = "rm -f said*\ncp rig.in rig.toml\n";
+    std::string script = "rm -f said*\ncat rig.in >rig.toml\n";
     for (std::size_t i = 1; i <= emulated.size(); ++i) {
       const std::string number = std::to_string(i);
       script += "mkfifo said" + number + "\n$TACTUS emulate " + emulated[i - 1] + " >said" + number +
@@ -30,7 +30,7 @@ class DeviceRig : public Command {
     write("rig.in", rig);
     write("script", script + "$TACTUS device " + command + " >out 2>err\necho $? >status\n");
     setenv("TACTUS", TACTUS_COMMAND, 1);
-    EXPECT_EQ(std::system(("cd '" + folder().string() + "' && bash script 2>script.err").c_str()), 0)
+    EXPECT_EQ(std::system(("cd '" + folder().string() + "' && sh script 2>script.err").c_str()), 0)
         << content("emulate.err") << content("script.err");
     return {.status = std::atoi(content("status").c_str()), .out = content("out"), .err = content("err")};
   }

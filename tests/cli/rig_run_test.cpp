@@ -34,7 +34,7 @@ class RigRun : public Command {
                     const std::string& rest) {
     write("rig.in", rig);
     write("script", R"sh(
-      cp rig.in rig.toml; rm -f said1 said2; mkfifo said1 said2
+      cat rig.in >rig.toml; rm -f said1 said2; mkfifo said1 said2
       $TACTUS emulate )sh" +
                         leader + R"sh( >said1 2>emulate.err </dev/null & peers=$!
       $TACTUS emulate )sh" +
@@ -47,7 +47,7 @@ class RigRun : public Command {
       )sh" + rest);
     setenv("TACTUS", TACTUS_COMMAND, 1);
     setenv("JOINTS", TACTUS_JOINTS_FILE, 1);
-    EXPECT_EQ(std::system(("cd '" + folder().string() + "' && bash script >out 2>err").c_str()), 0) << content("err");
+    EXPECT_EQ(std::system(("cd '" + folder().string() + "' && sh script >out 2>err").c_str()), 0) << content("err");
     return content("out") + content("err");
   }
 };

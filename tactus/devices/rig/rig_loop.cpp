@@ -107,7 +107,9 @@ void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) no
   if (leader == SiteState::hold && second_.leader != SiteState::hold) ++totals_.holds;
   second_.leader = leader;
   second_.follower = follower;
-  const bool of_follower = follower == SiteState::hold || follower == SiteState::fault;
+  // The one that only went with the other knows no cause.
+  const bool stopped = follower == SiteState::hold || follower == SiteState::fault;
+  const bool of_follower = stopped && cause(done.slave.output.record.cause) != control::SiteCause::peer;
   second_.cause = cause(of_follower ? done.slave.output.record.cause : done.master.output.record.cause);
   second_.leader_health = leader_->health();
   second_.follower_health = follower_->health();

@@ -16,7 +16,8 @@ namespace tactus::devices {
 struct RigSecond {
   double time_s = 0.0;
   control::SiteState leader = control::SiteState::configure, follower = control::SiteState::configure;
-  control::SiteCause cause = control::SiteCause::started;  ///< of the leader, or of the follower where that holds
+  control::SiteCause cause =
+      control::SiteCause::started;  ///< of the leader, or of the follower where that stopped by itself
   station::DeviceHealth leader_health = station::DeviceHealth::good, follower_health = station::DeviceHealth::good;
   double most_torque = 0.0;  ///< of any motor of the second, either way
   double farthest = 0.0;     ///< of a joint from its leader
