@@ -43,6 +43,14 @@ int refuse(const std::string& name, std::string_view why) {
   return 2;
 }
 
+/// No empty list is shown as a default, here and in all verbs below.
+void forget_empty_defaults(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_default_str() == "[]") option->default_str("");
+  }
+  for (CLI::App* verb : app.get_subcommands({})) forget_empty_defaults(*verb);
+}
+
 int run(int argc, char** argv) {
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "tactus";
   std::string command = shell_word(name);
@@ -60,6 +68,7 @@ int run(int argc, char** argv) {
   int status = 0;
   CLI::App app{"Crisp and stable force-reflecting teleoperation", name};
   app.set_version_flag("--version", "tactus " + std::string(version()));
+  app.option_defaults()->always_capture_default();
   // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
   app.require_subcommand(0, 1);
   add_run(app, command, status);
@@ -67,18 +76,19 @@ int run(int argc, char** argv) {
   add_estimate(app, command, status);
   add_identify(app, command, status);
   add_diagnose(app, command, status);
-  add_export(app, status);
+  add_export(app, command, status);
   add_key(app, status);
-  add_plant(app, status);
-  add_relay(app, status);
-  add_replay(app, status);
-  add_device(app, status);
+  add_plant(app, command, status);
+  add_relay(app, command, status);
+  add_replay(app, command, status);
+  add_device(app, command, status);
   add_emulate(app, status);
   add_faults(app, command, status);
   add_stability(app, command, status);
   add_doctor(app, command, status);
   add_schema(app, status);
   add_serve(app, command, status);
+  forget_empty_defaults(app);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) return refuse(name, "A command is required");

@@ -2,6 +2,7 @@
 #include <tactus/cli/arm_options.hpp>
 #include <tactus/cli/estimate.hpp>
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
@@ -131,8 +132,9 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
   page.footer("tactus " + std::string(version()), command);
   const std::string text =
       joints.to_text() + verdict + "\n" + (found->contacts.empty() ? std::string() : contacts.to_text());
-  return present(options.arm, text, json_of(options, *model, *found), page.to_html(),
-                 {{"external_torque.csv", csv_of(*found)}});
+  return write_outcome(options.arm.output,
+                       {.text = text, .json = json_of(options, *model, *found), .html = page.to_html(), .figures = {}},
+                       {{"external_torque.csv", csv_of(*found)}});
 }
 
 }  // namespace
@@ -146,7 +148,7 @@ void add_estimate_torque(CLI::App& estimate, const std::string& name, const std:
   verb->add_option("--model", options->model, "Model file, as `identify arm --out` leaves it")
       ->required()
       ->type_name("FILE");
-  add_arm_options(*verb, options->arm, "Folder for external_torque.csv, report.html and results.json");
+  add_arm_options(*verb, options->arm, command, "Folder for external_torque.csv, report.html and results.json");
   verb->callback([options, name, &command, &status] {
     if (const auto error = estimate_torque(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

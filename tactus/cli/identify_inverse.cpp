@@ -1,6 +1,7 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
@@ -134,8 +135,12 @@ Check identify_inverse(const InverseOptions& options, const std::string& command
   }
   const std::string text = table.to_text() + "Explains " + report::number(100.0 * model->explained, 3) +
                            " % of the force; position " + axis->position.name + ", force " + axis->force.name + "\n";
-  return present(options.axis, text, json_of(*model, *axis, options.axis.file), page_of(*model, *axis, table, command),
-                 toml_of(*model, *axis, command));
+  return write_outcome(options.axis.output,
+                       {.text = text,
+                        .json = json_of(*model, *axis, options.axis.file),
+                        .html = page_of(*model, *axis, table, command).to_html(),
+                        .figures = {}},
+                       {{"model.toml", toml_of(*model, *axis, command)}});
 }
 
 }  // namespace
@@ -144,7 +149,7 @@ void add_identify_inverse(CLI::App& identify, const std::string& name, const std
   auto options = std::make_shared<InverseOptions>();
   CLI::App* verb = identify.add_subcommand("inverse", "Inverse dynamic model of one axis from a recording");
   options->axis.output.own_files = {"model.toml"};
-  add_axis_options(*verb, options->axis);
+  add_axis_options(*verb, options->axis, command);
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")->type_name("HZ");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify_inverse(*options, command)) {

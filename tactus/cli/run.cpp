@@ -206,7 +206,7 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations: key=a,b,c")
       ->type_name("KEY=A,B,C")
       ->allow_extra_args(false);
-  add_output_options(*verb, options->output, "Folder for report.html, results.json, the figures and the log");
+  add_output_options(*verb, options->output, command, "Folder for report.html, results.json, the figures and the log");
   add_log_limit_option(*verb, options->log_limit);
   verb->add_flag("--realtime", options->real_time,
                  "Run it at the real clock, on a servo thread, with simulated devices, those of a plant or "
@@ -217,7 +217,6 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--plant-silence-s", options->plant_silence_s,
                    "The longest silence of that plant before both sites let go, 0.001 to 10")
       ->type_name("S")
-      ->capture_default_str()
       ->needs(plant);
   add_servo_options(*verb, options->servo);
   add_supervised_options(*verb, options->supervised);

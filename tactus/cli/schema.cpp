@@ -25,7 +25,7 @@ void add_schema(CLI::App& app, int& status) {
   for (const auto& experiment : experiments::experiments()) {
     kinds += (kinds.empty() ? "" : ", ") + std::string(experiment->kind());
   }
-  verb->add_option("KIND", options->kind, "Kind of experiment: " + kinds)->capture_default_str();
+  verb->add_option("KIND", options->kind, "Kind of experiment: " + kinds);
   verb->add_flag("--reference", options->reference, "Print the reference page in Markdown instead");
   verb->callback([options, kinds, &app, &status] {
     for (const auto& experiment : experiments::experiments()) {

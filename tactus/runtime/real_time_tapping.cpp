@@ -111,13 +111,18 @@ Result<telemetry::Recorder> open_log(const experiments::Request& request, const 
   about["configuration"] = cases.first_configuration;
   about["clock"] = "real";
   recorder->add_metadata("tactus", about);
+  std::map<std::string, std::string> labels;
   for (std::size_t i = 0; i < cases.all.size(); ++i) {
     const experiments::Settings& settings = cases.all[i].settings;
-    if (!settings.empty()) recorder->add_metadata(Outlets::run_name(i), {settings.begin(), settings.end()});
+    if (!settings.empty()) {
+      recorder->add_metadata(Outlets::run_name(i), {settings.begin(), settings.end()});
+      labels[Outlets::run_name(i)] = experiments::settings_caption(settings);
+    }
     outlets.all()[i].for_each([&recorder](const std::string& topic, const char* type_name, const auto& stream) {
       recorder->add(topic, type_name, stream);
     });
   }
+  if (!labels.empty()) recorder->add_metadata(telemetry::run_labels, labels);
   recorder->start();
   return recorder;
 }

@@ -127,7 +127,9 @@ const LimitRung* farthest(const std::vector<LimitRung>& rungs) {
 }
 
 nlohmann::ordered_json json_of(const experiments::GainLimit& limit) {
-  return {{"force_gain", limit.gain}, {"beyond_search", limit.beyond_search}};
+  nlohmann::ordered_json object{{"force_gain", limit.gain}};
+  if (limit.censored()) object["force_gain_censored"] = true;
+  return object;
 }
 
 }  // namespace
@@ -173,11 +175,11 @@ Result<experiments::Outcome> report_limit(const experiments::Request& request, c
   page.paragraph(reason);
   page.table(taken_out);
   for (const report::Figure& figure : figures) page.figure(figure);
-  experiments::add_provenance(page, request, configuration::to_toml(*params));
-  return experiments::Outcome{.text = table.to_text() + reason + taken_out.to_text(),
-                              .json = document.dump(2) + "\n",
-                              .html = page.to_html(),
-                              .figures = std::move(figures)};
+  return experiments::outcome_of({.text = table.to_text() + reason + taken_out.to_text(),
+                                  .json = document.dump(2) + "\n",
+                                  .page = std::move(page),
+                                  .figures = std::move(figures)},
+                                 request, configuration::to_toml(*params));
 }
 
 }  // namespace tactus::stability

@@ -69,9 +69,8 @@ report::Table table_of(const MapResult& map, const std::vector<MapPlane>& planes
 }
 
 std::string json_of(const MapResult& map, const std::vector<MapPlane>& planes, const std::vector<double>& limits,
-                    double elapsed_s, const std::string& command) {
+                    double elapsed_s) {
   nlohmann::ordered_json json;
-  json["command"] = command;
   json["points"] = map.points.size();
   json["resumed_points"] = map.resumed;
   json["redone_in_double"] = map.redone;
@@ -95,6 +94,12 @@ std::string json_of(const MapResult& map, const std::vector<MapPlane>& planes, c
   }
   // JSON has no NaN: where not even the first value settled stands null.
   json["settled_limit"] = limits;
+  const MapAxis& along = map.axes[limited_axis(map)];
+  json["settled_limit_censored"] = nlohmann::ordered_json::array();
+  for (const double limit : limits) {
+    const bool censored = along.words.empty() && (std::isnan(limit) || limit == along.values.back());
+    json["settled_limit_censored"].push_back(censored);
+  }
   return json.dump(2) + "\n";
 }
 
@@ -129,7 +134,7 @@ MapReport report_map(const MapResult& map, const MapParams& base, double elapsed
       "with one line a run, map.h5 with the same as arrays over the axes.");
   experiments::add_provenance(page, request, configuration::to_toml(base));
   return {.text = effort + "\n" + table.to_text(),
-          .json = json_of(map, planes, limits, elapsed_s, request.command),
+          .json = json_of(map, planes, limits, elapsed_s),
           .html = page.to_html(),
           .svg = picture ? std::optional(report::to_svg(picture->map)) : std::nullopt};
 }

@@ -202,15 +202,15 @@ Result<experiments::Outcome> report_margins(const experiments::Request& request,
   page.table(table);
   page.table(slowest);
   for (const report::Figure& figure : figures) page.figure(figure);
-  experiments::add_provenance(page, request, configuration::to_toml(*params));
   std::string text = table.to_text();
   text += analysis->slowest.empty()
               ? "Poles: too many for a list; unstable ones are counted by the argument principle\n"
               : slowest.to_text();
-  return experiments::Outcome{.text = std::move(text),
-                              .json = json_of(request, options, *analysis),
-                              .html = page.to_html(),
-                              .figures = std::move(figures)};
+  return experiments::outcome_of({.text = std::move(text),
+                                  .json = json_of(request, options, *analysis),
+                                  .page = std::move(page),
+                                  .figures = std::move(figures)},
+                                 request, configuration::to_toml(*params));
 }
 
 }  // namespace tactus::stability

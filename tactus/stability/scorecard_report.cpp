@@ -125,11 +125,11 @@ Result<experiments::Outcome> report_scorecard(const experiments::Request& reques
   page.paragraph(limited);
   page.table(changes);
   page.figure(figure);
-  experiments::add_provenance(page, request, configuration::to_toml(*params));
-  return experiments::Outcome{.text = table.to_text() + limited + changes.to_text(),
-                              .json = document.dump(2) + "\n",
-                              .html = page.to_html(),
-                              .figures = {figure}};
+  return experiments::outcome_of({.text = table.to_text() + limited + changes.to_text(),
+                                  .json = document.dump(2) + "\n",
+                                  .page = std::move(page),
+                                  .figures = {figure}},
+                                 request, configuration::to_toml(*params));
 }
 
 }  // namespace tactus::stability

@@ -271,9 +271,7 @@ std::string json_of(const Request& request, const FaultsParams& params, const Fa
                     const std::optional<FaultsInRealTime>& real_time) {
   Json document{{"experiment", request.name},
                 {"kind", "faults"},
-                {"command", request.command},
                 {"time", "virtual"},
-                {"seed", params.task.seed},
                 {"seeds", params.task.seeds},
                 {"rate_limit_N_per_tick", params.control.gate.rate_limit_N_per_s / params.servo.rate_Hz},
                 {"rows", json_of(table.rows)},

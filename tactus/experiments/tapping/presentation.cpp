@@ -1,3 +1,4 @@
+#include <tactus/experiments/internal/gain_json.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/tapping/presentation.hpp>
 
@@ -31,27 +32,25 @@ report::Table tapping_table(const std::vector<TappingRun>& runs) {
                                       std::string(tapping_title));
   for (const TappingRun& run : runs) {
     const TappingMetrics& m = run.metrics;
-    // A quantile that falls on a tap that never settled is only a lower bound.
-    const auto settling = [&](double seconds) {
-      return (seconds >= run.observation_s ? "> " : "") + report::number(1e3 * seconds, 3);
+    const auto settling = [](double seconds, bool censored) {
+      return (censored ? "> " : "") + report::number(1e3 * seconds, 3);
     };
     add_row(table, run.settings,
-            {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3), settling(m.settling_time_median_s),
-             settling(m.settling_time_p90_s), format_number(m.contacts_median), report::number(m.peak_force_N, 3),
-             report::number(1e3 * m.residual_rms_N, 3), verdict_of(m)});
+            {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
+             settling(m.settling_time_median_s, m.settling_time_median_censored),
+             settling(m.settling_time_p90_s, m.settling_time_p90_censored), format_number(m.contacts_median),
+             report::number(m.peak_force_N, 3), report::number(1e3 * m.residual_rms_N, 3), verdict_of(m)});
   }
   return table;
 }
 
 std::string metrics_json(const TappingMetrics& metrics) {
-  nlohmann::ordered_json json{{"taps", metrics.taps},
-                              {"settled_fraction", metrics.settled_fraction},
-                              {"settling_time_median_s", metrics.settling_time_median_s},
-                              {"settling_time_p90_s", metrics.settling_time_p90_s},
-                              {"contacts_median", metrics.contacts_median},
-                              {"peak_force_N", metrics.peak_force_N},
-                              {"residual_rms_N", metrics.residual_rms_N},
-                              {"verdict", name_of(metrics.verdict)}};
+  nlohmann::ordered_json json{{"taps", metrics.taps}};
+  json.update(json_of_settling(metrics));
+  json.update({{"contacts_median", metrics.contacts_median},
+               {"peak_force_N", metrics.peak_force_N},
+               {"residual_rms_N", metrics.residual_rms_N},
+               {"verdict", name_of(metrics.verdict)}});
   if (metrics.stopped_by) {
     json["stopped"] = metrics.stopped;
     json["stopped_by"] = {{"site", name_of(metrics.stopped_by->site)}, {"cause", name_of(metrics.stopped_by->cause)}};
