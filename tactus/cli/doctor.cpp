@@ -49,7 +49,7 @@ std::string text_of(const std::vector<Finding>& findings) {
     explained += finding.name + ": " + finding.means + ".\n";
     if (!finding.remedy.empty()) explained += "    remedy: " + finding.remedy + "\n";
   }
-  return table_of(findings).to_text() + "\n" + explained + "\n" + answer(findings) + "\n";
+  return answer(findings) + "\n\n" + table_of(findings).to_text() + "\n" + explained;
 }
 
 std::string html_of(const std::vector<Finding>& findings, const report::Figure& timing,

@@ -7,6 +7,7 @@
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/force_comparison.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>

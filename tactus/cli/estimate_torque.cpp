@@ -113,8 +113,8 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
                               : count == 1 ? std::string("One contact found.")
                                            : std::to_string(count) + " contacts found.";
   report::Page page("External torque, " + options.file);
-  page.table(joints);
   page.paragraph(verdict);
+  page.table(joints);
   if (!found->contacts.empty()) page.table(contacts);
   report::Panel panel{.title = "Torque of the environment on the arm",
                       .x = {.label = "time", .unit = "s"},
@@ -131,7 +131,7 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
   page.figure({.title = "External torque", .caption = "Zero-phase, below the cutoff.", .panels = {panel}});
   page.footer("tactus " + std::string(version()), command);
   const std::string text =
-      joints.to_text() + verdict + "\n" + (found->contacts.empty() ? std::string() : contacts.to_text());
+      verdict + "\n\n" + joints.to_text() + (found->contacts.empty() ? std::string() : contacts.to_text());
   return write_outcome(options.arm.output,
                        {.text = text, .json = json_of(options, *model, *found), .html = page.to_html(), .figures = {}},
                        {{"external_torque.csv", csv_of(*found)}});

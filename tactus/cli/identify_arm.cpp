@@ -162,12 +162,12 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
 
   const report::Table joints = joints_table(*found, recordings.front().effort_unit);
   report::Page page("Dynamics of " + (urdf->name.empty() ? options.urdf : urdf->name));
-  page.table(joints);
   page.paragraph(words_of(*found));
+  page.table(joints);
   page.table(parameters_table(*found));
   page.footer("tactus " + std::string(version()), command);
   return write_outcome(options.arm.output,
-                       {.text = joints.to_text() + words_of(*found) + "\n",
+                       {.text = words_of(*found) + "\n\n" + joints.to_text(),
                         .json = json_of(options, *found),
                         .html = page.to_html(),
                         .figures = {}},

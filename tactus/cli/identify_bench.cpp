@@ -146,8 +146,10 @@ report::Table table_of(const Isolation& isolation, const SimulatedRig& rig) {
 }
 
 report::Page page_of(const Recipe& recipe, const Isolation& isolation, const ImpactCheck& check, const std::string& rig,
-                     const std::string& model, const report::Table& table, const std::string& command) {
+                     const std::string& verdict, const std::string& model, const report::Table& table,
+                     const std::string& command) {
   report::Page page(std::string(recipe.title) + " of " + rig);
+  page.paragraph(verdict);
   page.table(table);
   page.paragraph(recipe.explanation);
   for (const report::Figure& figure : figures(isolation)) page.figure(figure);
@@ -183,13 +185,14 @@ Check identify(const Recipe& recipe, const BenchOptions& options, const std::str
   if (!check) return check.error();
 
   const report::Table table = table_of(*isolation, *rig);
+  const std::string verdict =
+      "Of what impacts induce above 20 Hz, the model leaves " + report::number(100.0 * check->residual, 2) + " %.";
   const std::string model_text = "# " + command + "\n" + configuration::to_toml(model);
   return write_outcome(
       *output,
-      {.text = table.to_text() + "Of what impacts induce above 20 Hz, the model leaves " +
-               report::number(100.0 * check->residual, 2) + " %.\n",
+      {.text = verdict + "\n\n" + table.to_text(),
        .json = json_of(*isolation, *check, *rig),
-       .html = page_of(recipe, *isolation, *check, rig->name(), model_text, table, command).to_html(),
+       .html = page_of(recipe, *isolation, *check, rig->name(), verdict, model_text, table, command).to_html(),
        .figures = {}},
       {{"model.toml", model_text},
        {"rig.toml", "# The truth behind " + rig->name() + "\n" + configuration::to_toml(rig->truth().benched)}});

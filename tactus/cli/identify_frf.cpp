@@ -310,13 +310,13 @@ Check identify(const FrfOptions& options, const std::string& command) {
   const std::string unit = above.empty() || below.empty() ? "" : above + "/" + below;
   const report::Table table = table_of(rows, unit);
   const std::string json = json_of(*found, rows, unit);
-  const std::string text = found->how + ", " + std::to_string(runs->size()) +
-                           (runs->size() == 1 ? " recording\n" : " recordings\n") + table.to_text() +
-                           (found->linearity ? verdict(*found->linearity) + "\n" : std::string());
+  const std::string text = (found->linearity ? verdict(*found->linearity) + "\n" : std::string()) + found->how + ", " +
+                           std::to_string(runs->size()) + (runs->size() == 1 ? " recording\n" : " recordings\n") +
+                           table.to_text();
   const report::Figure figure = figure_of(rows, unit, !found->response.coherence.empty());
   report::Page page("Frequency response from " + options.input + " to " + options.output);
-  page.paragraph(found->how + ".");
   if (found->linearity) page.paragraph(verdict(*found->linearity));
+  page.paragraph(found->how + ".");
   page.figure(figure);
   page.table(table);
   page.footer("tactus " + std::string(version()), command);

@@ -6,6 +6,7 @@
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/inverse_dynamics.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 
@@ -94,11 +95,11 @@ std::string toml_of(const InverseDynamics& model, const AxisRecording& axis, con
 report::Page page_of(const InverseDynamics& model, const AxisRecording& axis, const report::Table& table,
                      const std::string& command) {
   report::Page page("Inverse dynamic model of " + axis.position.name);
-  page.table(table);
   page.paragraph("Force = inertia·a + viscous·v + Coulomb·tanh(v/v0) + offset explains " +
                  report::number(100.0 * model.explained, 3) + " % of the force's variance below " +
                  report::number(model.cutoff_Hz, 2) +
                  " Hz. Intervals are of 95 %, from the scatter over twelve blocks of the recording.");
+  page.table(table);
   const char* unit = axis.rotary ? "N m" : "N";
   report::Panel over_time{.title = "Force over time",
                           .x = {.label = "time", .unit = "s"},
@@ -133,8 +134,8 @@ Check identify_inverse(const InverseOptions& options, const std::string& command
     table.add_row({row.name, report::number(row.estimate.value, 4), report::number(row.estimate.lower, 4),
                    report::number(row.estimate.upper, 4), row.unit});
   }
-  const std::string text = table.to_text() + "Explains " + report::number(100.0 * model->explained, 3) +
-                           " % of the force; position " + axis->position.name + ", force " + axis->force.name + "\n";
+  const std::string text = "Explains " + report::number(100.0 * model->explained, 3) + " % of the force; position " +
+                           axis->position.name + ", force " + axis->force.name + ".\n\n" + table.to_text();
   return write_outcome(options.axis.output,
                        {.text = text,
                         .json = json_of(*model, *axis, options.axis.file),

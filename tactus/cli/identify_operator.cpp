@@ -4,6 +4,7 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/operator_impedance.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 
@@ -212,7 +213,7 @@ Check identify_operator(OperatorOptions options, const std::string& command) {
   }
   const report::Table table = table_of(*found, axis->rotary);
   const std::string summary = summary_of(*found, *axis);
-  return write_outcome(options.axis.output, {.text = table.to_text() + summary + "\n",
+  return write_outcome(options.axis.output, {.text = summary + "\n\n" + table.to_text(),
                                              .json = json_of(*found, *axis, options.axis.file),
                                              .html = page_of(*found, *axis, table, summary, command).to_html(),
                                              .figures = {}});

@@ -104,7 +104,7 @@ experiments::Outcome outcome_of(const PredictionOptions& options, const TimeCons
                                     {"from_data_s", found.from_data_s},
                                     {"error_rms_N", found.error_rms_N}};
   experiments::Outcome outcome;
-  outcome.text = table.to_text() + felt + "\n";
+  outcome.text = felt + ".\n\n" + table.to_text();
   outcome.json = json_text(json);
   outcome.html = page.to_html();
   outcome.configuration = configuration;

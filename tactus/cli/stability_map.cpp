@@ -51,6 +51,7 @@ Result<stability::MapRequest> make_request(const MapOptions& options, const conf
   for (const std::string& text : options.vary) {
     auto axis = stability::parse_axis(text);
     if (!axis) return axis.error();
+    if (auto error = refuse_set_and_varied(options.set, axis->key)) return *std::move(error);
     request.axes.push_back(*std::move(axis));
   }
   request.precision =

@@ -14,6 +14,8 @@ namespace tactus::cli {
 /// `command` is the whole command line as a person would type it again, for the report.
 void add_run(CLI::App& app, const std::string& command, int& status);
 void add_advise(CLI::App& app, const std::string& command, int& status);
+/// Prints what completes all verbs that `app` has when it is chosen.
+void add_completion(CLI::App& app);
 void add_device(CLI::App& app, const std::string& command, int& status);
 void add_diagnose(CLI::App& app, const std::string& command, int& status);
 void add_doctor(CLI::App& app, const std::string& command, int& status);

@@ -41,7 +41,8 @@ table{border-collapse:collapse;font-size:.92rem;font-variant-numeric:tabular-num
 caption{text-align:left;font-weight:600;padding-bottom:.5rem}
 th,td{text-align:left;padding:.32rem .9rem .32rem 0;vertical-align:baseline;white-space:nowrap}
 th+th,th+td,td+td{padding-left:.9rem}
-th,td:not(.number){white-space:normal;min-width:5.5rem}
+thead th{white-space:normal;min-width:4.5rem}
+.text{white-space:normal;min-width:16rem}
 thead th{border-top:2px solid var(--tactus-frame);border-bottom:1px solid var(--tactus-frame);vertical-align:bottom}
 thead .unit{display:block;font-weight:400;color:var(--tactus-muted)}
 tbody th{font-weight:400}

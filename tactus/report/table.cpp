@@ -181,6 +181,7 @@ std::string Table::to_text() const {
 }
 
 std::string Table::to_html() const {
+  constexpr std::size_t longest_word = 24;  // a longer text is broken into lines
   const auto alignment = [&](std::size_t c) { return columns_[c].align == Align::right ? " class=\"number\"" : ""; };
   std::string html = "<table>\n";
   if (!caption_.empty()) html += "<caption>" + escape(caption_) + "</caption>\n";
@@ -196,8 +197,10 @@ std::string Table::to_html() const {
     html += "<tr>";
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       const std::string tag = c == 0 ? "th" : "td";
-      html += "<" + tag + (c == 0 ? " scope=\"row\"" : "") + alignment(c) + ">";
-      html += escape(c < row.size() ? row[c] : std::string()) + "</" + tag + ">";
+      const std::string shown = c < row.size() ? row[c] : std::string();
+      const bool text = columns_[c].align == Align::left && display_width(printable(shown)) > longest_word;
+      html += "<" + tag + (c == 0 ? " scope=\"row\"" : "") + (text ? " class=\"text\"" : alignment(c)) + ">";
+      html += escape(shown) + "</" + tag + ">";
     }
     html += "</tr>\n";
   }

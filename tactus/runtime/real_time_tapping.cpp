@@ -293,12 +293,13 @@ Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, co
   if (taps_done < taps) interrupted = Interrupted{.taps = taps_done, .of = taps};
 
   const report::Table table = experiments::tapping_table(runs);
+  const std::string verdict = experiments::tapping_verdict(runs);
   const report::Table timing = timing_table(all);
   const report::Table late = late_ticks_table(all);
   std::vector<report::Figure> figures;
   if (!runs.empty()) figures = experiments::tapping_figures(runs);
   figures.push_back(timing_figure(all));
-  report::Page page = experiments::tapping_page(request, table, figures);
+  report::Page page = experiments::tapping_page(request, verdict, table, figures);
   if (interrupted) page.paragraph(interrupted->text());
   page.heading("How time was kept");
   page.paragraph(
@@ -308,8 +309,8 @@ Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, co
   page.table(late);
   page.table(rights_table(all));
   experiments::add_provenance(page, request, cases->first_configuration);
-  std::string text = table.to_text() + "\n" + (interrupted ? interrupted->text() + "\n\n" : "") + timing.to_text() +
-                     "\n" + late.to_text() + losses_of(all);
+  std::string text = verdict + "\n\n" + (interrupted ? interrupted->text() + "\n\n" : "") + table.to_text() + "\n" +
+                     timing.to_text() + "\n" + late.to_text() + losses_of(all);
   return RealTimeOutcome{.outcome = {.text = std::move(text),
                                      .json = json_of(request, options.plant, runs, servos, interrupted),
                                      .html = page.to_html(),

@@ -122,7 +122,15 @@ MapReport report_map(const MapResult& map, const MapParams& base, double elapsed
   const std::string effort = effort_of(map, elapsed_s);
   const auto picture = picture_of(map);
 
+  std::size_t settled = 0;
+  for (const MapPlane& plane : planes)
+    settled += count(map, plane)[static_cast<std::size_t>(experiments::Verdict::settled)];
+  const std::string verdict =
+      report::number(100.0 * static_cast<double>(settled) / static_cast<double>(map.points.size()), 3) + " % of " +
+      std::to_string(map.points.size()) + " taps settle.";
+
   report::Page page(request.name + ": stability map");
+  page.paragraph(verdict);
   page.paragraph(
       "One tap on the wall at every point of a grid, each a closed-loop run in time with friction, hysteresis, "
       "quantisation and saturation: " +
@@ -133,7 +141,7 @@ MapReport report_map(const MapResult& map, const MapParams& base, double elapsed
       "One tap near the boundary is decided by accident, so a boundary has speckle. Beside this page: map.csv "
       "with one line a run, map.h5 with the same as arrays over the axes.");
   experiments::add_provenance(page, request, configuration::to_toml(base));
-  return {.text = effort + "\n" + table.to_text(),
+  return {.text = verdict + "\n" + effort + "\n\n" + table.to_text(),
           .json = json_of(map, planes, limits, elapsed_s),
           .html = page.to_html(),
           .svg = picture ? std::optional(report::to_svg(picture->map)) : std::nullopt};

@@ -3,6 +3,7 @@
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/report/text.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -46,6 +47,14 @@ Json json_of_conditions(const char* condition, const std::array<double, n>& valu
 }
 
 }  // namespace
+
+std::string contest_verdict(const std::vector<MethodScore>& scores, const ContestParams& params) {
+  const auto best = std::max_element(scores.begin(), scores.end(), [](const MethodScore& a, const MethodScore& b) {
+    return a.limit.gain < b.limit.gain;
+  });
+  const std::string method(contest_methods()[static_cast<std::size_t>(best - scores.begin())].name);
+  return "The largest force gain that settles is " + text_of(best->limit, params) + ", with " + method + ".";
+}
 
 report::Table contest_table(const std::vector<MethodScore>& scores, const ContestParams& params) {
   using Align = report::Column::Align;

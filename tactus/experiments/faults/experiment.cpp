@@ -341,11 +341,11 @@ Outcome present_faults(const Request& request, const FaultsParams& params, const
                         rules = rule_table(rows, time);
     const std::string said = summary(of, rows, time);
     page.paragraph(said);
+    text += said + "\n";
     for (const report::Table* one : {&outcomes, &harm, &rules}) {
       page.table(*one);
       text += one->to_text() + "\n";
     }
-    text += said;
   };
   add(params, table.rows, "virtual");
   if (!table.controls.empty()) {

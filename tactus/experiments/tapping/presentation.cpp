@@ -2,6 +2,9 @@
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/tapping/presentation.hpp>
 
+#include <cctype>
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 namespace tactus::experiments {
@@ -44,6 +47,34 @@ report::Table tapping_table(const std::vector<TappingRun>& runs) {
   return table;
 }
 
+std::string tapping_verdict(const std::vector<TappingRun>& runs) {
+  if (runs.empty()) return "No tap came to its end.";
+  if (runs.size() == 1) {
+    const TappingMetrics& m = runs.front().metrics;
+    const auto settled = std::lround(m.settled_fraction * static_cast<double>(m.taps));
+    std::string text = verdict_of(m);
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    text += ": " + std::to_string(settled) + " of " + std::to_string(m.taps) + (m.taps == 1 ? " tap" : " taps") +
+            " settled";
+    if (!m.settling_time_median_censored) {
+      text += ", half of them within " + report::number(1e3 * m.settling_time_median_s, 3) + " ms";
+    }
+    return text + ".";
+  }
+  constexpr std::size_t most = 6;  // that are named
+  std::size_t failed = 0;
+  std::string names;
+  for (const TappingRun& run : runs) {
+    if (run.metrics.verdict == Verdict::settled || failed++ >= most) continue;
+    names += (names.empty() ? "" : "; ") + settings_caption(run.settings) + " (" + verdict_of(run.metrics) + ")";
+  }
+  std::string text =
+      std::to_string(runs.size() - failed) + " of " + std::to_string(runs.size()) + " combinations settle";
+  if (failed > 0) text += "; these do not: " + names;
+  if (failed > most) text += " and " + std::to_string(failed - most) + " more";
+  return text + ".";
+}
+
 std::string metrics_json(const TappingMetrics& metrics) {
   nlohmann::ordered_json json{{"taps", metrics.taps}};
   json.update(json_of_settling(metrics));
@@ -63,9 +94,10 @@ std::string tapping_json(const Request& request, const std::vector<TappingRun>& 
                    [](const TappingRun& run) { return "{\"metrics\":" + metrics_json(run.metrics) + "}"; });
 }
 
-report::Page tapping_page(const Request& request, const report::Table& table,
+report::Page tapping_page(const Request& request, const std::string& verdict, const report::Table& table,
                           const std::vector<report::Figure>& figures) {
   report::Page page(request.name + ": " + std::string(tapping_title));
+  page.paragraph(verdict);
   page.paragraph(
       "A person reaches through the teleoperator onto a wall and presses. The force measured at the slave's tip, times "
       "the force gain, is displayed to the hand, saturated. Each row of the table is an ensemble of taps that differ "
