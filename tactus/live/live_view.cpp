@@ -321,12 +321,13 @@ void LiveView::watch(std::size_t loop, const LoopTick& tick) {
   const bool changed = tick.changes != watched.changes;
   watched.changes = tick.changes;
   if (changed) watched.judge.judge_anew();
+  const bool goes_on = watched.judge.verdict() != LiveVerdict::free;
   watched.judge.step(record.contact_force_N, record.touched);
   watched.energy.step(record.displayed_force_N, record.master_position_m);
   if (watched.judge.has_begun()) {
     watched.energy.begin();
     watched.rang = false;
-    watched.touch_speed_m_per_s = record.touched ? std::optional(tick.hand_speed_m_per_s) : std::nullopt;
+    watched.touch_speed_m_per_s = goes_on ? std::nullopt : std::optional(tick.hand_speed_m_per_s);
   }
   watched.rang = watched.rang || watched.judge.verdict() == LiveVerdict::rings;
   shown.vibration_energy_J = watched.energy.energy_J();

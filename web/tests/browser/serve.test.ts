@@ -95,6 +95,8 @@ describe.skipIf(leftOut)('the page before tactus serve', () => {
     await server.stop();
     await until(async () => expect(await verdict('left')).toBe('unknown'));
     expect(await page.textContent('.loop[data-side=left] .meter-text')).toBe('0.00 N');
+    await watched!.close();
+    // That nobody answers is what was wanted.
     watched!.complaints.length = 0;
   });
 
