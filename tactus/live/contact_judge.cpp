@@ -13,7 +13,8 @@ namespace {
 constexpr double apart_s = 0.25;
 constexpr double calm_again_s = 0.5;
 constexpr double left_for_s = 0.1;
-constexpr double too_gentle_N = 0.03;
+constexpr double too_gentle_N = 0.01;
+constexpr double too_gentle_again_N = 0.03;
 
 }  // namespace
 
@@ -44,11 +45,12 @@ void ContactJudge::step(double contact_force_N, bool touched) {
     onset_ = tick_;
     loud_until_ = tick_;
     peak_N_ = 0.0;
+    floor_N_ = too_gentle_N;
     verdict_ = LiveVerdict::contact;
   }
   if (verdict_ != LiveVerdict::free) {
     peak_N_ = std::max(peak_N_, level_N_);
-    const bool loud = level_N_ > std::max(experiments::settled_share * peak_N_, too_gentle_N);
+    const bool loud = level_N_ > std::max(experiments::settled_share * peak_N_, floor_N_);
     if (loud && verdict_ == LiveVerdict::settled && in_contact_) {
       onset_ = tick_;
       verdict_ = LiveVerdict::contact;
@@ -58,6 +60,7 @@ void ContactJudge::step(double contact_force_N, bool touched) {
     const bool calm_again = verdict_ == LiveVerdict::rings && after(loud_until_, calm_again_s);
     if (in_contact_ && ((verdict_ == LiveVerdict::contact && quiet) || calm_again)) {
       verdict_ = LiveVerdict::settled;
+      floor_N_ = too_gentle_again_N;
     } else if (verdict_ == LiveVerdict::contact && !quiet &&
                after(onset_, experiments::settled_within_s + experiments::quiet_time_s)) {
       verdict_ = LiveVerdict::rings;

@@ -19,7 +19,8 @@ enum class LiveVerdict { free, contact, settled, rings };
 /// verdict is `free`. `settled` once the force has been that small for 50 ms, on the wall, and fell there within 100 ms
 /// of the touch, the limit of the experiment; `rings` where it did not. What rings and has been calm for half a second
 /// is settled again; what is settled and becomes loud again is judged anew from there. A contact too gentle to feel,
-/// below 30 mN, counts as calm.
+/// below 10 mN, counts as calm; once it has settled, 30 mN, for the
+/// hand that presses on moves too.
 class ContactJudge {
  public:
   static Result<ContactJudge> make(Seconds dt);
@@ -50,6 +51,7 @@ class ContactJudge {
   std::int64_t loud_until_ = 0;  ///< the tick after the last loud one
   std::int64_t touched_last_ = -1;
   double peak_N_ = 0.0;
+  double floor_N_ = 0.0;  ///< what is less is calm, whatever the peak
   double level_N_ = 0.0;
   bool in_contact_ = false;
   bool has_begun_ = false;
