@@ -72,6 +72,8 @@ class Application {
                                         std::string_view bytes) = 0;
   /// The client is gone.
   virtual void leave(ClientId client) = 0;
+  /// The last client is gone.
+  virtual void stand_alone() = 0;
   /// Called every few milliseconds: hands over what is new, a bounded number of messages at once whatever goes on
   /// meanwhile, for nobody is answered until it returns. `is_wanted(topic)` tells whether anyone would get it.
   virtual void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) = 0;

@@ -50,6 +50,7 @@ Server::State::Client::~Client() {
   server_.dropped += conversation_.outbox().dropped() - counted_;
   server_.clients.erase(id_);
   server_.application.leave(id_);
+  if (server_.client_count == 0) server_.application.stand_alone();
 }
 
 void Server::State::Client::run(const Request& request, std::string_view subprotocol) {

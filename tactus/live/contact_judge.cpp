@@ -12,8 +12,9 @@ namespace {
 
 constexpr double apart_s = 0.25;
 constexpr double calm_again_s = 0.5;
-constexpr double verdict_stays_s = 1.5;
+constexpr double left_for_s = 0.1;
 constexpr double too_gentle_N = 0.01;
+constexpr double too_gentle_again_N = 0.03;
 
 }  // namespace
 
@@ -36,31 +37,36 @@ bool ContactJudge::after(std::int64_t tick, double duration_s) const {
 void ContactJudge::step(double contact_force_N, bool touched) {
   level_N_ = std::fabs(high_pass_.step(contact_force_N));
   in_contact_ = contact_force_N > 0.0;
-  has_begun_ = touched && (touched_last_ < 0 || after(touched_last_, apart_s));
-  if (touched || in_contact_) touched_last_ = tick_;
+  const bool at_the_wall = touched || in_contact_;
+  has_begun_ = at_the_wall && (verdict_ == LiveVerdict::free || anew_);
+  if (at_the_wall) touched_last_ = tick_;
   if (has_begun_) {
+    anew_ = false;
     onset_ = tick_;
     loud_until_ = tick_;
     peak_N_ = 0.0;
+    floor_N_ = too_gentle_N;
     verdict_ = LiveVerdict::contact;
   }
   if (verdict_ != LiveVerdict::free) {
     peak_N_ = std::max(peak_N_, level_N_);
-    const bool loud = level_N_ > std::max(experiments::settled_share * peak_N_, too_gentle_N);
+    const bool loud = level_N_ > std::max(experiments::settled_share * peak_N_, floor_N_);
     if (loud && verdict_ == LiveVerdict::settled && in_contact_) {
       onset_ = tick_;
       verdict_ = LiveVerdict::contact;
     }
     if (loud) loud_until_ = tick_ + 1;
     const bool quiet = after(loud_until_, experiments::quiet_time_s);
-    const bool calm_again = verdict_ == LiveVerdict::rings && in_contact_ && after(loud_until_, calm_again_s);
-    if ((verdict_ == LiveVerdict::contact && quiet) || calm_again) {
+    const bool calm_again = verdict_ == LiveVerdict::rings && after(loud_until_, calm_again_s);
+    if (in_contact_ && ((verdict_ == LiveVerdict::contact && quiet) || calm_again)) {
       verdict_ = LiveVerdict::settled;
-    } else if (verdict_ == LiveVerdict::contact &&
+      floor_N_ = too_gentle_again_N;
+    } else if (verdict_ == LiveVerdict::contact && !quiet &&
                after(onset_, experiments::settled_within_s + experiments::quiet_time_s)) {
       verdict_ = LiveVerdict::rings;
     }
-    if (after(touched_last_, verdict_stays_s)) verdict_ = LiveVerdict::free;
+    const bool at_rest = verdict_ == LiveVerdict::settled;
+    if (after(touched_last_, at_rest ? left_for_s : apart_s)) verdict_ = LiveVerdict::free;
   }
   ++tick_;
 }

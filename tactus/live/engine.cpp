@@ -101,6 +101,7 @@ void Engine::apply(Change& change) noexcept {
     Change::Loop& loop = change.loop[i];
     if (loop.made && loop.parts) {
       setup_.teleoperators[i].exchange(*loop.made, *loop.parts);
+      ++tick_.loop[i].changes;
     } else if (loop.made) {
       std::swap(setup_.teleoperators[i], *loop.made);
       tick_.loop[i].stopped = false;
@@ -136,6 +137,7 @@ void Engine::step() noexcept {
     record.time_s = time_s;
     tick.time_ns = time_ns;
     tick.hand_position_m = target_m;
+    tick.hand_speed_m_per_s = (path_at_next_tick_m - path_m) / tick_s_;
     tick.wall_position_m = setup_.wall_m;
     tick.real_time_ratio = real_time_ratio_;
     tick.number = ticks_of_[i]++;

@@ -35,6 +35,10 @@ nlohmann::json object_in(std::string_view bytes) {
   return value.is_object() ? value : nlohmann::json(nullptr);
 }
 
+nlohmann::json json_of(const ParameterValue& value) {
+  return std::visit([](const auto& one) { return nlohmann::json(one); }, value);
+}
+
 const char* word_of(LiveVerdict verdict) {
   constexpr std::array words{"free", "contact", "settled", "rings"};
   return words[static_cast<std::size_t>(verdict)];
@@ -86,6 +90,7 @@ Result<std::unique_ptr<LiveView>> LiveView::make(const Settings& settings, const
 LiveView::LiveView(const Settings& settings, const Options& options, LoopParams params, std::unique_ptr<Engine> engine,
                    const ContactJudge& judge, const VibrationEnergy& energy)
     : settings_(settings),
+      initial_(settings),
       options_(options),
       params_(std::move(params)),
       engine_(std::move(engine)),
@@ -112,12 +117,16 @@ std::map<std::string, std::string> LiveView::metadata() const {
                         {"unit", description.unit.symbol},
                         {"kind", kinds[static_cast<std::size_t>(description.kind)]},
                         {"logarithmic", description.logarithmic},
+                        {"initial", json_of(description.initial)},
                         {"tunable", options_.allow_tuning}};
     if (description.kind == ParameterDescription::Kind::number) {
       item["minimum"] = description.bounds.lower;
       item["maximum"] = description.bounds.upper;
     }
-    if (description.kind == ParameterDescription::Kind::choice) item["choices"] = description.choices;
+    if (description.kind == ParameterDescription::Kind::choice) {
+      item["choices"] = description.choices;
+      item["explanations"] = description.explanations;
+    }
     list.push_back(std::move(item));
   }
   return {{"tactus.parameters", list.dump()},
@@ -238,6 +247,11 @@ void LiveView::leave(ClientId client) {
   static_cast<void>(engine_->aim(0.0));
 }
 
+void LiveView::stand_alone() {
+  // A loop that has no room for this now gets it with the next change.
+  static_cast<void>(apply(initial_));
+}
+
 void LiveView::collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) {
   if (!ticks_) ticks_.emplace(engine_->watch());
   std::array<bool, loops> every_tick;
@@ -272,7 +286,26 @@ void LiveView::show(std::size_t loop, const LoopTick& tick, bool every_tick, con
   watched.state.verdict = tick.stopped ? "stopped" : word_of(watched.judge.verdict());
   watched.state.cause =
       tick.stopped ? "A safety gate closed or a device left its workspace; reset starts over." : watched.judge.cause();
+  watched.state.advice = tick.stopped ? "" : advice(loop);
+  watched.state.force_limit_N = params_[loop].control.force_limit_N;
   publish(first_topic + state, tick.time_ns, shared(to_cdr(watched.state)));
+}
+
+std::string LiveView::advice(std::size_t loop) const {
+  const LiveVerdict verdict = watched_[loop].judge.verdict();
+  if (verdict != LiveVerdict::settled && verdict != LiveVerdict::rings) return {};
+  const std::optional<double>& speed_m_per_s = watched_[loop].touch_speed_m_per_s;
+  if (!speed_m_per_s) return "It touched the wall before the change: let go and tap to try the loop as it is now.";
+  const auto in_mm_per_s = [](double value) { return format_number(std::round(1e3 * value)) + " mm/s"; };
+  const std::string touched = "You touched at " + in_mm_per_s(*speed_m_per_s);
+  if (verdict == LiveVerdict::rings) return touched + ".";
+  if (watched_[loop].rang) return touched + ". It rang before it came to rest.";
+  const std::string button = in_mm_per_s(ScriptedTap::speed_m_per_s);
+  if (*speed_m_per_s < ScriptedTap::speed_m_per_s - 0.5e-3) {
+    return touched + ", too gently to try it; the button taps at " + button + ". Tap faster.";
+  }
+  return touched + (settings_.is_plain(loop) ? ". Now and then a plain loop comes to rest by chance: tap again."
+                                             : ", no slower than the button.");
 }
 
 void LiveView::watch(std::size_t loop, const LoopTick& tick) {
@@ -285,9 +318,18 @@ void LiveView::watch(std::size_t loop, const LoopTick& tick) {
     watched.energy.reset(record.master_position_m);
     history_.start_over(loop);
   }
+  const bool changed = tick.changes != watched.changes;
+  watched.changes = tick.changes;
+  if (changed) watched.judge.judge_anew();
+  const bool goes_on = watched.judge.verdict() != LiveVerdict::free;
   watched.judge.step(record.contact_force_N, record.touched);
   watched.energy.step(record.displayed_force_N, record.master_position_m);
-  if (watched.judge.has_begun()) watched.energy.begin();
+  if (watched.judge.has_begun()) {
+    watched.energy.begin();
+    watched.rang = false;
+    watched.touch_speed_m_per_s = goes_on ? std::nullopt : std::optional(tick.hand_speed_m_per_s);
+  }
+  watched.rang = watched.rang || watched.judge.verdict() == LiveVerdict::rings;
   shown.vibration_energy_J = watched.energy.energy_J();
   history_.watch(loop,
                  {.time_s = record.time_s,

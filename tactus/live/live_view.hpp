@@ -50,6 +50,8 @@ class LiveView final : public Application {
   std::optional<Status> receive(ClientId client, std::string_view topic, std::string_view encoding,
                                 std::string_view bytes) override;
   void leave(ClientId client) override;
+  /// Who comes next finds what the experiment says.
+  void stand_alone() override;
   /// Shows what the loops did since it was first called.
   void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) override;
 
@@ -64,6 +66,10 @@ class LiveView final : public Application {
     VibrationEnergy energy;
     LiveState state;
     std::uint32_t run = 0;
+    std::uint32_t changes = 0;
+    /// Of the hand at the first touch of the contact; none where the contact is older than the loop as it is now.
+    std::optional<double> touch_speed_m_per_s = std::nullopt;
+    bool rang = false;  ///< at any time of the contact
     std::size_t ticks_to_state = 0;
   };
 
@@ -75,9 +81,12 @@ class LiveView final : public Application {
   std::optional<Status> start_over(const std::optional<ScriptedTap>& tap);
   Check apply(const Settings& settings);
   void watch(std::size_t loop, const LoopTick& tick);
+  /// What the verdict says of the loop, and what to try.
+  [[nodiscard]] std::string advice(std::size_t loop) const;
   void show(std::size_t loop, const LoopTick& tick, bool every_tick, const Publish& publish);
 
   Settings settings_;
+  const Settings initial_;
   Options options_;
   LoopParams params_;
   std::unique_ptr<Engine> engine_;

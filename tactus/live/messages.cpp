@@ -49,6 +49,8 @@ std::string live_state_definition() {
          line("bool", "in_contact", "The slave touches the wall.") +
          line("string", "verdict", "free, contact, settled, rings or stopped.") +
          line("string", "cause", "Why, in one sentence; may be empty.") +
+         line("string", "advice", "What the verdict says of the loop, and what to try; may be empty.") +
+         line("float64", "force_limit_N", "The most that is displayed at the master's motor.") +
          line("float64", "real_time_ratio", "Virtual time over real time, over the last second.") +
          line("uint64", "dropped", "Ticks of this loop that were lost on the way to the view, since the start.");
 }
@@ -105,6 +107,8 @@ std::string to_cdr(const LiveState& state) {
   writer.add(state.in_contact);
   writer.add(std::string_view(state.verdict));
   writer.add(std::string_view(state.cause));
+  writer.add(std::string_view(state.advice));
+  writer.add(state.force_limit_N);
   writer.add(state.real_time_ratio);
   writer.add(state.dropped);
   return std::move(writer).take();

@@ -16,12 +16,14 @@ namespace tactus::live {
 struct LoopTick {
   std::uint64_t time_ns = 0;
   simulation::Teleoperator::Record record;
-  double hand_position_m = 0.0;  ///< where the visitor, or the script, wants the hand
-  double wall_position_m = 0.0;  ///< as the master's hand sees it
-  double real_time_ratio = 0.0;  ///< virtual time over real time, over the last second
-  std::uint32_t number = 0;      ///< of the ticks of this loop, from 0
-  std::uint32_t run = 0;         ///< grows each time the loop starts over
-  bool stopped = false;          ///< a safety gate latched, or a device left its workspace
+  double hand_position_m = 0.0;     ///< where the visitor, or the script, wants the hand
+  double hand_speed_m_per_s = 0.0;  ///< of the path that the hand means to take
+  double wall_position_m = 0.0;     ///< as the master's hand sees it
+  double real_time_ratio = 0.0;     ///< virtual time over real time, over the last second
+  std::uint32_t number = 0;         ///< of the ticks of this loop, from 0
+  std::uint32_t run = 0;            ///< grows each time the loop starts over
+  std::uint32_t changes = 0;        ///< grows each time that parts of it were exchanged
+  bool stopped = false;             ///< a safety gate latched, or a device left its workspace
 };
 
 /// The signals of a block, each with its place in a tick.
@@ -95,6 +97,8 @@ struct LiveState {
   bool in_contact = false;
   std::string verdict;
   std::string cause;
+  std::string advice;
+  double force_limit_N = 0.0;  ///< most that the master's motor displays
   double real_time_ratio = 0.0;
   std::uint64_t dropped = 0;  ///< ticks of this loop that the view lost
 };

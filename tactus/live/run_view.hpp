@@ -37,6 +37,7 @@ class RunView final : public Application {
   std::optional<Status> receive(ClientId client, std::string_view topic, std::string_view encoding,
                                 std::string_view bytes) override;
   void leave(ClientId) override {}
+  void stand_alone() override {}
   void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) override;
 
  private:

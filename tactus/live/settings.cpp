@@ -17,12 +17,14 @@ constexpr const char* delay = "channel.delay_s";
 constexpr const char* grip = "operator.grip";
 constexpr const char* side_by_side = "side_by_side";
 
+constexpr const char* plain = "none";
+
 std::string method_key(std::size_t loop) { return std::string(loop_names[loop]) + ".method"; }
 
 /// The competitors of the contest as words of one kind: `cancellation-local-damping`; the one that does nothing against
 /// instability is `none`.
 std::string word_of(const experiments::ContestMethod& method) {
-  if (method.name == "position-force") return "none";
+  if (method.name == "position-force") return plain;
   std::string word;
   for (const char c : method.name) {
     if (c != ',') word += c == ' ' ? '-' : c;
@@ -57,6 +59,7 @@ Result<Settings> Settings::make(const configuration::Document& document) {
 
   Settings settings(document);
   const auto add = [&settings](ParameterDescription description, ParameterValue value) {
+    description.initial = value;
     settings.descriptions_.push_back(std::move(description));
     settings.values_.push_back(std::move(value));
   };
@@ -68,7 +71,8 @@ Result<Settings> Settings::make(const configuration::Document& document) {
          .unit = unit,
          .bounds = between(std::min(least, value), std::max(most, value)),
          .logarithmic = logarithmic,
-         .choices = {}},
+         .choices = {},
+         .explanations = {}},
         value);
   };
   number(gain, "Force gain", units::none, 0.0, 30.0, params->control.force_gain);
@@ -76,15 +80,29 @@ Result<Settings> Settings::make(const configuration::Document& document) {
          true);
   number(delay, "Delay each way", units::second, 0.0, 0.2, params->channel.to_slave.delay_s);
   number(grip, "Grip", units::none, 0.25, 4.0, 1.0, true);
-  std::vector<std::string> methods;
-  for (const experiments::ContestMethod& method : experiments::contest_methods()) methods.push_back(word_of(method));
+  std::vector<std::string> methods, explanations;
+  for (const experiments::ContestMethod& method : experiments::contest_methods()) {
+    methods.push_back(word_of(method));
+    explanations.emplace_back(method.explanation);
+  }
   constexpr std::array labels{"Method", "Compared with"};
-  constexpr std::array first_methods{"cancellation", "none"};
+  constexpr std::array first_methods{"cancellation", plain};
   for (std::size_t i = 0; i < loops; ++i) {
-    add({.name = method_key(i), .label = labels[i], .kind = Kind::choice, .bounds = {}, .choices = methods},
+    add({.name = method_key(i),
+         .label = labels[i],
+         .kind = Kind::choice,
+         .bounds = {},
+         .choices = methods,
+         .explanations = explanations},
         first_methods[i]);
   }
-  add({.name = side_by_side, .label = "Side by side", .kind = Kind::flag, .bounds = {}, .choices = {}}, true);
+  add({.name = side_by_side,
+       .label = "Side by side",
+       .kind = Kind::flag,
+       .bounds = {},
+       .choices = {},
+       .explanations = {}},
+      true);
   return settings;
 }
 
@@ -159,6 +177,8 @@ Result<simulation::Teleoperator::Params> Settings::of_loop(std::size_t loop) con
   if (auto error = validate(*params)) return *std::move(error);
   return simulation::Teleoperator::Params(*params);
 }
+
+bool Settings::is_plain(std::size_t loop) const { return std::get<std::string>(value(method_key(loop))) == plain; }
 
 bool Settings::runs(std::size_t loop) const { return loop == 0 || std::get<bool>(value(side_by_side)); }
 

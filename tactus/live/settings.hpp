@@ -24,6 +24,8 @@ struct ParameterDescription {
   Bounds bounds;
   bool logarithmic = false;
   std::vector<std::string> choices;
+  std::vector<std::string> explanations;  ///< one sentence for each choice
+  ParameterValue initial = 0.0;           ///< what it is until somebody changes it
 };
 
 /// What can be changed while the loops run, and from it the parameters of each loop. A value: a change is tried on a
@@ -42,6 +44,8 @@ class Settings {
   /// The parameters of a loop as they are now set. Errors: what the described parameters refuse.
   [[nodiscard]] Result<simulation::Teleoperator::Params> of_loop(std::size_t loop) const;
   [[nodiscard]] bool runs(std::size_t loop) const;
+  /// Nothing in it acts against instability.
+  [[nodiscard]] bool is_plain(std::size_t loop) const;
   /// The wall as the master's hand sees it.
   static constexpr double wall_m = 0.01;
 

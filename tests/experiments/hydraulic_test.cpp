@@ -78,6 +78,16 @@ TEST(HydraulicRigidContact, BothPressesSettleWithPredictionAndTheEstimateIsEarli
   EXPECT_NEAR(runs[0].fed_back_N[i], 1320.0 * current_mA / 100.0, 0.1 * runs[0].fed_back_N[i]);
 }
 
+TEST(HydraulicRigidContact, ThePressuresSayTheForceOnTheStopAndTheEstimateHowFarTheMasterIsAhead) {
+  const RigidContactRun run = run_hydraulic_rigid_contact({}).value()[1];
+  for (const RigidContact& contact : run.contacts) {
+    EXPECT_NEAR(contact.pressure_force_N, contact.stop_force_N, 0.03 * contact.stop_force_N);
+    EXPECT_GT(contact.stop_force_N, 8.0 * contact.fed_back_N);
+  }
+  EXPECT_GT(run.contacts[1].fed_back_N, 1.8 * run.contacts[0].fed_back_N) << "twice as far";
+  EXPECT_LT(run.contacts[1].stop_force_N, 1.3 * run.contacts[0].stop_force_N) << "the supply gives no more";
+}
+
 TEST(HydraulicRigidContact, ALinkThatIsTooSlowRingsAndIsNotCalledSettled) {
   HydraulicRigidContactParams params;
   params.task.delay_s = 0.01;

@@ -66,6 +66,39 @@ TEST(ContactJudge, WhatRingsAndBecomesCalmIsSettledAgainAndTheContactIsForgotten
                                    LiveVerdict::free}));
 }
 
+TEST(ContactJudge, TheVerdictEndsWithTheContact) {
+  for (const double fades_in_s : {0.004, 1e9}) {
+    ContactJudge judge = ContactJudge::make(Seconds{tick_s}).value();
+    const std::vector<double> force_N = contact(0, ticks_in(0.5), fades_in_s);
+    for (std::size_t i = 0; i < force_N.size(); ++i) judge.step(force_N[i], i == 0);
+    const bool rings = judge.verdict() == LiveVerdict::rings;
+    EXPECT_EQ(rings, fades_in_s > 1.0);
+    for (std::size_t i = 0; i < ticks_in(rings ? 0.26 : 0.11); ++i) judge.step(0.0, false);
+    EXPECT_EQ(judge.verdict(), LiveVerdict::free) << fades_in_s;
+  }
+}
+
+TEST(ContactJudge, WhatLeavesTheWallBeforeItsVerdictHasNotSettledThere) {
+  ContactJudge judge = ContactJudge::make(Seconds{tick_s}).value();
+  for (std::size_t i = 0; i < ticks_in(0.24); ++i) {
+    judge.step(i < ticks_in(0.01) ? 0.5 : 0.0, i == 0);
+    EXPECT_EQ(judge.verdict(), LiveVerdict::contact) << i;
+  }
+}
+
+TEST(ContactJudge, AContactThatGoesOnThroughAChangeIsJudgedFromThereOn) {
+  ContactJudge judge = ContactJudge::make(Seconds{tick_s}).value();
+  const std::vector<double> force_N = contact(0, ticks_in(0.5), 1e9);
+  for (std::size_t i = 0; i < force_N.size(); ++i) judge.step(force_N[i], i == 0);
+  EXPECT_EQ(judge.verdict(), LiveVerdict::rings);
+  judge.judge_anew();
+  judge.step(0.5, false);
+  EXPECT_TRUE(judge.has_begun());
+  EXPECT_EQ(judge.verdict(), LiveVerdict::contact);
+  for (std::size_t i = 0; i < ticks_in(0.3); ++i) judge.step(0.5, false);
+  EXPECT_EQ(judge.verdict(), LiveVerdict::settled);
+}
+
 TEST(ContactJudge, ATouchThatNobodyFeelsCountsAsCalm) {
   ContactJudge judge = ContactJudge::make(Seconds{tick_s}).value();
   signal::Random noise(3);

@@ -68,6 +68,15 @@ double vibration_energy_J_of(const std::string& state) {
   return reader.float64();
 }
 
+std::string advice_of(const std::string& state) {
+  Reader reader(state);
+  for (int i = 0; i < 8; ++i) reader.float64();
+  reader.boolean();
+  reader.text();
+  reader.text();
+  return reader.text();
+}
+
 std::string verdict_of(const std::string& state) {
   Reader reader(state);
   for (int i = 0; i < 8; ++i) reader.float64();
@@ -213,6 +222,37 @@ TEST(LiveView, ParametersStayAsTheyAreWithoutLeaveAndOutsideTheirBounds) {
   EXPECT_EQ(statuses[0].message, "control.force_gain: 99 is out of bounds: it must be at least 0 and at most 30");
   EXPECT_EQ(std::get<double>(view->parameters()[0].value), 10.0);
   EXPECT_EQ(std::get<double>(view->parameters()[3].value), 2.0);
+}
+
+TEST(LiveView, AGentleTouchIsToldFromATapAndAContactFromBeforeAChangeToo) {
+  const auto view = sample_view();
+  // A hand that creeps to the wall, 10 mm in a second.
+  for (int i = 0; i <= 60; ++i) {
+    const std::string there = std::to_string(2e-4 * i);
+    EXPECT_FALSE(publish(*view, "/operator/hand", R"({"position_m":)" + there + R"(,"engaged":true})"));
+    collect(*view, 0.02);
+  }
+  const std::string gentle = collect(*view, 0.4).at("/left/state").back();
+  EXPECT_EQ(verdict_of(gentle), "settled");
+  EXPECT_NE(advice_of(gentle).find("You touched at 10 mm/s, too gently"), std::string::npos) << advice_of(gentle);
+  EXPECT_TRUE(view->set_parameters({{"left.method", std::string("none")}}).empty());
+  const std::string changed = collect(*view, 0.4).at("/left/state").back();
+  EXPECT_NE(advice_of(changed).find("before the change"), std::string::npos) << advice_of(changed);
+  EXPECT_FALSE(publish(*view, "/operator/command", R"({"command":"tap"})"));
+  const std::string tapped = collect(*view, 0.6).at("/left/state").back();
+  EXPECT_EQ(verdict_of(tapped), "rings");
+  EXPECT_EQ(advice_of(tapped), "You touched at 60 mm/s.");
+}
+
+TEST(LiveView, WhoComesAfterTheLastVisitorFindsTheDefaults) {
+  const auto view = sample_view();
+  const auto initial = view->parameters();
+  EXPECT_TRUE(view->set_parameters({{"control.force_gain", 3.0}, {"left.method", std::string("none")}}).empty());
+  view->stand_alone();
+  for (std::size_t i = 0; i < initial.size(); ++i) EXPECT_EQ(view->parameters()[i].value, initial[i].value);
+  const auto list = nlohmann::json::parse(view->metadata().at("tactus.parameters"));
+  EXPECT_EQ(list[0]["initial"], 10.0);
+  for (const auto& item : list) EXPECT_EQ(item.contains("explanations"), item["kind"] == "choice");
 }
 
 TEST(LiveView, WithoutSideBySideTheRightLoopRests) {

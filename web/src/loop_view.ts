@@ -3,25 +3,37 @@ import { highest_m, lowest_m, type Hand } from './operator/hand';
 import { Plot, type PlotData } from './plots/plot';
 import * as descriptions from './plots/descriptions';
 import type { SignalName } from './protocol/messages';
-import { drawScene, fitCanvas, sceneHeight } from './scene/scene';
+import { compact, drawScene, fitCanvas, roomy, type Layout } from './scene/scene';
 import { scaleFor } from './scene/scale';
 import { signalIndex, type Loop } from './state/loop';
 import type { Side } from './state/session';
-import { SteadyVerdict } from './state/verdict';
+import { clips, judgement, type Forces } from './state/verdict';
 
 const icons = {
   free: 'M12 4a8 8 0 1 0 .01 0Z',
+  moving: 'M3 12h17M14 6l6 6-6 6',
   contact: 'M12 4a8 8 0 1 0 .01 0ZM12 4v16',
   settled: 'M4 13l5 5L20 6',
   rings: 'M2 12c2-9 3-9 5 0s3 9 5 0 3-9 5 0 3 9 5 0',
   stopped: 'M6 6h12v12H6Z',
+  unknown: 'M5 5l14 14M19 5L5 19',
 } as const;
 
 /** How far back a moving thing leaves its blur, and a force its arrow. */
 const blur_s = 0.05;
 const forceMemory_s = 0.1;
+/** The meter reaches to this, or to half as much again as the motor displays. */
 const meterFull_N = 2;
 const textEvery_s = 0.25;
+/** On a phone two loops are in sight together, so each gets less height. */
+const phone = matchMedia('(max-width: 600px)');
+
+/** What a picture depends on beside the loop. */
+export interface Moment {
+  readonly plotsToo: boolean;
+  readonly hint: boolean;
+  readonly connected: boolean;
+}
 
 /** One loop on the page: heading with its method, verdict, scene and force meter; and two plots. */
 export class LoopView {
@@ -32,7 +44,6 @@ export class LoopView {
   private readonly canvas: HTMLCanvasElement;
   private readonly context: CanvasRenderingContext2D;
   private readonly handle: HTMLElement;
-  private readonly verdict = new SteadyVerdict();
   private textAt_s = -Infinity;
   private textIsDue = false;
   private peak_N = 0;
@@ -51,14 +62,12 @@ export class LoopView {
     this.methodPlace.className = 'method';
     this.find('h2').after(this.methodPlace);
     this.canvas = this.find<HTMLCanvasElement>('canvas');
-    this.canvas.style.height = `${sceneHeight}px`;
     this.context = this.canvas.getContext('2d')!;
     this.handle = this.find('.handle');
     this.handle.id = `handle-${side}`;
     this.handle.setAttribute('aria-label', `Your handle, ${side} loop, in millimetres`);
     this.handle.setAttribute('aria-valuemin', String(1e3 * lowest_m));
     this.handle.setAttribute('aria-valuemax', String(1e3 * highest_m));
-    this.find('.meter').setAttribute('aria-valuemax', String(meterFull_N));
     const place: Place = {
       millimetresPerPixel: () => 1 / scaleFor(this.width).pixelsPerMillimetre,
       handle_m: () => loop.state.hand_position_m,
@@ -70,13 +79,17 @@ export class LoopView {
   }
 
   /** Draws everything as it is now. */
-  draw(now_s: number, plotsToo: boolean, hint: boolean): void {
-    this.width = fitCanvas(this.canvas, this.context);
+  draw(now_s: number, { plotsToo, hint, connected }: Moment): void {
+    const layout = phone.matches && document.body.dataset.mode === 'both' ? compact : roomy;
+    this.width = fitCanvas(this.canvas, this.context, layout);
+    const { trace } = this.loop;
+    const handForce_N = connected ? magnitudes(trace.extremes(signalIndex('hand_force_n'), trace.latest - blur_s)) : none;
     this.textIsDue = now_s - this.textAt_s >= textEvery_s;
+    const atWall_N = Math.max(0, trace.extremes(signalIndex('slave_force_n'), trace.latest - blur_s)[1]);
+    this.drawVerdict({ atWall_N, onHand_N: handForce_N[1] }, connected);
     if (this.textIsDue) this.textAt_s = now_s;
-    this.drawVerdict(now_s);
-    this.drawMeter();
-    this.drawHand(hint);
+    this.drawMeter(handForce_N);
+    this.drawHand(layout, hint, connected);
     if (plotsToo) this.drawPlots(now_s);
   }
 
@@ -93,11 +106,13 @@ export class LoopView {
     return this.element.querySelector<Kind>(selector)!;
   }
 
-  private drawVerdict(now_s: number): void {
-    const { verdict, word, sentence, measured } = this.verdict.update(this.loop.state, now_s);
+  private drawVerdict(forces: Forces, connected: boolean): void {
+    const { verdict, word, sentence, measured } = judgement(this.loop.state, forces, connected);
     const element = this.find('.verdict');
     const same = this.element.dataset.verdict === verdict && element.dataset.sentence === sentence;
-    if (this.textIsDue || !same) this.find('.measured').textContent = measured;
+    // A verdict and the numbers beside it are of the same moment.
+    this.textIsDue ||= !same;
+    if (this.textIsDue) this.find('.measured').textContent = measured;
     if (same) return;
     this.element.dataset.verdict = verdict;
     element.dataset.sentence = sentence;
@@ -106,40 +121,50 @@ export class LoopView {
     element.querySelector('.sentence')!.textContent = sentence;
   }
 
-  private drawMeter(): void {
-    const { trace } = this.loop;
-    const [low, high] = magnitudes(trace.extremes(signalIndex('hand_force_n'), trace.latest - blur_s));
+  private drawMeter([low, high]: readonly [number, number]): void {
+    const { forceLimit_N, displayed_force_N } = this.loop.state;
+    const full_N = Math.max(meterFull_N, 1.5 * forceLimit_N);
     this.peak_N = Math.max(high, this.peak_N * 0.985);
-    const share = (force_N: number): number => Math.min(1, force_N / meterFull_N);
+    const share = (force_N: number): number => Math.min(1, force_N / full_N);
     this.find('.meter-level').style.transform = `scaleX(${share(low)})`;
     this.find('.meter-range').style.transform = `translateX(${100 * share(low)}%) scaleX(${Math.max(0.004, share(high) - share(low))})`;
     this.find('.meter-peak').style.transform = `translateX(${98 * share(this.peak_N)}%)`;
+    this.find('.meter-limit').style.transform = `translateX(${100 * share(forceLimit_N)}%)`;
     if (!this.textIsDue) return;
     const text = `${high.toFixed(2)} N`;
     this.find('.meter-text').textContent = text;
-    this.find('.meter').setAttribute('aria-valuenow', Math.min(high, meterFull_N).toFixed(2));
-    this.find('.meter').setAttribute('aria-valuetext', text);
+    const meter = this.find('.meter');
+    meter.setAttribute('aria-valuemax', String(full_N));
+    meter.setAttribute('aria-valuenow', Math.min(high, full_N).toFixed(2));
+    meter.setAttribute('aria-valuetext', text);
+    const atLimit = clips(displayed_force_N, forceLimit_N);
+    this.find('.limit').dataset.clips = String(atLimit);
+    const limit = `${Number(forceLimit_N.toPrecision(3))} N`;
+    this.find('.limit').textContent =
+      forceLimit_N <= 0 ? '' : atLimit ? `The motor is at its limit of ${limit}.` : `The motor’s limit is ${limit}.`;
   }
 
-  private drawHand(hint: boolean): void {
+  private drawHand(layout: Layout, hint: boolean, connected: boolean): void {
     const { state, trace } = this.loop;
     const hand_m = this.hand.engaged ? this.hand.position_m : state.hand_position_m;
     const recent = (name: SignalName, since_s: number): [number, number] =>
       trace.extremes(signalIndex(name), trace.latest - since_s);
     const master_mm = orElse(recent('master_position_m', blur_s), 1e3 * state.master_position_m);
-    drawScene(this.context, this.width, {
+    const displayed_N = magnitudes(recent('displayed_force_n', forceMemory_s))[1];
+    drawScene(this.context, this.width, layout, {
       hand_mm: 1e3 * hand_m,
       engaged: this.hand.engaged,
       master_mm,
       slave_mm: orElse(recent('slave_position_m', blur_s), 1e3 * state.slave_position_m),
       wall_mm: 1e3 * state.wall_position_m,
-      displayed_N: magnitudes(recent('displayed_force_n', forceMemory_s))[1],
-      contact_N: Math.max(0, recent('slave_force_n', forceMemory_s)[1]),
+      displayed_N: connected ? displayed_N : 0,
+      clips: connected && clips(displayed_N, state.forceLimit_N),
+      contact_N: connected ? Math.max(0, recent('slave_force_n', forceMemory_s)[1]) : 0,
       rings: this.element.dataset.verdict === 'rings',
       hint,
     });
     const x = scaleFor(this.width).x((master_mm[0] + master_mm[1]) / 2);
-    this.handle.style.transform = `translateX(${x.toFixed(1)}px)`;
+    this.handle.style.transform = `translate(${x.toFixed(1)}px, ${layout.master - roomy.master}px)`;
     if (this.textIsDue) this.describeHandle(hand_m);
   }
 
@@ -156,9 +181,17 @@ export class LoopView {
     const [time, ...signals] = trace.views();
     const select = (names: readonly SignalName[]): PlotData => [time, ...names.map((name) => signals[signalIndex(name)]!)];
     this.positions.update(select(descriptions.positionSignals), trace.latest, now_s);
+    this.forces.markLimit(this.loop.state.forceLimit_N);
     this.forces.update(select(descriptions.forceSignals), trace.latest, now_s);
+    if (!this.textIsDue) return;
+    descriptions.forceSignals.forEach((name, index) => {
+      const [, greatest] = magnitudes(trace.extremes(signalIndex(name), trace.latest - blur_s));
+      this.forces.tell(index, `${greatest.toFixed(2)} N`);
+    });
   }
 }
+
+const none: [number, number] = [0, 0];
 
 function orElse(range: [number, number], value: number): [number, number] {
   return range[0] <= range[1] ? range : [value, value];
@@ -166,7 +199,7 @@ function orElse(range: [number, number], value: number): [number, number] {
 
 /** Least and greatest magnitude of a range of values. */
 function magnitudes([low, high]: [number, number]): [number, number] {
-  if (low > high) return [0, 0];
+  if (low > high) return none;
   const greatest = Math.max(Math.abs(low), Math.abs(high));
   return low <= 0 && high >= 0 ? [0, greatest] : [Math.min(Math.abs(low), Math.abs(high)), greatest];
 }

@@ -4,7 +4,8 @@ import './controls/controls.css';
 import './plots/plots.css';
 import './loop.css';
 import './page.css';
-import { buildControls } from './controls/parameters';
+import { keepLink } from './controls/link';
+import { buildControls, restoreWith } from './controls/parameters';
 import { element, HealthLine, showConnection, showIntroduction, showNotices, showSound } from './controls/status';
 import { LoopView } from './loop_view';
 import { Hand } from './operator/hand';
@@ -57,6 +58,8 @@ buildControls(
   },
   (values) => client.setParameters(values),
 );
+restoreWith(element<HTMLButtonElement>('restore'), session, (values) => client.setParameters(values));
+keepLink(session, (values) => client.setParameters(values));
 session.on('server', () => client.watchParameters(session.described.map(({ name }) => name)));
 
 const showMode = (): void => {
@@ -88,15 +91,7 @@ document.addEventListener('visibilitychange', () => {
   sendHand(performance.now() / 1000);
 });
 
-const gamepad = new GamepadInput(
-  hand,
-  {
-    millimetresPerPixel: () => 1,
-    handle_m: () => session.loops.left.state.hand_position_m,
-    wall_m: () => session.loops.left.state.wall_position_m,
-  },
-  tap,
-);
+const gamepad = new GamepadInput(hand, tap);
 const health = new HealthLine(session, () => client.undecodable);
 const nothing = new Float32Array(closeUpTime_ms.length).fill(NaN);
 
@@ -111,17 +106,15 @@ function drawShared(now_s: number): void {
 const plotsEvery_s = matchMedia('(prefers-reduced-motion: reduce)').matches ? 0.5 : 0;
 let plotsAt_s = -Infinity;
 let hint = true;
-let frameAt_s = performance.now() / 1000;
 function frame(now_ms: number): void {
   const now_s = now_ms / 1000;
   gamepad.poll();
-  hand.advance(now_s - frameAt_s);
-  frameAt_s = now_s;
   sendHand(now_s);
   hint &&= !hand.engaged;
   const plotsToo = !held && now_s - plotsAt_s >= plotsEvery_s;
   if (plotsToo) plotsAt_s = now_s;
-  for (const view of session.sideBySide ? views : [left]) view.draw(now_s, plotsToo, hint);
+  const connected = session.connection.state === 'open';
+  for (const view of session.sideBySide ? views : [left]) view.draw(now_s, { plotsToo, hint, connected });
   if (plotsToo) drawShared(now_s);
   health.frame(now_s);
   requestAnimationFrame(frame);

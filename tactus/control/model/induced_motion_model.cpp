@@ -108,7 +108,8 @@ Result<InducedMotionModel> InducedMotionModel::make(const Params& requested, Sec
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = "step",
                    .message = "forward Euler with substeps of " + format_number(substep * 1e6) +
-                              " us is unstable for this model (a mode grows by " + format_number(radius) +
+                              " us is unstable for this model (a mode grows by " +
+                              format_number(std::round(1e6 * radius) / 1e6) +
                               " a substep): use the exact step, or less stiffness or more mass",
                    .place = {}};
     }

@@ -55,6 +55,7 @@ struct ContestParams : simulation::Teleoperator::Params {
 struct ContestMethod {
   std::string_view name;
   std::vector<std::string_view> settings;
+  std::string_view explanation;  ///< what it does, in one sentence
 };
 
 /// All competitors, in the order in which they are shown.

@@ -84,6 +84,7 @@ RigidContact judge(const RigidContactRun& run, const std::vector<bool>& touching
   contact.fed_back_N = simulation::mean(last_part(run.fed_back_N));
   contact.ripple_N = simulation::rms(last_part(run.fed_back_N), contact.fed_back_N);
   contact.pressure_force_N = simulation::mean(last_part(run.pressure_force_N));
+  contact.stop_force_N = simulation::mean(last_part(run.stop_force_N));
   const auto master_m = last_part(run.master_m);
   const auto judged = touching.begin() + static_cast<std::ptrdiff_t>(tick(press.hold_until_s - judged_s));
   const bool stays = std::all_of(judged, judged + static_cast<std::ptrdiff_t>(tick(judged_s)), std::identity{});
@@ -120,7 +121,8 @@ Result<RigidContactRun> run_with(const HydraulicRigidContactParams& params,
                       .master_m = {},
                       .slave_m = {},
                       .fed_back_N = {},
-                      .pressure_force_N = {}};
+                      .pressure_force_N = {},
+                      .stop_force_N = {}};
   std::vector<bool> touching;
   const auto ticks = static_cast<std::size_t>(std::lround(end_s / tick.value));
   for (std::size_t i = 0; i < ticks; ++i) {
@@ -133,6 +135,7 @@ Result<RigidContactRun> run_with(const HydraulicRigidContactParams& params,
     run.slave_m.push_back(sample.position_m);
     run.fed_back_N.push_back(-at_master_N);
     run.pressure_force_N.push_back(pressure_filter->step(sample.pressure_force_N) / params.task.force_division);
+    run.stop_force_N.push_back(-sample.end_stop_force_N / params.task.force_division);
     touching.push_back(sample.end_stop_force_N < 0.0);
     master.advance(intended_m(params, sample.time_s), intended_m(params, sample.time_s + tick.value), at_master_N);
     rig->advance(sample, wanted_m);

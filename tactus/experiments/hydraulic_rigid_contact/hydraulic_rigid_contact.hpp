@@ -72,6 +72,7 @@ struct RigidContact {
   double fed_back_N = 0.0;        ///< mean at the end of the press, at the master, positive when it pushes back
   double ripple_N = 0.0;          ///< RMS about it
   double pressure_force_N = 0.0;  ///< from the sensors, mean at the end of the press
+  double stop_force_N = 0.0;      ///< with which the piston truly presses the stop, the same
   double estimate_after_s = 0.0;  ///< from the first touch until the estimate reached half of its last value
   double pressure_after_s = 0.0;  ///< the same of the filtered pressure force
 };
@@ -86,6 +87,7 @@ struct RigidContactRun {
   std::vector<double> time_s, master_m, slave_m;
   std::vector<double> fed_back_N;        ///< at the master, positive when it pushes back
   std::vector<double> pressure_force_N;  ///< filtered, on the piston less what moves it at rest, divided alike
+  std::vector<double> stop_force_N;      ///< true, positive when the piston presses, divided alike
 };
 
 /// What is wrong with the parameters, without running.

@@ -81,8 +81,16 @@ function makeChoice(parameter: ParameterDescription, element: HTMLElement, chang
   const input = document.createElement('select');
   for (const choice of parameter.choices) input.append(new Option(valueText(parameter, choice), choice));
   input.addEventListener('change', () => change(parameter.name, input.value));
-  element.append(input);
-  return { input, show: (value) => (input.value = String(value)) };
+  const explanation = document.createElement('p');
+  explanation.className = 'explanation small';
+  element.append(input, explanation);
+  return {
+    input,
+    show: (value) => {
+      input.value = String(value);
+      explanation.textContent = parameter.explanations[parameter.choices.indexOf(input.value)] ?? '';
+    },
+  };
 }
 
 function makeFlag(parameter: ParameterDescription, element: HTMLElement, change: Change): Parts {

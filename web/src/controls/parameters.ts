@@ -53,3 +53,24 @@ export function buildControls(
     for (const [name, value] of values) controls.get(name)?.show(value);
   });
 }
+
+/** A button that sets every parameter to what the server began with; off while nothing differs. */
+export function restoreWith(
+  button: HTMLButtonElement,
+  session: Session,
+  send: (values: ReadonlyMap<string, ParameterValue>) => void,
+): void {
+  const changed = (): Map<string, ParameterValue> => {
+    const values = new Map<string, ParameterValue>();
+    for (const { name, initial, tunable } of session.described) {
+      if (tunable && initial !== undefined && session.values.get(name) !== initial) values.set(name, initial);
+    }
+    return values;
+  };
+  button.addEventListener('click', () => send(changed()));
+  const show = (): void => {
+    button.disabled = changed().size === 0;
+  };
+  session.on('server', show);
+  session.on('parameters', show);
+}

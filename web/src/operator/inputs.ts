@@ -45,16 +45,14 @@ const keySteps: Readonly<Record<string, number>> = {
   PageUp: 2e-3,
 };
 
-/** Arrow keys move by 0.5 mm, page keys by 2 mm; Home is rest, End presses 2 mm into the wall, Escape lets go. */
+/** Arrow keys move by 0.5 mm, page keys by 2 mm; Home is rest, End presses 4 mm into the wall, Escape lets go. */
 export function moveWithKeys(handle: HTMLElement, hand: Hand, place: Place, tap: () => void): void {
   handle.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
-    const from_m = place.handle_m();
-    const now_m = hand.engaged ? hand.goal_m : from_m;
     const step = keySteps[event.key];
-    if (step !== undefined) hand.glideTo(now_m + step, from_m);
-    else if (event.key === 'Home') hand.glideTo(0, from_m);
-    else if (event.key === 'End') hand.glideTo(place.wall_m() + 2e-3, from_m);
+    if (step !== undefined) hand.grasp((hand.engaged ? hand.position_m : place.handle_m()) + step);
+    else if (event.key === 'Home') hand.grasp(0);
+    else if (event.key === 'End') hand.grasp(place.wall_m() + 4e-3);
     else if (event.key === 'Escape') hand.release();
     else if (event.key === ' ' || event.key === 'Enter') tap();
     else return;
@@ -72,7 +70,6 @@ export class GamepadInput {
 
   constructor(
     private readonly hand: Hand,
-    private readonly place: Place,
     private readonly tap: () => void,
     private readonly gamepads: () => readonly (Pick<Gamepad, 'axes' | 'buttons'> | null)[] = () =>
       navigator.getGamepads(),
@@ -85,7 +82,7 @@ export class GamepadInput {
     const axis = gamepad.axes[0] ?? 0;
     if (Math.abs(axis) > deadZone) {
       const share = (Math.abs(axis) - deadZone) / (1 - deadZone);
-      this.hand.glideTo(axis > 0 ? share * highest_m : share * lowest_m, this.place.handle_m());
+      this.hand.grasp(axis > 0 ? share * highest_m : share * lowest_m);
       this.held = true;
     } else if (this.held) {
       this.held = false;

@@ -42,9 +42,11 @@ export class Plot {
   private readonly range: StableRange;
   private readonly shown: boolean[];
   private readonly entries: HTMLButtonElement[] = [];
+  private readonly values: HTMLElement[] = [];
   private raster = new Raster(1, 1);
   private envelopes: Envelope[] = [];
   private bounds: readonly [low: number, high: number];
+  private limit = 0;
 
   constructor(private readonly description: PlotDescription) {
     this.range = new StableRange(...description.base);
@@ -89,8 +91,20 @@ export class Plot {
   /** Names a line anew in the legend, or leaves it out there. */
   nameLine(index: number, label: string, present: boolean): void {
     const entry = this.entries[index]!;
-    entry.lastChild!.textContent = label;
+    entry.childNodes[1]!.textContent = label;
     entry.hidden = !present;
+  }
+
+  /** Says beside the name of a line how much it is. */
+  tell(index: number, text: string): void {
+    this.values[index]!.textContent = text;
+  }
+
+  /** Draws a level on both sides of zero that the lines of a limited signal cannot pass; none at 0. */
+  markLimit(limit: number): void {
+    if (limit === this.limit) return;
+    this.limit = limit;
+    this.chart.redraw(false, true);
   }
 
   /** Draws again, in the colours of now. */
@@ -112,6 +126,28 @@ export class Plot {
       canvas.height = raster.height;
     }
     context.putImageData(new ImageData(raster.bytes, raster.width, raster.height), 0, 0);
+  }
+
+  private drawLimit({ ctx, bbox, valToPos }: uPlot): void {
+    if (!(this.limit > 0)) return;
+    ctx.save();
+    ctx.strokeStyle = palette.muted;
+    ctx.fillStyle = palette.muted;
+    ctx.lineWidth = devicePixelRatio;
+    ctx.setLineDash([4 * devicePixelRatio, 4 * devicePixelRatio]);
+    for (const level of [this.limit, -this.limit]) {
+      const y = Math.round(valToPos(level, 'y', true)) + 0.5;
+      if (y < bbox.top || y > bbox.top + bbox.height) continue;
+      ctx.beginPath();
+      ctx.moveTo(bbox.left, y);
+      ctx.lineTo(bbox.left + bbox.width, y);
+      ctx.stroke();
+    }
+    ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.textAlign = 'left';
+    ctx.textBaseline = 'bottom';
+    ctx.fillText('limit of the motor', bbox.left + 4, valToPos(this.limit, 'y', true) - 2);
+    ctx.restore();
   }
 
   private fitRaster(): void {
@@ -139,7 +175,10 @@ export class Plot {
       const swatch = document.createElement('span');
       swatch.className = 'swatch';
       swatch.style.setProperty('background', `var(--${line.colour})`);
-      entry.append(swatch, line.label);
+      const value = document.createElement('span');
+      value.className = 'value';
+      this.values.push(value);
+      entry.append(swatch, line.label, value);
       this.entries.push(entry);
       entry.addEventListener('click', () => {
         this.shown[index] = !this.shown[index];
@@ -184,6 +223,7 @@ export class Plot {
         { ...axis, size: 42, space: 24, label: yLabel, values: (_chart, splits) => splits.map(minusSign) },
       ],
       series: [{}],
+      hooks: { drawAxes: [(chart) => this.drawLimit(chart)] },
     };
   }
 }

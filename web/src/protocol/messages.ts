@@ -38,6 +38,10 @@ export interface LoopState {
   readonly inContact: boolean;
   readonly verdict: Verdict;
   readonly cause: string;
+  /** What the verdict says of the loop, and what to try. */
+  readonly advice: string;
+  /** The most that the master's motor displays. */
+  readonly forceLimit_N: number;
   readonly realTimeRatio: number;
   readonly dropped: number;
 }
@@ -50,6 +54,10 @@ export interface HandForce {
 
 function number(value: Value | undefined): number {
   return typeof value === 'number' && Number.isFinite(value) ? value : 0;
+}
+
+function text(value: Value | undefined): string {
+  return typeof value === 'string' ? value : '';
 }
 
 function numbers(value: Value | undefined): NumberArray {
@@ -81,7 +89,9 @@ export function toLoopState(message: Message): LoopState {
     vibrationEnergy_J: number(message.vibration_energy_j),
     inContact: message.in_contact === true,
     verdict: verdict ?? 'free',
-    cause: typeof message.cause === 'string' ? message.cause : '',
+    cause: text(message.cause),
+    advice: text(message.advice),
+    forceLimit_N: number(message.force_limit_n),
     realTimeRatio: number(message.real_time_ratio),
     dropped: number(message.dropped),
   };

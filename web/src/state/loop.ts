@@ -20,6 +20,8 @@ const initial: LoopState = {
   inContact: false,
   verdict: 'free',
   cause: '',
+  advice: '',
+  forceLimit_N: 0,
   realTimeRatio: 0,
   dropped: 0,
 };

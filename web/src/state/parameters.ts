@@ -9,8 +9,12 @@ export interface ParameterDescription {
   readonly minimum: number;
   readonly maximum: number;
   readonly choices: readonly string[];
+  /** One sentence for each choice. */
+  readonly explanations: readonly string[];
   readonly logarithmic: boolean;
   readonly tunable: boolean;
+  /** What it is until somebody changes it. */
+  readonly initial: ParameterValue | undefined;
 }
 
 /** The described parameters; empty when the server describes none or its text cannot be read. */
@@ -35,8 +39,10 @@ function complete(item: Partial<ParameterDescription> & { name: string }): Param
     minimum,
     maximum: item.maximum ?? 1,
     choices: item.choices ?? [],
+    explanations: item.explanations ?? [],
     logarithmic: (item.logarithmic ?? false) && minimum > 0,
     tunable: item.tunable ?? false,
+    initial: item.initial,
   };
 }
 

@@ -71,11 +71,70 @@ describe.skipIf(leftOut)('the page before tactus serve', () => {
     expect(await page.textContent('.loop[data-side=right] .verdict')).toMatch(/Right\s+Rings/);
   });
 
-  test('of 390 px it shows both loops without scrolling sideways', async () => {
+  test('of 390 px it shows both loops in one look, without scrolling sideways', async () => {
     await page.setViewportSize({ width: 390, height: 844 });
     await page.setChecked(`${parameter('side_by_side')} input`, true);
     await page.waitForSelector('.loop[data-side=right]:not([hidden])');
     expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(390);
+    expect((await page.locator('#loops').boundingBox())!.height).toBeLessThanOrEqual(844);
+    if (process.env.PHONE_PICTURE) {
+      await page.click('#dismiss');
+      await page.click('#tap');
+      await until(async () => expect(await verdict('right')).toBe('rings'));
+      await page.locator('#loops').scrollIntoViewIfNeeded();
+      await page.screenshot({ path: process.env.PHONE_PICTURE });
+    }
+  });
+
+  test('a verdict ends with the method that it was of, and with the connection', async () => {
+    await choose('left.method', 'none');
+    expect(await tapped('left')).toBe('rings');
+    await choose('left.method', 'cancellation');
+    await until(async () => expect(await verdict('left')).toBe('settled'));
+    expect(await page.textContent('.loop[data-side=left] .measured')).toContain('before the change');
+    await server.stop();
+    await until(async () => expect(await verdict('left')).toBe('unknown'));
+    expect(await page.textContent('.loop[data-side=left] .meter-text')).toBe('0.00 N');
+    await watched!.close();
+    // That nobody answers is what was wanted.
+    watched!.complaints.length = 0;
+  });
+
+  test('the link holds what was chosen, and a visitor without one finds the defaults', async () => {
+    const value = (name: string) => page.getAttribute(parameter(name), 'data-value');
+    await choose('left.method', 'energy-tank');
+    await page.setChecked(`${parameter('side_by_side')} input`, false);
+    await until(async () => expect(new URL(page.url()).hash).toBe('#left.method=energy-tank&side_by_side=false'));
+    const link = page.url();
+    await page.reload();
+    await until(async () => expect([await value('left.method'), await value('side_by_side')]).toEqual(['energy-tank', 'false']));
+    await page.goto('about:blank');
+    await page.waitForTimeout(300);
+    await page.goto(server.url);
+    await until(async () => expect([await value('left.method'), await value('side_by_side')]).toEqual(['cancellation', 'true']));
+    expect(await page.isDisabled('#restore')).toBe(true);
+    await page.goto(link);
+    await until(async () => expect(await value('left.method')).toBe('energy-tank'));
+    await page.click('#restore');
+    await until(async () => expect([await value('left.method'), await value('side_by_side')]).toEqual(['cancellation', 'true']));
+    expect(new URL(page.url()).hash).toBe('');
+  });
+
+  test('each method is explained where it is chosen', async () => {
+    const choices = await page.$$eval(`${parameter('left.method')} option`, (all) => all.map((one) => (one as HTMLOptionElement).value));
+    const seen = new Set<string | null>();
+    for (const choice of choices) {
+      await choose('left.method', choice);
+      seen.add(await page.textContent(`${parameter('left.method')} .explanation`));
+    }
+    expect(seen.size).toBe(choices.length);
+  });
+
+  test('the limit of the motor is told where it clips', async () => {
+    await choose('left.method', 'cancellation');
+    await page.click('#tap');
+    await until(async () => expect(await page.textContent('.loop[data-side=left] .limit')).toBe('The motor is at its limit of 1 N.'));
+    await until(async () => expect(await page.textContent('.loop[data-side=left] .limit')).toBe('The motor’s limit is 1 N.'));
   });
 
   test('a visitor who presses into the wall by keys feels it, and everything goes on', async () => {

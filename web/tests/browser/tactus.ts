@@ -37,6 +37,7 @@ export class TactusServer {
   }
 
   stop(): Promise<void> {
+    if (this.child.exitCode !== null || this.child.signalCode !== null) return Promise.resolve();
     return new Promise((done) => {
       this.child.removeAllListeners('exit').on('exit', () => done());
       this.child.kill('SIGTERM');

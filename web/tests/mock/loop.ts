@@ -11,7 +11,7 @@ export interface Settings {
 export const tick_s = 2e-4;
 export const wall_m = 0.01;
 const ringing_Hz = 70;
-const forceLimit_N = 1;
+export const forceLimit_N = 1;
 /** Greatest force gain at which a method settles. */
 const settlesUpTo: Readonly<Record<string, number>> = { none: 2, 'force-filter': 4, 'local-damping': 6 };
 

@@ -1,5 +1,5 @@
 import { CdrWriter } from './cdr_writer';
-import { tick_s, wall_m, type MockLoop, type Tick } from './loop';
+import { forceLimit_N, tick_s, wall_m, type MockLoop, type Tick } from './loop';
 
 /** The messages of the mock and their definitions, with names in lower case as ROS 2 wants them. */
 
@@ -38,6 +38,8 @@ float64 vibration_energy_j
 bool in_contact
 string verdict
 string cause
+string advice
+float64 force_limit_n
 float64 real_time_ratio
 uint64 dropped
 `,
@@ -81,6 +83,8 @@ export function stateMessage(time_s: number, hand_m: number, loop: MockLoop, las
     .bool(loop.inContact)
     .string(loop.verdict)
     .string(loop.cause)
+    .string('')
+    .float64(forceLimit_N)
     .float64(1)
     .uint64(dropped)
     .finish();

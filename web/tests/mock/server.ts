@@ -10,22 +10,25 @@ import { MockLoop, tick_s, type Tick } from './loop';
 /** Speaks to the page as `tactus serve` does, with the loops of `loop.ts`: for the tests of the page alone. */
 
 const parameters = [
-  number('control.force_gain', 'Force gain', '', 0, 30),
-  number('environment.stiffness_N_per_m', 'Wall stiffness', 'N/m', 500, 100000, true),
-  number('channel.delay_s', 'Delay, one way', 's', 0, 0.2),
-  number('operator.grip', 'Grip', '', 0.25, 4, true),
+  number('control.force_gain', 'Force gain', '', 10, [0, 30]),
+  number('environment.stiffness_N_per_m', 'Wall stiffness', 'N/m', 40000, [500, 100000], true),
+  number('channel.delay_s', 'Delay, one way', 's', 0, [0, 0.2]),
+  number('operator.grip', 'Grip', '', 1, [0.25, 4], true),
   choice('left.method', 'Method'),
   choice('right.method', 'Method'),
-  { name: 'side_by_side', label: 'Both side by side', unit: '', kind: 'flag', tunable: true },
+  { name: 'side_by_side', label: 'Both side by side', unit: '', kind: 'flag', initial: false, tunable: true },
 ];
 
-function number(name: string, label: string, unit: string, minimum: number, maximum: number, logarithmic = false) {
-  return { name, label, unit, kind: 'number', minimum, maximum, logarithmic, tunable: true };
+type Reach = readonly [minimum: number, maximum: number];
+
+function number(name: string, label: string, unit: string, initial: number, [minimum, maximum]: Reach, logarithmic = false) {
+  return { name, label, unit, kind: 'number', initial, minimum, maximum, logarithmic, tunable: true };
 }
 
 function choice(name: string, label: string) {
   const choices = ['none', 'cancellation', 'local-damping', 'force-filter'];
-  return { name, label, unit: '', kind: 'choice', choices, tunable: true };
+  const explanations = choices.map((one) => `What ${one} does.`);
+  return { name, label, unit: '', kind: 'choice', choices, explanations, initial: 'none', tunable: true };
 }
 
 const types: Readonly<Record<string, string>> = {
@@ -45,15 +48,7 @@ export interface MockOptions {
 }
 
 export class MockServer {
-  readonly values = new Map<string, number | string | boolean>([
-    ['control.force_gain', 10],
-    ['environment.stiffness_N_per_m', 40000],
-    ['channel.delay_s', 0],
-    ['operator.grip', 1],
-    ['left.method', 'none'],
-    ['right.method', 'none'],
-    ['side_by_side', false],
-  ]);
+  readonly values = new Map<string, number | string | boolean>(parameters.map(({ name, initial }) => [name, initial]));
   /** Messages of the page, as they came. */
   readonly received: { topic: string; content: Record<string, unknown> }[] = [];
   /** Sends nothing while set, with the connection open. */

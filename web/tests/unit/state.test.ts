@@ -3,7 +3,9 @@ import { signalNames, type Block } from '../../src/protocol/messages';
 import { before_s, closeUpTime_ms, ContactCapture } from '../../src/state/contact';
 import { Loop, signalIndex } from '../../src/state/loop';
 import { SlidingSeries } from '../../src/state/series';
-import { SteadyVerdict } from '../../src/state/verdict';
+import { linkOf, valuesOf } from '../../src/state/link';
+import { describedParameters } from '../../src/state/parameters';
+import { clips, judgement } from '../../src/state/verdict';
 
 describe('a sliding series', () => {
   test('holds the last rows in order, whatever their number', () => {
@@ -119,20 +121,65 @@ describe('the close-up of a contact', () => {
 });
 
 describe('the verdict', () => {
-  const say = (verdict: 'free' | 'contact' | 'settled' | 'rings' | 'stopped', cause = '') => ({ verdict, cause });
+  type Word = 'free' | 'contact' | 'settled' | 'rings' | 'stopped';
+  const say = (verdict: Word, onHand_N = 0, connected = true, atWall_N = 0) =>
+    judgement(
+      { verdict, cause: 'the command was not finite', advice: 'Tap faster.', displayed_force_N: 0, forceLimit_N: 1 },
+      { onHand_N, atWall_N },
+      connected,
+    );
 
-  test('waits out a flicker and tells ringing at once', () => {
-    const steady = new SteadyVerdict();
-    expect(steady.update(say('free'), 0).verdict).toBe('free');
-    expect(steady.update(say('contact'), 1).verdict).toBe('free');
-    expect(steady.update(say('free'), 1.05).verdict).toBe('free');
-    expect(steady.update(say('settled'), 2).verdict).toBe('free');
-    expect(steady.update(say('settled'), 2.2).verdict).toBe('settled');
-    expect(steady.update(say('rings'), 2.21).verdict).toBe('rings');
+  test('never calls a handle free that pushes the hand', () => {
+    expect(say('free', 0.05).verdict).toBe('free');
+    expect(say('free', 1.4).verdict).toBe('moving');
+    expect(say('free', 1.4, true, 0.3).verdict).toBe('contact');
+    expect(say('settled', 1.4).verdict).toBe('settled');
   });
 
-  test('says why', () => {
-    const judged = new SteadyVerdict().update(say('stopped', 'the command was not finite'), 0);
-    expect(judged.sentence).toContain('The command was not finite.');
+  test('ends with the connection', () => {
+    for (const word of ['free', 'contact', 'settled', 'rings', 'stopped'] as const) {
+      expect(say(word, 0, false)).toMatchObject({ verdict: 'unknown', measured: '' });
+    }
+  });
+
+  test('says why, and what to try', () => {
+    expect(say('stopped').sentence).toContain('The command was not finite.');
+    expect(say('settled').measured).toContain('Tap faster.');
+    expect(say('free').measured).toBe('');
+  });
+
+  test('knows when the motor displays all that it may', () => {
+    expect([clips(1, 1), clips(0.9, 1), clips(5, 0)]).toEqual([true, false, false]);
+  });
+});
+
+describe('a link', () => {
+  const described = describedParameters({
+    name: '',
+    capabilities: [],
+    metadata: {
+      'tactus.parameters': JSON.stringify([
+        { name: 'control.force_gain', kind: 'number', minimum: 0, maximum: 30, initial: 10 },
+        { name: 'left.method', kind: 'choice', choices: ['none', 'cancellation'], initial: 'cancellation' },
+        { name: 'side_by_side', kind: 'flag', initial: true },
+      ]),
+    },
+  });
+
+  test('says what differs from what the server began with, and gives it back', () => {
+    const values = new Map<string, number | string | boolean>([
+      ['control.force_gain', 3.5],
+      ['left.method', 'none'],
+      ['side_by_side', true],
+    ]);
+    expect(linkOf(described, values)).toBe('#control.force_gain=3.5&left.method=none');
+    values.delete('side_by_side');
+    expect(valuesOf(linkOf(described, values), described)).toEqual(values);
+  });
+
+  test('is empty where nothing differs, and nonsense in it asks for nothing', () => {
+    const initial = new Map(described.map(({ name, initial }) => [name, initial!]));
+    expect(linkOf(described, initial)).toBe('');
+    expect(valuesOf('#control.force_gain=much&side_by_side=7&nothing=1&left.method=&%', described).size).toBe(0);
   });
 });
