@@ -173,8 +173,14 @@ TEST_F(DeviceRig, WatchShowsEachJointALineAndLimitsWhichOneHolds) {
   const Outcome limits = device({"dynamixel --fault low-limit:2"}, servos, "limits rig.toml");
   EXPECT_EQ(limits.status, 0) << limits.err;
   // 1.75 A and 0.175 A times 0.52 / 1.47 Nm/A.
-  EXPECT_TRUE(says(limits, "arm.leader.shoulder        0.6190  0.3000  N m   file ")) << limits.out;
-  EXPECT_TRUE(says(limits, "arm.leader.elbow          0.06190  0.3000  N m   motor")) << limits.out;
+  // In 80 columns the joints stand beside one another.
+  EXPECT_TRUE(says(limits, "joint            arm.leader.shoulder  arm.leader.elbow\n")) << limits.out;
+  EXPECT_TRUE(says(limits,
+                   "force: motor     0.6190               0.06190\n"
+                   "file             0.3000               0.3000\n"
+                   "unit             N m                  N m\n"
+                   "holds            file                 motor\n"))
+      << limits.out;
 }
 
 TEST_F(DeviceRig, AnInverse3IsCheckedThroughItsService) {

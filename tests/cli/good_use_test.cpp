@@ -26,14 +26,14 @@ TEST_F(GoodUse, HelpAndVersionAreNoErrors) {
   }
   const Outcome version = tactus({"--version"});
   EXPECT_EQ(version.status, 0);
-  EXPECT_TRUE(std::regex_match(version.out, std::regex("tactus [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << version.out;
+  EXPECT_TRUE(std::regex_search(version.out, std::regex("^tactus [0-9]+\\.[0-9]+\\.[0-9]+\n"))) << version.out;
 }
 
 TEST_F(GoodUse, ATableIsPrintedAndNothingElseHappens) {
   const std::string file = quick_experiment();
   const Outcome outcome = tactus({"run", file, "--vary", "control.force_gain=1,15"});
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_NE(outcome.out.find("force gain"), std::string::npos);
+  EXPECT_NE(outcome.out.find("settling,"), std::string::npos);
   EXPECT_NE(outcome.out.find("verdict"), std::string::npos);
   // No terminal, so no line of progress, and no colours or other control characters.
   EXPECT_EQ(outcome.err, "");

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "tests/cli/command.hpp"
+#include "tests/cli/schema_validator.hpp"
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -142,6 +143,8 @@ TEST_F(Recordings, the_impedance_of_the_hand_is_found_in_a_recording_of_master_a
   const Outcome outcome = tactus({"identify", "operator", "work.csv", "--json", "--out", "results"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json found = Json::parse(outcome.out);
+  EXPECT_EQ(SchemaValidator(Json::parse(tactus({"schema", "--results", "identify", "operator"}).out)).faults(found),
+            "");
   EXPECT_EQ(found["position"], "master_position");
   EXPECT_EQ(found["force"], "hand_force");
   EXPECT_EQ(found["verdict"], "told");

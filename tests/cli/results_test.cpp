@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/cli/command.hpp"
+#include "tests/cli/schema_validator.hpp"
 #include <nlohmann/json.hpp>
 
 namespace tactus::cli {
@@ -18,71 +19,6 @@ using Json = nlohmann::json;
 
 const std::string experiments_folder = TACTUS_EXPERIMENT_FOLDER;
 const std::string examples_folder = TACTUS_EXAMPLE_FOLDER;
-
-/// JSON Schema as far as ours use it: type, enum, properties, required, additionalProperties, items, anyOf, $ref.
-class Validator {
- public:
-  explicit Validator(const Json& schema) : schema_(schema) {}
-  /// What is wrong, a line each.
-  [[nodiscard]] std::string faults(const Json& value) const { return check(value, schema_, "$"); }
-
- private:
-  static bool is_of(const Json& value, const std::string& type) {
-    if (type == "integer") return value.is_number() && std::floor(value.get<double>()) == value.get<double>();
-    if (type == "number") return value.is_number();
-    return type == value.type_name();
-  }
-
-  [[nodiscard]] std::string check(const Json& value, const Json& schema, const std::string& at) const {
-    if (const auto ref = schema.find("$ref"); ref != schema.end()) {
-      const std::string name = ref->get<std::string>().substr(std::string("#/$defs/").size());
-      return check(value, schema_.at("$defs").at(name), at);
-    }
-    if (const auto any = schema.find("anyOf"); any != schema.end()) {
-      std::string all;
-      for (const Json& one : *any) {
-        const std::string faults = check(value, one, at);
-        if (faults.empty()) return "";
-        all += "  " + faults;
-      }
-      return at + ": none of\n" + all;
-    }
-    if (const auto type = schema.find("type"); type != schema.end()) {
-      const Json types = type->is_array() ? *type : Json::array({*type});
-      if (std::none_of(types.begin(), types.end(), [&](const Json& one) { return is_of(value, one); })) {
-        return at + ": is " + value.type_name() + " and not " + types.dump() + "\n";
-      }
-    }
-    if (const auto words = schema.find("enum"); words != schema.end()) {
-      if (std::find(words->begin(), words->end(), value) == words->end()) return at + ": " + value.dump() + "\n";
-    }
-    std::string all;
-    if (value.is_array() && schema.contains("items")) {
-      for (std::size_t i = 0; i < value.size(); ++i) {
-        all += check(value[i], schema["items"], at + "[" + std::to_string(i) + "]");
-      }
-    }
-    if (!value.is_object()) return all;
-    for (const Json& name : schema.value("required", Json::array())) {
-      if (!value.contains(name.get<std::string>())) all += at + ": has no " + name.dump() + "\n";
-    }
-    const Json known = schema.value("properties", Json::object()),
-               others = schema.value("additionalProperties", Json(true));
-    for (const auto& [name, member] : value.items()) {
-      const std::string below = at + "." + name;
-      if (known.contains(name)) {
-        all += check(member, known[name], below);
-      } else if (others.is_object()) {
-        all += check(member, others, below);
-      } else if (!others.get<bool>()) {
-        all += below + ": is not in the schema\n";
-      }
-    }
-    return all;
-  }
-
-  Json schema_;
-};
 
 class Results : public Command {
  protected:
@@ -99,12 +35,13 @@ class Results : public Command {
   void expect_document(const std::string& verb, const Json& document) const {
     const Json schema = schema_of(verb);
     ASSERT_TRUE(schema.is_object()) << verb;
-    EXPECT_EQ(Validator(schema).faults(document), "") << verb;
+    EXPECT_EQ(SchemaValidator(schema).faults(document), "") << verb;
     for (const char* name : {"version", "command", "seed", "configuration"}) {
       EXPECT_TRUE(document.contains(name)) << verb << ": " << name;
       Json without = document;
       without.erase(name);
-      EXPECT_NE(Validator(schema).faults(without), "") << "the schema of " << verb << " does not ask for " << name;
+      EXPECT_NE(SchemaValidator(schema).faults(without), "")
+          << "the schema of " << verb << " does not ask for " << name;
     }
   }
 
