@@ -1,4 +1,5 @@
 #include <tactus/advice/knowledge.hpp>
+#include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/random.hpp>
 
 #include <algorithm>
@@ -7,7 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <nlohmann/json.hpp>
 
 namespace tactus::advice {
@@ -106,9 +106,8 @@ void Knowledge::set_correlation(const std::function<double(std::size_t, std::siz
     }
   }
   // Parts that were fitted in turn need not make a whole that is a covariance: what is below nothing is nothing.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-  const Eigen::MatrixXd root =
-      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal().toDenseMatrix();
+  const signal::SymmetricEigen eigen = signal::symmetric_eigen(covariance);
+  const Eigen::MatrixXd root = eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal().toDenseMatrix();
   const Eigen::MatrixXd whole = root * root.transpose();
   for (Eigen::Index i = 0; i < size; ++i) {
     for (Eigen::Index j = 0; j < size; ++j) {

@@ -1,4 +1,5 @@
 #include <tactus/arm_identification/consistent_fit.hpp>
+#include <tactus/signal/decompositions.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -282,7 +283,7 @@ ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::ve
     while (!better && damping < 1e12) {
       MatrixXd damped = curvature;
       damped.diagonal() *= 1.0 + damping;
-      const VectorXd next = x + Eigen::LDLT<MatrixXd>(damped).solve(pull);
+      const VectorXd next = x + signal::solve_definite(damped, pull);
       const double tried = next.allFinite() ? cost_of(problem, next) : std::numeric_limits<double>::infinity();
       better = tried <= cost;
       if (!better) {
@@ -302,7 +303,7 @@ ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::ve
   fit.prior_deviations = problem.deviations;
   for (std::size_t j = 0; j < correlation.size(); ++j) problem.noise[j] *= std::sqrt(correlation[j]);
   const MatrixXd curvature = normal_equations(problem, x).first;
-  fit.covariance = Eigen::LDLT<MatrixXd>(curvature).solve(MatrixXd::Identity(problem.size(), problem.size()));
+  fit.covariance = signal::inverse_of_definite(curvature);
   const VectorXd parameters = parameters_of(problem, x);
   fit.slope = slope_of(problem, x, parameters);
   fit.bodies = parameters.head(problem.bodies());

@@ -1,10 +1,11 @@
 #include <tactus/arm_identification/first_look.hpp>
 #include <tactus/arm_identification/rows_fit.hpp>
 #include <tactus/identification/refusal.hpp>
+#include <tactus/signal/decompositions.hpp>
 
 #include <algorithm>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace tactus::arm_identification {
 namespace {
@@ -31,7 +32,7 @@ FirstLook look(const ArmData& data, const VectorXd& bodies, int joint, int effor
   const VectorXd effort = data.effort.col(effort_of);
   MatrixXd columns(data.rows(), 5);
   columns << torque, data.local(joint, {}, torque).leftCols(4);
-  const VectorXd found = least_squares(columns, effort);
+  const VectorXd found = signal::solve_least_squares(columns, effort);
   FirstLook result;
   const double size = rms(effort);
   if (!(size > 0.0)) return result;

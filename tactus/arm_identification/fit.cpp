@@ -3,6 +3,7 @@
 #include <tactus/arm_identification/rows_fit.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/identification/refusal.hpp>
+#include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/random.hpp>
 
 #include <algorithm>
@@ -65,7 +66,7 @@ int base_parameters_of(const arm::Chain& chain) {
 int told_of(const ConsistentFit& fit) {
   const VectorXd firmness = fit.prior_deviations.cwiseInverse();
   const MatrixXd whitened = firmness.asDiagonal() * fit.covariance * firmness.asDiagonal();
-  const VectorXd left = Eigen::SelfAdjointEigenSolver<MatrixXd>(whitened, Eigen::EigenvaluesOnly).eigenvalues();
+  const VectorXd left = signal::symmetric_eigenvalues(whitened);
   return static_cast<int>((left.array() < 0.5).count());
 }
 

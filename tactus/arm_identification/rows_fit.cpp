@@ -1,10 +1,11 @@
 #include <tactus/arm_identification/rows_fit.hpp>
+#include <tactus/signal/decompositions.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace tactus::arm_identification {
 namespace {
@@ -55,7 +56,7 @@ double cross_validated(const MatrixXd& columns, const VectorXd& right) {
     VectorXd others_right(rows - count);
     others << columns.topRows(first), columns.bottomRows(rows - first - count);
     others_right << right.head(first), right.tail(rows - first - count);
-    const VectorXd found = least_squares(others, others_right);
+    const VectorXd found = signal::solve_least_squares(others, others_right);
     squares += (right.segment(first, count) - columns.middleRows(first, count) * found).squaredNorm();
   }
   return std::sqrt(squares / static_cast<double>(rows));
@@ -98,10 +99,6 @@ FrictionShape choose_shape(const ArmData& data, int joint, const ConsistentFit& 
 }  // namespace
 
 double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / static_cast<double>(values.size())); }
-
-VectorXd least_squares(const MatrixXd& columns, const VectorXd& right) {
-  return Eigen::ColPivHouseholderQR<MatrixXd>(columns).solve(right);
-}
 
 RowsFit fit_rows(const ArmData& data, RowSpan span, std::vector<JointPrior> priors, bool scales_known) {
   const int count = data.joints();
@@ -170,12 +167,12 @@ std::vector<double> ordinary_least_squares(const ArmData& data, RowSpan seen, Ro
   VectorXd lengths = normal.diagonal().cwiseSqrt();
   for (double& length : lengths) length = length > 0.0 ? 1.0 / length : 0.0;
   const MatrixXd scaled = lengths.asDiagonal() * normal * lengths.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(scaled);
-  const double least = 1e-9 * solver.eigenvalues().maxCoeff();
-  const VectorXd inverse = solver.eigenvalues().unaryExpr([=](double v) { return v > least ? 1.0 / v : 0.0; });
+  const signal::SymmetricEigen eigen = signal::symmetric_eigen(scaled);
+  const double least = 1e-9 * eigen.values.maxCoeff();
+  const VectorXd inverse = eigen.values.unaryExpr([=](double v) { return v > least ? 1.0 / v : 0.0; });
   const VectorXd found =
-      lengths.asDiagonal() * (solver.eigenvectors() * (inverse.asDiagonal() * (solver.eigenvectors().transpose() *
-                                                                               (lengths.asDiagonal() * right))));
+      lengths.asDiagonal() *
+      (eigen.vectors * (inverse.asDiagonal() * (eigen.vectors.transpose() * (lengths.asDiagonal() * right))));
   std::vector<double> relative;
   for (Index j = 0; j < count; ++j) {
     const auto at = static_cast<std::size_t>(j);

@@ -9,8 +9,6 @@ namespace tactus::arm_identification {
 
 /// Root mean square; of at least one value.
 double rms(const Eigen::VectorXd& values);
-/// The parameters p that minimise |columns·p − right|.
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& right);
 
 /// Which rows: from, and how many.
 struct RowSpan {

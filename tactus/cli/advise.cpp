@@ -51,7 +51,8 @@ void add_advise(CLI::App& app, const std::string& command, int& status) {
       app.add_subcommand("advise", "Say which method and force gain to start with, what limits it, what to measure");
   add_experiment_options(*verb, options->experiment);
   options->output.own_files = {"advice.toml"};
-  add_output_options(*verb, options->output, "Folder for report.html, results.json and advice.toml, for run --with");
+  add_output_options(*verb, options->output, command,
+                     "Folder for report.html, results.json and advice.toml, for run --with");
   verb->callback([options, &app, &command, &status] {
     if (const auto error = advise(*options, command)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

@@ -1,7 +1,4 @@
 #include <tactus/cli/arm_options.hpp>
-#include <tactus/cli/standard_output.hpp>
-
-#include <iostream>
 
 #include <CLI/CLI.hpp>
 
@@ -23,7 +20,7 @@ arm_identification::ArmColumns ArmOptions::columns() const {
           .effort = joined_by_commas(effort)};
 }
 
-void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& out_help) {
+void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& command, const std::string& out_help) {
   const auto add = [&](const char* name, std::vector<std::string>& into, const char* help) {
     return verb.add_option(name, into, help)->type_name("COLUMNS")->allow_extra_args(false);
   };
@@ -31,23 +28,7 @@ void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& out
   add("--position", options.position, "Columns of the positions: q1,q2,... or a range as q1:q6 or 2:7")->required();
   add("--velocity", options.velocity, "Columns of the velocities; without it, from the positions");
   add("--effort", options.effort, "Columns of the motors' torques or currents")->required();
-  add_output_options(verb, options.output, out_help);
-}
-
-Check present(const ArmOptions& options, const std::string& text, const std::string& json, const std::string& html,
-              const std::vector<NamedText>& files) {
-  auto output = OutputFolder::open(options.output);
-  if (!output) return output.error();
-  std::cout << (output->json() ? json : text);
-  if (auto error = flush_standard_output()) return error;
-  if (!output->wanted()) return std::nullopt;
-  for (const NamedText& file : files) {
-    if (auto error = output->write(file.name, file.text)) return error;
-  }
-  if (auto error = output->write("results.json", json)) return error;
-  if (auto error = output->write("report.html", html)) return error;
-  output->announce();
-  return std::nullopt;
+  add_output_options(verb, options.output, command, out_help);
 }
 
 }  // namespace tactus::cli

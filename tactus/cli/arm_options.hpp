@@ -22,14 +22,6 @@ struct ArmOptions {
 };
 
 /// Adds the roles of columns, `--out` and `--json` to a verb.
-void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& out_help);
-
-/// Prints `text` or `json`, then writes `files`, named beforehand as the output's own, results.json and report.html.
-struct NamedText {
-  std::string name;
-  std::string text;
-};
-Check present(const ArmOptions& options, const std::string& text, const std::string& json, const std::string& html,
-              const std::vector<NamedText>& files);
+void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& command, const std::string& out_help);
 
 }  // namespace tactus::cli

@@ -1,13 +1,10 @@
 #include <tactus/cli/axis_options.hpp>
-#include <tactus/cli/standard_output.hpp>
-
-#include <iostream>
 
 #include <CLI/CLI.hpp>
 
 namespace tactus::cli {
 
-void add_axis_options(CLI::App& verb, AxisOptions& options) {
+void add_axis_options(CLI::App& verb, AxisOptions& options, const std::string& command) {
   identification::AxisRoles& roles = options.roles;
   verb.add_option("RECORDING", options.file, "Recording: .csv, .tsv, .txt or .mat (version 5)")->required();
   verb.add_option("--position", roles.position, "Column of the position; in a MATLAB file NAME:COLUMN")
@@ -24,7 +21,7 @@ void add_axis_options(CLI::App& verb, AxisOptions& options) {
   verb.add_option("--force-sign", roles.force_sign, "-1 turns the actuator's force round")
       ->type_name("SIGN")
       ->check(CLI::IsMember({-1.0, 1.0}));
-  add_output_options(verb, options.output, "Folder for report.html, results.json and the model");
+  add_output_options(verb, options.output, command, "Folder for report.html, results.json and the model");
 }
 
 Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool needs_measured) {
@@ -36,22 +33,6 @@ Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool
   Error error = axis.error();
   if (error.place.empty()) error.place = options.file;
   return error;
-}
-
-Check present(const AxisOptions& options, const std::string& text, const std::string& json, const report::Page& page,
-              const std::string& model) {
-  auto output = OutputFolder::open(options.output);
-  if (!output) return output.error();
-  std::cout << (output->json() ? json : text);
-  if (auto error = flush_standard_output()) return error;
-  if (!output->wanted()) return std::nullopt;
-  if (!model.empty()) {
-    if (auto error = output->write("model.toml", model)) return error;
-  }
-  if (auto error = output->write("results.json", json)) return error;
-  if (auto error = output->write("report.html", page.to_html())) return error;
-  output->announce();
-  return std::nullopt;
 }
 
 }  // namespace tactus::cli

@@ -3,7 +3,6 @@
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/identification/axis_recording.hpp>
-#include <tactus/report/page.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -23,13 +22,9 @@ struct AxisOptions {
 };
 
 /// Adds RECORDING, the roles of its columns, `--out` and `--json` to a verb.
-void add_axis_options(CLI::App& verb, AxisOptions& options);
+void add_axis_options(CLI::App& verb, AxisOptions& options, const std::string& command);
 
 /// The recording that the options name, once it is clear that results may be left where they shall be.
 Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool needs_measured = false);
-
-/// Prints `text` or `json`, then writes results.json, report.html and, if given, model.toml to `--out`.
-Check present(const AxisOptions& options, const std::string& text, const std::string& json, const report::Page& page,
-              const std::string& model = {});
 
 }  // namespace tactus::cli

@@ -1,8 +1,10 @@
+#include <tactus/cli/colour.hpp>
 #include <tactus/cli/command.hpp>
+#include <tactus/cli/help.hpp>
 #include <tactus/cli/printable_output.hpp>
 #include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/suggestion.hpp>
 #include <tactus/cli/verbs.hpp>
-#include <tactus/core/version.hpp>
 #include <tactus/report/text.hpp>
 
 #include <csignal>
@@ -11,11 +13,13 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 namespace tactus::cli {
@@ -43,6 +47,14 @@ int refuse(const std::string& name, std::string_view why) {
   return 2;
 }
 
+/// No empty list is shown as a default, here and in all verbs below.
+void forget_empty_defaults(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    if (option->get_default_str() == "[]") option->default_str("");
+  }
+  for (CLI::App* verb : app.get_subcommands({})) forget_empty_defaults(*verb);
+}
+
 int run(int argc, char** argv) {
   const std::string name = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "tactus";
   std::string command = shell_word(name);
@@ -54,12 +66,21 @@ int run(int argc, char** argv) {
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(standard, F_GETFD) < 0) (void)open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY);
   }
-  const PrintableOutput output(std::cout), errors(std::cerr);
-  // A reader of the results that went away is an error like a full disk and not the end.
+  const auto painter = [&name](int descriptor) {
+    return shows_colour(descriptor) ? std::optional(Painter(name)) : std::nullopt;
+  };
+  const PrintableOutput output(std::cout, painter(STDOUT_FILENO)), errors(std::cerr, painter(STDERR_FILENO));
+  if (shows_colour(STDERR_FILENO)) std::cerr << std::nounitbuf;  // a line is painted as a whole
+  if (winsize window{}; ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0) {
+    report::set_text_width(window.ws_col);
+  }
+  // A reader of the results that went away is not the end: files are still written.
   std::signal(SIGPIPE, SIG_IGN);
   int status = 0;
   CLI::App app{"Crisp and stable force-reflecting teleoperation", name};
-  app.set_version_flag("--version", "tactus " + std::string(version()));
+  app.set_version_flag("--version", version_text());
+  set_help(app);
+  app.option_defaults()->always_capture_default();
   // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
   app.require_subcommand(0, 1);
   add_run(app, command, status);
@@ -67,24 +88,30 @@ int run(int argc, char** argv) {
   add_estimate(app, command, status);
   add_identify(app, command, status);
   add_diagnose(app, command, status);
-  add_export(app, status);
+  add_export(app, command, status);
   add_key(app, status);
-  add_plant(app, status);
-  add_relay(app, status);
-  add_replay(app, status);
-  add_device(app, status);
+  add_plant(app, command, status);
+  add_relay(app, command, status);
+  add_replay(app, command, status);
+  add_device(app, command, status);
   add_emulate(app, status);
   add_faults(app, command, status);
   add_stability(app, command, status);
   add_doctor(app, command, status);
   add_schema(app, status);
   add_serve(app, command, status);
+  add_completion(app);
+  add_help(app, status);
+  forget_empty_defaults(app);
   try {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) return refuse(name, "A command is required");
   } catch (const CLI::ParseError& error) {
     // Help and version come this way too, with a code of 0.
-    if (error.get_exit_code() != 0) return refuse(name, error.what());
+    if (error.get_exit_code() != 0) {
+      const std::string unknown = unknown_word(app, argc, argv);
+      return refuse(name, unknown.empty() ? error.what() : unknown);
+    }
     app.exit(error);
   }
   if (status != 0) return status;

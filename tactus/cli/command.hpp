@@ -7,8 +7,8 @@ namespace tactus::cli {
 /// itself by the file name in `argv[0]`.
 ///
 /// Returns the exit status: 0 done, 1 the job failed, 2 the request was wrong; why stands on standard error. To be
-/// called once: it prints to standard output and makes the process ignore SIGPIPE, so that a reader that goes away is
-/// an error like a full disk.
+/// called once: it prints to standard output and makes the process ignore SIGPIPE, so that the work is done, and the
+/// status that of the work, where a reader goes away.
 int run_command(int argc, char** argv);
 
 }  // namespace tactus::cli

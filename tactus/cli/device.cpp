@@ -12,11 +12,11 @@ void end_verb(const CLI::App& app, const Result<bool>& well, int& status) {
   status = !well ? exit_status(well.error()) : (*well ? 0 : 1);
 }
 
-void add_device(CLI::App& app, int& status) {
+void add_device(CLI::App& app, const std::string& command, int& status) {
   CLI::App* verb = app.add_subcommand("device", "Motors and handles that you own");
   verb->require_subcommand(1);
   add_device_list(*verb, app, status);
-  add_device_check(*verb, app, status);
+  add_device_check(*verb, app, command, status);
   add_device_watch(*verb, app, status);
   add_device_zero(*verb, app, status);
   add_device_limits(*verb, app, status);

@@ -2,6 +2,8 @@
 
 #include <tactus/core/result.hpp>
 
+#include <string>
+
 // Only declared: headers are installed, and a user of the package need not have CLI11.
 namespace CLI {  // NOLINT: the name is not ours
 class App;
@@ -10,7 +12,8 @@ class App;
 namespace tactus::cli {
 
 /// The verbs below `device`. `app` says the program's name in errors; `status` becomes the exit status.
-void add_device_check(CLI::App& device, const CLI::App& app, int& status);
+/// `command` is the whole command line.
+void add_device_check(CLI::App& device, const CLI::App& app, const std::string& command, int& status);
 void add_device_list(CLI::App& device, const CLI::App& app, int& status);
 void add_device_watch(CLI::App& device, const CLI::App& app, int& status);
 void add_device_zero(CLI::App& device, const CLI::App& app, int& status);

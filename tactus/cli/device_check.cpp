@@ -1,5 +1,6 @@
 #include <tactus/cli/device.hpp>
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/json_option.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/devices/rig/examination.hpp>
 #include <tactus/report/table.hpp>
@@ -35,7 +36,7 @@ struct CheckOptions {
   std::string kind;
   StatedBus bus;
   std::vector<std::string> motors;
-  bool json = false;
+  JsonOption json;
 };
 
 /// A bus that was examined, and the joints that are wanted of it; without a rig its motors have no joints.
@@ -203,10 +204,10 @@ bool alike(const std::vector<Checked>& all) {
 
 Result<bool> print(const std::vector<Checked>& all, const CheckOptions& options) {
   const bool clean = std::ranges::all_of(all, well);
-  if (options.json) {
+  if (options.json.wanted) {
     nlohmann::ordered_json document{{"clean", clean}, {"buses", nlohmann::ordered_json::array()}};
     for (const Checked& checked : all) document["buses"].push_back(json_of(checked));
-    std::cout << json_text(document);
+    std::cout << options.json.document(json_text(document));
   } else {
     if (clean) {
       double slowest_Hz = std::numeric_limits<double>::infinity();
@@ -266,12 +267,12 @@ Result<bool> check_bus(const CheckOptions& options) {
 
 }  // namespace
 
-void add_device_check(CLI::App& device, const CLI::App& app, int& status) {
+void add_device_check(CLI::App& device, const CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* verb = device.add_subcommand("check", "Ask each motor what it is; what is wrong, and what mends it");
   auto* rig = verb->add_option("RIG", options->rig, "The rig file");
   verb->add_option("NAME", options->name, "A pair, a side or a joint of it, as arm.leader");
-  verb->add_flag("--json", options->json, "As JSON");
+  add_json_option(*verb, options->json, command);
   std::vector<std::string> words;
   for (const auto& entry : enumerators(devices::BusKind{})) words.emplace_back(entry.name);
   auto* bus = verb->add_option("--bus", options->kind, "Without a rig file: kind of bus")->check(CLI::IsMember(words));
@@ -279,11 +280,9 @@ void add_device_check(CLI::App& device, const CLI::App& app, int& status) {
   auto* motors = verb->add_option("--motors", options->motors, "Each motor's id and model, as in 1:DM4310,2:DM4310")
                      ->type_name("ID:MODEL,...")
                      ->delimiter(',');
-  auto* framing =
-      verb->add_option("--framing", options->bus.framing, "Of CAN: usb2can, slcan, slcan-fd, socketcan or socketcan-fd")
-          ->capture_default_str();
-  auto* rate =
-      verb->add_option("--bits-per-s", options->bus.bits_per_s, "Of servos: what each has set")->capture_default_str();
+  auto* framing = verb->add_option("--framing", options->bus.framing,
+                                   "Of CAN: usb2can, slcan, slcan-fd, socketcan or socketcan-fd");
+  auto* rate = verb->add_option("--bits-per-s", options->bus.bits_per_s, "Of servos: what each has set");
   for (CLI::Option* one : {port, motors, framing, rate}) one->needs(bus);
   bus->needs(port)->needs(motors)->excludes(rig);
   verb->callback([options, bus, rig, &app, &status] {

@@ -1,5 +1,4 @@
-#include <tactus/cli/output_folder.hpp>
-#include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/diagnosis/report.hpp>
@@ -33,16 +32,12 @@ Check diagnose(const DiagnoseOptions& options, const std::string& command) {
     return error;
   }
   const diagnosis::Diagnosis found = diagnosis::diagnose(*signals);
-  const std::string json = diagnosis::to_json(*signals, found, options.file);
-  std::cout << (output->json() ? json : diagnosis::to_text(*signals, found));
-  if (auto error = flush_standard_output()) return error;
-  if (!output->wanted()) return std::nullopt;
   report::Page page = diagnosis::to_page(*signals, found, options.file);
   page.footer("tactus " + std::string(version()), command);
-  if (auto error = output->write("results.json", json)) return error;
-  if (auto error = output->write("report.html", page.to_html())) return error;
-  output->announce();
-  return std::nullopt;
+  return write_outcome(*output, {.text = diagnosis::to_text(*signals, found),
+                                 .json = diagnosis::to_json(*signals, found, options.file),
+                                 .html = page.to_html(),
+                                 .figures = {}});
 }
 
 }  // namespace
@@ -70,7 +65,7 @@ void add_diagnose(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--time", options->roles.time, "Column of the times")->type_name("NAME");
   verb->add_option("--sample-time-s", options->roles.sample_time_s, "Time between samples, where the file has none")
       ->type_name("S");
-  add_output_options(*verb, options->results, "Folder for report.html and results.json");
+  add_output_options(*verb, options->results, command, "Folder for report.html and results.json");
   verb->callback([options, name = app.get_name(), &command, &status] {
     if (const auto error = diagnose(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

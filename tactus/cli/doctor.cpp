@@ -49,7 +49,7 @@ std::string text_of(const std::vector<Finding>& findings) {
     explained += finding.name + ": " + finding.means + ".\n";
     if (!finding.remedy.empty()) explained += "    remedy: " + finding.remedy + "\n";
   }
-  return table_of(findings).to_text() + "\n" + explained + "\n" + answer(findings) + "\n";
+  return answer(findings) + "\n\n" + table_of(findings).to_text() + "\n" + explained;
 }
 
 std::string html_of(const std::vector<Finding>& findings, const report::Figure& timing,
@@ -110,12 +110,10 @@ Result<bool> examine(const DoctorOptions& options, const std::string& command) {
 void add_doctor(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* verb = app.add_subcommand("doctor", "Can this machine keep time? What is missing, and what mends it");
-  verb->add_option("--rate-Hz", options->servo.rate_Hz, "Ticks per second to measure at")
-      ->type_name("HZ")
-      ->capture_default_str();
-  verb->add_option("--duration-s", options->duration_s, "How long to measure")->type_name("S")->capture_default_str();
+  verb->add_option("--rate-Hz", options->servo.rate_Hz, "Ticks per second to measure at")->type_name("HZ");
+  verb->add_option("--duration-s", options->duration_s, "How long to measure")->type_name("S");
   add_servo_options(*verb, options->servo);
-  add_output_options(*verb, options->output, "Folder for report.html, results.json and the figure");
+  add_output_options(*verb, options->output, command, "Folder for report.html, results.json and the figure");
   verb->callback([options, &app, &command, &status] {
     const auto can = examine(*options, command);
     if (!can) std::cerr << app.get_name() << ": " << describe(can.error()) << "\n";

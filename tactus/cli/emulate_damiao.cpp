@@ -50,25 +50,19 @@ Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
 
 std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
   auto options = std::make_shared<DamiaoOptions>();
-  verb.add_option("--motors", options->motors, "How many, with the ids 1 and on")
-      ->check(CLI::Range(1, 15))
-      ->capture_default_str();
-  verb.add_option("--model", options->models, models_help)
-      ->delimiter(',')
-      ->check(CLI::IsMember(words_of<MotorType>()))
-      ->capture_default_str();
+  verb.add_option("--motors", options->motors, "How many, with the ids 1 and on")->check(CLI::Range(1, 15));
+  verb.add_option("--model", options->models, models_help)->delimiter(',')->check(CLI::IsMember(words_of<MotorType>()));
   // A terminal passes no frames of Linux.
   verb.add_option("--framing", options->framing, "Adapter: usb2can is Damiao's own, slcan is text")
       ->check(
-          CLI::IsMember({name_of(AdapterType::usb2can), name_of(AdapterType::slcan), name_of(AdapterType::slcan_fd)}))
-      ->capture_default_str();
+          CLI::IsMember({name_of(AdapterType::usb2can), name_of(AdapterType::slcan), name_of(AdapterType::slcan_fd)}));
   verb.add_option(
           "--fault", options->faults,
           "What goes wrong, as KIND[:MOTOR][@SECONDS][+SECONDS]: of which motor, from when and how long; may be "
           "given again. Kinds: silence, wrong-scale, over-voltage, under-voltage, over-current, hot-drive, "
           "hot-winding, communication-lost, overload, register-answer, twin, wrap, garbage, heartbeat, bus-off, split")
       ->type_name("FAULT");
-  verb.add_option("--seed", options->seed, "Of delays and garbage")->capture_default_str();
+  verb.add_option("--seed", options->seed, "Of delays and garbage");
   return [options] { return make_peer(*options); };
 }
 

@@ -21,18 +21,17 @@ struct Inverse3Options {
 
 std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_options(CLI::App& verb) {
   auto options = std::make_shared<Inverse3Options>();
-  verb.add_option("--devices", options->service.devices, "How many")->check(CLI::Range(1, 4))->capture_default_str();
+  verb.add_option("--devices", options->service.devices, "How many")->check(CLI::Range(1, 4));
   verb.add_option("--dialect", options->dialect, "Version whose keys it speaks")
-      ->check(CLI::IsMember(words_of<Dialect>()))
-      ->capture_default_str();
-  verb.add_option("--port", options->port, "To listen at; 0 takes any that is free")->capture_default_str();
+      ->check(CLI::IsMember(words_of<Dialect>()));
+  verb.add_option("--port", options->port, "To listen at; 0 takes any that is free");
   verb.add_flag("--uncalibrated", options->uncalibrated, "Gives no force and says so");
   verb.add_flag("--partial", options->service.partial, "Leaves out of a state what equals the identity");
   verb.add_option("--late-s", options->late_s, "Answers so much later")->check(CLI::Range(0.0, 10.0));
   verb.add_option("--garbage", options->service.garbage, "Share of answers that are cut off")
       ->check(CLI::Range(0.0, 1.0));
   verb.add_option("--closes-after", options->service.closes_after, "Closes in place of this answer; 0: never");
-  verb.add_option("--seed", options->service.seed, "Of what is cut off")->capture_default_str();
+  verb.add_option("--seed", options->service.seed, "Of what is cut off");
   return [options] {
     Inverse3Service::Params params = options->service;
     params.dialect = value_of<Dialect>(options->dialect);

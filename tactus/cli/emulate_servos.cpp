@@ -79,23 +79,17 @@ std::shared_ptr<ServoOptions> add_servo_options(CLI::App& verb, const std::strin
                                                 const std::vector<std::string>& models, std::int64_t most_bits_per_s) {
   auto options = std::make_shared<ServoOptions>();
   options->models = {model};
-  verb.add_option("--motors", options->servos, "How many, with the ids 1 and on")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
-  verb.add_option("--model", options->models, models_help)
-      ->delimiter(',')
-      ->check(CLI::IsMember(models))
-      ->capture_default_str();
+  verb.add_option("--motors", options->servos, "How many, with the ids 1 and on")->check(CLI::Range(1, 16));
+  verb.add_option("--model", options->models, models_help)->delimiter(',')->check(CLI::IsMember(models));
   verb.add_option("--bits-per-s", options->bits_per_s, "Pace of the line")
-      ->check(CLI::Range(std::int64_t{9600}, most_bits_per_s))
-      ->capture_default_str();
+      ->check(CLI::Range(std::int64_t{9600}, most_bits_per_s));
   verb.add_option(
           "--fault", options->faults,
           "What goes wrong, as KIND[:ID][@SECONDS]: of which servo, and from when; may be given again. Kinds of "
           "a servo: silent, power-cycle, hot, wrong-model, low-limit, twin, clash; of the line, without id and time: "
           "corrupt, garbage, split, echo")
       ->type_name("FAULT");
-  verb.add_option("--seed", options->seed, "Of what goes wrong on the line")->capture_default_str();
+  verb.add_option("--seed", options->seed, "Of what goes wrong on the line");
   verb.add_flag("--deaf-otherwise", options->deaf_otherwise, "Hears nothing while the line is set to another pace");
   return options;
 }

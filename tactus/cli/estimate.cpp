@@ -1,11 +1,13 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/estimate.hpp>
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/force_comparison.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
@@ -29,6 +31,7 @@ using identification::ForceComparison;
 
 constexpr double comparison_cutoff_Hz = 60.0;
 constexpr double shortest_free_motion_s = 0.1;
+constexpr const char* signal_file = "estimated_force.csv";
 constexpr double settling_s = 0.05;  ///< of the estimator's filters, left out of the figures
 
 struct EstimateOptions {
@@ -90,6 +93,19 @@ std::string json_of(const EstimateOptions& options, const AxisRecording& axis, c
   return json_text(document);
 }
 
+/// What was read and what was estimated from it, as a recording.
+std::string csv_of(const AxisRecording& axis, const Run& run) {
+  const std::string unit = axis.rotary ? "_N_m" : "_N";
+  const auto place = [&axis](std::size_t i) { return static_cast<double>(i) * axis.sample_time.value; };
+  std::string text = (axis.rotary ? "time_s,position_rad,actuator_torque" : "time_s,position_m,actuator_force") + unit +
+                     (axis.rotary ? ",estimated_torque" : ",estimated_force") + unit + "\n";
+  for (std::size_t i = 0; i < run.force.size(); ++i) {
+    text += format_number(place(i)) + "," + format_number(axis.position.values[i]) + "," +
+            format_number(axis.force.values[i]) + "," + format_number(run.force[i]) + "\n";
+  }
+  return text;
+}
+
 Check estimate_force(const EstimateOptions& options, const std::string& command) {
   const auto axis = read_axis(options.axis, true);
   if (!axis) return axis.error();
@@ -133,7 +149,8 @@ Check estimate_force(const EstimateOptions& options, const std::string& command)
   panel.lines.push_back({.name = "estimated, causal", .x = time_s, .y = run->force, .colour = 1});
   page.figure({.title = "Force", .caption = "Estimate from command and position alone.", .panels = {panel}});
   page.footer("tactus " + std::string(version()), command);
-  return present(options.axis, text + "\n", json, page);
+  return write_outcome(options.axis.output, {.text = text + "\n", .json = json, .html = page.to_html(), .figures = {}},
+                       {{signal_file, csv_of(*axis, *run)}});
 }
 
 }  // namespace
@@ -144,7 +161,9 @@ void add_estimate(CLI::App& app, const std::string& command, int& status) {
   estimate->require_subcommand(1);
   add_estimate_torque(*estimate, app.get_name(), command, status);
   CLI::App* verb = estimate->add_subcommand("force", "Force of the environment from command and position");
-  add_axis_options(*verb, options->axis);
+  add_axis_options(*verb, options->axis, command);
+  options->axis.output.own_files = {signal_file};
+  verb->get_option("--out")->description("Folder for " + std::string(signal_file) + ", report.html and results.json");
   verb->add_option("--model", options->model, "Model file, as `identify inverse --out` writes it")->required();
   verb->add_option("--compare", options->axis.roles.measured, "Column of the measured force")->type_name("NAME");
   verb->add_option("--compare-sign", options->axis.roles.measured_sign,

@@ -2,6 +2,7 @@
 #include <tactus/cli/arm_options.hpp>
 #include <tactus/cli/estimate.hpp>
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
@@ -112,8 +113,8 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
                               : count == 1 ? std::string("One contact found.")
                                            : std::to_string(count) + " contacts found.";
   report::Page page("External torque, " + options.file);
-  page.table(joints);
   page.paragraph(verdict);
+  page.table(joints);
   if (!found->contacts.empty()) page.table(contacts);
   report::Panel panel{.title = "Torque of the environment on the arm",
                       .x = {.label = "time", .unit = "s"},
@@ -130,9 +131,10 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
   page.figure({.title = "External torque", .caption = "Zero-phase, below the cutoff.", .panels = {panel}});
   page.footer("tactus " + std::string(version()), command);
   const std::string text =
-      joints.to_text() + verdict + "\n" + (found->contacts.empty() ? std::string() : contacts.to_text());
-  return present(options.arm, text, json_of(options, *model, *found), page.to_html(),
-                 {{"external_torque.csv", csv_of(*found)}});
+      verdict + "\n\n" + joints.to_text() + (found->contacts.empty() ? std::string() : contacts.to_text());
+  return write_outcome(options.arm.output,
+                       {.text = text, .json = json_of(options, *model, *found), .html = page.to_html(), .figures = {}},
+                       {{"external_torque.csv", csv_of(*found)}});
 }
 
 }  // namespace
@@ -146,7 +148,7 @@ void add_estimate_torque(CLI::App& estimate, const std::string& name, const std:
   verb->add_option("--model", options->model, "Model file, as `identify arm --out` leaves it")
       ->required()
       ->type_name("FILE");
-  add_arm_options(*verb, options->arm, "Folder for external_torque.csv, report.html and results.json");
+  add_arm_options(*verb, options->arm, command, "Folder for external_torque.csv, report.html and results.json");
   verb->callback([options, name, &command, &status] {
     if (const auto error = estimate_torque(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

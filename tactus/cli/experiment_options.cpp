@@ -1,4 +1,5 @@
 #include <tactus/cli/experiment_options.hpp>
+#include <tactus/configuration/text.hpp>
 #include <tactus/report/text.hpp>
 
 #include <filesystem>
@@ -18,6 +19,19 @@ Result<configuration::Document> with_set(Result<configuration::Document> documen
     if (auto error = document->set(assignment)) return *std::move(error);
   }
   return document;
+}
+
+Check refuse_set_and_varied(const std::vector<std::string>& set, const std::string& varied) {
+  for (const std::string& assignment : set) {
+    const std::string_view key = configuration::trimmed(std::string_view(assignment).substr(0, assignment.find('=')));
+    if (key != varied) continue;
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = varied,
+                 .message = "it is varied and set to one value: leave out --set " + assignment +
+                            ", or the values that --vary names",
+                 .place = "--vary"};
+  }
+  return std::nullopt;
 }
 
 void add_experiment_options(CLI::App& verb, ExperimentOptions& options) {

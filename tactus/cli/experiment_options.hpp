@@ -24,6 +24,9 @@ void add_set_option(CLI::App& verb, std::vector<std::string>& set);
 /// The document with these values, each `key=value`, on top. Errors: those of `document` and of `Document::set`.
 Result<configuration::Document> with_set(Result<configuration::Document> document, const std::vector<std::string>& set);
 
+/// `inconsistent` for a key that is varied and has one value too: one of the two would be lost.
+Check refuse_set_and_varied(const std::vector<std::string>& set, const std::string& varied);
+
 /// Adds it to a verb: `EXPERIMENT`, `--with`, `--set`.
 void add_experiment_options(CLI::App& verb, ExperimentOptions& options);
 

@@ -1,4 +1,5 @@
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/json_option.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/report/table.hpp>
@@ -23,7 +24,7 @@ struct ExportOptions {
   std::optional<std::string> topic;
   std::optional<std::string> out;
   bool overwrite = false;
-  bool json = false;
+  JsonOption json;
 };
 
 Error request_error(ErrorCode code, std::string message, std::string place) {
@@ -57,10 +58,7 @@ std::filesystem::path default_file(const ExportOptions& options) {
 Check write(const ExportOptions& options, const telemetry::LogContent& content, const std::filesystem::path& file) {
   if (options.to == "mat") return telemetry::export_mat(content, file);
   if (options.to == "hdf5") return telemetry::export_hdf5(content, file);
-  if (content.tables.empty()) {
-    return request_error(ErrorCode::missing, "the log holds no message to export: name another log", options.log);
-  }
-  return telemetry::export_csv(content.tables.front(), file);
+  return telemetry::export_csv(content, file);
 }
 
 /// What of the log could not be read, in words.
@@ -110,13 +108,13 @@ Check run(const ExportOptions& options) {
   const std::filesystem::path file = options.out ? std::filesystem::path(*options.out) : default_file(options);
   if (auto error = may_write(file, options.overwrite, options.out ? "--out" : options.log)) return error;
   if (auto error = write(options, *content, file)) return error;
-  std::cout << (options.json ? json_of(*content, file) : text_of(*content, file));
+  std::cout << (options.json.wanted ? options.json.document(json_of(*content, file)) : text_of(*content, file));
   return std::nullopt;
 }
 
 }  // namespace
 
-void add_export(CLI::App& app, int& status) {
+void add_export(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* verb = app.add_subcommand("export", "Write a log as columns for other programs");
   verb->add_option("LOG", options->log, "Log (.mcap), or the folder that holds it")->required();
@@ -126,7 +124,7 @@ void add_export(CLI::App& app, int& status) {
   verb->add_option("--topic", options->topic, "Only this topic; csv needs it where the log has several");
   verb->add_option("--out", options->out, "File to write; without it, beside the log")->type_name("FILE");
   verb->add_flag("--overwrite", options->overwrite, "Replace the file if it is there");
-  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
     if (const auto error = run(*options)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

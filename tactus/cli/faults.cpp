@@ -78,7 +78,7 @@ void add_faults(CLI::App& app, const std::string& command, int& status) {
   add_set_option(*faults, options->set);
   faults->add_option("--seeds", options->seeds, "Runs of each fault");
   faults->add_option("--only", options->only, "One fault by its id, as the rows of --json have it");
-  add_output_options(*faults, options->output, "Folder for report.html, results.json and the figure");
+  add_output_options(*faults, options->output, command, "Folder for report.html, results.json and the figure");
   CLI::Option* real_time = faults->add_flag("--realtime", options->real_time,
                                             "After that some of them again at the real clock, on a servo thread");
   add_servo_options(*faults, options->servo);

@@ -2,6 +2,7 @@
 #include <tactus/cli/arm_options.hpp>
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
@@ -161,12 +162,16 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
 
   const report::Table joints = joints_table(*found, recordings.front().effort_unit);
   report::Page page("Dynamics of " + (urdf->name.empty() ? options.urdf : urdf->name));
-  page.table(joints);
   page.paragraph(words_of(*found));
+  page.table(joints);
   page.table(parameters_table(*found));
   page.footer("tactus " + std::string(version()), command);
-  return present(options.arm, joints.to_text() + words_of(*found) + "\n", json_of(options, *found), page.to_html(),
-                 {{"model.toml", to_toml(found->model, command)}});
+  return write_outcome(options.arm.output,
+                       {.text = words_of(*found) + "\n\n" + joints.to_text(),
+                        .json = json_of(options, *found),
+                        .html = page.to_html(),
+                        .figures = {}},
+                       {{"model.toml", to_toml(found->model, command)}});
 }
 
 }  // namespace
@@ -184,7 +189,7 @@ void add_identify_arm(CLI::App& identify, const std::string& name, const std::st
       ->type_name("X,Y,Z")
       ->delimiter(',')
       ->expected(3);
-  add_arm_options(*verb, options->arm, "Folder for model.toml, report.html and results.json");
+  add_arm_options(*verb, options->arm, command, "Folder for model.toml, report.html and results.json");
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")
       ->type_name("HZ")
       ->check(CLI::Range(0.1, 500.0));

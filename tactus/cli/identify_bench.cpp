@@ -1,8 +1,7 @@
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
-#include <tactus/cli/output_folder.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
-#include <tactus/cli/standard_output.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/cancellation_model.hpp>
@@ -146,25 +145,18 @@ report::Table table_of(const Isolation& isolation, const SimulatedRig& rig) {
   return table;
 }
 
-Check write_results(const Recipe& recipe, OutputFolder& output, const Isolation& isolation, const ImpactCheck& check,
-                    const ModelFile& model, const SimulatedRig& rig, const std::string& json,
-                    const report::Table& table, const std::string& command) {
-  const std::string origin = "# " + command + "\n";
-  report::Page page(std::string(recipe.title) + " of " + rig.name());
+report::Page page_of(const Recipe& recipe, const Isolation& isolation, const ImpactCheck& check, const std::string& rig,
+                     const std::string& verdict, const std::string& model, const report::Table& table,
+                     const std::string& command) {
+  report::Page page(std::string(recipe.title) + " of " + rig);
+  page.paragraph(verdict);
   page.table(table);
   page.paragraph(recipe.explanation);
   for (const report::Figure& figure : figures(isolation)) page.figure(figure);
   page.figure(figure(check));
-  const std::string model_text = origin + configuration::to_toml(model);
-  page.code(model_text, "model.toml, for tactus run --with");
+  page.code(model, "model.toml, for tactus run --with");
   page.footer("tactus " + std::string(version()), command);
-  if (auto error = output.write("model.toml", model_text)) return error;
-  if (auto error = output.write(
-          "rig.toml", "# The truth behind " + rig.name() + "\n" + configuration::to_toml(rig.truth().benched))) {
-    return error;
-  }
-  if (auto error = output.write("results.json", json)) return error;
-  return output.write("report.html", page.to_html());
+  return page;
 }
 
 Check identify(const Recipe& recipe, const BenchOptions& options, const std::string& command) {
@@ -192,19 +184,18 @@ Check identify(const Recipe& recipe, const BenchOptions& options, const std::str
   const auto check = identification::check_on_impacts(*bench, model.control.model, full_force_N);
   if (!check) return check.error();
 
-  const std::string json = json_of(*isolation, *check, *rig);
   const report::Table table = table_of(*isolation, *rig);
-  if (output->json()) {
-    std::cout << json;
-  } else {
-    std::cout << table.to_text() << "Of what impacts induce above 20 Hz, the model leaves "
-              << report::number(100.0 * check->residual, 2) << " %.\n";
-  }
-  if (auto error = flush_standard_output()) return error;
-  if (!output->wanted()) return {};
-  if (auto error = write_results(recipe, *output, *isolation, *check, model, *rig, json, table, command)) return error;
-  output->announce();
-  return {};
+  const std::string verdict =
+      "Of what impacts induce above 20 Hz, the model leaves " + report::number(100.0 * check->residual, 2) + " %.";
+  const std::string model_text = "# " + command + "\n" + configuration::to_toml(model);
+  return write_outcome(
+      *output,
+      {.text = verdict + "\n\n" + table.to_text(),
+       .json = json_of(*isolation, *check, *rig),
+       .html = page_of(recipe, *isolation, *check, rig->name(), verdict, model_text, table, command).to_html(),
+       .figures = {}},
+      {{"model.toml", model_text},
+       {"rig.toml", "# The truth behind " + rig->name() + "\n" + configuration::to_toml(rig->truth().benched)}});
 }
 
 void add_bench_verb(CLI::App& identify_verb, const Recipe& recipe, const std::string& name, const std::string& command,
@@ -216,7 +207,7 @@ void add_bench_verb(CLI::App& identify_verb, const Recipe& recipe, const std::st
   verb->add_option("--session", options->session, "Folder that keeps every run, to stop and go on later")
       ->type_name("DIR");
   options->output.own_files = {"model.toml", "rig.toml"};
-  add_output_options(*verb, options->output, "Folder for report.html, results.json, model.toml and rig.toml");
+  add_output_options(*verb, options->output, command, "Folder for report.html, results.json, model.toml and rig.toml");
   verb->callback([&recipe, options, name, &command, &status] {
     if (const auto error = identify(recipe, *options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

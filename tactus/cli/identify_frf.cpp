@@ -1,7 +1,7 @@
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
-#include <tactus/cli/output_folder.hpp>
-#include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/outcome_files.hpp>
+#include <tactus/core/version.hpp>
 #include <tactus/identification/frequency_response.hpp>
 #include <tactus/recording/recording.hpp>
 #include <tactus/report/page.hpp>
@@ -295,16 +295,6 @@ std::string json_of(const Estimates& found, const std::vector<Row>& rows, const 
   return json_text(json);
 }
 
-Check write_results(OutputFolder& output, const std::string& csv, const std::string& json, const report::Page& page,
-                    const report::Figure& figure) {
-  if (auto error = output.write("response.csv", csv)) return error;
-  if (auto error = output.write("figure-1.svg", report::to_svg(figure))) return error;
-  if (auto error = output.write("results.json", json)) return error;
-  if (auto error = output.write("report.html", page.to_html())) return error;
-  output.announce();
-  return std::nullopt;
-}
-
 Check identify(const FrfOptions& options, const std::string& command) {
   auto output = OutputFolder::open(options.results);
   if (!output) return output.error();
@@ -320,21 +310,18 @@ Check identify(const FrfOptions& options, const std::string& command) {
   const std::string unit = above.empty() || below.empty() ? "" : above + "/" + below;
   const report::Table table = table_of(rows, unit);
   const std::string json = json_of(*found, rows, unit);
-  const std::string text = found->how + ", " + std::to_string(runs->size()) +
-                           (runs->size() == 1 ? " recording\n" : " recordings\n") + table.to_text() +
-                           (found->linearity ? verdict(*found->linearity) + "\n" : std::string());
-  std::cout << (output->json() ? json : text);
-  if (auto error = flush_standard_output()) return error;
-  if (!output->wanted()) return std::nullopt;
-
+  const std::string text = (found->linearity ? verdict(*found->linearity) + "\n" : std::string()) + found->how + ", " +
+                           std::to_string(runs->size()) + (runs->size() == 1 ? " recording\n" : " recordings\n") +
+                           table.to_text();
   const report::Figure figure = figure_of(rows, unit, !found->response.coherence.empty());
   report::Page page("Frequency response from " + options.input + " to " + options.output);
-  page.paragraph(found->how + ".");
   if (found->linearity) page.paragraph(verdict(*found->linearity));
+  page.paragraph(found->how + ".");
   page.figure(figure);
   page.table(table);
-  page.footer("Made by tactus.", command);
-  return write_results(*output, csv_of(rows), json, page, figure);
+  page.footer("tactus " + std::string(version()), command);
+  return write_outcome(*output, {.text = text, .json = json, .html = page.to_html(), .figures = {figure}},
+                       {{"response.csv", csv_of(rows)}});
 }
 
 }  // namespace
@@ -361,7 +348,8 @@ void add_identify_frf(CLI::App& identify_verb, const std::string& name, const st
   verb->add_option("--upper-Hz", options->upper_Hz, "Nothing above this frequency")->type_name("HZ");
   verb->add_flag("--compare", options->compare, "Say whether the recordings show one linear device");
   options->results.own_files = {"response.csv"};
-  add_output_options(*verb, options->results, "Folder for report.html, results.json, response.csv and the figure");
+  add_output_options(*verb, options->results, command,
+                     "Folder for report.html, results.json, response.csv and the figure");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

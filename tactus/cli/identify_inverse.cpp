@@ -1,10 +1,12 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/inverse_dynamics.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 
@@ -93,11 +95,11 @@ std::string toml_of(const InverseDynamics& model, const AxisRecording& axis, con
 report::Page page_of(const InverseDynamics& model, const AxisRecording& axis, const report::Table& table,
                      const std::string& command) {
   report::Page page("Inverse dynamic model of " + axis.position.name);
-  page.table(table);
   page.paragraph("Force = inertia·a + viscous·v + Coulomb·tanh(v/v0) + offset explains " +
                  report::number(100.0 * model.explained, 3) + " % of the force's variance below " +
                  report::number(model.cutoff_Hz, 2) +
                  " Hz. Intervals are of 95 %, from the scatter over twelve blocks of the recording.");
+  page.table(table);
   const char* unit = axis.rotary ? "N m" : "N";
   report::Panel over_time{.title = "Force over time",
                           .x = {.label = "time", .unit = "s"},
@@ -132,10 +134,14 @@ Check identify_inverse(const InverseOptions& options, const std::string& command
     table.add_row({row.name, report::number(row.estimate.value, 4), report::number(row.estimate.lower, 4),
                    report::number(row.estimate.upper, 4), row.unit});
   }
-  const std::string text = table.to_text() + "Explains " + report::number(100.0 * model->explained, 3) +
-                           " % of the force; position " + axis->position.name + ", force " + axis->force.name + "\n";
-  return present(options.axis, text, json_of(*model, *axis, options.axis.file), page_of(*model, *axis, table, command),
-                 toml_of(*model, *axis, command));
+  const std::string text = "Explains " + report::number(100.0 * model->explained, 3) + " % of the force; position " +
+                           axis->position.name + ", force " + axis->force.name + ".\n\n" + table.to_text();
+  return write_outcome(options.axis.output,
+                       {.text = text,
+                        .json = json_of(*model, *axis, options.axis.file),
+                        .html = page_of(*model, *axis, table, command).to_html(),
+                        .figures = {}},
+                       {{"model.toml", toml_of(*model, *axis, command)}});
 }
 
 }  // namespace
@@ -144,7 +150,7 @@ void add_identify_inverse(CLI::App& identify, const std::string& name, const std
   auto options = std::make_shared<InverseOptions>();
   CLI::App* verb = identify.add_subcommand("inverse", "Inverse dynamic model of one axis from a recording");
   options->axis.output.own_files = {"model.toml"};
-  add_axis_options(*verb, options->axis);
+  add_axis_options(*verb, options->axis, command);
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")->type_name("HZ");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify_inverse(*options, command)) {

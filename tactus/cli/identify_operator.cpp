@@ -1,8 +1,10 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/operator_impedance.hpp>
+#include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 
@@ -211,8 +213,10 @@ Check identify_operator(OperatorOptions options, const std::string& command) {
   }
   const report::Table table = table_of(*found, axis->rotary);
   const std::string summary = summary_of(*found, *axis);
-  return present(options.axis, table.to_text() + summary + "\n", json_of(*found, *axis, options.axis.file),
-                 page_of(*found, *axis, table, summary, command));
+  return write_outcome(options.axis.output, {.text = summary + "\n\n" + table.to_text(),
+                                             .json = json_of(*found, *axis, options.axis.file),
+                                             .html = page_of(*found, *axis, table, summary, command).to_html(),
+                                             .figures = {}});
 }
 
 }  // namespace
@@ -221,7 +225,7 @@ void add_identify_operator(CLI::App& identify, const std::string& name, const st
   auto options = std::make_shared<OperatorOptions>();
   CLI::App* verb = identify.add_subcommand(
       "operator", "Impedance of the hand over time, from a master's motion and the hand's force");
-  add_axis_options(*verb, options->axis);
+  add_axis_options(*verb, options->axis, command);
   verb->remove_option(verb->get_option("--external"));
   verb->get_option("--position")->description("Column of the master's position; in a MATLAB file NAME:COLUMN");
   verb->get_option("--force")->description("Column of the hand's force or torque on the master");

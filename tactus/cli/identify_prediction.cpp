@@ -104,9 +104,10 @@ experiments::Outcome outcome_of(const PredictionOptions& options, const TimeCons
                                     {"from_data_s", found.from_data_s},
                                     {"error_rms_N", found.error_rms_N}};
   experiments::Outcome outcome;
-  outcome.text = table.to_text() + felt + "\n";
+  outcome.text = felt + ".\n\n" + table.to_text();
   outcome.json = json_text(json);
   outcome.html = page.to_html();
+  outcome.configuration = configuration;
   return outcome;
 }
 
@@ -162,7 +163,7 @@ void add_identify_prediction(CLI::App& identify_verb, const std::string& name, c
       ->needs(recording);
   verb->add_option("--command-column", options->command_column, "Column of that variable (.mat), from 1");
   verb->add_option("--position-column", options->position_column, "Column of that variable (.mat), from 1");
-  add_output_options(*verb, options->output, "Folder for report.html and results.json");
+  add_output_options(*verb, options->output, command, "Folder for report.html and results.json");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

@@ -1,6 +1,7 @@
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/printable_output.hpp>
 #include <tactus/cli/quiet_thread.hpp>
+#include <tactus/cli/standard_output.hpp>
 
 #include <algorithm>
 #include <cerrno>
@@ -120,7 +121,7 @@ Check LineWriter::finish(std::string_view last) {
   lock.unlock();
   // One that waits for a reader who may never come is left to the end of the program.
   if (thread_.joinable()) done ? thread_.join() : thread_.detach();
-  if (done && !failed) return std::nullopt;
+  if (done && (!failed || reader_is_gone(state_->descriptor))) return std::nullopt;
   return Error{.code = ErrorCode::unwritable,
                .parameter = {},
                .message = done ? "the output could not be written: give it a place with room"

@@ -51,7 +51,6 @@ void add_onlooker_options(CLI::App& verb, OnlookerOptions& options) {
           ->group(group);
   verb.add_option("--namespace", options.name_space, "Namespace of the ROS 2 topics")
       ->type_name("NAME")
-      ->capture_default_str()
       ->needs(ros2)
       ->group(group);
 }

@@ -7,23 +7,32 @@
 
 namespace tactus::cli {
 
-Check write_results(OutputFolder& output, const experiments::Outcome& outcome) {
+Check write_results(OutputFolder& output, const experiments::Outcome& outcome, const std::vector<NamedText>& files) {
+  for (const NamedText& file : files) {
+    if (auto error = output.write(file.name, file.text)) return error;
+  }
   for (std::size_t i = 0; i < outcome.figures.size(); ++i) {
     const std::string name = "figure-" + std::to_string(i + 1) + ".svg";
     if (auto error = output.write(name, report::to_svg(outcome.figures[i]))) return error;
   }
-  if (auto error = output.write("results.json", outcome.json)) return error;
+  if (auto error = output.write("results.json", output.document(outcome))) return error;
   return output.write("report.html", outcome.html);
 }
 
-Check write_outcome(OutputFolder& output, const experiments::Outcome& outcome) {
+Check write_outcome(OutputFolder& output, const experiments::Outcome& outcome, const std::vector<NamedText>& files) {
   if (output.wanted()) {
-    if (auto error = write_results(output, outcome)) return error;
+    if (auto error = write_results(output, outcome, files)) return error;
   }
-  std::cout << (output.json() ? outcome.json : outcome.text);
+  std::cout << (output.json() ? output.document(outcome) : outcome.text);
   if (auto error = flush_standard_output()) return error;
   if (output.wanted()) output.announce();
   return std::nullopt;
+}
+
+Check write_outcome(const OutputOptions& options, const experiments::Outcome& outcome,
+                    const std::vector<NamedText>& files) {
+  auto output = OutputFolder::open(options);
+  return output ? write_outcome(*output, outcome, files) : Check(output.error());
 }
 
 }  // namespace tactus::cli

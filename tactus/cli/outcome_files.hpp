@@ -4,14 +4,29 @@
 #include <tactus/core/result.hpp>
 #include <tactus/experiments/experiment.hpp>
 
+#include <string>
+#include <vector>
+
 namespace tactus::cli {
 
-/// Writes report.html, results.json and the figures to the folder.
-Check write_results(OutputFolder& output, const experiments::Outcome& outcome);
+/// A file that a verb leaves beside report.html, results.json and the figures, and has named as its own.
+struct NamedText {
+  std::string name;
+  std::string text;
+};
+
+/// Writes report.html, results.json, the figures and these files to the folder.
+Check write_results(OutputFolder& output, const experiments::Outcome& outcome,
+                    const std::vector<NamedText>& files = {});
 
 /// Writes the results to the folder, if there is one, and prints the outcome, as a table or as JSON. In this order, so
 /// that the report is there whoever reads what is printed. Where the report is it says after a table on standard output
 /// and else on standard error.
-Check write_outcome(OutputFolder& output, const experiments::Outcome& outcome);
+Check write_outcome(OutputFolder& output, const experiments::Outcome& outcome,
+                    const std::vector<NamedText>& files = {});
+
+/// The same to the folder that the options name.
+Check write_outcome(const OutputOptions& options, const experiments::Outcome& outcome,
+                    const std::vector<NamedText>& files = {});
 
 }  // namespace tactus::cli

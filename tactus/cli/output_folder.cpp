@@ -55,10 +55,10 @@ bool is_link(const fs::path& path) {
 
 }  // namespace
 
-void add_output_options(CLI::App& verb, OutputOptions& options, const std::string& help) {
+void add_output_options(CLI::App& verb, OutputOptions& options, const std::string& command, const std::string& help) {
   CLI::Option* out = verb.add_option("--out", options.folder, help)->type_name("DIR");
   verb.add_flag("--overwrite", options.overwrite, "Replace what an earlier run left there")->needs(out);
-  verb.add_flag("--json", options.json, "Print one JSON document and nothing else");
+  add_json_option(verb, options.json, command);
 }
 
 void add_log_limit_option(CLI::App& verb, std::uint64_t& most_bytes) {

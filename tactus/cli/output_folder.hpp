@@ -1,6 +1,8 @@
 #pragma once
 
+#include <tactus/cli/json_option.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/experiment.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -19,13 +21,13 @@ namespace tactus::cli {
 struct OutputOptions {
   std::optional<std::string> folder;  ///< none: nothing is left
   bool overwrite = false;
-  bool json = false;
+  JsonOption json;
   /// What the verb writes beside report.html, results.json, figures and a log.
   std::vector<std::string> own_files;
 };
 
-/// Adds `--out`, `--overwrite` and `--json` to a verb. `help` is that of `--out`.
-void add_output_options(CLI::App& verb, OutputOptions& options, const std::string& help);
+/// Adds `--out`, `--overwrite` and `--json` to a verb whose command line is `command`. `help` is that of `--out`.
+void add_output_options(CLI::App& verb, OutputOptions& options, const std::string& command, const std::string& help);
 /// Adds `--log-limit` to a verb; 0 stands for none.
 void add_log_limit_option(CLI::App& verb, std::uint64_t& most_bytes);
 
@@ -38,7 +40,11 @@ class OutputFolder {
   static Result<OutputFolder> open(const OutputOptions& options);
 
   [[nodiscard]] bool wanted() const { return options_.folder.has_value(); }
-  [[nodiscard]] bool json() const { return options_.json; }
+  [[nodiscard]] bool json() const { return options_.json.wanted; }
+  /// The JSON of the outcome, with what made it in front: `JsonOption::document`.
+  [[nodiscard]] std::string document(const experiments::Outcome& outcome) const {
+    return options_.json.document(outcome.json, outcome.configuration);
+  }
   [[nodiscard]] std::filesystem::path path() const { return options_.folder.value_or(""); }
   [[nodiscard]] std::filesystem::path log_folder() const { return path() / "log"; }
 

@@ -1,9 +1,11 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/json_option.hpp>
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
+#include <tactus/configuration/toml_writer.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/plant_server.hpp>
@@ -30,7 +32,7 @@ struct PlantOptions {
   std::string name = "plant";
   double duration_s = 0.0;
   double silence_s = station::usual_silence.value;
-  bool json = false;
+  JsonOption json;
   runtime::ServoThreadParams servo;
 };
 
@@ -106,7 +108,7 @@ Check own_plant(const PlantOptions& options) {
   };
   const auto servo = runtime::ServoThread<decltype(step)>::start(keep, step);
   if (!servo) return servo.error();
-  LineWriter& lines = options.json ? errors : output;
+  LineWriter& lines = options.json.wanted ? errors : output;
   lines.say("Plant '" + options.name + "': tactus run " + report::printable(options.experiment.file) +
             " --realtime --plant " + options.name + "\n");
 
@@ -129,8 +131,9 @@ Check own_plant(const PlantOptions& options) {
   }
   (*servo)->stop();
   const runtime::ServoReport& report = (*servo)->finish();
-  Check told = output.finish(options.json ? json_of(options.name, server.status(), report)
-                                          : "\n" + text_of(options.name, server.status(), report));
+  Check told = output.finish(options.json.wanted ? options.json.document(json_of(options.name, server.status(), report),
+                                                                         configuration::to_toml(*params))
+                                                 : "\n" + text_of(options.name, server.status(), report));
   if (told || !server.status().cut) return told;
   return Error{.code = ErrorCode::failed,
                .parameter = {},
@@ -142,23 +145,18 @@ Check own_plant(const PlantOptions& options) {
 
 }  // namespace
 
-void add_plant(CLI::App& app, int& status) {
+void add_plant(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<PlantOptions>();
   CLI::App* verb = app.add_subcommand(
       "plant", "Own the simulated devices of an experiment, for a `tactus run --realtime --plant` in another process");
   add_experiment_options(*verb, options->experiment);
-  verb->add_option("--name", options->name, "Name that the other process asks for")
-      ->type_name("NAME")
-      ->capture_default_str();
-  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")
-      ->type_name("S")
-      ->capture_default_str();
+  verb->add_option("--name", options->name, "Name that the other process asks for")->type_name("NAME");
+  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")->type_name("S");
   verb->add_option("--silence-s", options->silence_s,
                    "The longest silence of the other process before the motors get no force, 0.001 to 10")
-      ->type_name("S")
-      ->capture_default_str();
+      ->type_name("S");
   add_servo_options(*verb, options->servo);
-  verb->add_flag("--json", options->json, "Print one JSON document; the lines go to standard error");
+  add_json_option(*verb, options->json, command, "Print one JSON document; the lines go to standard error");
   verb->callback([options, &app, &status] {
     if (const auto error = own_plant(*options)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

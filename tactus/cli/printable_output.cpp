@@ -15,7 +15,8 @@ std::string printable_lines(std::string_view text) {
   return shown;
 }
 
-PrintableOutput::PrintableOutput(std::ostream& stream) : stream_(stream), target_(stream.rdbuf(this)) {}
+PrintableOutput::PrintableOutput(std::ostream& stream, std::optional<Painter> painter)
+    : stream_(stream), target_(stream.rdbuf(this)), painter_(std::move(painter)) {}
 
 PrintableOutput::~PrintableOutput() {
   pass_on(waiting_.size());
@@ -45,9 +46,21 @@ bool PrintableOutput::take(std::string_view text) {
   return pass_on(waiting_.rfind('\n') + 1);  // nothing where there is no line feed
 }
 
+std::string PrintableOutput::painted(std::string_view lines) {
+  std::string all;
+  while (!lines.empty()) {
+    const std::size_t end = lines.find('\n');
+    if (end == std::string_view::npos) return all + std::string(lines);
+    all += painter_->paint(lines.substr(0, end)) + "\n";
+    lines.remove_prefix(end + 1);
+  }
+  return all;
+}
+
 bool PrintableOutput::pass_on(std::size_t size) {
   if (size == 0) return true;
-  const std::string shown = printable_lines(std::string_view(waiting_).substr(0, size));
+  std::string shown = printable_lines(std::string_view(waiting_).substr(0, size));
+  if (painter_) shown = painted(shown);
   waiting_.erase(0, size);
   return target_->sputn(shown.data(), static_cast<std::streamsize>(shown.size())) ==
          static_cast<std::streamsize>(shown.size());

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <tactus/cli/colour.hpp>
+
 #include <mutex>
+#include <optional>
 #include <ostream>
 #include <streambuf>
 #include <string>
@@ -17,7 +20,8 @@ std::string printable_lines(std::string_view text);
 /// Whole lines go on at once, the rest when the stream is flushed. Any thread.
 class PrintableOutput final : public std::streambuf {
  public:
-  explicit PrintableOutput(std::ostream& stream);
+  /// With a painter, what it makes of each line.
+  explicit PrintableOutput(std::ostream& stream, std::optional<Painter> painter = {});
   ~PrintableOutput() override;
   PrintableOutput(const PrintableOutput&) = delete;
   PrintableOutput& operator=(const PrintableOutput&) = delete;
@@ -31,10 +35,12 @@ class PrintableOutput final : public std::streambuf {
   /// Passes on the first `size` bytes of what waits.
   bool pass_on(std::size_t size);
   bool take(std::string_view text);
+  std::string painted(std::string_view lines);
 
   std::ostream& stream_;
   std::streambuf* target_;
   std::mutex mutex_;
+  std::optional<Painter> painter_;
   std::string waiting_;
 };
 

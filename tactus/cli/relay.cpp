@@ -1,6 +1,7 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/json_option.hpp>
 #include <tactus/cli/passages.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
@@ -40,7 +41,7 @@ struct RelayOptions {
   double mean_burst = 0.0;
   double duplicate_fraction = 0.0;
   double duration_s = 0.0;
-  bool json = false;
+  JsonOption json;
 };
 
 /// One way through the relay: each packet is lost, late or doubled as the seed draws.
@@ -129,7 +130,8 @@ void wait(const link::Socket& one, const link::Socket& other, std::int64_t longe
   ppoll(both.data(), both.size(), &longest, nullptr);
 }
 
-void print(const Way::Counters& to_slave, const Way::Counters& to_master, bool json) {
+void print(const Way::Counters& to_slave, const Way::Counters& to_master, const JsonOption& json,
+           const std::string& configuration) {
   const std::array<std::pair<const char*, const Way::Counters*>, 2> ways{
       {{"to_slave", &to_slave}, {"to_master", &to_master}}};
   nlohmann::ordered_json document;
@@ -145,7 +147,7 @@ void print(const Way::Counters& to_slave, const Way::Counters& to_master, bool j
     table.add_row({name, std::to_string(c->arrived), std::to_string(c->lost), std::to_string(c->doubled),
                    std::to_string(c->overflowed), std::to_string(c->passed)});
   }
-  std::cout << (json ? json_text(document) : table.to_text());
+  std::cout << (json.wanted ? json.document(json_text(document), configuration) : table.to_text());
 }
 
 Check run(const RelayOptions& options) {
@@ -176,13 +178,13 @@ Check run(const RelayOptions& options) {
     const std::int64_t next_ns = to_master.next_ns(to_slave.next_ns(now_ns + look_up_ns));
     wait(*master, *slave, std::max<std::int64_t>(0, next_ns - now_ns));
   }
-  print(to_slave.counters(), to_master.counters(), options.json);
+  print(to_slave.counters(), to_master.counters(), options.json, configuration::to_toml(*params));
   return flush_standard_output();
 }
 
 }  // namespace
 
-void add_relay(CLI::App& app, int& status) {
+void add_relay(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RelayOptions>();
   CLI::App* verb = app.add_subcommand("relay", "Stand between two sites and lose, delay, reorder and double packets");
   verb->add_option("EXPERIMENT", options->file, "Experiment file whose section [channel] says what to do")->required();
@@ -196,15 +198,11 @@ void add_relay(CLI::App& app, int& status) {
   address("--for-slave", options->for_slave, "Where the relay listens for it: the slave's --peer");
   verb->add_option("--mean-burst", options->mean_burst,
                    "Mean number of packets lost one after the other; up to 1 each is lost on its own")
-      ->check(CLI::Range(0.0, 10000.0))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, 10000.0));
   verb->add_option("--duplicate-fraction", options->duplicate_fraction, "Share of the packets that are sent twice")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")
-      ->type_name("S")
-      ->capture_default_str();
-  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+      ->check(CLI::Range(0.0, 1.0));
+  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")->type_name("S");
+  add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
     if (const auto error = run(*options)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

@@ -1,4 +1,5 @@
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/json_option.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
@@ -20,7 +21,7 @@ namespace {
 struct ReplayOptions {
   std::string log;
   bool check = false;
-  bool json = false;
+  JsonOption json;
 };
 
 /// With all digits: two numbers that differ look different.
@@ -50,7 +51,7 @@ std::string json_of(const runtime::Replay& replay) {
                                   {"taps", replay.taps},
                                   {"ticks", replay.ticks},
                                   {"equal", !replay.difference.has_value()},
-                                  {"version", replay.version}};
+                                  {"log_version", replay.version}};
   if (const auto& found = replay.difference) {
     document["difference"] = {{"topic", found->topic},   {"tap", found->tap},           {"tick", found->tick},
                               {"signal", found->signal}, {"recorded", found->recorded}, {"replayed", found->replayed}};
@@ -60,13 +61,13 @@ std::string json_of(const runtime::Replay& replay) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, int& status) {
+void add_replay(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* verb = app.add_subcommand("replay", "Step the sites of a logged run in real time again, on what they read");
   verb->add_option("LOG", options->log, "Log (.mcap) of `run --realtime --out` or `run --site --out`, or its folder")
       ->required();
   verb->add_flag("--check", options->check, "End with status 1 where anything differs from the log");
-  verb->add_flag("--json", options->json, "Print one JSON document and nothing else");
+  add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
     const auto replayed = runtime::replay(options->log);
     if (!replayed) {
@@ -74,7 +75,7 @@ void add_replay(CLI::App& app, int& status) {
       status = exit_status(replayed.error());
       return;
     }
-    std::cout << (options->json ? json_of(*replayed) : text_of(*replayed));
+    std::cout << (options->json.wanted ? options->json.document(json_of(*replayed)) : text_of(*replayed));
     if (options->check && replayed->difference) status = 1;
   });
 }

@@ -26,7 +26,6 @@ using ros2::HandSession;
 std::string json_of(const experiments::Request& request, const Ros2Options& options, const HandSession& session,
                     const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo) {
   return json_text({{"experiment", request.name},
-                    {"command", request.command},
                     {"namespace", options.name_space},
                     {"time_s", session.time_s()},
                     {"contacts", session.contacts()},
@@ -68,7 +67,9 @@ experiments::Outcome outcome_of(const experiments::Request& request, const Ros2O
   return {.text = table.to_text() + "\n" + runtime::timing_text(servo),
           .json = json_of(request, options, session, counts, servo),
           .html = page.to_html(),
-          .figures = {figure}};
+          .figures = {figure},
+          .traces = {},
+          .configuration = configuration};
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ Result<experiments::Request> make_request(const RunOptions& options, const std::
   for (const std::string& text : options.vary) {
     auto variation = experiments::parse_variation(text);
     if (!variation) return variation.error();
+    if (auto error = refuse_set_and_varied(options.experiment.set, variation->key)) return *std::move(error);
     variations.push_back(*std::move(variation));
   }
   return experiments::Request{.document = *std::move(document),
@@ -179,7 +180,14 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
     return run_supervised(options.supervised, options.onlookers, options.servo, *request, *output, options.log_limit);
   }
   const auto experiment = experiments::choose_experiment(request->document);
-  if (!experiment) return experiment.error();
+  if (!experiment) {
+    Error error = experiment.error();
+    if (const auto kind = request->document.text_at("task.kind"); kind && *kind == "stability-map") {
+      error.message = "a stability map is not run by `run`: use `tactus stability map " + options.experiment.file +
+                      " --vary KEY=FROM:TO:COUNT --vary ...`";
+    }
+    return error;
+  }
 
   if (options.real_time) return run_in_real_time(options, *request, *output, status);
   if (options.onlookers.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
@@ -206,7 +214,7 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations: key=a,b,c")
       ->type_name("KEY=A,B,C")
       ->allow_extra_args(false);
-  add_output_options(*verb, options->output, "Folder for report.html, results.json, the figures and the log");
+  add_output_options(*verb, options->output, command, "Folder for report.html, results.json, the figures and the log");
   add_log_limit_option(*verb, options->log_limit);
   verb->add_flag("--realtime", options->real_time,
                  "Run it at the real clock, on a servo thread, with simulated devices, those of a plant or "
@@ -217,7 +225,6 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("--plant-silence-s", options->plant_silence_s,
                    "The longest silence of that plant before both sites let go, 0.001 to 10")
       ->type_name("S")
-      ->capture_default_str()
       ->needs(plant);
   add_servo_options(*verb, options->servo);
   add_supervised_options(*verb, options->supervised);

@@ -1,5 +1,6 @@
 #include <tactus/cli/run_log.hpp>
 #include <tactus/core/version.hpp>
+#include <tactus/experiments/presentation.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/telemetry/log_writer.hpp>
 
@@ -17,6 +18,8 @@ namespace {
 
 /// A sweep may have many thousands of runs; a log of all would be larger than anyone wants.
 constexpr std::size_t most_runs = 64;
+
+std::string name_of_run(std::size_t i) { return "run_" + std::to_string(i + 1); }
 
 }  // namespace
 
@@ -42,11 +45,19 @@ Check write_run_log(const std::filesystem::path& folder, const experiments::Requ
   const std::size_t runs = outcome.traces.size();
   const std::size_t logged = std::min(runs, most_runs);
   const bool several = runs > 1;
+  const auto place_of = [&](std::size_t one) { return several ? one * (runs - 1) / (logged - 1) : 0; };
+  std::map<std::string, std::string> labels;
   for (std::size_t one = 0; one < logged; ++one) {
-    const std::size_t i = several ? one * (runs - 1) / (logged - 1) : 0;
-    const experiments::Trace& trace = outcome.traces[i];
-    const std::string name = "run_" + std::to_string(i + 1);
-    if (!trace.settings.empty()) log->add_metadata(name, {trace.settings.begin(), trace.settings.end()});
+    const experiments::Settings& settings = outcome.traces[place_of(one)].settings;
+    if (settings.empty()) continue;
+    const std::string name = name_of_run(place_of(one));
+    log->add_metadata(name, {settings.begin(), settings.end()});
+    labels[name] = experiments::settings_caption(settings);
+  }
+  if (!labels.empty()) log->add_metadata(telemetry::run_labels, labels);
+  for (std::size_t one = 0; one < logged; ++one) {
+    const experiments::Trace& trace = outcome.traces[place_of(one)];
+    const std::string name = name_of_run(place_of(one));
     const auto channel = log->add_channel({.topic = several ? "/" + name + "/teleoperator" : "/teleoperator",
                                            .type_name = "tactus_msgs/msg/TeleoperatorRecord",
                                            .columns = telemetry::columns_of<Record>()});

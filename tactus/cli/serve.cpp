@@ -145,20 +145,16 @@ void add_serve(CLI::App& app, const std::string& command, int& status) {
   verb->add_option("EXPERIMENT", options->experiment,
                    "Experiment file of the kind tapping; its own, where none is named");
   add_set_option(*verb, options->set);
-  verb->add_option("--port", options->server.port, "Port to listen on; 0 takes any that is free")
-      ->capture_default_str();
-  verb->add_option("--listen", options->server.address, "Address of this machine to listen on")
-      ->type_name("ADDRESS")
-      ->capture_default_str();
+  verb->add_option("--port", options->server.port, "Port to listen on; 0 takes any that is free");
+  verb->add_option("--listen", options->server.address, "Address of this machine to listen on")->type_name("ADDRESS");
   verb->add_flag("--allow-tuning", options->allow_tuning, "Let clients change parameters, within their bounds");
   verb->add_option("--page", options->page, "Folder of the built page")->type_name("DIR");
-  add_output_options(*verb, options->output,
+  add_output_options(*verb, options->output, command,
                      "Folder for report.html, results.json, the figure and a log of every tick");
   verb->remove_option(verb->get_option("--json"));  // what is printed is where to look, not results
   add_log_limit_option(*verb, options->log_limit);
   verb->add_option("--duration", options->duration_s, "Seconds to serve; 0 is until interrupted")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str();
+      ->check(CLI::Range(0.0, 1e6));
   verb->callback([options, &app, &command, &status] {
     if (const auto error = serve(*options, command)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

@@ -218,7 +218,9 @@ experiments::Outcome serve_outcome(const ServeSession& session, const SessionHis
   return {.text = text + about.to_text(),
           .json = json_of(session, history),
           .html = page.to_html(),
-          .figures = std::move(figures)};
+          .figures = std::move(figures),
+          .traces = {},
+          .configuration = std::string(configuration)};
 }
 
 }  // namespace tactus::cli

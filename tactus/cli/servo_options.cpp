@@ -6,15 +6,11 @@ namespace tactus::cli {
 
 void add_servo_options(CLI::App& verb, runtime::ServoThreadParams& params) {
   verb.add_option("--priority", params.priority, "Priority of the servo thread under SCHED_FIFO, 1 to 99")
-      ->type_name("N")
-      ->capture_default_str();
-  verb.add_option("--core", params.core, "The one core of the servo thread; -1 leaves the choice open")
-      ->type_name("N")
-      ->capture_default_str();
+      ->type_name("N");
+  verb.add_option("--core", params.core, "The one core of the servo thread; -1 leaves the choice open")->type_name("N");
   verb.add_option("--spin-s", params.spin_s,
                   "The last part of each wait, spent asking the clock instead of asleep; at most half a tick")
-      ->type_name("S")
-      ->capture_default_str();
+      ->type_name("S");
 }
 
 }  // namespace tactus::cli

@@ -1,9 +1,9 @@
 #include <tactus/cli/experiment_options.hpp>
-#include <tactus/cli/output_folder.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/stability.hpp>
-#include <tactus/cli/standard_output.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/configuration/toml_writer.hpp>
 #include <tactus/stability/map.hpp>
 #include <tactus/stability/map_hdf5.hpp>
 #include <tactus/stability/map_report.hpp>
@@ -51,6 +51,7 @@ Result<stability::MapRequest> make_request(const MapOptions& options, const conf
   for (const std::string& text : options.vary) {
     auto axis = stability::parse_axis(text);
     if (!axis) return axis.error();
+    if (auto error = refuse_set_and_varied(options.set, axis->key)) return *std::move(error);
     request.axes.push_back(*std::move(axis));
   }
   request.precision =
@@ -68,21 +69,28 @@ Result<stability::MapRequest> make_request(const MapOptions& options, const conf
   return request;
 }
 
-/// Prints, and writes what `--out` names.
-Check present(OutputFolder& output, const stability::MapResult& map, const stability::MapReport& report) {
-  std::cout << (output.json() ? report.json : report.text);
-  if (auto error = flush_standard_output()) return error;
-  if (!output.wanted()) return {};
-  if (auto error = output.write("map.csv", stability::to_csv(map))) return error;
-  if (auto error = stability::write_hdf5(output.path() / "map.h5", map)) return error;
-  if (report.svg) {
-    if (auto error = output.write("map.svg", *report.svg)) return error;
+/// Writes what `--out` names, and prints.
+Check present(OutputFolder& output, const stability::MapResult& map, stability::MapReport report,
+              std::string configuration) {
+  std::vector<NamedText> files;
+  if (output.wanted()) {
+    files.push_back({"map.csv", stability::to_csv(map)});
+    if (report.svg) files.push_back({"map.svg", *std::move(report.svg)});
+    if (auto error = output.begin()) return error;
+    if (auto error = stability::write_hdf5(output.path() / "map.h5", map)) return error;
   }
-  if (auto error = output.write("results.json", report.json)) return error;
-  if (auto error = output.write("report.html", report.html)) return error;
-  stability::remove_partial(output.path());
-  output.announce();
-  return {};
+  if (auto error = write_outcome(output,
+                                 {.text = std::move(report.text),
+                                  .json = std::move(report.json),
+                                  .html = std::move(report.html),
+                                  .figures = {},
+                                  .traces = {},
+                                  .configuration = std::move(configuration)},
+                                 files)) {
+    return error;
+  }
+  if (output.wanted()) stability::remove_partial(output.path());
+  return std::nullopt;
 }
 
 Check run(const MapOptions& options, const std::string& command) {
@@ -102,7 +110,8 @@ Check run(const MapOptions& options, const std::string& command) {
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const experiments::Request about{
       .document = *std::move(document), .variations = {}, .name = experiment_name(options.file), .command = command};
-  return present(*output, *map, stability::report_map(*map, request->base, elapsed_s, about));
+  return present(*output, *map, stability::report_map(*map, request->base, elapsed_s, about),
+                 configuration::to_toml(request->base));
 }
 
 }  // namespace
@@ -120,7 +129,7 @@ void add_stability_map(CLI::App& stability, const std::string& name, const std::
       ->check(CLI::IsMember({"double", "float"}));
   options->output.own_files = {"map.csv", "map.h5", "map.svg"};
   add_output_options(
-      *verb, options->output,
+      *verb, options->output, command,
       "Folder for report.html, map.csv, map.h5, map.svg and results.json; a killed run goes on from there");
   verb->callback([options, name, &command, &status] {
     if (const auto error = run(*options, command)) {

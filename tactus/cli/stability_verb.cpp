@@ -63,7 +63,7 @@ void add_stability_verb(CLI::App& stability, const std::string& verb, const std:
       ->add_option("--uncertainty", options->report.uncertainty,
                    "Share by which the controller's model may be wrong, 0 to 0.9")
       ->check(CLI::Range(0.0, 0.9));
-  add_output_options(*added, options->output, "Folder for report.html, results.json and the figures");
+  add_output_options(*added, options->output, command, "Folder for report.html, results.json and the figures");
   added->callback([options, report, name, &command, &status] {
     if (const auto error = run(*options, report, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

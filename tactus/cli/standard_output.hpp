@@ -2,17 +2,13 @@
 
 #include <tactus/core/result.hpp>
 
-#include <iostream>
-
 namespace tactus::cli {
 
-/// An error unless all that was printed so far has reached its place.
-inline Check flush_standard_output() {
-  if (std::cout.flush()) return std::nullopt;
-  return Error{.code = ErrorCode::unwritable,
-               .parameter = {},
-               .message = "the output could not be written: give it a place with room",
-               .place = "standard output"};
-}
+/// Whether the other end of a pipe was closed, as `head` does once it has what it wants.
+bool reader_is_gone(int descriptor);
+
+/// An error unless all that was printed so far has reached its place. A reader that went away has had what it wanted:
+/// that is no error.
+Check flush_standard_output();
 
 }  // namespace tactus::cli

@@ -359,7 +359,9 @@ experiments::Outcome supervised_outcome(const SupervisedRun& run, const experime
   return {.text = table.to_text() + "\n" + states.to_text() + "\n" + runtime::timing_text(run.servo),
           .json = json_of(run),
           .html = page.to_html(),
-          .figures = figures};
+          .figures = figures,
+          .traces = {},
+          .configuration = std::string(configuration)};
 }
 
 }  // namespace tactus::cli

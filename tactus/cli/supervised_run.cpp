@@ -149,7 +149,7 @@ Check leave_outcome(const experiments::Outcome& outcome, OutputFolder& folder, C
     where = folder.report_line();
     if (!log_error) where += folder.log_line(removed);
   }
-  const Check unread = output.finish(folder.json() ? outcome.json : outcome.text + where);
+  const Check unread = output.finish(folder.json() ? folder.document(outcome) : outcome.text + where);
   if (folder.json()) errors.say(where);
   if (!folder.wanted()) return unread;
   if (unread) errors.say("tactus: " + describe(*unread) + "; the report has all of it\n");
@@ -250,7 +250,7 @@ void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
   add("--key", options.key, "The key that both sites share, made by `tactus key`", "FILE");
   verb.add_flag("--unencrypted", options.unencrypted, "Plain text, on this host's loopback only")->group(group);
   verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as the slave is heard")->group(group);
-  add("--duration-s", options.duration_s, "How long to run; 0 is until interrupted", "S")->capture_default_str();
+  add("--duration-s", options.duration_s, "How long to run; 0 is until interrupted", "S");
 }
 
 Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& looking_on,

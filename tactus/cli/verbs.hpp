@@ -14,18 +14,20 @@ namespace tactus::cli {
 /// `command` is the whole command line as a person would type it again, for the report.
 void add_run(CLI::App& app, const std::string& command, int& status);
 void add_advise(CLI::App& app, const std::string& command, int& status);
-void add_device(CLI::App& app, int& status);
+/// Prints what completes all verbs that `app` has when it is chosen.
+void add_completion(CLI::App& app);
+void add_device(CLI::App& app, const std::string& command, int& status);
 void add_diagnose(CLI::App& app, const std::string& command, int& status);
 void add_doctor(CLI::App& app, const std::string& command, int& status);
 void add_emulate(CLI::App& app, int& status);
 void add_estimate(CLI::App& app, const std::string& command, int& status);
-void add_export(CLI::App& app, int& status);
+void add_export(CLI::App& app, const std::string& command, int& status);
 void add_faults(CLI::App& app, const std::string& command, int& status);
 void add_identify(CLI::App& app, const std::string& command, int& status);
 void add_key(CLI::App& app, int& status);
-void add_plant(CLI::App& app, int& status);
-void add_relay(CLI::App& app, int& status);
-void add_replay(CLI::App& app, int& status);
+void add_plant(CLI::App& app, const std::string& command, int& status);
+void add_relay(CLI::App& app, const std::string& command, int& status);
+void add_replay(CLI::App& app, const std::string& command, int& status);
 void add_stability(CLI::App& app, const std::string& command, int& status);
 void add_schema(CLI::App& app, int& status);
 void add_serve(CLI::App& app, const std::string& command, int& status);

@@ -34,7 +34,7 @@ std::size_t slips(std::string_view a, std::string_view b) {
 }
 
 std::size_t most_slips(std::string_view word) {
-  return word.size() < 2 ? 0 : std::max<std::size_t>(1, word.size() / 3);
+  return word.size() < 3 ? 0 : std::max<std::size_t>(1, word.size() / 3);
 }
 
 std::optional<std::size_t> slips_up_to(std::size_t most, std::string_view a, std::string_view b) {

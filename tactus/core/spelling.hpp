@@ -12,7 +12,8 @@ namespace tactus {
 /// neighbour. The case of a letter does not count. (Optimal string alignment distance.)
 std::size_t slips(std::string_view a, std::string_view b);
 
-/// How many slips make a misspelt `word` another word: more than one in three letters.
+/// How many slips make a misspelt `word` another word: more than one in three letters, and any in a word of two (`no`
+/// does not mean `on`).
 std::size_t most_slips(std::string_view word);
 
 /// The slips between two words, or nothing when there are more than `most`. Words of very different length are not

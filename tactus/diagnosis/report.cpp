@@ -147,7 +147,8 @@ report::HeatMap spectrogram_of(const Signals& signals, const Diagnosis& diagnosi
   for (std::size_t shade = 0; shade < shades; ++shade) {
     const std::string from = std::to_string(shades - 1 - shade);
     map.classes.push_back({shade == 0 ? "more than " + from : from + " to " + std::to_string(shades - shade),
-                           colour_of(static_cast<double>(shade) / (shades - 1.0))});
+                           colour_of(static_cast<double>(shade) / (shades - 1.0)),
+                           colour_of(1.0 - static_cast<double>(shade) / (shades - 1.0))});  // strong is bright there
   }
   const double lowest_Hz = found.frequency_Hz[1], highest_Hz = found.frequency_Hz.back();
   const double ratio = std::pow(highest_Hz / lowest_Hz, 1.0 / static_cast<double>(rows - 1));

@@ -8,6 +8,7 @@
 #include <tactus/telemetry/log_reader.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -353,6 +354,13 @@ Result<Signals> read_signals(const SignalRoles& roles) {
   std::error_code ignored;
   const bool log =
       std::filesystem::is_directory(roles.file, ignored) || lower(roles.file.extension().string()) == ".mcap";
+  constexpr std::array<std::string_view, 4> tables{".csv", ".tsv", ".txt", ".mat"};
+  if (!log && std::filesystem::is_regular_file(roles.file, ignored) &&
+      std::find(tables.begin(), tables.end(), lower(roles.file.extension().string())) == tables.end()) {
+    return refuse(ErrorCode::wrong_type, roles,
+                  "the file is of no format that is read: its name must end in .csv, .tsv, .txt (a table), .mat "
+                  "(MATLAB) or .mcap (a log, or a ROS 2 bag)");
+  }
   auto found = log ? read_log(roles) : read_columns(roles);
   if (!found) return found.error();
   Signals signals = std::move(found->signals);

@@ -8,6 +8,8 @@ namespace tactus::experiments {
 struct GainLimit {
   double gain = 0.0;           ///< 0 when not even the lowest gain of the search settled
   bool beyond_search = false;  ///< the highest gain of the search settled too: the limit is at least `gain`
+  /// Whether the search cut the limit off: it lies above its highest gain, or below its lowest.
+  [[nodiscard]] bool censored() const { return beyond_search || gain == 0.0; }
 };
 
 /// Ratio of the bracket's ends at which a search ends that is not told another.

@@ -102,11 +102,10 @@ std::string metrics_json(const std::vector<std::pair<std::string, double>>& metr
 void add_provenance(report::Page& page, const Request& request, std::string_view configuration) {
   page.heading("How to repeat this");
   page.code(request.command, "Command");
-  page.paragraph(request.variations.empty()
-                     ? "The whole configuration of the run, defaults included:"
-                     : "The whole configuration of the first row, defaults included; the other rows differ from it in "
-                       "the varied keys alone:");
-  page.code(configuration, "Configuration");
+  page.folded(configuration, request.variations.empty()
+                                 ? "The whole configuration of the run, defaults included"
+                                 : "The whole configuration of the first row, defaults included; the other rows differ "
+                                   "from it in the varied keys alone");
   page.footer("tactus " + std::string(version()), request.command);
 }
 

@@ -1,5 +1,6 @@
 #include <tactus/identification/nonlinear_fit.hpp>
 #include <tactus/identification/refusal.hpp>
+#include <tactus/signal/decompositions.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -132,7 +133,7 @@ Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem) {
                  "the data do not tell it from the others: excite the device more richly",
                  {}};
   }
-  const MatrixXd inverse = (jacobian.transpose() * jacobian).inverse();
+  const MatrixXd inverse = signal::inverse(jacobian.transpose() * jacobian);
   const Index priors = Functor::priors(problem);
   MatrixXd open = scatter(jacobian.topRows(rows), residuals.head(rows));
   open += jacobian.bottomRows(priors).transpose() * jacobian.bottomRows(priors);

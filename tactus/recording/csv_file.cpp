@@ -244,6 +244,12 @@ Result<std::size_t> CsvFile::find(std::string_view variable) const {
   for (std::size_t i = 0; !named_in_full && i < entries_.size(); ++i) {
     if (entries_[i].name == variable) found.push_back(i);
   }
+  // With its unit, as a signal of ours is called: `force_N` of `force [N]`.
+  if (const NameAndUnit asked = split_unit(variable); found.empty() && !asked.unit.empty()) {
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      if (entries_[i].name == asked.name && entries_[i].unit == asked.unit) found.push_back(i);
+    }
+  }
   if (found.empty() || variable.empty()) return no_such_variable(variable, file_, entries_);
   if (found.size() > 1) {
     return Error{.code = ErrorCode::inconsistent,

@@ -174,6 +174,13 @@ Result<Column> MatFile::read(std::string_view variable, std::int64_t column) con
     if (leaf.entry.name == path) found = &leaf;
     if (leaf.entry.name.starts_with(path + ".") || leaf.entry.name.starts_with(path + "(")) below.push_back(leaf.entry);
   }
+  // Without its unit: `force` of `force_N`.
+  std::vector<const Leaf*> without_unit;
+  for (const Leaf& leaf : content_->leaves) {
+    const NameAndUnit told = split_unit(leaf.entry.name);
+    if (!told.unit.empty() && told.name == path) without_unit.push_back(&leaf);
+  }
+  if (found == nullptr && below.empty() && without_unit.size() == 1) found = without_unit.front();
   if (found == nullptr && !below.empty()) {
     return Error{.code = ErrorCode::wrong_type,
                  .parameter = {},
@@ -277,10 +284,12 @@ std::optional<std::string> MatFile::time_beside(std::string_view variable, std::
   while (!scope.empty()) {
     const std::size_t dot = scope.rfind('.');
     scope.resize(dot == std::string::npos ? 0 : dot);
-    const std::string candidate = scope.empty() ? "time" : scope + ".time";
-    for (const Entry& entry : entries_) {
-      if (entry.name == candidate && entry.readable && static_cast<std::size_t>(entry.rows) == samples)
-        return candidate;
+    for (const char* name : {"time", "time_s"}) {
+      const std::string candidate = (scope.empty() ? "" : scope + ".") + name;
+      for (const Entry& entry : entries_) {
+        if (entry.name == candidate && entry.readable && static_cast<std::size_t>(entry.rows) == samples)
+          return candidate;
+      }
     }
   }
   return std::nullopt;

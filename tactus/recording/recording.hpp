@@ -28,7 +28,8 @@ struct Source {
   std::filesystem::path file = {};
 
   /// Table: the column as its header names it, with or without the unit (`force`, `force_N`, `force [N]`). MATLAB file:
-  /// a dotted path with 1-based indices of struct arrays (`scope.signals(2).values`); a 1 x 1 struct needs no index.
+  /// a dotted path with 1-based indices of struct arrays (`scope.signals(2).values`); a 1 x 1 struct needs no index,
+  /// and a unit at the end of a name may be left out (`log.force` for `log.force_N`).
   std::string variable = {};
 
   /// MATLAB file: 1-based column of the variable. A row vector counts as one column. Table: 1, for the name is enough.
@@ -37,7 +38,7 @@ struct Source {
   /// The time of each sample, named like `variable` (its first column). In a table in the unit of its header (s, ms, us
   /// or ns; s if none), in a MATLAB file in seconds. Empty: the column `time` or `t`, or the variable `time` that
   /// stands nearest (for `scope.signals(2).values`: `scope.signals(2).time`, `scope.time`, `time`) and has as many
-  /// samples; no time if there is none.
+  /// samples, `time_s` where there is no `time`; no time if there is none.
   std::string time = {};
 
   /// What the sample time is known to be, in seconds, greater than 0. Where the file has times too, they must agree

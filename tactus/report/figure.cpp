@@ -230,10 +230,14 @@ std::string coloured(const std::string& property, const char* plain, const std::
 
 }  // namespace
 
+std::string scheme_style() {
+  return ":root{color-scheme:light dark;" + custom_properties(light_palette) + "}\n" +
+         "@media screen and (prefers-color-scheme:dark){:root{" + custom_properties(dark_palette) + "}}\n";
+}
+
 std::string figure_style() {
   const Palette& light = light_palette;
-  std::string css = ":root{color-scheme:light dark;" + custom_properties(light) + "}\n" +
-                    "@media screen and (prefers-color-scheme:dark){:root{" + custom_properties(dark_palette) + "}}\n";
+  std::string css = scheme_style();
   css += ".tactus-figure{font-family:system-ui,\"Helvetica Neue\",Arial,\"DejaVu Sans\",sans-serif;" +
          coloured("background", light.surface, "surface") + "}\n";
   css += ".tactus-figure text{font-size:" + pixels(font) + "px;" + coloured("fill", light.text, "text") + "}\n";

@@ -100,6 +100,8 @@ Drawing draw(const Figure& figure);
 /// The styles of figures: CSS custom properties `--tactus-…` for a light and a dark scheme (a printer gets the light
 /// one), and the classes that use them.
 std::string figure_style();
+/// Of that, the colours of the light and the dark scheme as custom properties.
+std::string scheme_style();
 
 /// The picture as a file of its own: as `draw`, with its styles, the size and the XML namespace.
 std::string to_svg(const Figure& figure);

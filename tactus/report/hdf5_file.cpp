@@ -89,6 +89,12 @@ void Hdf5File::add_numbers(const std::string& path, std::span<const std::size_t>
   for (const auto& [name, content] : attributes) sound_ = sound_ && set.add_attribute(name, content);
 }
 
+void Hdf5File::describe_group(const std::string& path, const Attributes& attributes) {
+  const Handle group(H5Gopen2(file_->get(), path.c_str(), H5P_DEFAULT), H5Gclose);
+  sound_ = sound_ && group.ok();
+  for (const auto& [name, content] : attributes) sound_ = sound_ && group.add_attribute(name, content);
+}
+
 void Hdf5File::add_text(const std::string& path, const std::string& content) {
   const Handle type = Handle::text_type(content), space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle set = file_->add_set(path, type, space);

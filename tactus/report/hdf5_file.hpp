@@ -28,6 +28,8 @@ class Hdf5File {
   /// Doubles as an array of `shape`, the last axis the fastest; as many as the shape asks for.
   void add_numbers(const std::string& path, std::span<const std::size_t> shape, std::span<const double> numbers,
                    const Attributes& attributes);
+  /// Attributes of a group that is there.
+  void describe_group(const std::string& path, const Attributes& attributes);
   void add_text(const std::string& path, const std::string& content);
 
   /// Errors: `unwritable`, with path, reason and remedy in the message; `failed` where something could not be added,

@@ -1,4 +1,5 @@
 #include <tactus/report/heat_map.hpp>
+#include <tactus/report/palette.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/report/ticks.hpp>
 
@@ -71,6 +72,23 @@ std::string text(double x, double y, const char* anchor, const std::string& word
          "</text>\n";
 }
 
+/// What cells of these two colours are called. Pictures on one page may share it.
+std::string class_of(const HeatMap::Class& of) { return "cells-" + of.colour.substr(1) + "-" + of.dark.substr(1); }
+
+std::string styles_of(const HeatMap& map) {
+  std::string light, dark;
+  for (const HeatMap::Class& of : map.classes) {
+    light += "." + class_of(of) + "{fill:" + of.colour + "}\n";
+    dark += "." + class_of(of) + "{fill:" + of.dark + "}\n";
+  }
+  return "<style>\n" + light + "@media screen and (prefers-color-scheme:dark){\n" + dark + "}\n</style>\n";
+}
+
+/// A colour of the page's scheme as a style, `light` where a picture stands alone without one.
+std::string in_scheme(const char* property, const char* name, const char* light) {
+  return std::string(" style=\"") + property + ":var(--tactus-" + name + "," + light + ")\"";
+}
+
 /// A rectangle of cells of one class that has not ended yet: columns from `from` up to `to`, rows from `row`.
 struct Block {
   std::size_t from, to, row;
@@ -114,15 +132,15 @@ std::string cells_of(const HeatMap& map, const HeatMap::Panel& panel, std::size_
     open = std::move(now);
   }
   if (path.empty()) return path;
-  return "<path fill=\"" + map.classes[which].colour + "\" shape-rendering=\"crispEdges\" d=\"" + path + "\"/>\n";
+  return "<path class=\"" + class_of(map.classes[which]) + "\" shape-rendering=\"crispEdges\" d=\"" + path + "\"/>\n";
 }
 
 std::string stroke(const HeatMap::Line& line, const std::string& path) {
-  // A white edge keeps the line apart from dark cells.
-  const std::string data = "d=\"" + path + "\"/>\n";
-  return "<path fill=\"none\" stroke=\"#fff\" stroke-width=\"4.5\" stroke-opacity=\"0.7\" " + data +
-         "<path fill=\"none\" stroke=\"#111\" stroke-width=\"2.2\"" +
-         (line.dashed ? " stroke-dasharray=\"7 3\" " : " ") + data;
+  // An edge keeps the line apart from cells of its own shade.
+  const std::string data = " d=\"" + path + "\"/>\n";
+  return "<path fill=\"none\" stroke-width=\"4.5\" stroke-opacity=\"0.7\"" +
+         in_scheme("stroke", "surface", light_palette.surface) + data + "<path fill=\"none\" stroke-width=\"2.2\"" +
+         (line.dashed ? " stroke-dasharray=\"7 3\"" : "") + in_scheme("stroke", "text", light_palette.text) + data;
 }
 
 std::string line_of(const HeatMap& map, const HeatMap::Line& line, const Scale& x, const Scale& y, Corner corner) {
@@ -160,7 +178,7 @@ Legend legend_of(const HeatMap& map) {
     };
     if (std::none_of(map.panels.begin(), map.panels.end(), shows)) continue;
     const HeatMap::Class& of = map.classes[kind];
-    svg += "<rect x=\"" + px(at) + "\" y=\"10\" width=\"12\" height=\"12\" fill=\"" + of.colour + "\"/>\n" +
+    svg += "<rect x=\"" + px(at) + "\" y=\"10\" width=\"12\" height=\"12\" class=\"" + class_of(of) + "\"/>\n" +
            text(at + 17.0, 20.0, "start", of.name);
     at += 40.0 + 6.5 * static_cast<double>(display_width(of.name));
   }
@@ -178,18 +196,19 @@ Legend legend_of(const HeatMap& map) {
 std::string frame_of(const HeatMap& map, const Scale& x, const Scale& y, Corner corner, bool first_of_row) {
   const Ticks x_ticks = x.ticks(), y_ticks = y.ticks();
   const double low = corner.y + panel_height;
+  const std::string edge = in_scheme("stroke", "frame", light_palette.frame);
   std::string svg = "<rect x=\"" + px(corner.x) + "\" y=\"" + px(corner.y) + "\" width=\"" + px(panel_width) +
-                    "\" height=\"" + px(panel_height) + "\" fill=\"none\" stroke=\"#8a929b\"/>\n";
+                    "\" height=\"" + px(panel_height) + "\" fill=\"none\"" + edge + "/>\n";
   for (std::size_t t = 0; t < x_ticks.major.size(); ++t) {
     const double place = corner.x + panel_width * x.share(x_ticks.major[t]);
-    svg += "<path stroke=\"#8a929b\" d=\"M" + px(place) + " " + px(low) + "v4\"/>\n" +
+    svg += "<path" + edge + " d=\"M" + px(place) + " " + px(low) + "v4\"/>\n" +
            text(place, low + 16.0, "middle", x_ticks.labels[t]);
   }
   svg += text(corner.x + 0.5 * panel_width, low + 34.0, "middle", named(map.x, x_ticks));
   if (!first_of_row) return svg;
   for (std::size_t t = 0; t < y_ticks.major.size(); ++t) {
     const double place = corner.y + panel_height * (1.0 - y.share(y_ticks.major[t]));
-    svg += "<path stroke=\"#8a929b\" d=\"M" + px(corner.x) + " " + px(place) + "h-4\"/>\n" +
+    svg += "<path" + edge + " d=\"M" + px(corner.x) + " " + px(place) + "h-4\"/>\n" +
            text(corner.x - 7.0, place + 4.0, "end", y_ticks.labels[t]);
   }
   const double middle = corner.y + 0.5 * panel_height;
@@ -209,8 +228,10 @@ Drawing draw(const HeatMap& map) {
   const double height = top + static_cast<double>(rows) * row_height - space_of_rows;
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) + "\" height=\"" + px(height) +
                     "\" viewBox=\"0 0 " + px(width) + " " + px(height) +
-                    "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#16191d\" role=\"img\">\n<title>" +
-                    escape(map.title) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n" + legend.svg;
+                    "\" font-family=\"sans-serif\" font-size=\"12\" role=\"img\"" +
+                    in_scheme("fill", "text", light_palette.text) + ">\n<title>" + escape(map.title) + "</title>\n" +
+                    styles_of(map) + "<rect width=\"100%\" height=\"100%\"" +
+                    in_scheme("fill", "surface", light_palette.surface) + "/>\n" + legend.svg;
   for (std::size_t i = 0; i < map.panels.size(); ++i) {
     const std::size_t row = i / columns;
     const Corner corner{left + static_cast<double>(i % columns) * (panel_width + gap),
@@ -227,6 +248,9 @@ Drawing draw(const HeatMap& map) {
   return {.svg = svg + "</svg>\n", .width_px = width, .height_px = height};
 }
 
-std::string to_svg(const HeatMap& map) { return draw(map).svg; }
+std::string to_svg(const HeatMap& map) {
+  std::string svg = draw(map).svg;
+  return svg.insert(svg.find("<style>\n") + std::string_view("<style>\n").size(), scheme_style());
+}
 
 }  // namespace tactus::report

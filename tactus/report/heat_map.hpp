@@ -20,7 +20,8 @@ struct HeatMap {
   };
   struct Class {
     std::string name;
-    std::string colour;  ///< as `#rrggbb`
+    std::string colour;  ///< as `#rrggbb`, on a light page
+    std::string dark;    ///< on a dark one
   };
   struct Panel {
     std::string title;
@@ -39,11 +40,11 @@ struct HeatMap {
   std::vector<Line> lines;
 };
 
-/// The picture, with its own colours on white. Neighbouring cells of one class are drawn as one rectangle, so the size
-/// follows the pattern and not the number of cells. A line beyond the y axis runs along its edge. Equal maps give equal
-/// bytes.
+/// The picture, in the light or dark scheme of the reader; its page has `figure_style()`. Neighbouring cells of one
+/// class are drawn as one rectangle, so the size follows the pattern and not the number of cells. A line beyond the y
+/// axis runs along its edge. Equal maps give equal bytes.
 Drawing draw(const HeatMap& map);
-/// The same as an SVG file.
+/// The same as an SVG file, with the styles that it needs.
 std::string to_svg(const HeatMap& map);
 
 }  // namespace tactus::report

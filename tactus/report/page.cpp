@@ -28,6 +28,12 @@ figure{margin:1.75rem 0}
 figcaption{max-width:44rem;margin-top:.6rem;font-size:.92rem;color:var(--tactus-muted)}
 figcaption strong{color:var(--tactus-text)}
 .scroll{overflow-x:auto}
+.scroll:not(.picture){background:linear-gradient(to right,var(--tactus-surface) 40%,transparent) 0/3rem 100% no-repeat local,
+linear-gradient(to left,var(--tactus-surface) 40%,transparent) 100%/3rem 100% no-repeat local,
+linear-gradient(to right,var(--tactus-frame),transparent) 0/.9rem 100% no-repeat scroll,
+linear-gradient(to left,var(--tactus-frame),transparent) 100%/.9rem 100% no-repeat scroll}
+.cue{margin:.2rem 0 0;font-size:.82rem;color:var(--tactus-muted)}
+summary{cursor:pointer;color:var(--tactus-accent);margin:1rem 0 .5rem}
 .scroll:focus-visible,button:focus-visible{outline:2px solid var(--tactus-accent);outline-offset:2px}
 .picture svg{display:block;width:100%;height:auto;max-width:calc(var(--width)*1px);
 min-width:calc(var(--width)*.85px)}
@@ -35,6 +41,8 @@ table{border-collapse:collapse;font-size:.92rem;font-variant-numeric:tabular-num
 caption{text-align:left;font-weight:600;padding-bottom:.5rem}
 th,td{text-align:left;padding:.32rem .9rem .32rem 0;vertical-align:baseline;white-space:nowrap}
 th+th,th+td,td+td{padding-left:.9rem}
+thead th{white-space:normal;min-width:4.5rem}
+.text{white-space:normal;min-width:16rem}
 thead th{border-top:2px solid var(--tactus-frame);border-bottom:1px solid var(--tactus-frame);vertical-align:bottom}
 thead .unit{display:block;font-weight:400;color:var(--tactus-muted)}
 tbody th{font-weight:400}
@@ -62,7 +70,7 @@ dialog .enlarge{position:fixed;top:.6rem;right:1rem;margin:0;background:var(--ta
 @media(max-width:40rem){main,footer{padding-left:1rem;padding-right:1rem}h1{font-size:1.5rem}
 dl{grid-template-columns:1fr;gap:0}dd{margin-bottom:.6rem}}
 @media print{body{font-size:10pt}main,footer{max-width:none;padding-left:0;padding-right:0}
-.enlarge,dialog{display:none}.scroll{overflow:visible}.picture svg{min-width:0;max-width:100%}
+.enlarge,.cue,dialog{display:none}.scroll{overflow:visible}.picture svg{min-width:0;max-width:100%}
 figure,table,pre,tr{break-inside:avoid}h1,h2,h3,h4,h5,h6{break-after:avoid}pre{white-space:pre-wrap}}
 )css";
 
@@ -96,6 +104,16 @@ constexpr std::string_view script = R"js(
       if (event.key === "Enter") { event.preventDefault(); open(); }
     };
     picture.after(button);
+  });
+  document.querySelectorAll(".scroll").forEach(function (part) {
+    var cue = document.createElement("p");
+    cue.className = "cue";
+    cue.textContent = "There is more on the right: scroll sideways \u2192";
+    part.after(cue);
+    function look() { cue.hidden = Math.max(0, part.scrollWidth - part.clientWidth - part.scrollLeft - 4) === 0; }
+    part.onscroll = look;
+    window.addEventListener("resize", look);
+    look();
   });
 })();
 )js";
@@ -146,6 +164,11 @@ void Page::code(std::string_view text, std::string_view label) {
   const std::string name = label.empty() ? "Code" : std::string(label);
   body_ += "<pre tabindex=\"0\" role=\"group\" aria-label=\"" + escape(name) + "\"><code>" + escape(text) +
            "</code></pre>\n";
+}
+
+void Page::folded(std::string_view text, std::string_view label) {
+  body_ += "<details>\n<summary>" + escape(label) + "</summary>\n<pre tabindex=\"0\" role=\"group\" aria-label=\"" +
+           escape(label) + "\"><code>" + escape(text) + "</code></pre>\n</details>\n";
 }
 
 void Page::definitions(const std::vector<std::pair<std::string, std::string>>& entries) {

@@ -13,8 +13,9 @@ namespace tactus::report {
 
 /// A report as one HTML file that needs nothing beside itself: no network, no other file, and a content security policy
 /// that forbids both. Parts appear in the order in which they are added. It follows the light or dark scheme of the
-/// reader, fits a phone (wide figures and tables scroll in place) and prints; a script lets a click or Enter enlarge a
-/// figure, and without the script all else works. Every text given is shown literally, never read as markup.
+/// reader, fits a phone (wide figures and tables scroll in place, and say so) and prints; a script lets a click or
+/// Enter enlarge a figure, and without the script all else works. Every text given is shown literally, never read as
+/// markup.
 class Page {
  public:
   explicit Page(std::string title) : title_(std::move(title)) {}
@@ -29,6 +30,8 @@ class Page {
   void figure(const HeatMap& map, std::string_view caption);
   /// A command or a file, line by line as it is; `label` says what it is.
   void code(std::string_view text, std::string_view label = {});
+  /// The same, folded: a reader who wants it opens it.
+  void folded(std::string_view text, std::string_view label);
   /// Terms and what they stand for: settings, results in a few words.
   void definitions(const std::vector<std::pair<std::string, std::string>>& entries);
   /// The last line of the page: what made it, and the command that makes it again.

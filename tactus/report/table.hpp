@@ -27,7 +27,9 @@ class Table {
   [[nodiscard]] const std::string& caption() const { return caption_; }
 
   /// Lines of UTF-8 for a terminal, each ended by a line feed and free of trailing blanks: the caption (if any),
-  /// titles, a line of units (if any column has one), the rows between rules.
+  /// titles, a line of units (if any column has one), the rows between rules. No line is wider than `text_width()`,
+  /// and no column is left out: titles and texts are broken into lines, and where that is not enough the rows stand
+  /// beside one another, in several tables if need be. Only a number or a word that is wider itself stands out.
   [[nodiscard]] std::string to_text() const;
 
   /// A `<table>` with caption and scopes; the first column heads its rows.

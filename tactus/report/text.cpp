@@ -162,4 +162,12 @@ std::string escape(std::string_view text) {
   });
 }
 
+namespace {
+std::size_t columns_of_terminal = 80;
+}  // namespace
+
+std::size_t text_width() { return columns_of_terminal; }
+
+void set_text_width(std::size_t columns) { columns_of_terminal = std::max<std::size_t>(40, columns); }
+
 }  // namespace tactus::report

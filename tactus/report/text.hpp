@@ -23,6 +23,11 @@ std::string with_unit(std::string_view name, std::string_view unit);
 /// and emoji two. Expects text as `printable` leaves it.
 std::size_t display_width(std::string_view text);
 
+/// Columns of the terminal that text is written for: 80 until `set_text_width` has said otherwise.
+std::size_t text_width();
+/// To be called before any text is made, from one thread; less than 40 is taken as 40.
+void set_text_width(std::size_t columns);
+
 /// The text as valid UTF-8 on one line: control characters (line breaks and escape sequences of a terminal among them)
 /// become blanks, and bytes that are not UTF-8 become U+FFFD.
 std::string printable(std::string_view text);

@@ -111,13 +111,18 @@ Result<telemetry::Recorder> open_log(const experiments::Request& request, const 
   about["configuration"] = cases.first_configuration;
   about["clock"] = "real";
   recorder->add_metadata("tactus", about);
+  std::map<std::string, std::string> labels;
   for (std::size_t i = 0; i < cases.all.size(); ++i) {
     const experiments::Settings& settings = cases.all[i].settings;
-    if (!settings.empty()) recorder->add_metadata(Outlets::run_name(i), {settings.begin(), settings.end()});
+    if (!settings.empty()) {
+      recorder->add_metadata(Outlets::run_name(i), {settings.begin(), settings.end()});
+      labels[Outlets::run_name(i)] = experiments::settings_caption(settings);
+    }
     outlets.all()[i].for_each([&recorder](const std::string& topic, const char* type_name, const auto& stream) {
       recorder->add(topic, type_name, stream);
     });
   }
+  if (!labels.empty()) recorder->add_metadata(telemetry::run_labels, labels);
   recorder->start();
   return recorder;
 }
@@ -288,12 +293,13 @@ Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, co
   if (taps_done < taps) interrupted = Interrupted{.taps = taps_done, .of = taps};
 
   const report::Table table = experiments::tapping_table(runs);
+  const std::string verdict = experiments::tapping_verdict(runs);
   const report::Table timing = timing_table(all);
   const report::Table late = late_ticks_table(all);
   std::vector<report::Figure> figures;
   if (!runs.empty()) figures = experiments::tapping_figures(runs);
   figures.push_back(timing_figure(all));
-  report::Page page = experiments::tapping_page(request, table, figures);
+  report::Page page = experiments::tapping_page(request, verdict, table, figures);
   if (interrupted) page.paragraph(interrupted->text());
   page.heading("How time was kept");
   page.paragraph(
@@ -303,8 +309,8 @@ Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, co
   page.table(late);
   page.table(rights_table(all));
   experiments::add_provenance(page, request, cases->first_configuration);
-  std::string text = table.to_text() + "\n" + (interrupted ? interrupted->text() + "\n\n" : "") + timing.to_text() +
-                     "\n" + late.to_text() + losses_of(all);
+  std::string text = verdict + "\n\n" + (interrupted ? interrupted->text() + "\n\n" : "") + table.to_text() + "\n" +
+                     timing.to_text() + "\n" + late.to_text() + losses_of(all);
   return RealTimeOutcome{.outcome = {.text = std::move(text),
                                      .json = json_of(request, options.plant, runs, servos, interrupted),
                                      .html = page.to_html(),

@@ -1,3 +1,4 @@
+#include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/matrix_functions.hpp>
 #include <tactus/signal/steady_kalman.hpp>
 
@@ -6,7 +7,6 @@
 #include <span>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 namespace tactus::signal {
 
@@ -25,7 +25,7 @@ MatrixXd steady_covariance(const MatrixXd& transition, const MatrixXd& noise, do
   g(0, 0) = 1.0 / measurement_variance;
   MatrixXd h = noise;
   for (int round = 0; round < rounds; ++round) {
-    const MatrixXd shrunk = (identity + g * h).partialPivLu().inverse();
+    const MatrixXd shrunk = inverse(identity + g * h);
     const MatrixXd next_g = g + a * shrunk * g * a.transpose();
     h += a.transpose() * h * shrunk * a;
     a = a * shrunk * a;

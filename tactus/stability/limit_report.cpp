@@ -127,7 +127,9 @@ const LimitRung* farthest(const std::vector<LimitRung>& rungs) {
 }
 
 nlohmann::ordered_json json_of(const experiments::GainLimit& limit) {
-  return {{"force_gain", limit.gain}, {"beyond_search", limit.beyond_search}};
+  nlohmann::ordered_json object{{"force_gain", limit.gain}};
+  if (limit.censored()) object["force_gain_censored"] = true;
+  return object;
 }
 
 }  // namespace
@@ -158,26 +160,27 @@ Result<experiments::Outcome> report_limit(const experiments::Request& request, c
   document["friction"] = {{"speed_m_per_s", curve->speed_m_per_s}, {"gain_limit", curve->limit}};
 
   const report::Table table = ladder_table(*rungs), taken_out = without_table(*rungs);
+  const std::string verdict = "The taps of the file settle up to a force gain of " + shown(rungs->back().limit) + ".\n";
   const std::string reason = cause != nullptr ? "The largest step of the first table comes in with: " + cause->adds +
                                                     ". A step depends on the order; the second table does not.\n"
                                               : "No step moves the limit by more than 5 %.\n";
   std::vector<report::Figure> figures{ladder_figure(*rungs),
                                       friction_figure(*curve, linear.force_gain, rungs->back().limit)};
   report::Page page(request.name + ": gain limit");
+  page.paragraph(verdict + reason);
   page.paragraph(
       "The largest force gain up to which the contact calms down, from the linear loop to the taps of the file. Each "
       "row "
       "adds one thing. Taps count as settled when 95 % of them settle and half of them within 100 ms and two round "
       "trips.");
   page.table(table);
-  page.paragraph(reason);
   page.table(taken_out);
   for (const report::Figure& figure : figures) page.figure(figure);
-  experiments::add_provenance(page, request, configuration::to_toml(*params));
-  return experiments::Outcome{.text = table.to_text() + reason + taken_out.to_text(),
-                              .json = document.dump(2) + "\n",
-                              .html = page.to_html(),
-                              .figures = std::move(figures)};
+  return experiments::outcome_of({.text = verdict + reason + "\n" + table.to_text() + taken_out.to_text(),
+                                  .json = document.dump(2) + "\n",
+                                  .page = std::move(page),
+                                  .figures = std::move(figures)},
+                                 request, configuration::to_toml(*params));
 }
 
 }  // namespace tactus::stability

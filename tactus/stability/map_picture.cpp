@@ -31,13 +31,15 @@ std::string percent_settled(const MapResult& map, const MapPlane& plane) {
 MapPicture verdicts_of(const MapResult& map, const std::vector<MapPlane>& planes) {
   const auto& y = map.axes[map.axes.size() - 2];
   const auto& x = map.axes.back();
-  report::HeatMap picture{
-      .title = "Where a tap on the wall settles",
-      .x = drawn(x),
-      .y = drawn(y),
-      .classes = {{"settled", "#cfe8d5"}, {"ringing", "#ffe08a"}, {"limit cycle", "#f2a07b"}, {"diverged", "#8a4b7d"}},
-      .panels = {},
-      .lines = {}};
+  report::HeatMap picture{.title = "Where a tap on the wall settles",
+                          .x = drawn(x),
+                          .y = drawn(y),
+                          .classes = {{"settled", "#cfe8d5", "#2c6142"},
+                                      {"ringing", "#ffe08a", "#9a7a1e"},
+                                      {"limit cycle", "#f2a07b", "#a5492a"},
+                                      {"diverged", "#8a4b7d", "#571f4c"}},
+                          .panels = {},
+                          .lines = {}};
   const auto limits = settled_limit(map, map.axes.size() - 2);
   const auto columns = static_cast<std::ptrdiff_t>(x.values.size());
   // Two boundaries can be told apart in one picture; more stand each in its own panel.
@@ -76,9 +78,10 @@ std::vector<double> round_steps(double from, double to) {
   return steps;
 }
 
-/// From red to pale yellow.
-std::string warmth(double share) {
-  constexpr std::array<double, 3> red{0xb5, 0x44, 0x3c}, pale{0xff, 0xf3, 0xb0};
+using Rgb = std::array<double, 3>;
+
+/// A colour between two, as `#rrggbb`.
+std::string between(const Rgb& red, const Rgb& pale, double share) {
   char text[8];
   const auto mixed = [&](std::size_t i) {
     return static_cast<unsigned>(std::lround(red[i] + share * (pale[i] - red[i])));
@@ -93,14 +96,17 @@ MapPicture limits_of(const MapResult& map) {
   report::HeatMap picture{.title = "Limit of the " + label_of(along),
                           .x = drawn(fast),
                           .y = drawn(slow),
-                          .classes = {{"below " + report::number(steps.front(), 2), "#8a4b7d"}},
+                          .classes = {{"below " + report::number(steps.front(), 2), "#8a4b7d", "#571f4c"}},
                           .panels = {{"largest " + label_of(along) + " below which every run settled or rang", {}}},
                           .lines = {}};
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
     const double share = steps.size() > 2 ? static_cast<double>(i) / static_cast<double>(steps.size() - 2) : 0.0;
-    picture.classes.push_back({report::number(steps[i], 2) + " to " + report::number(steps[i + 1], 2), warmth(share)});
+    // From red to yellow.
+    picture.classes.push_back({report::number(steps[i], 2) + " to " + report::number(steps[i + 1], 2),
+                               between({0xb5, 0x44, 0x3c}, {0xff, 0xf3, 0xb0}, share),
+                               between({0x7a, 0x22, 0x1c}, {0xb8, 0x9c, 0x3e}, share)});
   }
-  picture.classes.push_back({report::number(steps.back(), 2) + " or more, where the map ends", "#cfe8d5"});
+  picture.classes.push_back({report::number(steps.back(), 2) + " or more, where the map ends", "#cfe8d5", "#2c6142"});
   for (const double limit : settled_limit(map, 1)) {
     const auto above = std::upper_bound(steps.begin(), steps.end(), limit);
     picture.panels[0].cells.push_back(std::isnan(limit) ? 0 : static_cast<std::size_t>(above - steps.begin()));

@@ -69,9 +69,8 @@ report::Table table_of(const MapResult& map, const std::vector<MapPlane>& planes
 }
 
 std::string json_of(const MapResult& map, const std::vector<MapPlane>& planes, const std::vector<double>& limits,
-                    double elapsed_s, const std::string& command) {
+                    double elapsed_s) {
   nlohmann::ordered_json json;
-  json["command"] = command;
   json["points"] = map.points.size();
   json["resumed_points"] = map.resumed;
   json["redone_in_double"] = map.redone;
@@ -95,6 +94,12 @@ std::string json_of(const MapResult& map, const std::vector<MapPlane>& planes, c
   }
   // JSON has no NaN: where not even the first value settled stands null.
   json["settled_limit"] = limits;
+  const MapAxis& along = map.axes[limited_axis(map)];
+  json["settled_limit_censored"] = nlohmann::ordered_json::array();
+  for (const double limit : limits) {
+    const bool censored = along.words.empty() && (std::isnan(limit) || limit == along.values.back());
+    json["settled_limit_censored"].push_back(censored);
+  }
   return json.dump(2) + "\n";
 }
 
@@ -117,7 +122,15 @@ MapReport report_map(const MapResult& map, const MapParams& base, double elapsed
   const std::string effort = effort_of(map, elapsed_s);
   const auto picture = picture_of(map);
 
+  std::size_t settled = 0;
+  for (const MapPlane& plane : planes)
+    settled += count(map, plane)[static_cast<std::size_t>(experiments::Verdict::settled)];
+  const std::string verdict =
+      report::number(100.0 * static_cast<double>(settled) / static_cast<double>(map.points.size()), 3) + " % of " +
+      std::to_string(map.points.size()) + " taps settle.";
+
   report::Page page(request.name + ": stability map");
+  page.paragraph(verdict);
   page.paragraph(
       "One tap on the wall at every point of a grid, each a closed-loop run in time with friction, hysteresis, "
       "quantisation and saturation: " +
@@ -128,8 +141,8 @@ MapReport report_map(const MapResult& map, const MapParams& base, double elapsed
       "One tap near the boundary is decided by accident, so a boundary has speckle. Beside this page: map.csv "
       "with one line a run, map.h5 with the same as arrays over the axes.");
   experiments::add_provenance(page, request, configuration::to_toml(base));
-  return {.text = effort + "\n" + table.to_text(),
-          .json = json_of(map, planes, limits, elapsed_s, request.command),
+  return {.text = verdict + "\n" + effort + "\n\n" + table.to_text(),
+          .json = json_of(map, planes, limits, elapsed_s),
           .html = page.to_html(),
           .svg = picture ? std::optional(report::to_svg(picture->map)) : std::nullopt};
 }

@@ -117,6 +117,20 @@ report::Table table_of(const Analysis& analysis) {
   return table;
 }
 
+std::string verdict_of(const Analysis& analysis) {
+  const auto value = [&analysis](std::string_view key) {
+    for (const Quantity& q : analysis.quantities) {
+      if (q.key == key) return q.value;
+    }
+    return std::nan("");
+  };
+  const double limit = value("gain_limit");
+  const std::string at = " at a force gain of " + report::number(value("force_gain"), 3);
+  const std::string up_to =
+      std::isfinite(limit) ? "; the limit is " + report::number(limit, 3) + "." : "; no gain makes it unstable.";
+  return (value("stable") > 0.0 ? "Stable" : "Unstable") + at + up_to;
+}
+
 report::Table pole_table(const Analysis& analysis) {
   report::Table table({{"magnitude"}, {"frequency", "Hz"}, {"decays with", "ms"}}, "Slowest closed-loop poles");
   for (const std::complex<double> pole : analysis.slowest) {
@@ -195,6 +209,8 @@ Result<experiments::Outcome> report_margins(const experiments::Request& request,
   const report::Table table = table_of(*analysis), slowest = pole_table(*analysis);
   std::vector<report::Figure> figures = figures_of(*analysis);
   report::Page page(request.name + ": stability margins");
+  const std::string said = verdict_of(*analysis);
+  page.paragraph(said);
   page.paragraph(
       "The force that the slave feels moves the master's motor; what of that motion cancellation leaves goes to the "
       "slave as a command. This loop, linear and sampled, is judged here with the tip on the wall. It does not see "
@@ -202,15 +218,15 @@ Result<experiments::Outcome> report_margins(const experiments::Request& request,
   page.table(table);
   page.table(slowest);
   for (const report::Figure& figure : figures) page.figure(figure);
-  experiments::add_provenance(page, request, configuration::to_toml(*params));
-  std::string text = table.to_text();
+  std::string text = said + "\n\n" + table.to_text();
   text += analysis->slowest.empty()
               ? "Poles: too many for a list; unstable ones are counted by the argument principle\n"
               : slowest.to_text();
-  return experiments::Outcome{.text = std::move(text),
-                              .json = json_of(request, options, *analysis),
-                              .html = page.to_html(),
-                              .figures = std::move(figures)};
+  return experiments::outcome_of({.text = std::move(text),
+                                  .json = json_of(request, options, *analysis),
+                                  .page = std::move(page),
+                                  .figures = std::move(figures)},
+                                 request, configuration::to_toml(*params));
 }
 
 }  // namespace tactus::stability

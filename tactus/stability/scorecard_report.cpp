@@ -118,18 +118,18 @@ Result<experiments::Outcome> report_scorecard(const experiments::Request& reques
   for (const Sensitivity& s : card->sensitivities) document["sensitivities"][s.key] = number(s.limit_change);
 
   report::Page page(request.name + ": scorecard of the master");
+  page.paragraph(limited);
   page.paragraph(
       "How much force gain the master allows before its induced motion closes an unstable loop, how well its "
       "force reaches the hand, and what it costs to move it. Linear, in contact.");
   page.table(table);
-  page.paragraph(limited);
   page.table(changes);
   page.figure(figure);
-  experiments::add_provenance(page, request, configuration::to_toml(*params));
-  return experiments::Outcome{.text = table.to_text() + limited + changes.to_text(),
-                              .json = document.dump(2) + "\n",
-                              .html = page.to_html(),
-                              .figures = {figure}};
+  return experiments::outcome_of({.text = limited + "\n" + table.to_text() + changes.to_text(),
+                                  .json = document.dump(2) + "\n",
+                                  .page = std::move(page),
+                                  .figures = {figure}},
+                                 request, configuration::to_toml(*params));
 }
 
 }  // namespace tactus::stability

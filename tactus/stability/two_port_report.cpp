@@ -150,11 +150,11 @@ Result<experiments::Outcome> report_two_port(const experiments::Request& request
   page.table(summary);
   page.table(table);
   for (const report::Figure& figure : figures) page.figure(figure);
-  experiments::add_provenance(page, request, configuration::to_toml(*params));
-  return experiments::Outcome{.text = summary.to_text() + table.to_text(),
-                              .json = json_of(request, *sweep),
-                              .html = page.to_html(),
-                              .figures = std::move(figures)};
+  return experiments::outcome_of({.text = summary.to_text() + table.to_text(),
+                                  .json = json_of(request, *sweep),
+                                  .page = std::move(page),
+                                  .figures = std::move(figures)},
+                                 request, configuration::to_toml(*params));
 }
 
 }  // namespace tactus::stability

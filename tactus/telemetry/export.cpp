@@ -1,6 +1,7 @@
 #include <tactus/report/text.hpp>
 #include <tactus/telemetry/export.hpp>
 #include <tactus/telemetry/export_parts.hpp>
+#include <tactus/telemetry/log_writer.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -63,7 +64,7 @@ ExportColumns::ExportColumns(const LogTable& table) : columns(table.columns) {
     values.emplace_back(seconds_);
   }
   for (const std::vector<double>& column : table.values) values.emplace_back(column);
-  Identifiers names("signal_", {"units"});  // a member of its own in a MATLAB file
+  Identifiers names("signal_", {"units", "condition"});  // members of their own in a MATLAB file
   for (Column& column : columns) {
     column.name = names.unique(column.name);
     for (std::string* text : {&column.unit, &column.site, &column.frame, &column.sign}) *text = one_line(*text);
@@ -84,6 +85,19 @@ std::map<std::string, std::string> about(const LogSummary& summary) {
   Identifiers names("key_");
   for (const auto& [key, text] : found->second) texts.emplace(names.unique(key), text);
   return texts;
+}
+
+std::optional<Condition> condition_of(const LogSummary& summary, std::string_view topic) {
+  topic.remove_prefix(topic.starts_with('/') ? 1 : 0);
+  const std::string run(topic.substr(0, topic.find('/')));
+  const auto set = summary.metadata.find(run);
+  const auto labels = summary.metadata.find(run_labels);
+  if (set == summary.metadata.end() || labels == summary.metadata.end()) return std::nullopt;
+  const auto label = labels->second.find(run);
+  if (label == labels->second.end()) return std::nullopt;
+  Condition condition{.label = one_line(label->second), .set = {}};
+  for (const auto& [key, value] : set->second) condition.set.emplace_back(one_line(key), one_line(value));
+  return condition;
 }
 
 Check refuse_empty(const LogContent& content, const std::filesystem::path& file) {

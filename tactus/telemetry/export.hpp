@@ -16,15 +16,19 @@ namespace tactus::telemetry {
 /// letters, digits and `_`, a letter first, at most 63 characters, each given once: what a log of others has otherwise
 /// is changed, cut or numbered (`_2`), in the order of the log.
 
-/// One table as text: `name [unit]` heads, numbers that read back equal. What `recording::read` reads.
-Check export_csv(const LogTable& table, const std::filesystem::path& file);
+/// The first table as text: `name [unit]` heads, numbers that read back equal. What `recording::read` reads. Of a run
+/// of several, lines that begin with `#` say before the heads which it is: in words, then `key=value` for each varied
+/// key.
+Check export_csv(const LogContent& content, const std::filesystem::path& file);
 
 /// MATLAB file of version 5: a struct for each topic with a column vector for each signal, named with its unit, and a
-/// struct `units` of texts; the metadata of the run as the struct `about`.
+/// struct `units` of texts; the metadata of the run as the struct `about`. The topic of a run of several has a struct
+/// `condition`: `label` in words, and the value of each varied key (`control_force_gain`).
 Check export_mat(const LogContent& content, const std::filesystem::path& file);
 
 /// HDF5: a group for each topic with a data set for each signal, whose attributes are `unit`, `site`, `frame` and
-/// `sign`; the metadata of the run as texts in the group `about`.
+/// `sign`; the metadata of the run as texts in the group `about`. The group of a run of several has an attribute
+/// `condition` in words, and one for each varied key (`control.force_gain`).
 Check export_hdf5(const LogContent& content, const std::filesystem::path& file);
 
 /// What a topic is called in a file whose names have no slash: `/run_1/teleoperator` is `run_1_teleoperator`.

@@ -62,13 +62,20 @@ bool put(std::FILE* file, std::string& text) {
 
 }  // namespace
 
-Check export_csv(const LogTable& original, const std::filesystem::path& file) {
+Check export_csv(const LogContent& content, const std::filesystem::path& file) {
+  if (auto error = refuse_empty(content, file)) return error;
+  const LogTable& original = content.tables.front();
   const ExportColumns table(original);
   return report::replace_file(file, [&](const std::string& temporary) {
     constexpr std::size_t piece = std::size_t{1} << 20U;
     std::unique_ptr<std::FILE, CloseStream> stream(std::fopen(temporary.c_str(), "wbe"));
     if (!stream) return false;
-    std::string text = heads_of(table.columns);
+    std::string text;
+    if (const auto condition = condition_of(content.summary, original.topic)) {
+      text += "# " + condition->label + "\n";
+      for (const auto& [key, value] : condition->set) text += "# " + key + "=" + value + "\n";
+    }
+    text += heads_of(table.columns);
     for (std::size_t row = 0; row < original.times_ns.size(); ++row) {
       for (std::size_t i = 0; i < table.values.size(); ++i) {
         if (i != 0) text += ',';

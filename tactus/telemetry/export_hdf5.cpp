@@ -19,6 +19,10 @@ Check export_hdf5(const LogContent& content, const std::filesystem::path& file) 
       hdf.add_numbers(names[one] + "/" + column.name, rows, table.values[i],
                       {{"unit", column.unit}, {"site", column.site}, {"frame", column.frame}, {"sign", column.sign}});
     }
+    if (const auto condition = condition_of(content.summary, content.tables[one].topic)) {
+      hdf.describe_group(names[one], {{"condition", condition->label}});
+      hdf.describe_group(names[one], condition->set);
+    }
   }
   for (const auto& [key, value] : about(content.summary)) hdf.add_text("about/" + key, value);
   return hdf.write(file);

@@ -100,6 +100,14 @@ Check export_mat(const LogContent& content, const std::filesystem::path& file) {
       }
       done = done && units.sound();
       topic.add("units", std::move(units).take());
+      if (const auto condition = condition_of(content.summary, content.tables[one].topic)) {
+        Struct which("");
+        Identifiers keys("key_", {"label"});
+        which.add("label", text(condition->label));
+        for (const auto& [key, value] : condition->set) which.add(keys.unique(key), text(value));
+        done = done && which.sound();
+        topic.add("condition", std::move(which).take());
+      }
       done = done && write(mat.get(), topic);
     }
     if (const auto run = about(content.summary); !run.empty()) {

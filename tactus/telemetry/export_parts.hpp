@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <initializer_list>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace tactus::telemetry {
@@ -46,6 +48,15 @@ std::vector<std::string> names_of(const std::vector<LogTable>& tables);
 
 /// What the log says about the run that it comes from, its keys as identifiers; empty where it says nothing.
 std::map<std::string, std::string> about(const LogSummary& summary);
+
+/// What sets a run apart from the others of its log.
+struct Condition {
+  std::string label;                                     ///< in a few words: `force gain 3`
+  std::vector<std::pair<std::string, std::string>> set;  ///< each varied key and its value
+};
+
+/// The condition of the run that a topic belongs to (`/run_1/teleoperator` to `run_1`); none where the log tells none.
+std::optional<Condition> condition_of(const LogSummary& summary, std::string_view topic);
 
 /// The error for a log that has nothing to export.
 Check refuse_empty(const LogContent& content, const std::filesystem::path& file);

@@ -13,6 +13,10 @@
 
 namespace tactus::telemetry {
 
+/// The metadata that says in words what sets each run apart from the others, by the name of the run: `run_1` to
+/// `force gain 3`. The metadata `run_1` has the values of the varied keys.
+inline constexpr const char* run_labels = "labels";
+
 /// A stream of messages of one kind in a log.
 struct ChannelDescription {
   std::string topic;      ///< as ROS 2 names topics: `/teleoperator`

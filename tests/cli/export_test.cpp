@@ -55,6 +55,44 @@ TEST_F(Export, ALogIsARecordingThatTheVerbsForRecordingsRead) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
 }
 
+TEST_F(Export, AColumnAnswersToItsSignalsNameWithItsUnitAndWithout) {
+  ASSERT_EQ(tactus({"export", "one/log", "--to", "csv", "--out", "tap.csv"}).status, 0);
+  ASSERT_EQ(tactus({"export", "one/log", "--to", "mat", "--out", "tap.mat"}).status, 0);
+  const auto response = [this](const std::string& file, const std::string& input, const std::string& output) {
+    const Outcome outcome =
+        tactus({"identify", "frf", file, "--input", input, "--output", output, "--method", "etfe", "--json"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return Json::parse(outcome.out, nullptr, false)["response"];
+  };
+  const Json found = response("tap.csv", "displayed_force", "master_position");
+  ASSERT_GT(found.size(), 100U);
+  EXPECT_EQ(response("tap.csv", "displayed_force_N", "master_position_m"), found);
+  EXPECT_EQ(response("tap.csv", "displayed_force [N]", "master_position [m]"), found);
+  EXPECT_EQ(response("tap.mat", "teleoperator.displayed_force_N", "teleoperator.master_position_m"), found);
+  EXPECT_EQ(response("tap.mat", "teleoperator.displayed_force", "teleoperator.master_position"), found);
+  expect_refusal({"identify", "frf", "tap.csv", "--input", "displayed_force_m", "--output", "master_position"}, 2,
+                 {"displayed_force"});
+}
+
+TEST_F(Export, EveryFormatSaysWhichConditionARunIs) {
+  ASSERT_EQ(tactus({"run", "quick.toml", "--vary", "control.force_gain=1,3", "--out", "both"}).status, 0);
+  ASSERT_EQ(tactus({"export", "both/log", "--to", "csv", "--topic", "/run_2/teleoperator"}).status, 0);
+  EXPECT_TRUE(content("both/log/log.csv").starts_with("# force gain 3\n# control.force_gain=3\ntime [s],"));
+  EXPECT_EQ(tactus({"identify", "frf", "both/log/log.csv", "--input", "displayed_force_N", "--output",
+                    "master_position_m", "--method", "etfe"})
+                .status,
+            0);
+  ASSERT_EQ(tactus({"export", "both/log", "--to", "hdf5"}).status, 0);
+  for (const char* words : {"force gain 1", "force gain 3", "control.force_gain"}) {
+    EXPECT_NE(content("both/log/log.h5").find(words), std::string::npos) << words;
+    EXPECT_NE(content("both/log/log.mcap").find(words), std::string::npos) << words;
+  }
+  ASSERT_EQ(tactus({"export", "both/log", "--to", "mat"}).status, 0);
+  const Outcome wrong = tactus({"identify", "frf", "both/log/log.mat", "--input", "run_2_teleoperator.condition.label",
+                                "--output", "run_2_teleoperator.master_position_m"});
+  EXPECT_NE(wrong.err.find("is of class char"), std::string::npos) << wrong.err;
+}
+
 TEST_F(Export, AMatlabFileAndHdf5AreWrittenBesideTheLog) {
   for (const std::string format : {"mat", "hdf5"}) {
     const Outcome outcome = tactus({"export", "one/log/log.mcap", "--to", format, "--json"});

@@ -9,7 +9,7 @@ namespace {
 using Output = Command;
 using Words = std::vector<std::string>;
 
-constexpr StandardOutput broken[] = {StandardOutput::full, StandardOutput::closed, StandardOutput::reader_gone};
+constexpr StandardOutput broken[] = {StandardOutput::full, StandardOutput::closed};
 
 TEST_F(Output, ResultsThatCannotBePrintedAreAFailureOfTheJob) {
   const std::string file = quick_experiment();

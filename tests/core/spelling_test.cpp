@@ -29,6 +29,8 @@ TEST(Spelling, NothingIsSuggestedWhereNothingIsNear) {
   EXPECT_EQ(nearest_word("on", words), "");
   EXPECT_EQ(nearest_word("", words), "");
   EXPECT_EQ(nearest_word("something else", words), "");
+  EXPECT_EQ(nearest_word("no", std::vector<std::string_view>{"on", "yes"}), "") << "the opposite";
+  EXPECT_EQ(nearest_word("ON", std::vector<std::string_view>{"on"}), "on");
   EXPECT_EQ(nearest_word("x", std::vector<std::string_view>{"y"}), "");
 }
 

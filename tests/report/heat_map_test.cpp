@@ -18,7 +18,7 @@ HeatMap small_map() {
   return {.title = "Small <map>",
           .x = {.label = "stiffness", .unit = "N/m", .values = {1e3, 1e4, 1e5, 1e6}, .logarithmic = true},
           .y = {.label = "gain", .values = {1.0, 2.0, 3.0}},
-          .classes = {{"calm", "#00ff00"}, {"wild", "#ff0000"}, {"absent", "#0000ff"}},
+          .classes = {{"calm", "#00ff00", "#003300"}, {"wild", "#ff0000", "#330000"}, {"absent", "#0000ff", "#000033"}},
           .panels = {{"one", {0, 0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0}}},
           .lines = {{.name = "boundary", .y = {3.0, 1.0, std::numeric_limits<double>::quiet_NaN(), 99.0}}}};
 }
@@ -49,9 +49,18 @@ TEST(HeatMap, EachClassCoversItsShareOfTheCells) {
     const auto found = tags(svg, "path", colour);
     return found.empty() ? 0.0 : area_of(attribute(found.front(), "d"));
   };
-  EXPECT_NEAR(cells("#00ff00"), frame * 9.0 / 12.0, 30.0);
-  EXPECT_NEAR(cells("#ff0000"), frame * 3.0 / 12.0, 30.0);
-  EXPECT_EQ(cells("#0000ff"), 0.0);
+  EXPECT_NEAR(cells("cells-00ff00"), frame * 9.0 / 12.0, 30.0);
+  EXPECT_NEAR(cells("cells-ff0000"), frame * 3.0 / 12.0, 30.0);
+  EXPECT_EQ(cells("cells-0000ff"), 0.0);
+}
+
+TEST(HeatMap, OnADarkPageItsCellsAndItsGroundAreDark) {
+  const std::string svg = to_svg(small_map());
+  const std::size_t dark = svg.find("@media screen and (prefers-color-scheme:dark){\n");
+  ASSERT_NE(dark, std::string::npos);
+  EXPECT_NE(svg.find(".cells-00ff00-003300{fill:#003300}", dark), std::string::npos);
+  EXPECT_LT(svg.find(".cells-00ff00-003300{fill:#00ff00}"), dark);
+  EXPECT_EQ(svg.find("fill=\"#fff"), std::string::npos) << "a ground that stays white";
 }
 
 TEST(HeatMap, NamesAxesWithUnitsAndOnlyClassesThatThereAre) {

@@ -89,5 +89,26 @@ TEST(Page, ScrollsFiguresAndTablesInPlaceOnANarrowScreen) {
   for (const std::string& part : tags(html, "div", "scroll")) EXPECT_EQ(attribute(part, "tabindex"), "0");
 }
 
+TEST(Page, WhatIsFoldedIsThereAndShownLiterally) {
+  Page page("Title");
+  page.folded("[task]\nkind = \"<b>\"\n", "The whole configuration");
+  const std::string html = page.to_html();
+  EXPECT_EQ(fault_of(html), "");
+  EXPECT_NE(html.find("<details>\n<summary>The whole configuration</summary>\n<pre"), std::string::npos);
+  EXPECT_NE(html.find("kind = &quot;&lt;b&gt;&quot;"), std::string::npos);
+}
+
+TEST(Page, ATableThatIsWiderThanThePageSaysThatThereIsMore) {
+  Page page("Title");
+  Table table({{"a", "", Column::Align::left}, {"b"}});
+  table.add_row({"a text of many words, which goes on", "2"});
+  page.table(table);
+  const std::string html = page.to_html();
+  EXPECT_NE(html.find(".scroll:not(.picture){background:"), std::string::npos) << "a shadow where it goes on";
+  EXPECT_NE(html.find("<th scope=\"row\" class=\"text\">a text of many words"), std::string::npos);
+  EXPECT_NE(html.find("There is more on the right"), std::string::npos);
+  EXPECT_NE(html.find(".text{white-space:normal"), std::string::npos) << "texts are broken into lines";
+}
+
 }  // namespace page_test
 }  // namespace tactus::report

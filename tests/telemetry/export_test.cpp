@@ -42,7 +42,7 @@ class Export : public ::testing::Test {
   }
 
   [[nodiscard]] Check export_as_named(const std::filesystem::path& file) const {
-    if (file.extension() == ".csv") return export_csv(content_.tables[0], file);
+    if (file.extension() == ".csv") return export_csv(content_, file);
     return file.extension() == ".mat" ? export_mat(content_, file) : export_hdf5(content_, file);
   }
 
@@ -53,7 +53,7 @@ class Export : public ::testing::Test {
 
 TEST_F(Export, CsvIsARecordingWithNamesUnitsAndEqualValues) {
   const auto file = folder_ / "log.csv";
-  ASSERT_FALSE(export_csv(content_.tables[0], file));
+  ASSERT_FALSE(export_csv(content_, file));
   expect_forces({.file = file, .variable = "force"}, "N");
 }
 
@@ -92,7 +92,7 @@ TEST_F(Export, ARecordWithoutATimeGetsThatOfItsMessages) {
     log->write(channel, k, 2'000'000 * std::uint64_t{k}, to_cdr(Gap{.channel = 1, .dropped = k, .lost = 0}));
   }
   ASSERT_FALSE(log->close());
-  ASSERT_FALSE(export_csv(read_log(folder_)->tables[0], folder_ / "gaps.csv"));
+  ASSERT_FALSE(export_csv(*read_log(folder_), folder_ / "gaps.csv"));
   const auto dropped = recording::read({.file = folder_ / "gaps.csv", .variable = "dropped"});
   ASSERT_TRUE(dropped) << describe(dropped.error());
   EXPECT_EQ(dropped->values, (std::vector<double>{0, 1, 2, 3, 4}));
@@ -149,7 +149,7 @@ TEST_F(Export, NamesThatNoLibraryStandsAreCutAndMadeUniqueInEveryFormat) {
     EXPECT_TRUE(names.contains(name + "." + std::string(61, 'a') + "_2")) << name;
   }
 
-  ASSERT_FALSE(export_csv(content.tables[0], folder_ / "hostile.csv"));
+  ASSERT_FALSE(export_csv(content, folder_ / "hostile.csv"));
   std::ifstream file(folder_ / "hostile.csv");
   std::string head, first, second_row, more;
   std::getline(file, head);

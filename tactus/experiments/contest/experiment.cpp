@@ -39,8 +39,10 @@ report::Table settings_table() {
   return table;
 }
 
-report::Page page_of(const Request& request, const report::Table& table, const report::Figure& figure) {
+report::Page page_of(const Request& request, const std::string& verdict, const report::Table& table,
+                     const report::Figure& figure) {
   report::Page page(request.name + ": " + std::string(contest_title));
+  page.paragraph(verdict);
   page.paragraph(
       "The same hand taps the same wall through the same devices; only the controllers differ. For each method the "
       "force gain is raised until the taps no longer settle.");
@@ -83,8 +85,9 @@ Result<Outcome> ContestExperiment::run(const Request& request, const Progress& p
 
   const report::Table table = contest_table(scores, *params);
   report::Figure figure = contest_figure(scores, *params);
-  report::Page page = page_of(request, table, figure);
-  return outcome_of({.text = table.to_text(),
+  const std::string verdict = contest_verdict(scores, *params);
+  report::Page page = page_of(request, verdict, table, figure);
+  return outcome_of({.text = verdict + "\n\n" + table.to_text(),
                      .json = contest_json(request.name, scores, *params),
                      .page = std::move(page),
                      .figures = {std::move(figure)}},

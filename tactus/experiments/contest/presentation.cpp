@@ -3,6 +3,7 @@
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/report/text.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -26,13 +27,11 @@ bool settles(const GainScore& score) { return score.metrics.verdict == Verdict::
 std::string in_newton(double force_N) { return format_number(force_N) + " N"; }
 
 Json json_of_score(const GainScore& score) {
-  return {{"force_gain", score.force_gain},
-          {"force_limit_N", score.force_limit_N},
-          {"settled_fraction", score.metrics.settled_fraction},
-          {"settling_time_median_s", score.metrics.settling_time_median_s},
-          {"settling_time_p90_s", score.metrics.settling_time_p90_s},
-          {"verdict", name_of(score.metrics.verdict)},
-          {"spectral_error", json_of(score.spectral_error)}};
+  Json json{{"force_gain", score.force_gain}, {"force_limit_N", score.force_limit_N}};
+  json.update(json_of_settling(score.metrics));
+  json["verdict"] = name_of(score.metrics.verdict);
+  json["spectral_error"] = json_of(score.spectral_error);
+  return json;
 }
 
 template <std::size_t n>
@@ -48,6 +47,14 @@ Json json_of_conditions(const char* condition, const std::array<double, n>& valu
 }
 
 }  // namespace
+
+std::string contest_verdict(const std::vector<MethodScore>& scores, const ContestParams& params) {
+  const auto best = std::max_element(scores.begin(), scores.end(), [](const MethodScore& a, const MethodScore& b) {
+    return a.limit.gain < b.limit.gain;
+  });
+  const std::string method(contest_methods()[static_cast<std::size_t>(best - scores.begin())].name);
+  return "The largest force gain that settles is " + text_of(best->limit, params) + ", with " + method + ".";
+}
 
 report::Table contest_table(const std::vector<MethodScore>& scores, const ContestParams& params) {
   using Align = report::Column::Align;
@@ -146,17 +153,15 @@ std::string contest_json(const std::string& experiment, const std::vector<Method
     for (const GainScore& one : score.strong_at_gain) at_gain.push_back(json_of_score(one));
     Json strong{{"force_limit_N", params.task.strong_display_N}};
     strong.update(json_of(score.strong_display));
-    document["methods"].push_back({{"name", method.name},
-                                   {"set", method.settings},
-                                   {"gain_limit", score.limit.gain},
-                                   {"beyond_search", score.limit.beyond_search},
-                                   {"metrics",
-                                    {{"strong_display", strong},
-                                     {"delays", json_of_conditions("delay_s", contest_delays_s, score.delayed)},
-                                     {"grips", json_of_conditions("grip", contest_grips, score.gripped)},
-                                     {"gains", at_gain},
-                                     {"free_space_hand_force_rms_N", score.free_space.hand_force_rms_N},
-                                     {"free_space_lag_s", json_of(score.free_space.lag_s)}}}});
+    Json entry{{"name", method.name}, {"set", method.settings}};
+    entry.update(json_of(score.limit));
+    entry["metrics"] = {{"strong_display", strong},
+                        {"delays", json_of_conditions("delay_s", contest_delays_s, score.delayed)},
+                        {"grips", json_of_conditions("grip", contest_grips, score.gripped)},
+                        {"gains", at_gain},
+                        {"free_space_hand_force_rms_N", score.free_space.hand_force_rms_N},
+                        {"free_space_lag_s", json_of(score.free_space.lag_s)}};
+    document["methods"].push_back(std::move(entry));
   }
   return document.dump(2) + "\n";
 }

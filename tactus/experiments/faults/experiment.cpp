@@ -271,9 +271,7 @@ std::string json_of(const Request& request, const FaultsParams& params, const Fa
                     const std::optional<FaultsInRealTime>& real_time) {
   Json document{{"experiment", request.name},
                 {"kind", "faults"},
-                {"command", request.command},
                 {"time", "virtual"},
-                {"seed", params.task.seed},
                 {"seeds", params.task.seeds},
                 {"rate_limit_N_per_tick", params.control.gate.rate_limit_N_per_s / params.servo.rate_Hz},
                 {"rows", json_of(table.rows)},
@@ -343,11 +341,11 @@ Outcome present_faults(const Request& request, const FaultsParams& params, const
                         rules = rule_table(rows, time);
     const std::string said = summary(of, rows, time);
     page.paragraph(said);
+    text += said + "\n";
     for (const report::Table* one : {&outcomes, &harm, &rules}) {
       page.table(*one);
       text += one->to_text() + "\n";
     }
-    text += said;
   };
   add(params, table.rows, "virtual");
   if (!table.controls.empty()) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/experiments/gain_limit.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/text.hpp>
 
 #include <optional>
@@ -16,7 +17,19 @@ inline std::string percent(const std::optional<double>& share) {
 }
 
 inline nlohmann::ordered_json json_of(const GainLimit& limit) {
-  return {{"gain_limit", limit.gain}, {"beyond_search", limit.beyond_search}};
+  nlohmann::ordered_json object{{"gain_limit", limit.gain}};
+  if (limit.censored()) object["gain_limit_censored"] = true;
+  return object;
+}
+
+/// The share of taps that settled, and after which time, with `NAME_censored` where the window cut it off.
+inline nlohmann::ordered_json json_of_settling(const TappingMetrics& metrics) {
+  nlohmann::ordered_json object{{"settled_fraction", metrics.settled_fraction},
+                                {"settling_time_median_s", metrics.settling_time_median_s}};
+  if (metrics.settling_time_median_censored) object["settling_time_median_s_censored"] = true;
+  object["settling_time_p90_s"] = metrics.settling_time_p90_s;
+  if (metrics.settling_time_p90_censored) object["settling_time_p90_s_censored"] = true;
+  return object;
 }
 
 inline nlohmann::ordered_json json_of(const std::optional<double>& value) {

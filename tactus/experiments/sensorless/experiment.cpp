@@ -63,8 +63,9 @@ Result<Outcome> SensorlessExperiment::run(const Request& request, const Progress
   const report::Table table = sensorless_table(*rows, scores, *params);
   const std::vector<std::string> verdicts = sensorless_verdicts(*rows, scores, *params);
   report::Figure figure = sensorless_figure(*rows, scores, *params);
-  std::string text = table.to_text();
+  std::string text;
   for (const std::string& sentence : verdicts) text += sentence + "\n";
+  text += "\n" + table.to_text();
   report::Page page = page_of(request, table, figure, verdicts);
   return outcome_of({.text = std::move(text),
                      .json = sensorless_json(request.name, *rows, scores, *params),

@@ -182,13 +182,10 @@ std::string sensorless_json(const std::string& experiment, const std::vector<Sen
     }
     Json strong{{"force_limit_N", params.task.strong_display_N}};
     strong.update(json_of(score.strong_display));
-    row.update({{"delay_s", rows[i].delay_s},
-                {"cancellation", name_of(rows[i].cancellation)},
-                {"gain_limit", score.limit.gain},
-                {"beyond_search", score.limit.beyond_search},
-                {"strong_display", strong},
-                {"settled_fraction", score.at_gain.metrics.settled_fraction},
-                {"settling_time_median_s", score.at_gain.metrics.settling_time_median_s},
+    row.update({{"delay_s", rows[i].delay_s}, {"cancellation", name_of(rows[i].cancellation)}});
+    row.update(json_of(score.limit));
+    row.update(json_of_settling(score.at_gain.metrics));
+    row.update({{"strong_display", strong},
                 {"spectral_error", json_of(score.at_gain.spectral_error)},
                 {"force_error_rms_N", json_of(score.at_gain.told_force_error_N)},
                 {"free_space_displayed_force_rms_N", score.free_space.displayed_force_rms_N}});

@@ -61,8 +61,9 @@ Result<Outcome> TappingExperiment::run(const Request& request, const Progress& p
 
   const report::Table table = tapping_table(runs);
   std::vector<report::Figure> figures = tapping_figures(runs);
-  report::Page page = tapping_page(request, table, figures);
-  Outcome outcome = outcome_of({.text = table.to_text(),
+  const std::string verdict = tapping_verdict(runs);
+  report::Page page = tapping_page(request, verdict, table, figures);
+  Outcome outcome = outcome_of({.text = verdict + "\n\n" + table.to_text(),
                                 .json = tapping_json(request, runs),
                                 .page = std::move(page),
                                 .figures = std::move(figures)},

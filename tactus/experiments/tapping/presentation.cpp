@@ -1,5 +1,9 @@
+#include <tactus/experiments/internal/gain_json.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/tapping/presentation.hpp>
+
+#include <cctype>
+#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -31,27 +35,53 @@ report::Table tapping_table(const std::vector<TappingRun>& runs) {
                                       std::string(tapping_title));
   for (const TappingRun& run : runs) {
     const TappingMetrics& m = run.metrics;
-    // A quantile that falls on a tap that never settled is only a lower bound.
-    const auto settling = [&](double seconds) {
-      return (seconds >= run.observation_s ? "> " : "") + report::number(1e3 * seconds, 3);
+    const auto settling = [](double seconds, bool censored) {
+      return (censored ? "> " : "") + report::number(1e3 * seconds, 3);
     };
     add_row(table, run.settings,
-            {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3), settling(m.settling_time_median_s),
-             settling(m.settling_time_p90_s), format_number(m.contacts_median), report::number(m.peak_force_N, 3),
-             report::number(1e3 * m.residual_rms_N, 3), verdict_of(m)});
+            {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
+             settling(m.settling_time_median_s, m.settling_time_median_censored),
+             settling(m.settling_time_p90_s, m.settling_time_p90_censored), format_number(m.contacts_median),
+             report::number(m.peak_force_N, 3), report::number(1e3 * m.residual_rms_N, 3), verdict_of(m)});
   }
   return table;
 }
 
+std::string tapping_verdict(const std::vector<TappingRun>& runs) {
+  if (runs.empty()) return "No tap came to its end.";
+  if (runs.size() == 1) {
+    const TappingMetrics& m = runs.front().metrics;
+    const auto settled = std::lround(m.settled_fraction * static_cast<double>(m.taps));
+    std::string text = verdict_of(m);
+    text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
+    text += ": " + std::to_string(settled) + " of " + std::to_string(m.taps) + (m.taps == 1 ? " tap" : " taps") +
+            " settled";
+    if (!m.settling_time_median_censored) {
+      text += ", half of them within " + report::number(1e3 * m.settling_time_median_s, 3) + " ms";
+    }
+    return text + ".";
+  }
+  constexpr std::size_t most = 6;  // that are named
+  std::size_t failed = 0;
+  std::string names;
+  for (const TappingRun& run : runs) {
+    if (run.metrics.verdict == Verdict::settled || failed++ >= most) continue;
+    names += (names.empty() ? "" : "; ") + settings_caption(run.settings) + " (" + verdict_of(run.metrics) + ")";
+  }
+  std::string text =
+      std::to_string(runs.size() - failed) + " of " + std::to_string(runs.size()) + " combinations settle";
+  if (failed > 0) text += "; these do not: " + names;
+  if (failed > most) text += " and " + std::to_string(failed - most) + " more";
+  return text + ".";
+}
+
 std::string metrics_json(const TappingMetrics& metrics) {
-  nlohmann::ordered_json json{{"taps", metrics.taps},
-                              {"settled_fraction", metrics.settled_fraction},
-                              {"settling_time_median_s", metrics.settling_time_median_s},
-                              {"settling_time_p90_s", metrics.settling_time_p90_s},
-                              {"contacts_median", metrics.contacts_median},
-                              {"peak_force_N", metrics.peak_force_N},
-                              {"residual_rms_N", metrics.residual_rms_N},
-                              {"verdict", name_of(metrics.verdict)}};
+  nlohmann::ordered_json json{{"taps", metrics.taps}};
+  json.update(json_of_settling(metrics));
+  json.update({{"contacts_median", metrics.contacts_median},
+               {"peak_force_N", metrics.peak_force_N},
+               {"residual_rms_N", metrics.residual_rms_N},
+               {"verdict", name_of(metrics.verdict)}});
   if (metrics.stopped_by) {
     json["stopped"] = metrics.stopped;
     json["stopped_by"] = {{"site", name_of(metrics.stopped_by->site)}, {"cause", name_of(metrics.stopped_by->cause)}};
@@ -64,9 +94,10 @@ std::string tapping_json(const Request& request, const std::vector<TappingRun>& 
                    [](const TappingRun& run) { return "{\"metrics\":" + metrics_json(run.metrics) + "}"; });
 }
 
-report::Page tapping_page(const Request& request, const report::Table& table,
+report::Page tapping_page(const Request& request, const std::string& verdict, const report::Table& table,
                           const std::vector<report::Figure>& figures) {
   report::Page page(request.name + ": " + std::string(tapping_title));
+  page.paragraph(verdict);
   page.paragraph(
       "A person reaches through the teleoperator onto a wall and presses. The force measured at the slave's tip, times "
       "the force gain, is displayed to the hand, saturated. Each row of the table is an ensemble of taps that differ "

@@ -4,6 +4,7 @@
 #include <tactus/simulation/quantile.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <type_traits>
 #include <utility>
@@ -108,6 +109,19 @@ TapResult TappingEnsemble::run(std::size_t tap, std::vector<simulation::Teleoper
                      : run_tap<simulation::Teleoperator>(taps_[tap], observer(tap), trace);
 }
 
+namespace {
+
+/// Whether a tap that did not settle, whose time is only a lower bound, enters the quantile `q` of the settling times.
+bool is_censored(std::vector<TapResult> taps, double q) {
+  const auto place = static_cast<std::size_t>(std::ceil(q * static_cast<double>(taps.size() - 1)));
+  std::sort(taps.begin(), taps.end(),
+            [](const auto& a, const auto& b) { return a.metrics.settling_time_s < b.metrics.settling_time_s; });
+  return std::any_of(taps.begin(), taps.begin() + static_cast<std::ptrdiff_t>(place) + 1,
+                     [](const TapResult& tap) { return !tap.metrics.settled; });
+}
+
+}  // namespace
+
 TappingMetrics summarise(const std::vector<TapResult>& taps) {
   const auto collect = [&taps](auto&& value) {
     std::vector<double> values;
@@ -128,6 +142,8 @@ TappingMetrics summarise(const std::vector<TapResult>& taps) {
   metrics.settled_fraction = static_cast<double>(settled) / static_cast<double>(taps.size());
   metrics.settling_time_median_s = simulation::quantile(settling, 0.5);
   metrics.settling_time_p90_s = simulation::quantile(settling, 0.9);
+  metrics.settling_time_median_censored = is_censored(taps, 0.5);
+  metrics.settling_time_p90_censored = is_censored(taps, 0.9);
   metrics.contacts_median =
       simulation::quantile(collect([](const TapResult& tap) { return tap.metrics.contacts; }), 0.5);
   metrics.peak_force_N =

@@ -89,6 +89,9 @@ struct TappingMetrics {
   double settled_fraction = 0.0;
   double settling_time_median_s = 0.0;
   double settling_time_p90_s = 0.0;
+  /// Whether the observation window cut these off: a tap that did not settle is in them, so they are lower bounds.
+  bool settling_time_median_censored = false;
+  bool settling_time_p90_censored = false;
   double contacts_median = 0.0;
   double peak_force_N = 0.0;                          ///< median over the taps
   double residual_rms_N = 0.0;                        ///< median over the taps

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   const auto content = read_log(folder);
   if (!content) return 1;
   const auto error = [&]() -> tactus::Check {
-    if (auto failed = export_csv(content->tables[0], folder / "log.csv")) return failed;
+    if (auto failed = export_csv(*content, folder / "log.csv")) return failed;
     if (auto failed = export_mat(*content, folder / "log.mat")) return failed;
     return export_hdf5(*content, folder / "log.h5");
   }();
