@@ -122,7 +122,8 @@ export class LoopView {
   }
 
   private drawMeter([low, high]: readonly [number, number]): void {
-    const { forceLimit_N, displayed_force_N } = this.loop.state;
+    const { trace, state } = this.loop;
+    const { forceLimit_N } = state;
     const full_N = Math.max(meterFull_N, 1.5 * forceLimit_N);
     this.peak_N = Math.max(high, this.peak_N * 0.985);
     const share = (force_N: number): number => Math.min(1, force_N / full_N);
@@ -137,7 +138,8 @@ export class LoopView {
     meter.setAttribute('aria-valuemax', String(full_N));
     meter.setAttribute('aria-valuenow', Math.min(high, full_N).toFixed(2));
     meter.setAttribute('aria-valuetext', text);
-    const atLimit = clips(displayed_force_N, forceLimit_N);
+    const displayed_N = magnitudes(trace.extremes(signalIndex('displayed_force_n'), trace.latest - blur_s))[1];
+    const atLimit = clips(displayed_N, forceLimit_N);
     this.find('.limit').dataset.clips = String(atLimit);
     const limit = `${Number(forceLimit_N.toPrecision(3))} N`;
     this.find('.limit').textContent =

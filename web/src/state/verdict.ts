@@ -27,7 +27,7 @@ const words: Readonly<Record<Told, readonly [string, string]>> = {
   unknown: ['Unknown', 'Nothing is heard of the robot.'],
 };
 
-type Seen = Pick<LoopState, 'verdict' | 'cause' | 'advice' | 'displayed_force_N' | 'forceLimit_N'>;
+type Seen = Pick<LoopState, 'verdict' | 'cause' | 'advice'>;
 
 /** The greatest forces of the last moments, as the page shows them beside the verdict. */
 export interface Forces {

@@ -124,7 +124,7 @@ describe('the verdict', () => {
   type Word = 'free' | 'contact' | 'settled' | 'rings' | 'stopped';
   const say = (verdict: Word, onHand_N = 0, connected = true, atWall_N = 0) =>
     judgement(
-      { verdict, cause: 'the command was not finite', advice: 'Tap faster.', displayed_force_N: 0, forceLimit_N: 1 },
+      { verdict, cause: 'the command was not finite', advice: 'Tap faster.' },
       { onHand_N, atWall_N },
       connected,
     );
