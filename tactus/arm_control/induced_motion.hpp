@@ -1,0 +1,92 @@
+#pragma once
+
+#include <tactus/arm/chain.hpp>
+#include <tactus/arm/hand.hpp>
+#include <tactus/core/parameters.hpp>
+
+#include <array>
+
+namespace tactus::arm_control {
+
+using arm::JointVector;
+
+/// Which part of the arm's inertia a model has.
+enum class InertiaModel { full, diagonal };
+constexpr auto enumerators(InertiaModel) {
+  return std::array{Enumerator{InertiaModel::full, "full"}, Enumerator{InertiaModel::diagonal, "diagonal"}};
+}
+
+/// What displayed torques do to a held arm with rigid joints: the motion that they induce, to be taken from the command
+/// to the follower (`ArmLeader`). The counterpart of `control::InducedMotionModel` for joints that are coupled:
+///
+///     (M(q) + Jᵀ m J)·ẅ + Jᵀ B J·ẇ + Jᵀ K J·w + friction(q̇) − friction(q̇ − ẇ) = τ,
+///
+/// where w is the induced motion, q̇ the measured velocity, J the tool's Jacobian, and K, B, m the hand's impedance in
+/// base axes, K and B of its attitude too (`arm::HandImpedance`). τ is the displayed torque alone: feed-forward belongs
+/// to the arm.
+///
+/// Friction acts on total velocity, as a difference: while the hand moves, Coulomb's hardly changes with the induced
+/// motion. What the site's own friction feed-forward takes away is not there. It enters as a damper of the size of its
+/// secant, so that the implicit step below holds it whatever it is.
+///
+/// Slow motion is washed out of what is told (first-order high-pass, `washout_Hz`): the person corrects it, and a model
+/// without that correction would let the follower press ever harder. At 0 it is left in.
+///
+/// One implicit Euler step a tick, unconditionally stable for the linear part, error of the order of dt·ω (about 5 % in
+/// phase at 10 Hz and 1 kHz). M, J at the measured position. Position and velocity at a tick are the effect of torques
+/// up to that tick: read them before `step`.
+/// Source: K. J. Kuchenbecker, G. Niemeyer, Induced master motion in force-reflecting teleoperation, 2006, eq. 7, of
+/// whose one axis this is the case of several.
+class InducedMotion {
+ public:
+  struct Params {
+    arm::HandImpedance hand = {};
+    double washout_Hz = 1.0;
+    InertiaModel inertia = InertiaModel::full;
+    static constexpr auto fields() {
+      return List{field("hand", &Params::hand, "The hand that is believed to hold the tool."),
+                  field("washout_Hz", &Params::washout_Hz, tactus::units::hertz, between(0.0, 50.0),
+                        "Corner below which induced motion is left to the person; 0 takes out slow motion too."),
+                  field("inertia", &Params::inertia, "The full mass matrix, or its diagonal alone.")};
+    }
+  };
+  /// What the leader's site does by itself on every velocity.
+  struct Site {
+    double damping_N_s_per_m = 0.0;  ///< of a damper at the tool
+    double friction_share = 0.0;     ///< of the friction that feed-forward takes away
+    double friction_velocity_rad_per_s = 0.3;
+  };
+
+  /// `arm` and `tool_m`, on its last link, are what the leader is believed to be. Errors: a number out of bounds.
+  static Result<InducedMotion> make(const Params& params, const Site& site, const arm::Chain::Params& arm,
+                                    const arm::Vector3& tool_m, Seconds dt);
+
+  /// In rad and rad/s, at this tick, without what is washed out.
+  [[nodiscard]] JointVector position() const noexcept { return position_ - slow_position_; }
+  [[nodiscard]] JointVector velocity() const noexcept { return velocity_ - slow_velocity_; }
+  /// To the next tick, under the displayed torque in N m that acts until then. Real-time safe.
+  void step(const JointVector& displayed, const JointVector& measured_position,
+            const JointVector& measured_velocity) noexcept;
+  void reset() noexcept;
+
+ private:
+  InducedMotion(const Params& params, const Site& site, const arm::Chain::Params& arm, const arm::Chain& chain,
+                const arm::Vector3& tool_m, Seconds dt);
+  [[nodiscard]] double net_friction(std::size_t joint, double velocity) const noexcept;
+  [[nodiscard]] double friction_secant(std::size_t joint, double velocity, double induced) const noexcept;
+
+  arm::Chain chain_;
+  Joints<arm::JointFriction> friction_;
+  arm::Vector3 tool_m_;
+  arm::HandImpedance hand_;
+  Site site_;
+  bool diagonal_;
+  double dt_s_;
+  double washed_;  ///< of slow motion, from tick to tick
+  JointVector position_;
+  JointVector velocity_;
+  JointVector slow_position_;
+  JointVector slow_velocity_;
+};
+
+}  // namespace tactus::arm_control
