@@ -11,7 +11,7 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
     : params_(params),
       feed_forward_(feed_forward),
       chain_(chain),
-      tool_m_(arm.tool_m),
+      tool_m_(arm.induced.tool_m),
       stiffness_(JointVector::Zero(chain.joints())),
       damping_(stiffness_),
       model_(model),
@@ -34,7 +34,7 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
   const InducedMotion::Site site{.damping_N_s_per_m = params.damping_N_s_per_m,
                                  .friction_share = params.feed_forward.friction_share,
                                  .friction_velocity_rad_per_s = params.feed_forward.friction_velocity_rad_per_s};
-  const auto model = InducedMotion::make(params.model, site, arm.induced, arm.tool_m, dt);
+  const auto model = InducedMotion::make(params.model, site, arm.induced, dt);
   if (!model) return under("model", model.error());
   const auto force = JointLowPass::make(params.force_low_pass_Hz, dt);
   if (!force) return Error{force.error().code, "force_low_pass_Hz", force.error().message, {}};

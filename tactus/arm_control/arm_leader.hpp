@@ -77,8 +77,7 @@ class ArmLeader {
   /// What the site believes of its arm, once for what carries it and once for the motion that torques induce.
   struct Arm {
     arm::Chain::Params carried;
-    arm::Chain::Params induced;
-    arm::Vector3 tool_m = arm::Vector3::Zero();
+    InducedMotion::Arm induced;
     Joints<DriveGains> gains = {};  ///< of the follower's drives, for position-position
   };
   struct Output {

@@ -12,7 +12,9 @@ constexpr Seconds tick{1e-3};
 
 ArmLeader::Arm believed() {
   const arm_plants::ArmPlant::Params plant = arm_plants::openarm_class();
-  return {.carried = plant.chain, .induced = plant.chain, .tool_m = plant.tool_m, .gains = Joints<DriveGains>(7)};
+  return {.carried = plant.chain,
+          .induced = {.chain = plant.chain, .tool_m = plant.tool_m},
+          .gains = Joints<DriveGains>(7)};
 }
 
 ArmReading resting() {
@@ -59,7 +61,7 @@ TEST(ArmLeader, ItsDamperResistsTheToolAlone) {
   ArmReading moving = resting();
   moving.velocity << 0.1, 0.2, -0.1, 0.3, 0.0, 0.1, 0.2;
   const JointVector torque = leader.step(moving, touching(0.0)).command.torque - chain.gravity_torque(moving.position);
-  const auto jacobian = chain.jacobian(moving.position, 6, believed().tool_m).topRows<3>().eval();
+  const auto jacobian = chain.jacobian(moving.position, 6, believed().induced.tool_m).topRows<3>().eval();
   const arm::Vector3 velocity = jacobian * moving.velocity;
   EXPECT_NEAR(torque.dot(moving.velocity), -40.0 * velocity.squaredNorm(), 1e-12);
 }
