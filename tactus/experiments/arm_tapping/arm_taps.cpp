@@ -16,7 +16,7 @@ using arm::Vector3;
 namespace {
 
 constexpr double rest_s = 0.1;
-constexpr double patience_s = 0.3;  ///< after the reach, for a follower that has not touched
+constexpr double patience_s = 2.0;  ///< after the reach, for a follower that has not touched
 constexpr double given_time_s = 0.15;
 constexpr double window_s = 0.05;
 constexpr double end_s = 0.1;

@@ -1,6 +1,7 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/arm_tapping/arm_taps.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -26,7 +27,7 @@ double settled_share(ArmTappingParams params, std::int64_t taps) {
   params.task.taps = taps;
   const ArmTaps made = *ArmTaps::make(params, folder);
   std::size_t settled = 0;
-  for (std::size_t tap = 0; tap < made.size(); ++tap) settled += made.run(tap).settled() ? 1 : 0;
+  for (std::size_t tap = 0; tap < made.size(); ++tap) settled += made.run(tap).settled() ? 1U : 0U;
   return static_cast<double>(settled) / static_cast<double>(taps);
 }
 
