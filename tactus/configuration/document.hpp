@@ -76,6 +76,9 @@ class Document {
   /// the document. A place that is already there stays.
   [[nodiscard]] Error locate(Error error) const;
 
+  /// The file, or what stands for it.
+  [[nodiscard]] const std::string& name() const { return name_; }
+
  private:
   [[nodiscard]] const Entry* find(std::string_view path) const;
   [[nodiscard]] std::string place_of(const Entry& entry, Position position) const;

@@ -18,7 +18,8 @@
   KIND(hydraulic_chirp_experiment)         \
   KIND(hydraulic_rigid_contact_experiment) \
   KIND(sensorless_experiment)              \
-  KIND(faults_experiment)
+  KIND(faults_experiment)                  \
+  KIND(arm_tapping_experiment)
 
 namespace tactus::experiments {
 

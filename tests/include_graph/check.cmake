@@ -7,7 +7,7 @@
 #   - what stands in a folder `internal` is not installed, and only sources of its own module include it.
 cmake_minimum_required(VERSION 3.25)
 
-set(kernel core signal mechanics arm control)
+set(kernel core signal mechanics arm control arm_control)
 set(needs_a_system barrier chrono condition_variable filesystem fstream future iostream latch mutex semaphore
                    shared_mutex stop_token thread)
 

@@ -1,0 +1,80 @@
+// bench_arms [EXPERIMENT.toml]: what a tick of both sites of two arms takes, and a step of a simulated arm.
+
+#include <tactus/configuration/document.hpp>
+#include <tactus/experiments/arm_tapping/arm_pair.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace tactus;
+
+template <class Work>
+void report(const char* name, int times, double parts, Work&& work) {
+  std::vector<double> taken_us;
+  for (int k = 0; k < times; ++k) {
+    const auto before = std::chrono::steady_clock::now();
+    work(k);
+    const std::chrono::duration<double, std::micro> taken = std::chrono::steady_clock::now() - before;
+    taken_us.push_back(taken.count() / parts);
+  }
+  std::sort(taken_us.begin(), taken_us.end());
+  const auto quantile = [&](double q) {
+    return taken_us[static_cast<std::size_t>(q * static_cast<double>(taken_us.size()))];
+  };
+  std::printf("  %-28s median %6.2f us   p99 %6.2f us\n", name, quantile(0.5), quantile(0.99));
+}
+
+bool measure(const experiments::ArmTappingParams& params, const std::filesystem::path& folder) {
+  const auto setup = experiments::set_up_arm_pair(params, folder);
+  if (!setup) return std::fprintf(stderr, "%s\n", describe(setup.error()).c_str()), false;
+  const Seconds tick{1.0 / params.servo.rate_Hz};
+  const std::size_t joints = setup->arm.chain.joints.size();
+  auto leader = arm_control::ArmLeader::make(
+      params.control,
+      {.carried = setup->arm.chain, .induced = setup->induced, .gains = params.control.follower.gains.of(joints)},
+      tick);
+  auto follower = arm_control::ArmFollower::make(params.control.follower, setup->arm.chain, tick);
+  auto arm = arm_plants::ArmPlant::make(setup->arm, setup->start);
+  if (!leader || !follower || !arm) return false;
+  arm::ArmReading reading = arm->read();
+  arm_control::ArmMessage told = arm_control::ArmMessage::at_rest(setup->start);
+  report("a tick of both sites", 20000, 1.0, [&](int k) {
+    reading.velocity.setConstant(0.1 * std::sin(0.01 * k));
+    const auto output = leader->step(reading, told);
+    told = follower->step(reading, setup->start, output.message).message;
+  });
+  arm->write({.position = setup->start,
+              .velocity = arm::JointVector::Zero(setup->start.size()),
+              .stiffness = arm::JointVector::Constant(setup->start.size(), 30.0),
+              .damping = arm::JointVector::Constant(setup->start.size(), 0.2),
+              .torque = arm::JointVector::Zero(setup->start.size())});
+  constexpr int steps = 10;
+  report("a step of a simulated arm", 3000, steps, [&](int) {
+    for (int i = 0; i < steps; ++i) arm->step({});
+  });
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::filesystem::path file = argc > 1 ? argv[1] : "experiments/arm-tapping.toml";
+  const auto document = configuration::Document::load(file);
+  const auto read = document ? document->read<experiments::ArmTappingParams>()
+                             : Result<experiments::ArmTappingParams>(document.error());
+  if (!read) return std::fprintf(stderr, "%s\n", describe(read.error()).c_str()), 1;
+  experiments::ArmTappingParams params = *read;
+  std::printf("Joints taken for rigid, rigid arms\n");
+  if (!measure(params, file.parent_path())) return 1;
+  params.control.model.joints = arm_control::JointModel::elastic;
+  params.arm.joint_stiffness_N_m_per_rad = 3000.0;
+  std::printf("Joints taken for elastic, elastic arms\n");
+  return measure(params, file.parent_path()) ? 0 : 1;
+}

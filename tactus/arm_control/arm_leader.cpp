@@ -1,0 +1,97 @@
+#include <tactus/arm_control/arm_leader.hpp>
+#include <tactus/signal/checks.hpp>
+
+#include <algorithm>
+
+namespace tactus::arm_control {
+
+ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
+                     const InducedMotion& model, const JointLowPass& force, const JointLowPass& command,
+                     const Joints<control::ForceGate>& gates)
+    : params_(params),
+      feed_forward_(feed_forward),
+      chain_(chain),
+      tool_m_(arm.induced.tool_m),
+      stiffness_(JointVector::Zero(chain.joints())),
+      damping_(stiffness_),
+      model_(model),
+      force_(force),
+      command_position_(command),
+      command_velocity_(command),
+      gates_(gates),
+      acting_(stiffness_) {
+  if (params.method != ArmMethod::position_position) return;
+  for (std::size_t i = 0; i < arm.gains.size(); ++i) {
+    stiffness_[static_cast<Eigen::Index>(i)] = params.force_gain * arm.gains[i].stiffness_N_m_per_rad;
+    damping_[static_cast<Eigen::Index>(i)] = params.force_gain * arm.gains[i].damping_N_m_s_per_rad;
+  }
+}
+
+Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds dt) {
+  if (Check wrong = signal::check(params, dt)) return *std::move(wrong);
+  const auto chain = arm::Chain::make(arm.carried);
+  if (!chain) return chain.error();
+  const InducedMotion::Site site{.damping_N_s_per_m = params.damping_N_s_per_m,
+                                 .friction_share = params.feed_forward.friction_share,
+                                 .friction_velocity_rad_per_s = params.feed_forward.friction_velocity_rad_per_s};
+  const auto model = InducedMotion::make(params.model, site, arm.induced, dt);
+  if (!model) return under("model", model.error());
+  const auto force = JointLowPass::make(params.force_low_pass_Hz, dt);
+  if (!force) return Error{force.error().code, "force_low_pass_Hz", force.error().message, {}};
+  const auto command = JointLowPass::make(params.command_low_pass_Hz, dt);
+  if (!command) return Error{command.error().code, "command_low_pass_Hz", command.error().message, {}};
+  Joints<control::ForceGate::Params> limits(arm.carried.joints.size());
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    limits[i].force_limit_N = std::min(100.0, arm.carried.joints[i].limits.effort_N_m);
+  }
+  const auto gates = make_each<control::ForceGate>(limits, dt);
+  if (!gates) return gates.error();
+  return ArmLeader(params, arm, FeedForward(params.feed_forward, arm.carried, *chain), *chain, *model, *force, *command,
+                   *gates);
+}
+
+ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& follower) noexcept {
+  const int joints = chain_.joints();
+  if (!started_) {
+    command_position_.settle(reading.position);
+    started_ = true;
+  }
+  const bool reflects = params_.method != ArmMethod::position_position;
+  JointVector support = feed_forward_.torque(reading);
+  if (params_.damping_N_s_per_m > 0.0) {
+    const auto moving = chain_.jacobian(reading.position, joints - 1, tool_m_).topRows<3>().eval();
+    support -= params_.damping_N_s_per_m * (moving.transpose() * (moving * reading.velocity));
+  }
+  JointVector displayed = JointVector::Zero(joints);
+  if (reflects) displayed = params_.force_gain * force_.step(follower.external_torque);
+
+  Output output;
+  output.command = ArmCommand::of_torque(support + displayed);
+  for (int i = 0; i < joints; ++i) {
+    double& torque = output.command.torque[i];
+    torque = gates_[static_cast<std::size_t>(i)].step(torque);
+    displayed[i] = reflects ? torque - support[i] : 0.0;
+  }
+  if (!reflects) {
+    output.command.position = follower.position;
+    output.command.velocity = follower.velocity;
+    output.command.stiffness = stiffness_;
+    output.command.damping = damping_;
+  }
+  output.displayed = displayed;
+  output.induced = JointVector::Zero(joints);
+  output.message = {
+      .position = reading.position, .velocity = reading.velocity, .external_torque = JointVector::Zero(joints)};
+  if (params_.method == ArmMethod::cancellation) {
+    output.induced = model_.position();
+    output.message.position -= output.induced;
+    output.message.velocity -= model_.velocity();
+    model_.step(acting_, reading.position, reading.velocity);
+    acting_ = displayed;
+  }
+  output.message.position = command_position_.step(output.message.position);
+  output.message.velocity = command_velocity_.step(output.message.velocity);
+  return output;
+}
+
+}  // namespace tactus::arm_control

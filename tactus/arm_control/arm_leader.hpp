@@ -1,0 +1,117 @@
+#pragma once
+
+#include <tactus/arm_control/arm_message.hpp>
+#include <tactus/arm_control/each_joint.hpp>
+#include <tactus/arm_control/feed_forward.hpp>
+#include <tactus/arm_control/induced_motion.hpp>
+#include <tactus/arm_control/joint_low_pass.hpp>
+#include <tactus/control/force_gate.hpp>
+
+#include <array>
+#include <optional>
+
+namespace tactus::arm_control {
+
+/// How two arms are coupled.
+enum class ArmMethod {
+  position_force,    ///< the follower's external torque comes back, times a gain
+  cancellation,      ///< the same, and what it does to the leader is taken from the command (`InducedMotion`)
+  position_position  ///< each drive pulls its arm to the other's position; a gain on the leader's stiffness
+};
+constexpr auto enumerators(ArmMethod) {
+  return std::array{Enumerator{ArmMethod::position_force, "position-force"},
+                    Enumerator{ArmMethod::cancellation, "cancellation"},
+                    Enumerator{ArmMethod::position_position, "position-position"}};
+}
+
+/// Of a drive's own law (`arm::ArmCommand`), about its joint.
+struct DriveGains {
+  double stiffness_N_m_per_rad = 100.0;
+  double damping_N_m_s_per_rad = 1.0;
+  static constexpr auto fields() {
+    using D = DriveGains;
+    return List{field("stiffness_N_m_per_rad", &D::stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
+                      between(0.0, 500.0), "Proportional gain of the drive."),
+                field("damping_N_m_s_per_rad", &D::damping_N_m_s_per_rad, arm::units::newton_metre_second_per_radian,
+                      between(0.0, 50.0), "Derivative gain of the drive.")};
+  }
+};
+
+/// The site of the arm that a person holds. Its torque is
+///
+///     feed-forward + gain·external torque of the follower − Jᵀ·damping·J·q̇,
+///
+/// of which the middle part is displayed; with position-position it is feed-forward and the drives' law. What passes is
+/// bounded by each joint's effort limit, last of all, and the model of induced motion lives on what passed.
+/// Sources: position-position as openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the
+/// leader's stiffness as i2rt's YAM has it (`bilateral_kp`, MIT); the rest as on one axis
+/// (`control::PositionForceMaster`).
+class ArmLeader {
+ public:
+  struct Params {
+    ArmMethod method = ArmMethod::cancellation;
+    double force_gain = 1.0;
+    double damping_N_s_per_m = 0.0;
+    double force_low_pass_Hz = 0.0;
+    double command_low_pass_Hz = 0.0;
+    FeedForward::Params feed_forward = {};
+    InducedMotion::Params model = {};
+    static constexpr auto fields() {
+      using P = Params;
+      return List{
+          field("method", &P::method, "How the arms are coupled."),
+          field("force_gain", &P::force_gain, tactus::units::none, between(0.0, 100.0),
+                "Displayed torque over the follower's external torque; with position-position the leader's drive gains "
+                "over the follower's."),
+          field("damping_N_s_per_m", &P::damping_N_s_per_m, tactus::units::newton_second_per_metre,
+                between(0.0, 1000.0), "A damper at the leader's tool, by way of the bus."),
+          field("force_low_pass_Hz", &P::force_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
+                "First-order low-pass on the displayed torque; 0 is none."),
+          field("command_low_pass_Hz", &P::command_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
+                "First-order low-pass on the command to the follower; 0 is none."),
+          field("feed_forward", &P::feed_forward, "What carries the leader and helps it against friction."),
+          field("model", &P::model, "The model of induced motion.")};
+    }
+  };
+
+  /// What the site believes of its arm, once for what carries it and once for the motion that torques induce.
+  struct Arm {
+    arm::Chain::Params carried;
+    InducedMotion::Arm induced;
+    Joints<DriveGains> gains = {};  ///< of the follower's drives, for position-position
+  };
+  struct Output {
+    ArmCommand command;
+    ArmMessage message;
+    JointVector displayed;  ///< torque of it all that comes from the follower, N m
+    JointVector induced;    ///< position that was taken from the command, rad
+  };
+
+  /// Torques are bounded by the effort limits of `arm.carried`, 100 N m at most. Errors: a number out of bounds; those
+  /// of the parts.
+  static Result<ArmLeader> make(const Params& params, const Arm& arm, Seconds dt);
+
+  /// One tick. The command acts from the next tick on, as on a bus, and the model counts with that. Real-time safe.
+  Output step(const ArmReading& reading, const ArmMessage& follower) noexcept;
+
+ private:
+  ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
+            const InducedMotion& model, const JointLowPass& force, const JointLowPass& command,
+            const Joints<control::ForceGate>& gates);
+
+  Params params_;
+  FeedForward feed_forward_;
+  arm::Chain chain_;
+  arm::Vector3 tool_m_;
+  JointVector stiffness_;
+  JointVector damping_;
+  InducedMotion model_;
+  JointLowPass force_;
+  JointLowPass command_position_;
+  JointLowPass command_velocity_;
+  Joints<control::ForceGate> gates_;
+  bool started_ = false;
+  JointVector acting_;  ///< displayed torque that acts until the next tick: that of the command before
+};
+
+}  // namespace tactus::arm_control

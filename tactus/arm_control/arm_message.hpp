@@ -1,0 +1,25 @@
+#pragma once
+
+#include <tactus/arm/motors.hpp>
+
+namespace tactus::arm_control {
+
+using arm::ArmCommand;
+using arm::ArmReading;
+using arm::JointVector;
+
+/// What the sites of two arms of the same kinematics tell each other. The leader tells where the follower shall be; the
+/// follower where it is and which torque acts on it from outside, positive where it turns the joint up.
+struct ArmMessage {
+  JointVector position;
+  JointVector velocity;
+  JointVector external_torque;
+
+  /// An arm that rests there and touches nothing.
+  static ArmMessage at_rest(const JointVector& position) noexcept {
+    const JointVector none = arm::JointVector::Zero(position.size());
+    return {.position = position, .velocity = none, .external_torque = none};
+  }
+};
+
+}  // namespace tactus::arm_control

@@ -1,0 +1,249 @@
+#include <tactus/arm_plants/arm_plant.hpp>
+#include <tactus/arm_plants/internal/mujoco_text.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include <mujoco/mujoco.h>
+
+namespace tactus::arm_plants {
+namespace {
+
+using arm::Matrix3;
+
+/// What goes wrong is asked for (`healthy`); MuJoCo by itself would write a file into the current folder.
+void stay_silent(const char*) {}
+
+double in_steps(double value, double step) noexcept { return step > 0.0 ? step * std::round(value / step) : value; }
+
+struct Freed {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using Model = std::unique_ptr<mjModel, Freed>;
+using Data = std::unique_ptr<mjData, Freed>;
+
+Result<Model> load(const std::string& text) {
+  // The loader of MuJoCo 2.2 keeps what it reads in one place for all.
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  mju_user_warning = stay_silent;
+  constexpr const char* name = "arm.xml";
+  const auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(text.size()));
+  std::memcpy(files->filedata[mj_findFileVFS(files.get(), name)], text.data(), text.size());
+  std::array<char, 1000> complaint{};
+  Model model(mj_loadXML(name, files.get(), complaint.data(), static_cast<int>(complaint.size())));
+  mj_deleteVFS(files.get());
+  if (model) return model;
+  return Error{.code = ErrorCode::failed,
+               .parameter = {},
+               .message = std::string("MuJoCo cannot simulate this arm: ") + complaint.data(),
+               .place = {}};
+}
+
+Check check(const ArmPlant::Params& params, const JointVector& position) {
+  const std::size_t joints = params.chain.joints.size();
+  if (params.motors.size() != joints || static_cast<std::size_t>(position.size()) != joints) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "motors",
+                 .message = "an arm of " + std::to_string(joints) + " joints has as many motors and positions",
+                 .place = {}};
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    const arm::JointFriction& friction = params.chain.joints[i].friction;
+    if (friction.offset_N_m == 0.0 && friction.load == 0.0 && friction.stribeck_N_m == 0.0) continue;
+    return under_joint<Joints<MotorParams>>(
+        i, {.code = ErrorCode::inconsistent,
+            .parameter = "friction",
+            .message = "a simulated joint has Coulomb and viscous friction only: set offset, load and Stribeck's to 0",
+            .place = {}});
+  }
+  return {};
+}
+
+}  // namespace
+
+struct ArmPlant::Engine {
+  Model model;
+  Data data;
+  Joints<MotorParams> motors;
+  std::array<int, most_joints> motor_dof{};
+  Joints<bool> elastic;
+  Vector3 tool_m;  ///< on the last link
+  int last_body = 0;
+  Vector3 carry_N;  ///< holds the carried mass up
+  ArmCommand command;
+  JointVector torque;  ///< of the motors, at the latest step
+
+  [[nodiscard]] int joints() const noexcept { return static_cast<int>(motors.size()); }
+  [[nodiscard]] std::size_t dof(int joint) const noexcept {
+    return static_cast<std::size_t>(motor_dof[static_cast<std::size_t>(joint)]);
+  }
+  [[nodiscard]] JointVector motor_side(const mjtNum* of) const {
+    JointVector found(joints());
+    for (int i = 0; i < joints(); ++i) found[i] = of[dof(i)];
+    return found;
+  }
+  [[nodiscard]] JointVector link_side(const mjtNum* of) const {
+    JointVector found = motor_side(of);
+    for (int i = 0; i < joints(); ++i) {
+      if (elastic[static_cast<std::size_t>(i)]) found[i] += of[dof(i) + 1];
+    }
+    return found;
+  }
+  [[nodiscard]] Vector3 tool_position() const {
+    const auto at = static_cast<std::size_t>(last_body);
+    const Eigen::Map<const Vector3> origin(data->xpos + 3 * at);
+    return origin + rotation() * tool_m;
+  }
+  [[nodiscard]] Matrix3 rotation() const {
+    const auto at = static_cast<std::size_t>(last_body);
+    return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data->xmat + 9 * at);
+  }
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor, 3, 2 * arm::most>;
+  struct ToolJacobian {
+    Rows moving, turning;
+  };
+  /// For a velocity of each of MuJoCo's own coordinates.
+  [[nodiscard]] ToolJacobian jacobian() const {
+    ToolJacobian found{Rows(3, model->nv), Rows(3, model->nv)};
+    const Vector3 point = tool_position();
+    mj_jac(model.get(), data.get(), found.moving.data(), found.turning.data(), point.data(), last_body);
+    return found;
+  }
+  [[nodiscard]] auto velocities() const { return Eigen::Map<const Eigen::VectorXd>(data->qvel, model->nv); }
+};
+
+ArmPlant::ArmPlant(std::unique_ptr<Engine> engine) : engine_(std::move(engine)) {}
+ArmPlant::ArmPlant(ArmPlant&& other) noexcept = default;
+ArmPlant& ArmPlant::operator=(ArmPlant other) noexcept {
+  std::swap(engine_, other.engine_);
+  return *this;
+}
+ArmPlant::~ArmPlant() = default;
+
+ArmPlant::ArmPlant(const ArmPlant& other)
+    : engine_(std::make_unique<Engine>(
+          Engine{.model = Model(mj_copyModel(nullptr, other.engine_->model.get())),
+                 .data = Data(mj_copyData(nullptr, other.engine_->model.get(), other.engine_->data.get())),
+                 .motors = other.engine_->motors,
+                 .motor_dof = other.engine_->motor_dof,
+                 .elastic = other.engine_->elastic,
+                 .tool_m = other.engine_->tool_m,
+                 .last_body = other.engine_->last_body,
+                 .carry_N = other.engine_->carry_N,
+                 .command = other.engine_->command,
+                 .torque = other.engine_->torque})) {}
+
+Result<ArmPlant> ArmPlant::make(const Params& params, const JointVector& position) {
+  const Result<arm::Chain> chain = arm::Chain::make(params.chain);
+  if (!chain) return chain.error();
+  if (Check wrong = check(params, position)) return *std::move(wrong);
+  Result<Model> model = load(mujoco_text(params));
+  if (!model) return model.error();
+  const int joints = chain->joints();
+  const arm::Gravity& g = params.chain.gravity;
+  auto engine = std::make_unique<Engine>();
+  engine->model = *std::move(model);
+  engine->data = Data(mj_makeData(engine->model.get()));
+  engine->motors = params.motors;
+  engine->elastic = Joints<bool>(params.motors.size());
+  engine->tool_m = params.tool_m;
+  engine->last_body = joints;  // body 0 is the world
+  engine->carry_N = -params.carried_kg * Vector3(g.x_m_per_s2, g.y_m_per_s2, g.z_m_per_s2);
+  const JointVector weight = chain->gravity_torque(position);
+  int dof = 0;
+  for (int i = 0; i < joints; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double stiffness = params.motors[at].joint_stiffness_N_m_per_rad;
+    engine->motor_dof[at] = dof;
+    engine->elastic[at] = stiffness > 0.0;
+    const double bend = stiffness > 0.0 ? -weight[i] / stiffness : 0.0;
+    engine->data->qpos[dof] = position[i] - bend;
+    if (stiffness > 0.0) engine->data->qpos[++dof] = bend;
+    ++dof;
+  }
+  engine->command = ArmCommand::of_torque(JointVector::Zero(joints));
+  engine->torque = JointVector::Zero(joints);
+  mj_step1(engine->model.get(), engine->data.get());
+  return ArmPlant(std::move(engine));
+}
+
+ArmReading ArmPlant::read() const {
+  const Engine& e = *engine_;
+  ArmReading reading{
+      .position = e.motor_side(e.data->qpos), .velocity = e.motor_side(e.data->qvel), .torque = e.torque};
+  for (int i = 0; i < e.joints(); ++i) {
+    const MotorParams& motor = e.motors[static_cast<std::size_t>(i)];
+    reading.position[i] = in_steps(reading.position[i], motor.position_step_rad);
+    reading.velocity[i] = in_steps(reading.velocity[i], motor.velocity_step_rad_per_s);
+    reading.torque[i] = in_steps(reading.torque[i], motor.torque_step_N_m);
+  }
+  return reading;
+}
+
+void ArmPlant::write(const ArmCommand& command) { engine_->command = command; }
+
+ToolState ArmPlant::tool() const {
+  const Engine& e = *engine_;
+  const auto jacobian = e.jacobian();
+  return {.position_m = e.tool_position(),
+          .rotation = e.rotation(),
+          .velocity_m_per_s = jacobian.moving * e.velocities(),
+          .turning_rad_per_s = jacobian.turning * e.velocities()};
+}
+
+void ArmPlant::step(const ToolForce& on_tool) {
+  Engine& e = *engine_;
+  const auto jacobian = e.jacobian();
+  Eigen::Map<Eigen::VectorXd> applied(e.data->qfrc_applied, e.model->nv);
+  applied.noalias() = jacobian.moving.transpose() * (on_tool.force_N + e.carry_N);
+  applied.noalias() += jacobian.turning.transpose() * on_tool.moment_N_m;
+  for (int i = 0; i < e.joints(); ++i) {
+    const double limit = e.motors[static_cast<std::size_t>(i)].torque_limit_N_m;
+    const ArmCommand& c = e.command;
+    const double wanted = c.torque[i] + c.stiffness[i] * (c.position[i] - e.data->qpos[e.dof(i)]) +
+                          c.damping[i] * (c.velocity[i] - e.data->qvel[e.dof(i)]);
+    e.torque[i] = std::clamp(wanted, -limit, limit);
+    e.data->qfrc_applied[e.dof(i)] += e.torque[i];
+  }
+  mj_step2(e.model.get(), e.data.get());
+  mj_step1(e.model.get(), e.data.get());
+}
+
+JointVector ArmPlant::link_position() const { return engine_->link_side(engine_->data->qpos); }
+JointVector ArmPlant::link_velocity() const { return engine_->link_side(engine_->data->qvel); }
+
+JointVector ArmPlant::torque_of(const ToolForce& on_tool) const {
+  const Engine& e = *engine_;
+  const auto jacobian = e.jacobian();
+  const Eigen::VectorXd all =
+      jacobian.moving.transpose() * on_tool.force_N + jacobian.turning.transpose() * on_tool.moment_N_m;
+  return e.motor_side(all.data());
+}
+
+double ArmPlant::energy_J() const {
+  const Engine& e = *engine_;
+  // Summed only where it is switched on, which every step would pay for.
+  e.model->opt.enableflags |= mjENBL_ENERGY;
+  mj_energyPos(e.model.get(), e.data.get());
+  mj_energyVel(e.model.get(), e.data.get());
+  e.model->opt.enableflags &= ~mjENBL_ENERGY;
+  const double hand_J = -e.carry_N.dot(e.tool_position());  // what it seems to weigh in MuJoCo, it does not
+  return e.data->energy[0] + e.data->energy[1] + hand_J;
+}
+
+bool ArmPlant::healthy() const {
+  const auto& warnings = engine_->data->warning;
+  return warnings[mjWARN_BADQPOS].number == 0 && warnings[mjWARN_BADQVEL].number == 0 &&
+         warnings[mjWARN_BADQACC].number == 0;
+}
+
+}  // namespace tactus::arm_plants

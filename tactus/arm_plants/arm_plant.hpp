@@ -1,0 +1,95 @@
+#pragma once
+
+#include <tactus/arm/chain.hpp>
+#include <tactus/arm/motors.hpp>
+#include <tactus/core/result.hpp>
+
+#include <memory>
+
+/// Simulated arms, in MuJoCo: other code than the controller's model of an arm (`tactus/arm`).
+namespace tactus::arm_plants {
+
+using arm::ArmCommand;
+using arm::ArmReading;
+using arm::JointVector;
+using arm::Vector3;
+
+/// A motor with its drive, and what lies between it and the joint.
+struct MotorParams {
+  double torque_limit_N_m = 1e9;
+  /// Steps in which the drive tells position, velocity and torque; 0 tells them exactly.
+  double position_step_rad = 0.0;
+  double velocity_step_rad_per_s = 0.0;
+  double torque_step_N_m = 0.0;
+  /// Of the transmission between motor and link; 0 is rigid.
+  double joint_stiffness_N_m_per_rad = 0.0;
+  double joint_damping_N_m_s_per_rad = 0.0;
+};
+
+/// Where the tool is and how it moves, along the axes of the base.
+struct ToolState {
+  Vector3 position_m;
+  arm::Matrix3 rotation;  ///< of the last link
+  Vector3 velocity_m_per_s;
+  Vector3 turning_rad_per_s;
+};
+
+/// What acts on the tool at its point.
+struct ToolForce {
+  Vector3 force_N = Vector3::Zero();
+  Vector3 moment_N_m = Vector3::Zero();
+};
+
+/// A serial arm with its motors, as the world has it: rigid links, Coulomb friction that sticks and viscous friction at
+/// the motor, rigid or elastic joints. MuJoCo steps it (semi-implicit Euler: velocities first, viscous friction
+/// implicitly); forces on the tool are located forces of ours, taken at the beginning of a step.
+///
+/// A value: a copy goes on by itself, with equal bits under equal input. A step does not allocate.
+/// Source of the engine: E. Todorov, T. Erez, Y. Tassa, MuJoCo: A physics engine for model-based control, IROS 2012.
+class ArmPlant {
+ public:
+  struct Params {
+    /// Links, armature, Coulomb and viscous friction (no other part of `JointFriction`), gravity.
+    arm::Chain::Params chain;
+    Joints<MotorParams> motors;
+    Vector3 tool_m = Vector3::Zero();  ///< on the last link
+    /// A mass at the tool that carries itself, as that of a hand: it has inertia and no weight.
+    double carried_kg = 0.0;
+    double step_s = 1e-4;
+  };
+
+  /// At rest, with its links at `position`: springs of elastic joints are bent by what the links weigh. Errors: those
+  /// of `Chain::make`; `inconsistent` for other numbers of motors or positions than of joints and for friction that it
+  /// does not have; `failed` where MuJoCo refuses the arm.
+  static Result<ArmPlant> make(const Params& params, const JointVector& position);
+
+  ArmPlant(const ArmPlant& other);
+  ArmPlant(ArmPlant&& other) noexcept;
+  ArmPlant& operator=(ArmPlant other) noexcept;
+  ~ArmPlant();
+
+  /// What the drives tell now, in their steps.
+  [[nodiscard]] ArmReading read() const;
+  /// The drives obey from now on.
+  void write(const ArmCommand& command);
+  [[nodiscard]] ToolState tool() const;
+  /// One step of `Params::step_s` under the drives' law and a force on the tool.
+  void step(const ToolForce& on_tool);
+
+  /// What no motor tells: of links, in rad and rad/s.
+  [[nodiscard]] JointVector link_position() const;
+  [[nodiscard]] JointVector link_velocity() const;
+  /// Torque of a force at the tool on each link, in N m.
+  [[nodiscard]] JointVector torque_of(const ToolForce& on_tool) const;
+  /// Kinetic and potential energy in J, elastic joints' included, the latter less an unknown constant.
+  [[nodiscard]] double energy_J() const;
+  /// False once a number was not finite or ran away.
+  [[nodiscard]] bool healthy() const;
+
+ private:
+  struct Engine;
+  explicit ArmPlant(std::unique_ptr<Engine> engine);
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace tactus::arm_plants

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <tactus/arm/hand.hpp>
+#include <tactus/arm_plants/arm_plant.hpp>
+#include <tactus/core/parameters.hpp>
+#include <tactus/signal/low_pass.hpp>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace tactus::arm_plants {
+
+/// A stiff plane that the tool meets (Kelvin and Voigt): it pushes, and never pulls, along its normal by
+/// stiffness·depth + damping·speed into it.
+struct Wall {
+  Vector3 point_m = Vector3::Zero();
+  Vector3 normal = Vector3::UnitZ();  ///< out of it, of length 1
+  double stiffness_N_per_m = 0.0;
+  double damping_N_s_per_m = 0.0;
+
+  [[nodiscard]] Vector3 force_N(const ToolState& tool) const noexcept {
+    const double depth_m = normal.dot(point_m - tool.position_m);
+    if (!(depth_m > 0.0)) return Vector3::Zero();
+    const double push_N = stiffness_N_per_m * depth_m - damping_N_s_per_m * normal.dot(tool.velocity_m_per_s);
+    return push_N > 0.0 ? Vector3(push_N * normal) : Vector3::Zero();
+  }
+};
+
+/// The person who holds the leader's tool: a hand (`arm::HandImpedance`, whose mass the arm carries) that follows an
+/// intended path, and slow correction. The person sees or feels the tool off the path and shifts the aim, as an
+/// integrator on the error, low-passed near 5 Hz and a reaction time late. The attitude is held where it was at first.
+/// What one axis has in `mechanics::Operator`, in three.
+class Person {
+ public:
+  struct Params {
+    arm::HandImpedance hand = {};
+    double correction_gain_per_s = 4.0;
+    double correction_bandwidth_Hz = 5.0;
+    double reaction_time_s = 0.1;
+    static constexpr auto fields() {
+      return List{field("hand", &Params::hand, "The passive impedance of hand and arm at the tool."),
+                  field("correction_gain_per_s", &Params::correction_gain_per_s, units::per_second, between(0.0, 8.0),
+                        "Speed of the slow correction per metre of error; 0 switches it off."),
+                  field("correction_bandwidth_Hz", &Params::correction_bandwidth_Hz, units::hertz, between(0.1, 20.0),
+                        "Corner of the first-order low-pass on the error that is corrected."),
+                  field("reaction_time_s", &Params::reaction_time_s, units::second, between(0.0, 0.4),
+                        "Time from an error to the start of its correction.")};
+    }
+  };
+
+  /// Who holds a tool that is there, at rest, and wants it there. `tick_s` is the time between calls of `begin_tick`.
+  static Result<Person> make(const Params& params, Seconds tick, const ToolState& tool);
+
+  /// Once a tick: where the hand wants the tool now and a tick later, and where it is.
+  void begin_tick(const Vector3& path_m, const Vector3& path_at_next_tick_m, const ToolState& tool);
+  /// What the hand does to the tool `since_tick_s` after the tick began.
+  [[nodiscard]] ToolForce force(const ToolState& tool, double since_tick_s) const;
+
+ private:
+  Person(const Params& params, Seconds tick, const ToolState& tool, const signal::LowPass& low_pass);
+
+  arm::HandImpedance hand_;
+  double correction_gain_per_s_;
+  double tick_s_;
+  arm::Matrix3 attitude_;
+  std::array<signal::LowPass, 3> low_pass_;
+  std::vector<Vector3> felt_m_;  ///< a ring, as long as the reaction takes
+  std::size_t next_ = 0;
+  Vector3 correction_m_ = Vector3::Zero();
+  Vector3 aim_m_;
+  Vector3 aim_m_per_s_ = Vector3::Zero();
+};
+
+}  // namespace tactus::arm_plants

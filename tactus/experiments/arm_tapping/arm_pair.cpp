@@ -1,0 +1,142 @@
+#include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/urdf/urdf.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace tactus::experiments {
+
+using arm::JointVector;
+using arm::Vector3;
+using arm_plants::ArmPlant;
+using arm_plants::ToolForce;
+using arm_plants::ToolState;
+
+namespace {
+
+int steps_in_a_tick(const ArmClockParams& clock) {
+  return std::max(1, static_cast<int>(std::ceil(1.0 / (clock.rate_Hz * clock.plant_step_s) - 1e-9)));
+}
+
+}  // namespace
+
+Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder) {
+  if (params.arm.urdf.empty()) {
+    return Error{.code = ErrorCode::missing,
+                 .parameter = "arm.urdf",
+                 .message = "which arm? Name its URDF file, such as arms/openarm-class.urdf",
+                 .place = {}};
+  }
+  const auto read = urdf::read(folder / params.arm.urdf);
+  if (!read) return Error{read.error().code, "arm.urdf", describe(read.error()), {}};
+  const std::size_t joints = read->joints.size();
+  const Joints<ArmJoint> described = params.arm.joints.of(joints);
+  ArmPairSetup setup{.params = params,
+                     .arm = {.chain = read->params, .motors = Joints<arm_plants::MotorParams>(joints)},
+                     .induced = {},
+                     .start = JointVector::Zero(static_cast<Eigen::Index>(joints))};
+  JointVector stiffness = setup.start;
+  JointVector damping = setup.start;
+  for (std::size_t i = 0; i < joints; ++i) {
+    const ArmJoint& from = described[i];
+    arm::JointParams& joint = setup.arm.chain.joints[i];
+    joint.drive.armature_kg_m2 = from.armature_kg_m2;
+    setup.arm.motors[i] = {
+        .torque_limit_N_m = joint.limits.effort_N_m,
+        .position_step_rad = from.position_step_rad,
+        .velocity_step_rad_per_s = from.velocity_step_rad_per_s,
+        .torque_step_N_m = from.torque_step_N_m,
+        .joint_stiffness_N_m_per_rad = from.stiffness_share * params.arm.joint_stiffness_N_m_per_rad,
+        .joint_damping_N_m_s_per_rad = from.stiffness_share * params.arm.joint_damping_N_m_s_per_rad};
+    const auto at = static_cast<Eigen::Index>(i);
+    setup.start[at] = from.start_rad;
+    stiffness[at] = setup.arm.motors[i].joint_stiffness_N_m_per_rad;
+    damping[at] = setup.arm.motors[i].joint_damping_N_m_s_per_rad;
+  }
+  setup.arm.tool_m = Vector3(params.arm.tool.x_m, params.arm.tool.y_m, params.arm.tool.z_m);
+  setup.induced = {.chain = setup.arm.chain,
+                   .tool_m = setup.arm.tool_m,
+                   .joint_stiffness_N_m_per_rad = stiffness,
+                   .joint_damping_N_m_s_per_rad = damping};
+  setup.arm.step_s = 1.0 / (params.servo.rate_Hz * steps_in_a_tick(params.servo));
+  return setup;
+}
+
+ArmPair::ArmPair(const ArmPairSetup& setup, ArmPlant leader, ArmPlant follower, arm_plants::Person person,
+                 const arm_control::ArmLeader& leader_site, const arm_control::ArmFollower& follower_site,
+                 double wall_m)
+    : tick_s_(1.0 / setup.params.servo.rate_Hz),
+      steps_(steps_in_a_tick(setup.params.servo)),
+      step_s_(setup.arm.step_s),
+      leader_(std::move(leader)),
+      follower_(std::move(follower)),
+      person_(std::move(person)),
+      leader_site_(leader_site),
+      follower_site_(follower_site),
+      began_m_(follower_.tool().position_m),
+      wall_{.point_m = began_m_ + wall_m * Vector3::UnitZ(),
+            .normal = Vector3::UnitZ(),
+            .stiffness_N_per_m = setup.params.wall.stiffness_N_per_m,
+            .damping_N_s_per_m = setup.params.wall.damping_N_s_per_m},
+      from_follower_(arm_control::ArmMessage::at_rest(setup.start)) {
+  // As long before: both sites at rest.
+  arm_control::ArmLeader at_leader = leader_site_;
+  arm_control::ArmFollower at_follower = follower_site_;
+  const auto first = at_leader.step(leader_.read(), from_follower_);
+  to_leader_ = first.command;
+  to_follower_ = at_follower.step(follower_.read(), JointVector::Zero(setup.start.size()), first.message).command;
+}
+
+Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const arm_control::InducedMotion::Arm& induced,
+                              const arm::HandImpedance& hand, double wall_m) {
+  const ArmTappingParams& params = setup.params;
+  const Seconds tick{1.0 / params.servo.rate_Hz};
+  ArmPlant::Params held = setup.arm;
+  held.carried_kg = params.person.hand.mass_kg;
+  auto leader = ArmPlant::make(held, setup.start);
+  if (!leader) return under("arm", leader.error());
+  auto follower = ArmPlant::make(setup.arm, setup.start);
+  if (!follower) return under("arm", follower.error());
+  auto person = arm_plants::Person::make(params.person, tick, leader->tool());
+  if (!person) return under("operator", person.error());
+  const Joints<arm_control::DriveGains> gains = params.control.follower.gains.of(setup.arm.chain.joints.size());
+  arm_control::ArmLeader::Params control = params.control;
+  control.model.hand = hand;
+  const auto leader_site =
+      arm_control::ArmLeader::make(control, {.carried = setup.arm.chain, .induced = induced, .gains = gains}, tick);
+  if (!leader_site) return under("control", leader_site.error());
+  const auto follower_site = arm_control::ArmFollower::make(params.control.follower, setup.arm.chain, tick);
+  if (!follower_site) return under("control.follower", follower_site.error());
+  return ArmPair(setup, *std::move(leader), *std::move(follower), *std::move(person), *leader_site, *follower_site,
+                 wall_m);
+}
+
+ArmRecord ArmPair::step(const Vector3& path_m, const Vector3& path_at_next_tick_m) {
+  const ToolState at_leader = leader_.tool();
+  const ToolState at_follower = follower_.tool();
+  const auto leader = leader_site_.step(leader_.read(), from_follower_);
+  const JointVector sensed = follower_.torque_of({.force_N = wall_.force_N(at_follower)});
+  const auto follower = follower_site_.step(follower_.read(), sensed, leader.message);
+  from_follower_ = follower.message;
+  leader_.write(to_leader_);
+  follower_.write(to_follower_);
+  to_leader_ = leader.command;
+  to_follower_ = follower.command;
+  person_.begin_tick(began_m_ + path_m, began_m_ + path_at_next_tick_m, at_leader);
+
+  ArmRecord record{.hand_N = -person_.force(at_leader, 0.0).force_N.z(),
+                   .leader_m = at_leader.position_m.z() - began_m_.z(),
+                   .follower_m = at_follower.position_m.z() - began_m_.z(),
+                   .tools_apart_m = (at_leader.position_m - at_follower.position_m).norm()};
+  for (int i = 0; i < steps_; ++i) {
+    leader_.step(person_.force(leader_.tool(), i * step_s_));
+    const ToolForce contact{.force_N = wall_.force_N(follower_.tool())};
+    record.contact_N += contact.force_N.z() / steps_;
+    follower_.step(contact);
+  }
+  return record;
+}
+
+bool ArmPair::healthy() const { return leader_.healthy() && follower_.healthy(); }
+
+}  // namespace tactus::experiments

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <tactus/experiments/arm_tapping/params.hpp>
+
+#include <filesystem>
+
+namespace tactus::experiments {
+
+/// All that a pair is made of, read and checked.
+struct ArmPairSetup {
+  ArmTappingParams params;
+  arm_plants::ArmPlant::Params arm;
+  arm_control::InducedMotion::Arm induced;  ///< the same arm, without error
+  arm::JointVector start;
+};
+
+/// Reads the URDF, from `folder` on. Errors: those of `urdf::read`; `missing` without a URDF; those of the parts.
+Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder);
+
+/// What both tools did at a tick.
+struct ArmRecord {
+  double contact_N = 0.0;  ///< of the wall on the follower's tool, mean of the tick
+  double hand_N = 0.0;     ///< that the hand feels of its spring and damper, up, at the tick's beginning
+  double leader_m = 0.0;   ///< height of the tools over where they began
+  double follower_m = 0.0;
+  double tools_apart_m = 0.0;  ///< between what the tools went from their starts
+};
+
+/// Two simulated arms with their sites, the leader in a person's hand, in virtual time.
+///
+/// One tick: both buses are read; the leader's site steps with what the follower told at the tick before, the
+/// follower's with what the leader tells now; the commands of the tick before go to the drives, as on a bus; the person
+/// aims; the arms step.
+class ArmPair {
+ public:
+  /// `induced` is the arm that the model of induced motion believes in, in a hand as `hand`. The wall lies `wall_m`
+  /// over where the tools begin.
+  static Result<ArmPair> make(const ArmPairSetup& setup, const arm_control::InducedMotion::Arm& induced,
+                              const arm::HandImpedance& hand, double wall_m);
+
+  /// One tick, with where the person wants the tool now and a tick later, from where it began.
+  ArmRecord step(const arm::Vector3& path_m, const arm::Vector3& path_at_next_tick_m);
+  [[nodiscard]] bool healthy() const;
+  [[nodiscard]] double tick_s() const { return tick_s_; }
+
+ private:
+  ArmPair(const ArmPairSetup& setup, arm_plants::ArmPlant leader, arm_plants::ArmPlant follower,
+          arm_plants::Person person, const arm_control::ArmLeader& leader_site,
+          const arm_control::ArmFollower& follower_site, double wall_m);
+
+  double tick_s_;
+  int steps_;
+  double step_s_;
+  arm_plants::ArmPlant leader_;
+  arm_plants::ArmPlant follower_;
+  arm_plants::Person person_;
+  arm_control::ArmLeader leader_site_;
+  arm_control::ArmFollower follower_site_;
+  arm::Vector3 began_m_;
+  arm_plants::Wall wall_;
+  arm_control::ArmMessage from_follower_;
+  arm::ArmCommand to_leader_;
+  arm::ArmCommand to_follower_;
+};
+
+}  // namespace tactus::experiments

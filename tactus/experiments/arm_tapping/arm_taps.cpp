@@ -1,0 +1,205 @@
+#include <tactus/experiments/arm_tapping/arm_taps.hpp>
+#include <tactus/experiments/contact_metrics.hpp>
+#include <tactus/signal/random.hpp>
+#include <tactus/signal/second_order_filter.hpp>
+#include <tactus/simulation/quantile.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace tactus::experiments {
+
+using arm::Vector3;
+
+namespace {
+
+constexpr double rest_s = 0.1;
+constexpr double patience_s = 2.0;  ///< after the reach, for a follower that has not touched
+constexpr double given_time_s = 0.15;
+constexpr double window_s = 0.05;
+constexpr double end_s = 0.1;
+constexpr double farthest_m = 0.3;  ///< from where it began, for a tool that has not run away
+
+std::size_t ticks_in(double duration_s, double tick_s) {
+  return static_cast<std::size_t>(std::lround(duration_s / tick_s));
+}
+
+double rms(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+std::vector<double> transient(std::span<const ArmRecord> records, double ArmRecord::*force, double tick_s) {
+  auto high_pass = *signal::SecondOrderFilter::make(
+      {.kind = signal::FilterKind::high_pass, .frequency_Hz = transient_cutoff_Hz}, Seconds{tick_s});
+  std::vector<double> found;
+  found.reserve(records.size());
+  for (const ArmRecord& record : records) found.push_back(high_pass.step(record.*force));
+  return found;
+}
+
+/// What the controller's model believes instead of `value`.
+double drawn(double value, double error, signal::Random& random) {
+  return value * (1.0 + random.uniform(-error, error));
+}
+
+void draw_errors(ArmTap& tap, double error, signal::Random& random) {
+  for (arm::JointParams& joint : tap.induced.chain.joints) {
+    const double mass = drawn(1.0, error, random);
+    arm::Body& body = joint.body;
+    for (double arm::Body::*part :
+         {&arm::Body::mass_kg, &arm::Body::xx_kg_m2, &arm::Body::yy_kg_m2, &arm::Body::zz_kg_m2, &arm::Body::xy_kg_m2,
+          &arm::Body::xz_kg_m2, &arm::Body::yz_kg_m2}) {
+      body.*part *= mass;
+    }
+    joint.drive.armature_kg_m2 = drawn(joint.drive.armature_kg_m2, error, random);
+    joint.friction.coulomb_N_m = drawn(joint.friction.coulomb_N_m, error, random);
+    joint.friction.viscous_N_m_s_per_rad = drawn(joint.friction.viscous_N_m_s_per_rad, error, random);
+  }
+  for (double& stiffness : tap.induced.joint_stiffness_N_m_per_rad) stiffness = drawn(stiffness, error, random);
+  tap.hand.mass_kg = drawn(tap.hand.mass_kg, error, random);
+  tap.hand.stiffness_N_per_m = drawn(tap.hand.stiffness_N_per_m, error, random);
+  tap.hand.damping_N_s_per_m = drawn(tap.hand.damping_N_s_per_m, error, random);
+}
+
+Check check_range(double lower, double upper, const char* lower_name, const char* upper_name) {
+  if (lower <= upper) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = std::string("task.") + upper_name,
+               .message = format_number(upper) + " is less than " + lower_name + ", " + format_number(lower) +
+                          ": raise one or lower the other",
+               .place = {}};
+}
+
+}  // namespace
+
+ArmContact judge_arm_contact(std::span<const ArmRecord> records, std::size_t first_touch, double tick_s) {
+  ArmContact found{.touched = true};
+  const std::vector<double> contact = transient(records, &ArmRecord::contact_N, tick_s);
+  const std::vector<double> hand = transient(records, &ArmRecord::hand_N, tick_s);
+  const auto after = records.subspan(first_touch);
+  for (const ArmRecord& record : after) found.peak_N = std::max(found.peak_N, record.contact_N);
+  const std::size_t end = std::min(after.size(), ticks_in(end_s, tick_s));
+  for (const ArmRecord& record : after.last(end)) found.steady_N += record.contact_N / static_cast<double>(end);
+  const std::span<const double> of_contact(contact);
+  found.residual_N = rms(of_contact.last(end));
+  const double touched_N = rms(of_contact.subspan(first_touch));
+  if (touched_N > 0.0) found.felt_share = rms(std::span<const double>(hand).subspan(first_touch)) / touched_N;
+  const double most_N = settled_share * found.peak_N / std::numbers::sqrt2;
+  const std::size_t window = ticks_in(window_s, tick_s);
+  for (std::size_t i = first_touch + ticks_in(given_time_s, tick_s); i + window <= contact.size(); ++i) {
+    if (rms(of_contact.subspan(i, window)) > most_N) found.rings = true;
+  }
+  return found;
+}
+
+Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const std::filesystem::path& folder) {
+  const ArmTappingTask& task = params.task;
+  if (auto error = check_range(task.slowest_m_per_s, task.fastest_m_per_s, "slowest_m_per_s", "fastest_m_per_s")) {
+    return *std::move(error);
+  }
+  if (auto error = check_range(task.shallowest_m, task.deepest_m, "shallowest_m", "deepest_m")) {
+    return *std::move(error);
+  }
+  auto setup = set_up_arm_pair(params, folder);
+  if (!setup) return setup.error();
+  ArmTaps taps;
+  taps.setup_ = *std::move(setup);
+  const signal::Random random(static_cast<std::uint64_t>(task.seed));
+  for (std::int64_t i = 0; i < task.taps; ++i) {
+    signal::Random draw = random.fork(static_cast<std::uint64_t>(i));
+    const double depth_m = draw.uniform(task.shallowest_m, task.deepest_m);
+    const double speed_m_per_s = draw.uniform(task.slowest_m_per_s, task.fastest_m_per_s);
+    ArmTap tap{.path = {.start_m = 0.0,
+                        .end_m = -2.0 * depth_m,
+                        .start_time_s = rest_s,
+                        .duration_s = mechanics::MinimumJerk::duration_for(2.0 * depth_m, speed_m_per_s)},
+               .wall_m = -depth_m,
+               .induced = taps.setup_.induced,
+               .hand = params.control.model.hand};
+    draw_errors(tap, task.model_error, draw);
+    taps.taps_.push_back(std::move(tap));
+  }
+  const ArmTap& first = taps.taps_.front();
+  if (const auto made = ArmPair::make(taps.setup_, first.induced, first.hand, first.wall_m); !made) return made.error();
+  return taps;
+}
+
+ArmTaps::Contact ArmTaps::run_once(const ArmPairSetup& setup, const ArmTap& tap, std::vector<ArmRecord>* trace) const {
+  ArmPair pair = *ArmPair::make(setup, tap.induced, tap.hand, tap.wall_m);
+  const double dt_s = pair.tick_s();
+  std::vector<ArmRecord> records;
+  std::size_t first_touch = 0;
+  bool touched = false;
+  bool diverged = false;
+  std::size_t last = ticks_in(tap.path.start_time_s + tap.path.duration_s + patience_s, dt_s);
+  for (std::size_t k = 0; k < last && !diverged; ++k) {
+    const double now_s = static_cast<double>(k) * dt_s;
+    records.push_back(
+        pair.step(tap.path.position_m(now_s) * Vector3::UnitZ(), tap.path.position_m(now_s + dt_s) * Vector3::UnitZ()));
+    const ArmRecord& record = records.back();
+    if (!touched && record.contact_N > 0.0) {
+      touched = true;
+      first_touch = k;
+      last = k + ticks_in(setup.params.task.observation_s, dt_s);
+    }
+    diverged =
+        !pair.healthy() || !(std::fabs(record.leader_m) < farthest_m) || !(std::fabs(record.follower_m) < farthest_m);
+  }
+  Contact found{.contact = {}, .diverged = diverged};
+  if (touched) found.contact = judge_arm_contact(records, first_touch, dt_s);
+  if (trace != nullptr) trace->insert(trace->end(), records.begin(), records.end());
+  return found;
+}
+
+ArmTapResult ArmTaps::run(std::size_t tap, std::vector<ArmRecord>* trace) const {
+  const Contact at_gain = run_once(setup_, taps_[tap], trace);
+  ArmPairSetup without = setup_;
+  without.params.control.method = arm_control::ArmMethod::position_force;
+  without.params.control.force_gain = 0.0;
+  const Contact at_none = run_once(without, taps_[tap], nullptr);
+  return {.contact = at_gain.contact,
+          .ran_away = at_gain.contact.peak_N > 1.6 * at_none.contact.peak_N + 1.0 ||
+                      at_gain.contact.steady_N > 2.0 * at_none.contact.steady_N,
+          .diverged = at_gain.diverged};
+}
+
+double ArmTaps::reach_lag_m() const {
+  constexpr double far_below_m = -10.0;
+  const mechanics::MinimumJerk reach{.start_m = 0.0, .end_m = 0.2, .start_time_s = rest_s, .duration_s = 0.75};
+  const ArmTap& tap = taps_.front();
+  ArmPair pair = *ArmPair::make(setup_, tap.induced, tap.hand, far_below_m);
+  double most_m = 0.0;
+  for (std::size_t k = 0; k < ticks_in(rest_s + reach.duration_s, pair.tick_s()); ++k) {
+    const double now_s = static_cast<double>(k) * pair.tick_s();
+    const ArmRecord record = pair.step(reach.position_m(now_s) * Vector3::UnitZ(),
+                                       reach.position_m(now_s + pair.tick_s()) * Vector3::UnitZ());
+    most_m = std::max(most_m, record.tools_apart_m);
+  }
+  return most_m;
+}
+
+ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, double reach_lag_m) {
+  const auto share = [&](auto&& holds) {
+    return static_cast<double>(std::count_if(taps.begin(), taps.end(), holds)) / static_cast<double>(taps.size());
+  };
+  const auto median = [&](double ArmContact::*value) {
+    std::vector<double> values;
+    for (const ArmTapResult& tap : taps) values.push_back(tap.contact.*value);
+    return simulation::quantile(values, 0.5);
+  };
+  return {.taps = taps.size(),
+          .settled_fraction = share([](const ArmTapResult& tap) { return tap.settled(); }),
+          .rings_fraction = share([](const ArmTapResult& tap) { return tap.contact.rings; }),
+          .ran_away_fraction = share([](const ArmTapResult& tap) { return tap.ran_away || tap.diverged; }),
+          .peak_force_N = median(&ArmContact::peak_N),
+          .steady_force_N = median(&ArmContact::steady_N),
+          .residual_rms_N = median(&ArmContact::residual_N),
+          .felt_share = median(&ArmContact::felt_share),
+          .reach_lag_m = reach_lag_m};
+}
+
+}  // namespace tactus::experiments

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/mechanics/minimum_jerk.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace tactus::experiments {
+
+/// One tap: how the person goes about it, and what the controller believes.
+struct ArmTap {
+  mechanics::MinimumJerk path;  ///< height of the tool over where it began
+  double wall_m = 0.0;
+  arm_control::InducedMotion::Arm induced;
+  arm::HandImpedance hand;
+};
+
+/// A contact as it went, without comparison.
+struct ArmContact {
+  bool touched = false;
+  bool rings = false;  ///< after 150 ms some 50 ms hold more above 15 Hz than a sine of a tenth of the peak does
+  double peak_N = 0.0;
+  double steady_N = 0.0;    ///< mean of the last 100 ms
+  double residual_N = 0.0;  ///< above 15 Hz, RMS over the last 100 ms
+  double felt_share = 0.0;  ///< of the contact force above 15 Hz, RMS, that the hand's spring and damper feel
+};
+
+/// Judges a tap whose first touch was at record `first_touch`.
+ArmContact judge_arm_contact(std::span<const ArmRecord> records, std::size_t first_touch, double tick_s);
+
+struct ArmTapResult {
+  ArmContact contact;
+  bool ran_away =
+      false;  ///< presses 1.6 times as hard at its peak, 1 N more, or twice as hard in the end, as at gain 0
+  bool diverged = false;
+  [[nodiscard]] bool settled() const { return contact.touched && !contact.rings && !ran_away && !diverged; }
+};
+
+/// The ensemble of one combination.
+class ArmTaps {
+ public:
+  /// Errors: those of `set_up_arm_pair`; `inconsistent` for ranges that are none; what a pair refuses.
+  static Result<ArmTaps> make(const ArmTappingParams& params, const std::filesystem::path& folder);
+
+  [[nodiscard]] std::size_t size() const { return taps_.size(); }
+  [[nodiscard]] double tick_s() const { return 1.0 / setup_.params.servo.rate_Hz; }
+  /// Runs a tap twice, at the gain and at gain 0; with `trace`, appends every tick of the first.
+  ArmTapResult run(std::size_t tap, std::vector<ArmRecord>* trace = nullptr) const;
+  /// How far the tools are apart at most while the person reaches 200 mm in 0.75 s and nothing is there.
+  [[nodiscard]] double reach_lag_m() const;
+
+ private:
+  struct Contact {
+    ArmContact contact;
+    bool diverged = false;
+  };
+  [[nodiscard]] Contact run_once(const ArmPairSetup& setup, const ArmTap& tap, std::vector<ArmRecord>* trace) const;
+
+  ArmPairSetup setup_;
+  std::vector<ArmTap> taps_;
+};
+
+/// An ensemble in a few numbers; medians over the taps.
+struct ArmTappingMetrics {
+  std::size_t taps = 0;
+  double settled_fraction = 0.0;
+  double rings_fraction = 0.0;
+  double ran_away_fraction = 0.0;  ///< diverged ones too
+  double peak_force_N = 0.0;
+  double steady_force_N = 0.0;
+  double residual_rms_N = 0.0;
+  double felt_share = 0.0;
+  double reach_lag_m = 0.0;
+};
+ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, double reach_lag_m);
+
+}  // namespace tactus::experiments

@@ -1,0 +1,156 @@
+#include <tactus/experiments/arm_tapping/arm_taps.hpp>
+#include <tactus/experiments/experiment_of.hpp>
+#include <tactus/simulation/parallel.hpp>
+
+#include <filesystem>
+#include <utility>
+
+namespace tactus::experiments {
+
+namespace {
+
+constexpr std::string_view arm_tapping_title = "Tapping a surface through two arms";
+
+/// Taps through two simulated arms: one row for each combination of the varied keys.
+class ArmTappingExperiment final : public ExperimentOf<ArmTappingParams> {
+  Result<Outcome> run(const Request& request, const Progress& progress) const override;
+};
+
+struct ArmTappingRun {
+  Settings settings;
+  ArmTappingMetrics metrics;
+};
+
+report::Table arm_table(const std::vector<ArmTappingRun>& runs) {
+  report::Table table = table_of_runs(runs.front().settings,
+                                      {{"taps"},
+                                       {"settled", "%"},
+                                       {"ring", "%"},
+                                       {"run away", "%"},
+                                       {"peak", "N"},
+                                       {"steady", "N"},
+                                       {"felt", "%"},
+                                       {"lag", "mm"}},
+                                      std::string(arm_tapping_title));
+  for (const ArmTappingRun& run : runs) {
+    const ArmTappingMetrics& m = run.metrics;
+    add_row(table, run.settings,
+            {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
+             report::number(100.0 * m.rings_fraction, 3), report::number(100.0 * m.ran_away_fraction, 3),
+             report::number(m.peak_force_N, 3), report::number(m.steady_force_N, 3),
+             report::number(100.0 * m.felt_share, 3), report::number(1e3 * m.reach_lag_m, 3)});
+  }
+  return table;
+}
+
+std::string arm_json(const Request& request, const std::vector<ArmTappingRun>& runs) {
+  return runs_json(request, runs, [](const ArmTappingRun& run) {
+    const ArmTappingMetrics& m = run.metrics;
+    return metrics_json({{"taps", static_cast<double>(m.taps)},
+                         {"settled_fraction", m.settled_fraction},
+                         {"rings_fraction", m.rings_fraction},
+                         {"ran_away_fraction", m.ran_away_fraction},
+                         {"peak_force_N", m.peak_force_N},
+                         {"steady_force_N", m.steady_force_N},
+                         {"residual_rms_N", m.residual_rms_N},
+                         {"felt_share", m.felt_share},
+                         {"reach_lag_m", m.reach_lag_m}});
+  });
+}
+
+report::Figure arm_figure(const ArmTappingRun& run, const std::vector<ArmRecord>& trace, double tick_s) {
+  const report::Axis time{.label = "time", .unit = "s"};
+  report::Line contact{.name = "on the surface", .x = {}, .y = {}, .colour = 0};
+  report::Line hand{.name = "on the hand", .x = {}, .y = {}, .colour = 1};
+  report::Line leader{.name = "leader", .x = {}, .y = {}, .colour = 1};
+  report::Line follower{.name = "follower", .x = {}, .y = {}, .colour = 0};
+  for (std::size_t k = 0; k < trace.size(); ++k) {
+    const double now_s = static_cast<double>(k) * tick_s;
+    for (report::Line* line : {&contact, &hand, &leader, &follower}) line->x.push_back(now_s);
+    contact.y.push_back(trace[k].contact_N);
+    hand.y.push_back(trace[k].hand_N);
+    leader.y.push_back(1e3 * trace[k].leader_m);
+    follower.y.push_back(1e3 * trace[k].follower_m);
+  }
+  report::Panel forces{
+      .title = "", .x = time, .y = {.label = "force", .unit = "N"}, .lines = {contact, hand}, .rules = {}};
+  report::Panel heights{.title = "",
+                        .x = time,
+                        .y = {.label = "height of the tool", .unit = "mm"},
+                        .lines = {leader, follower},
+                        .rules = {}};
+  return {.title = "The first tap",
+          .caption = "Force of the surface on the follower's tool and on the hand, and both tools. " +
+                     settings_caption(run.settings),
+          .columns = 2,
+          .panels = {forces, heights}};
+}
+
+report::Page arm_page(const Request& request, const report::Table& table, const std::vector<report::Figure>& figures) {
+  report::Page page(request.name + ": " + std::string(arm_tapping_title));
+  page.paragraph(
+      "A person holds the leader's tool, lowers it, and presses; the follower's tool meets a stiff level surface. Each "
+      "row is an ensemble of taps that differ in speed, depth and errors of the controller's model. Simulated.");
+  page.table(table);
+  page.definitions(
+      {{"settled", "Share of the taps that touch, neither ring nor run away."},
+       {"ring",
+        "After 150 ms from first touch some 50 ms hold more force above 15 Hz than a sine of a tenth of the peak."},
+       {"run away",
+        "The peak exceeds 1.6 times that of the same tap at gain 0 by more than 1 N, the force in the end twice that, "
+        "or a "
+        "tool left its place by 300 mm."},
+       {"peak, steady", "Contact force, largest and mean of the last 100 ms; medians over the taps."},
+       {"felt", "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS; median."},
+       {"lag", "Farthest that the tools are apart in a reach of 200 mm in 0.75 s that meets nothing."}});
+  for (const report::Figure& figure : figures) page.figure(figure);
+  return page;
+}
+
+Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress& progress) const {
+  const std::filesystem::path folder = std::filesystem::path(request.document.name()).parent_path();
+  const auto cases = prepare_cases<ArmTappingParams, ArmTaps>(
+      request, [&](const ArmTappingParams& params) { return ArmTaps::make(params, folder); });
+  if (!cases) return cases.error();
+
+  // One list of all taps of all combinations, so that the last one keeps no core waiting.
+  struct Job {
+    std::size_t run, tap;
+  };
+  std::vector<Job> jobs;
+  std::vector<std::vector<ArmTapResult>> results;
+  for (const auto& one : cases->all) {
+    for (std::size_t tap = 0; tap < one.prepared.size(); ++tap) jobs.push_back({results.size(), tap});
+    results.emplace_back(one.prepared.size());
+  }
+  simulation::for_each_in_parallel(
+      jobs.size(),
+      [&](std::size_t i) {
+        const auto [run, tap] = jobs[i];
+        results[run][tap] = cases->all[run].prepared.run(tap);
+      },
+      progress);
+
+  std::vector<ArmTappingRun> runs;
+  std::vector<report::Figure> figures;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto& [settings, taps] = cases->all[i];
+    runs.push_back({settings, summarise(results[i], taps.reach_lag_m())});
+    std::vector<ArmRecord> trace;
+    taps.run(0, &trace);
+    figures.push_back(arm_figure(runs.back(), trace, taps.tick_s()));
+  }
+  const report::Table table = arm_table(runs);
+  report::Page page = arm_page(request, table, figures);
+  return outcome_of({.text = table.to_text(),
+                     .json = arm_json(request, runs),
+                     .page = std::move(page),
+                     .figures = std::move(figures)},
+                    request, cases->first_configuration);
+}
+
+}  // namespace
+
+std::unique_ptr<const Experiment> arm_tapping_experiment() { return std::make_unique<ArmTappingExperiment>(); }
+
+}  // namespace tactus::experiments

@@ -1,0 +1,159 @@
+#pragma once
+
+#include <tactus/arm_control/arm_follower.hpp>
+#include <tactus/arm_control/arm_leader.hpp>
+#include <tactus/arm_plants/person.hpp>
+#include <tactus/core/parameters.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+/// A person taps a stiff surface through two robot arms.
+namespace tactus::experiments {
+
+/// A joint of both arms: what its URDF does not say.
+struct ArmJoint {
+  double start_rad = 0.0;
+  double armature_kg_m2 = 0.0;
+  double stiffness_share = 1.0;
+  double position_step_rad = 0.0;
+  double velocity_step_rad_per_s = 0.0;
+  double torque_step_N_m = 0.0;
+  static constexpr auto fields() {
+    using J = ArmJoint;
+    namespace u = arm::units;
+    return List{field("start_rad", &J::start_rad, u::radian, any_finite, "Position at the start of a tap."),
+                field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
+                      "Inertia of the rotor at the joint's side of the gear."),
+                field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
+                      "Stiffness of an elastic joint over arm.joint_stiffness_N_m_per_rad."),
+                field("position_step_rad", &J::position_step_rad, u::radian, between(0.0, 0.1),
+                      "Step in which the drive tells position; 0 is exact."),
+                field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
+                      "Step in which it tells velocity."),
+                field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
+                      "Step in which it tells torque.")};
+  }
+};
+
+struct ToolPoint {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;
+  static constexpr auto fields() {
+    return List{field("x_m", &ToolPoint::x_m, units::metre, any_finite, "Along x of the last link."),
+                field("y_m", &ToolPoint::y_m, units::metre, any_finite, "Along y of the last link."),
+                field("z_m", &ToolPoint::z_m, units::metre, any_finite, "Along z of the last link.")};
+  }
+};
+
+/// Leader and follower, which are alike.
+struct ArmPairParams {
+  std::string urdf;
+  ToolPoint tool;
+  double joint_stiffness_N_m_per_rad = 0.0;
+  double joint_damping_N_m_s_per_rad = 0.0;
+  arm_control::EachJoint<ArmJoint> joints;
+  static constexpr auto fields() {
+    using P = ArmPairParams;
+    return List{
+        field("urdf", &P::urdf,
+              "URDF of both arms, z up; its path counts from the experiment's file. Effort limits bound "
+              "the motors, damping and friction rub at them."),
+        field("tool", &P::tool, "The point that the person holds, and that touches."),
+        field("joint_stiffness_N_m_per_rad", &P::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
+              between(0.0, 1e6), "Of the transmission between motor and link; 0 is rigid."),
+        field("joint_damping_N_m_s_per_rad", &P::joint_damping_N_m_s_per_rad,
+              arm::units::newton_metre_second_per_radian, between(0.0, 100.0), "Damping beside that stiffness."),
+        field("joints", &P::joints, "What the URDF does not say of each joint.")};
+  }
+};
+
+struct ArmControlParams : arm_control::ArmLeader::Params {
+  arm_control::ArmFollower::Params follower = {};
+  static constexpr auto fields() {
+    return joined(arm_control::ArmLeader::Params::fields(),
+                  List{field("follower", &ArmControlParams::follower, "The follower's site.")});
+  }
+};
+
+struct ArmClockParams {
+  double rate_Hz = 1000.0;
+  double plant_step_s = 1e-4;
+  static constexpr auto fields() {
+    return List{field("rate_Hz", &ArmClockParams::rate_Hz, units::hertz, between(100.0, 10000.0),
+                      "Ticks per second; a command acts from the next tick on."),
+                field("plant_step_s", &ArmClockParams::plant_step_s, units::second, between(1e-6, 5e-4),
+                      "Step of the simulated arms, rounded so that a tick is a whole number of them.")};
+  }
+};
+
+struct ArmWallParams {
+  double stiffness_N_per_m = 20000.0;
+  double damping_N_s_per_m = 20.0;
+  static constexpr auto fields() {
+    return List{field("stiffness_N_per_m", &ArmWallParams::stiffness_N_per_m, units::newton_per_metre,
+                      between(100.0, 1e6), "Stiffness of the level surface that the follower's tool meets."),
+                field("damping_N_s_per_m", &ArmWallParams::damping_N_s_per_m, units::newton_second_per_metre,
+                      between(0.0, 1e4), "Its damping.")};
+  }
+};
+
+enum class ArmTappingKind { arm_tapping };
+constexpr auto enumerators(ArmTappingKind) {
+  return std::array{Enumerator{ArmTappingKind::arm_tapping, "arm-tapping"}};
+}
+
+/// The taps, each with a speed, a depth and errors of the model of its own.
+struct ArmTappingTask {
+  ArmTappingKind kind = ArmTappingKind::arm_tapping;
+  std::int64_t taps = 32;
+  std::int64_t seed = 1;
+  double slowest_m_per_s = 0.08;
+  double fastest_m_per_s = 0.16;
+  double shallowest_m = 0.006;
+  double deepest_m = 0.012;
+  double observation_s = 0.6;
+  double model_error = 0.2;
+  static constexpr auto fields() {
+    using T = ArmTappingTask;
+    return List{
+        field("kind", &T::kind, "Which experiment this is."),
+        field("taps", &T::taps, between(1, 100000), "Number of taps in the ensemble."),
+        field("seed", &T::seed, non_negative, "Seed that draws the ensemble."),
+        field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+              "Slowest approach: intended speed at the surface."),
+        field("fastest_m_per_s", &T::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+              "Fastest approach."),
+        field("shallowest_m", &T::shallowest_m, units::metre, between(1e-4, 0.1),
+              "Smallest depth: how far beyond the surface the person means to go."),
+        field("deepest_m", &T::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
+        field("observation_s", &T::observation_s, units::second, between(0.25, 10.0),
+              "How long a tap is observed from first touch, while the person keeps pressing."),
+        field(
+            "model_error", &T::model_error, units::none, between(0.0, 0.5),
+            "Every tap draws the errors of the model of induced motion (mass and inertia of each link, armature and "
+            "friction of each joint, mass, stiffness and damping of the hand) evenly from minus to plus this share.")};
+  }
+};
+
+struct ArmTappingParams {
+  ArmTappingTask task;
+  ArmPairParams arm;
+  arm_plants::Person::Params person;
+  ArmControlParams control;
+  ArmWallParams wall;
+  ArmClockParams servo;
+  static constexpr auto fields() {
+    using P = ArmTappingParams;
+    return List{field("task", &P::task, "The taps."),
+                field("arm", &P::arm, "Leader and follower, which are alike."),
+                field("operator", &P::person, "The person who holds the leader's tool."),
+                field("control", &P::control, "The sites of both arms."),
+                field("wall", &P::wall, "What the follower's tool meets."),
+                field("servo", &P::servo, "The clocks.")};
+  }
+};
+
+}  // namespace tactus::experiments

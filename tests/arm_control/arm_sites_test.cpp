@@ -1,0 +1,148 @@
+#include <tactus/arm_control/arm_follower.hpp>
+
+#include <cmath>
+
+#include "tests/allocation_counter.hpp"
+#include "tests/arm_plants/openarm.hpp"
+
+namespace tactus::arm_control::arm_sites_test {
+namespace {
+
+constexpr Seconds tick{1e-3};
+
+ArmLeader::Arm believed() {
+  const arm_plants::ArmPlant::Params plant = arm_plants::openarm_class();
+  return {.carried = plant.chain,
+          .induced = {.chain = plant.chain, .tool_m = plant.tool_m},
+          .gains = Joints<DriveGains>(7)};
+}
+
+ArmReading resting() {
+  return {.position = arm_plants::bent(), .velocity = JointVector::Zero(7), .torque = JointVector::Zero(7)};
+}
+
+ArmMessage touching(double torque_N_m) {
+  ArmMessage message = ArmMessage::at_rest(arm_plants::bent());
+  message.external_torque.setConstant(torque_N_m);
+  return message;
+}
+
+TEST(ArmLeader, DisplaysTheFollowersTorqueTimesTheGainUpToTheJointsEffort) {
+  auto leader = *ArmLeader::make({.method = ArmMethod::position_force, .force_gain = 2.0}, believed(), tick);
+  const JointVector weight = arm::Chain::make(believed().carried)->gravity_torque(arm_plants::bent());
+  const auto small = leader.step(resting(), touching(0.5));
+  EXPECT_LT((small.command.torque - weight - JointVector::Ones(7)).norm(), 1e-12);
+  EXPECT_EQ(small.command.stiffness.norm() + small.command.damping.norm(), 0.0);
+  const auto large = leader.step(resting(), touching(50.0));
+  for (int i = 0; i < 7; ++i) {
+    const double limit = believed().carried.joints[static_cast<std::size_t>(i)].limits.effort_N_m;
+    EXPECT_NEAR(large.command.torque[i], limit, 1e-12);
+    EXPECT_NEAR(large.displayed[i], limit - weight[i], 1e-12) << "the model hears of what passed";
+  }
+}
+
+TEST(ArmLeader, TakesInducedMotionFromTheCommandATickAfterTheTorqueActs) {
+  auto plain = *ArmLeader::make({.method = ArmMethod::position_force}, believed(), tick);
+  auto cancelling = *ArmLeader::make({.method = ArmMethod::cancellation}, believed(), tick);
+  for (int k = 0; k < 20; ++k) {
+    const auto told = cancelling.step(resting(), touching(1.0));
+    EXPECT_EQ(plain.step(resting(), touching(1.0)).message.position, arm_plants::bent());
+    EXPECT_LT((told.message.position - arm_plants::bent() + told.induced).norm(), 1e-15);
+    // Commanded at tick 0, it acts from tick 1 on and has moved the arm at tick 2.
+    EXPECT_EQ(told.induced.norm() > 0.0, k >= 2) << k;
+  }
+}
+
+TEST(ArmLeader, ItsDamperResistsTheToolAlone) {
+  auto leader = *ArmLeader::make(
+      {.method = ArmMethod::position_force, .damping_N_s_per_m = 40.0, .feed_forward = {.friction_share = 0.0}},
+      believed(), tick);
+  const arm::Chain chain = *arm::Chain::make(believed().carried);
+  ArmReading moving = resting();
+  moving.velocity << 0.1, 0.2, -0.1, 0.3, 0.0, 0.1, 0.2;
+  const JointVector torque = leader.step(moving, touching(0.0)).command.torque - chain.gravity_torque(moving.position);
+  const auto jacobian = chain.jacobian(moving.position, 6, believed().induced.tool_m).topRows<3>().eval();
+  const arm::Vector3 velocity = jacobian * moving.velocity;
+  EXPECT_NEAR(torque.dot(moving.velocity), -40.0 * velocity.squaredNorm(), 1e-12);
+}
+
+TEST(ArmLeader, PositionPositionLeavesTheCouplingToTheDrives) {
+  ArmLeader::Arm arm = believed();
+  for (DriveGains& gains : arm.gains) gains = {.stiffness_N_m_per_rad = 240.0, .damping_N_m_s_per_rad = 3.0};
+  auto leader = *ArmLeader::make({.method = ArmMethod::position_position, .force_gain = 0.5}, arm, tick);
+  ArmMessage follower = touching(7.0);
+  follower.position[2] += 0.1;
+  follower.velocity[1] = 0.3;
+  const auto output = leader.step(resting(), follower);
+  EXPECT_EQ(output.command.position, follower.position);
+  EXPECT_EQ(output.command.velocity, follower.velocity);
+  EXPECT_EQ(output.command.stiffness, JointVector::Constant(7, 120.0));
+  EXPECT_EQ(output.command.damping, JointVector::Constant(7, 1.5));
+  EXPECT_EQ(output.displayed.norm(), 0.0);
+}
+
+TEST(ArmLeader, AFilteredCommandStartsWhereTheArmIs) {
+  auto leader = *ArmLeader::make({.method = ArmMethod::position_force, .command_low_pass_Hz = 8.0}, believed(), tick);
+  EXPECT_LT((leader.step(resting(), touching(0.0)).message.position - arm_plants::bent()).norm(), 1e-12);
+  ArmReading moved = resting();
+  moved.position[0] += 0.1;
+  double told = 0.0;
+  for (int k = 0; k < 20; ++k) told = leader.step(moved, touching(0.0)).message.position[0] - arm_plants::bent()[0];
+  EXPECT_NEAR(told, 0.1 * (1.0 - std::exp(-2.0 * std::numbers::pi * 8.0 * 0.0195)), 1e-3);
+}
+
+TEST(ArmFollower, CommandsItsDrivesAndTellsTheTorqueThatItWasAskedFor) {
+  ArmFollower::Params params;
+  params.gains.joint_2 = {.stiffness_N_m_per_rad = 200.0, .damping_N_m_s_per_rad = 2.0};
+  params.torque = TorqueSource::sensor;
+  auto follower = *ArmFollower::make(params, believed().carried, tick);
+  const ArmMessage wanted = touching(0.0);
+  const auto output = follower.step(resting(), JointVector::Constant(7, 0.4), wanted);
+  EXPECT_EQ(output.command.stiffness[1], 200.0);
+  EXPECT_EQ(output.command.damping[1], 2.0);
+  EXPECT_EQ(output.command.stiffness[0], 100.0);
+  EXPECT_EQ(output.command.position, wanted.position);
+  EXPECT_EQ(output.message.external_torque, JointVector::Constant(7, 0.4));
+  params.torque = TorqueSource::observer;
+  auto observing = *ArmFollower::make(params, believed().carried, tick);
+  ArmReading held = resting();
+  held.torque = arm::Chain::make(believed().carried)->gravity_torque(held.position);
+  held.torque[3] -= 1.0;  // somebody lifts it
+  JointVector told;
+  for (int k = 0; k < 100; ++k) told = observing.step(held, JointVector::Zero(7), wanted).message.external_torque;
+  EXPECT_NEAR(told[3], 1.0, 1e-6);
+}
+
+TEST(ArmSites, ATickDoesNotAllocate) {
+  auto leader = *ArmLeader::make({.method = ArmMethod::cancellation,
+                                  .damping_N_s_per_m = 10.0,
+                                  .force_low_pass_Hz = 50.0,
+                                  .command_low_pass_Hz = 8.0},
+                                 believed(), tick);
+  auto follower = *ArmFollower::make({}, believed().carried, tick);
+  ArmMessage from_follower = touching(0.1);
+  ArmReading reading = resting();
+  const std::uint64_t before = laws::own_allocation_count();
+  for (int k = 0; k < 50; ++k) {
+    reading.velocity.setConstant(0.01 * k);
+    const auto told = leader.step(reading, from_follower);
+    from_follower = follower.step(reading, JointVector::Zero(7), told.message).message;
+  }
+  EXPECT_EQ(laws::own_allocation_count(), before);
+  EXPECT_TRUE(from_follower.external_torque.allFinite());
+}
+
+TEST(ArmSites, RefuseNumbersOutOfBoundsByName) {
+  EXPECT_EQ(ArmLeader::make({.force_gain = -1.0}, believed(), tick).error().parameter, "force_gain");
+  EXPECT_EQ(ArmLeader::make({.command_low_pass_Hz = 300.0}, believed(), Seconds{2e-3}).error().parameter,
+            "command_low_pass_Hz");
+  ArmLeader::Params params;
+  params.model.hand.mass_kg = 50.0;
+  EXPECT_EQ(ArmLeader::make(params, believed(), tick).error().parameter, "model.hand.mass_kg");
+  ArmFollower::Params follower;
+  follower.observer.cutoff_Hz = 700.0;
+  EXPECT_EQ(ArmFollower::make(follower, believed().carried, tick).error().parameter, "observer.cutoff_Hz");
+}
+
+}  // namespace
+}  // namespace tactus::arm_control::arm_sites_test

@@ -1,0 +1,98 @@
+#include <tactus/arm_plants/person.hpp>
+
+#include <cmath>
+
+#include "tests/arm_plants/openarm.hpp"
+
+namespace tactus::arm_plants {
+namespace {
+
+constexpr double tick_s = 1e-3;
+
+/// A person who wants the tool to stay, and an arm without weight or friction but the motors' torques.
+struct Held {
+  ArmPlant arm;
+  Person person;
+  Vector3 start_m;
+
+  Held(const Person::Params& params, double viscous_N_m_s_per_rad)
+      : Held(arm_of(params, viscous_N_m_s_per_rad), params) {}
+  void run(double duration_s, const ToolForce& load) {
+    for (int tick = 0; tick < static_cast<int>(duration_s / tick_s); ++tick) {
+      person.begin_tick(start_m, start_m, arm.tool());
+      for (int i = 0; i < 10; ++i) {
+        ToolForce force = person.force(arm.tool(), i * 1e-4);
+        force.force_N += load.force_N;
+        force.moment_N_m += load.moment_N_m;
+        arm.step(force);
+      }
+    }
+  }
+
+ private:
+  Held(ArmPlant made, const Person::Params& params)
+      : arm(std::move(made)),
+        person(*Person::make(params, Seconds{tick_s}, arm.tool())),
+        start_m(arm.tool().position_m) {}
+  static ArmPlant arm_of(const Person::Params& params, double viscous_N_m_s_per_rad) {
+    ArmPlant::Params plant = openarm_class();
+    plant.chain.gravity = {0.0, 0.0, 0.0};
+    plant.carried_kg = params.hand.mass_kg;
+    for (arm::JointParams& joint : plant.chain.joints) joint.friction.viscous_N_m_s_per_rad = viscous_N_m_s_per_rad;
+    return *ArmPlant::make(plant, bent());
+  }
+};
+
+TEST(Person, YieldsToAForceByWhatTheHandsStiffnessSays) {
+  const Person::Params params{
+      .hand = {.mass_kg = 0.4, .stiffness_N_per_m = 400.0, .damping_N_s_per_m = 30.0, .lever_m = 0.1},
+      .correction_gain_per_s = 0.0};
+  Held held(params, 0.3);
+  const Vector3 force_N(2.0, -1.0, 4.0);
+  held.run(4.0, {.force_N = force_N});
+  EXPECT_LT((held.arm.tool().position_m - held.start_m - force_N / 400.0).norm(), 1e-5);
+  Held turned(params, 0.3);
+  const arm::Matrix3 before = turned.arm.tool().rotation;
+  const Vector3 moment_N_m(0.1, 0.2, -0.1);
+  turned.run(4.0, {.moment_N_m = moment_N_m});
+  const arm::Matrix3 turn = turned.arm.tool().rotation * before.transpose();
+  const Vector3 by(turn(2, 1), turn(0, 2), turn(1, 0));
+  EXPECT_LT((by - moment_N_m / (400.0 * 0.01)).norm(), 1e-3);
+}
+
+TEST(Person, CorrectsSlowlyWhatPushesTheToolAway) {
+  const Person::Params params{
+      .hand = {.mass_kg = 0.4, .stiffness_N_per_m = 400.0, .damping_N_s_per_m = 30.0, .lever_m = 0.1}};
+  Held held(params, 0.3);
+  const ToolForce load{.force_N = Vector3(0.0, 0.0, 4.0)};
+  held.run(0.09, load);
+  const double at_once_m = held.arm.tool().position_m.z() - held.start_m.z();
+  EXPECT_GT(at_once_m, 0.003);
+  held.run(4.0, load);
+  EXPECT_LT(std::fabs(held.arm.tool().position_m.z() - held.start_m.z()), 1e-4);
+}
+
+TEST(Person, AWallPushesAndNeverPulls) {
+  const Wall wall{.point_m = Vector3(0.0, 0.0, 1.0),
+                  .normal = Vector3::UnitZ(),
+                  .stiffness_N_per_m = 1000.0,
+                  .damping_N_s_per_m = 10.0};
+  ToolState tool{.position_m = Vector3(5.0, 5.0, 1.001),
+                 .rotation = arm::Matrix3::Identity(),
+                 .velocity_m_per_s = Vector3(0, 0, -1),
+                 .turning_rad_per_s = Vector3::Zero()};
+  EXPECT_EQ(wall.force_N(tool), Vector3::Zero());
+  tool.position_m.z() = 0.99;
+  EXPECT_LT((wall.force_N(tool) - Vector3(0.0, 0.0, 20.0)).norm(), 1e-12);
+  tool.velocity_m_per_s.z() = 2.0;
+  EXPECT_EQ(wall.force_N(tool), Vector3::Zero());
+}
+
+TEST(Person, RefusesWhatNoPersonIs) {
+  const ArmPlant arm = *ArmPlant::make(openarm_class(), bent());
+  EXPECT_EQ(Person::make({.correction_gain_per_s = 50.0}, Seconds{tick_s}, arm.tool()).error().parameter,
+            "correction_gain_per_s");
+}
+
+}  // namespace
+}  // namespace tactus::arm_plants
