@@ -169,7 +169,9 @@ TEST_F(Terminal, AReaderThatWentAwayIsNoErrorAndFilesAreLeft) {
 }
 
 TEST_F(Terminal, BashCompletesVerbsOptionsAndWords) {
-  write("tactus.bash", tactus({"completion", "bash"}).out);
+  const Outcome script = tactus({"completion", "bash"});
+  ASSERT_EQ(script.status, 0) << script.err;
+  write("tactus.bash", script.out);
   const auto completed = [this](const std::string& words, int at) {
     write("ask.sh", ". ./tactus.bash\nCOMP_WORDS=(" + words + ")\nCOMP_CWORD=" + std::to_string(at) +
                         "\n_tactus\nprintf '%s\\n' \"${COMPREPLY[@]}\" >reply\n");
