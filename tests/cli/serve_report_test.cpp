@@ -1,5 +1,6 @@
 #include <tactus/cli/serve_report.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/report/text.hpp>
 
 #include <string>
 
@@ -21,6 +22,7 @@ TEST(ServeReport, TellsWhatWasTriedAndThatOneLoopRangWhereTheOtherSettled) {
                                      .variations = {},
                                      .name = "sample",
                                      .command = "tactus serve"};
+  report::set_text_width(200);
   const auto outcome = serve_outcome({.duration_s = 0.6, .server = {.accepted = 3}}, view->history(),
                                      live::sample_settings().descriptions(), request, "[task]");
   const auto document = nlohmann::json::parse(outcome.json);
@@ -32,6 +34,7 @@ TEST(ServeReport, TellsWhatWasTriedAndThatOneLoopRangWhereTheOtherSettled) {
   EXPECT_EQ(left, "settled");
   EXPECT_EQ(right, "rang");
   ASSERT_EQ(outcome.figures.size(), 1U);
+  report::set_text_width(80);
   EXPECT_NE(outcome.text.find("Force gain"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.html.find("tactus serve"), std::string::npos);
 }

@@ -1,6 +1,7 @@
 #include <tactus/experiments/contest/contest.hpp>
 #include <tactus/experiments/contest/presentation.hpp>
 #include <tactus/experiments/experiment.hpp>
+#include <tactus/report/text.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -114,7 +115,9 @@ Result<Outcome> run(const Request& request) {
 }
 
 TEST(Contest, ScoresEveryMethodInWordsPictureAndJson) {
+  report::set_text_width(400);
   const auto outcome = run(small_contest());
+  report::set_text_width(80);
   ASSERT_TRUE(outcome) << describe(outcome.error());
   const Json document = Json::parse(outcome->json);
   ASSERT_EQ(document["methods"].size(), contest_methods().size());
