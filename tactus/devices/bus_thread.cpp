@@ -1,8 +1,10 @@
 #include <tactus/devices/bus_thread.hpp>
+#include <tactus/runtime/rights.hpp>
 #include <tactus/wire/talk.hpp>
 
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -12,6 +14,9 @@ namespace {
 
 /// For the motors to say that they have no power.
 constexpr std::int64_t farewell_ns = 100'000'000;
+/// Before all that is not real time, so that no other program makes a motor look silent; after the servo thread.
+constexpr int priority = 70;
+constexpr int any_core = -1;
 
 }  // namespace
 
@@ -89,6 +94,12 @@ BusThread::BusThread(std::unique_ptr<MotorBus> bus, wire::Port port, const Param
 BusThread::~BusThread() { stop(); }
 
 void BusThread::run() noexcept {
+  try {
+    // Without the right to it the bus runs as it can, as the servo thread does, which tells of it.
+    static_cast<void>(runtime::take_thread_rights(priority, any_core));
+  } catch (const std::bad_alloc&) {
+    // Nothing to write down what was granted; the bus runs all the same.
+  }
   Exchange exchange(*this);
   failed_ = wire::talk(exchange, port_, [this] { return stopping_.load(std::memory_order_relaxed); });
   if (!failed_) {
