@@ -92,7 +92,7 @@ TEST_F(RealTime, FaultsRunAtTheRealClockAfterVirtualTime) {
 }
 
 TEST_F(RealTime, AFaultThatIsNotSurvivedSaysWhetherMissedTicksLostIt) {
-  // Nothing sees the frozen encoder, so the run is lost whether the clock is kept or not.
+  // Nothing sees the frozen encoder, so runs are lost whether the clock is kept or not.
   const Outcome outcome = tactus({"faults", "--realtime", "--seeds", "1", "--only", "encoder-freeze", "--set",
                                   "task.real_time_seeds=6", "--set", "control.gate.encoder.frozen_after_s=1", "--set",
                                   "control.slave_gate.encoder.frozen_after_s=1", "--priority", "10", "--json"});
@@ -101,12 +101,17 @@ TEST_F(RealTime, AFaultThatIsNotSurvivedSaysWhetherMissedTicksLostIt) {
   const Json& lost = document["lost"];
   const int survived = document["rows"][0]["survived"];
   EXPECT_EQ(static_cast<int>(lost.size()), 6 - survived);
-  ASSERT_GT(lost.size(), 0U);
+  int lost_on_time = 0;
   for (const Json& run : lost) {
     EXPECT_EQ(run["id"], "encoder-freeze");
-    EXPECT_EQ(run["survives_on_time"], false) << run;
     EXPECT_GE(run["missed_ticks"], run["longest_gap_ticks"]);
+    if (run["survives_on_time"] == true) {
+      EXPECT_GT(run["missed_ticks"], 0) << run;
+    } else {
+      ++lost_on_time;
+    }
   }
+  EXPECT_GT(lost_on_time, 0);
 }
 
 TEST_F(RealTime, HowToKeepTimeIsNoQuestionInVirtualTime) {
