@@ -56,7 +56,8 @@ void add_onlooker_options(CLI::App& verb, OnlookerOptions& options) {
 }
 
 Result<Onlookers> Onlookers::open(const OnlookerOptions& options, const experiments::Request& request,
-                                  const std::optional<control::SiteRole>& site) {
+                                  const std::optional<control::SiteRole>& site,
+                                  const std::vector<std::string>& joints) {
   Onlookers made;
   if (options.live) {
     const auto where = place_of(*options.live);
@@ -72,6 +73,7 @@ Result<Onlookers> Onlookers::open(const OnlookerOptions& options, const experime
     if (!network) return network.error();
     auto observer = ros2::Observer::create({.network = *network,
                                             .name_space = options.name_space,
+                                            .joints = joints,
                                             .master = !site || *site == control::SiteRole::master,
                                             .slave = !site || *site == control::SiteRole::slave});
     if (!observer) return observer.error();

@@ -169,8 +169,8 @@ bool names_a_rig(const std::string& device) {
   return device.ends_with(suffix) || device.find(std::string(suffix) + ":") != std::string::npos;
 }
 
-Check run_rig(const SupervisedOptions& options, runtime::ServoThreadParams servo, const experiments::Request& request,
-              OutputFolder& folder, std::uint64_t log_limit_bytes) {
+Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_on, runtime::ServoThreadParams servo,
+              const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes) {
   if (options.devices.size() > 1) return refused("--device", "a rig has the devices of both sites: name it alone");
   const auto params = request.document.read<experiments::TappingParams>();
   if (!params) return params.error();
@@ -184,6 +184,10 @@ Check run_rig(const SupervisedOptions& options, runtime::ServoThreadParams servo
   const auto interruption = Interruption::start(exchange.end);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
+  std::vector<std::string> names;
+  for (const devices::RigJoint& joint : (*pair)->leader->joints) names.emplace_back(joint.name());
+  auto onlookers = Onlookers::open(looking_on, request, {}, names);
+  if (!onlookers) return onlookers.error();
   if (Check unclean = refuse_unclean(*rig, **pair, errors)) return unclean;
   // The devices give up their motors before the links do, and these before the guards.
   std::array<std::optional<Driven>, 2> driven;
@@ -192,17 +196,17 @@ Check run_rig(const SupervisedOptions& options, runtime::ServoThreadParams servo
     if (!made) return made.error();
     driven[side].emplace(*std::move(made));
   }
-  const std::size_t joints = (*pair)->leader->joints.size();
   const Seconds tick{1.0 / params->servo.rate_Hz};
   servo.rate_Hz = params->servo.rate_Hz;
-  auto loop = RigLoop::make(Joints<control::ControlParams>(joints, runtime::control_of(*params)), params->channel, tick,
-                            {.duration_s = options.duration_s, .arm_at_once = options.arm}, exchange,
+  auto loop = RigLoop::make(Joints<control::ControlParams>(names.size(), runtime::control_of(*params)), params->channel,
+                            tick, {.duration_s = options.duration_s, .arm_at_once = options.arm}, exchange,
                             *driven[0]->device, *driven[1]->device);
   if (!loop) return request.document.locate(loop.error());
   const auto person = Person::listen_to(STDIN_FILENO, control::SiteRole::master, exchange, errors);
   if (!person) return person.error();
 
-  runtime::JointStreams streams(joints);
+  runtime::JointStreams streams(names.size());
+  if (folder.wanted() || onlookers->any()) loop->leave_in(streams);
   std::optional<runtime::SiteLog> log;
   if (folder.wanted()) {
     if (Check error = folder.begin()) return error;
@@ -213,8 +217,9 @@ Check run_rig(const SupervisedOptions& options, runtime::ServoThreadParams servo
     auto created = runtime::SiteLog::create(folder.log_folder(), streams, about, log_limit_bytes);
     if (!created) return created.error();
     log.emplace(*std::move(created));
-    loop->leave_in(streams);
   }
+  onlookers->watch(streams);
+  if (Check error = onlookers->begin([&output](const std::string& line) { output.say(line); })) return error;
   auto thread = runtime::ServoThread<RigLoop>::start(servo, *std::move(loop));
   if (!thread) return thread.error();
   const auto take_seconds = [&] {
@@ -228,10 +233,10 @@ Check run_rig(const SupervisedOptions& options, runtime::ServoThreadParams servo
   const runtime::ServoReport report = (*thread)->finish();
   take_seconds();
   Check log_error;
-  std::string where;
+  std::string where = onlookers->end();
   if (log) {
     log_error = log->close();
-    where = std::to_string(log->dropped()) + " records of the log dropped.\n" + folder.log_line(log->removed());
+    where += std::to_string(log->dropped()) + " records of the log dropped.\n" + folder.log_line(log->removed());
   }
   const std::string ended_by = (*interruption)->signal() != 0 ? (*interruption)->name() : "its duration";
   const Check unread = output.finish(summary_of((*thread)->step().totals(), report, ended_by) + where);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/cli/onlookers.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/cli/supervised_run.hpp>
 #include <tactus/core/result.hpp>
@@ -16,7 +17,7 @@ bool names_a_rig(const std::string& device);
 
 /// Drives a pair of a rig under supervision, each joint by the controller of the experiment, until it is over: what
 /// `tactus run EXPERIMENT --realtime --device FILE.toml` is. Nothing gets power before the rig is clean.
-Check run_rig(const SupervisedOptions& options, runtime::ServoThreadParams servo, const experiments::Request& request,
-              OutputFolder& folder, std::uint64_t log_limit_bytes);
+Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_on, runtime::ServoThreadParams servo,
+              const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes);
 
 }  // namespace tactus::cli

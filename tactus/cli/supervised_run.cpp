@@ -269,11 +269,7 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
       return refused(ErrorCode::inconsistent, "--site",
                      "a rig has a leader and a follower, which run in one program: leave out --site");
     }
-    if (looking_on.ros2 || looking_on.live) {
-      return refused(ErrorCode::inconsistent, looking_on.live ? "--live" : "--ros2",
-                     "several joints are shown by neither yet: leave it out, and look at the log of --out");
-    }
-    return run_rig(options, servo, request, folder, log_limit_bytes);
+    return run_rig(options, looking_on, servo, request, folder, log_limit_bytes);
   }
   const auto params = document.read<TappingParams>();
   if (!params) return params.error();

@@ -21,8 +21,11 @@ constexpr Seconds look_every{0.002};
 /// The state is told when it changes and this often, for those who come late.
 constexpr std::int64_t state_every_ns = 100'000'000;
 
-JointState joint_state(const Snapshot& at, const char* device) {
-  return {.stamp_ns = at.stamp_ns, .frame_id = device, .name = {device}, .position = {}, .velocity = {}, .effort = {}};
+/// One number of each joint.
+std::vector<double> each(const Snapshot& at, double JointSnapshot::*number) {
+  std::vector<double> all;
+  for (const JointSnapshot& joint : at.joints) all.push_back(joint.*number);
+  return all;
 }
 
 WrenchStamped wrench(const Snapshot& at, const char* device, double force_N) {
@@ -31,20 +34,33 @@ WrenchStamped wrench(const Snapshot& at, const char* device, double force_N) {
 
 /// The topics of one device.
 struct DeviceWriters {
+  std::string device;
+  std::vector<std::string> joints;
   Writer<JointState> measured_js;
   Writer<JointState> setpoint_js;
-  Writer<WrenchStamped> measured_cf;
+  std::optional<Writer<WrenchStamped>> measured_cf;  ///< of one axis: several joints alone know no direction
+
+  /// Without numbers.
+  [[nodiscard]] JointState joint_state(const Snapshot& at) const {
+    return {.stamp_ns = at.stamp_ns, .frame_id = device, .name = joints, .position = {}, .velocity = {}, .effort = {}};
+  }
 };
 
-Result<DeviceWriters> open_writers(Participant& participant, const std::string& name_space, const std::string& device) {
+Result<DeviceWriters> open_writers(Participant& participant, const std::string& name_space, const std::string& device,
+                                   const std::vector<std::string>& joints) {
   const auto topic = [&](const char* name) { return dds_topic(name_space, device + "/" + name); };
   auto measured_js = participant.writer<JointState>(topic("measured_js"));
   if (!measured_js) return measured_js.error();
   auto setpoint_js = participant.writer<JointState>(topic("setpoint_js"));
   if (!setpoint_js) return setpoint_js.error();
-  auto measured_cf = participant.writer<WrenchStamped>(topic("measured_cf"));
-  if (!measured_cf) return measured_cf.error();
-  return DeviceWriters{*measured_js, *setpoint_js, *measured_cf};
+  DeviceWriters writers{device, joints, *measured_js, *setpoint_js, {}};
+  if (joints.empty()) {
+    auto measured_cf = participant.writer<WrenchStamped>(topic("measured_cf"));
+    if (!measured_cf) return measured_cf.error();
+    writers.measured_cf = *measured_cf;
+    writers.joints = {device};
+  }
+  return writers;
 }
 
 /// A snapshot that is told, and as what.
@@ -73,7 +89,7 @@ Result<Endpoints> open(const Bridge::Params& params) {
   for (const auto& [wanted, device, writers] :
        {std::tuple{params.master, "master", &master}, std::tuple{params.slave, "slave", &slave}}) {
     if (!wanted) continue;
-    auto opened = open_writers(*participant, params.name_space, device);
+    auto opened = open_writers(*participant, params.name_space, device, params.joints);
     if (!opened) return opened.error();
     *writers = *std::move(opened);
   }
@@ -86,7 +102,7 @@ Result<Endpoints> open(const Bridge::Params& params) {
     if (!opened) return opened.error();
     servo_jp = *std::move(opened);
   }
-  return Endpoints{*std::move(participant), master, slave, *state, servo_jp};
+  return Endpoints{*std::move(participant), std::move(master), std::move(slave), *state, servo_jp};
 }
 
 }  // namespace
@@ -133,24 +149,33 @@ struct Bridge::State {
     }
   }
 
-  void tell_master(const Snapshot& at, DeviceWriters& writers) {
-    JointState measured = joint_state(at, "master");
-    measured.position = {at.master_position_m};
+  /// What a device measures; its forces as it feels them, times `sign`.
+  void tell_measured(const Snapshot& at, DeviceWriters& writers, double JointSnapshot::*position,
+                     double JointSnapshot::*force, double sign) {
+    JointState measured = writers.joint_state(at);
+    measured.position = each(at, position);
+    std::vector<double> forces = each(at, force);
+    for (double& one : forces) one *= sign;
+    if (writers.measured_cf) {
+      send(*writers.measured_cf, wrench(at, writers.device.c_str(), forces.front()));
+    } else {
+      measured.effort = std::move(forces);
+    }
     send(writers.measured_js, measured);
-    JointState setpoint = joint_state(at, "master");
-    setpoint.effort = {at.master_force_N};
+  }
+
+  void tell_master(const Snapshot& at, DeviceWriters& writers) {
+    tell_measured(at, writers, &JointSnapshot::master_position_m, &JointSnapshot::hand_force_N, 1.0);
+    JointState setpoint = writers.joint_state(at);
+    setpoint.effort = each(at, &JointSnapshot::master_force_N);
     send(writers.setpoint_js, setpoint);
-    send(writers.measured_cf, wrench(at, "master", at.hand_force_N));
   }
 
   void tell_slave(const Snapshot& at, DeviceWriters& writers) {
-    JointState measured = joint_state(at, "slave");
-    measured.position = {at.slave_position_m};
-    send(writers.measured_js, measured);
-    JointState setpoint = joint_state(at, "slave");
-    setpoint.position = {at.slave_command_m};
+    tell_measured(at, writers, &JointSnapshot::slave_position_m, &JointSnapshot::environment_force_N, -1.0);
+    JointState setpoint = writers.joint_state(at);
+    setpoint.position = each(at, &JointSnapshot::slave_command_m);
     send(writers.setpoint_js, setpoint);
-    send(writers.measured_cf, wrench(at, "slave", -at.environment_force_N));
   }
 
   void tell(const Told& told) {
@@ -220,6 +245,13 @@ Result<Bridge> Bridge::create(const Params& params) {
     return Error{.code = ErrorCode::out_of_bounds,
                  .parameter = "rate_Hz",
                  .message = std::to_string(params.rate_Hz) + " Hz is out of bounds: write one above 0, up to 10000 Hz",
+                 .place = {}};
+  }
+  if (params.joints.size() > most_joints) {
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = "joints",
+                 .message = std::to_string(params.joints.size()) + " joints are too many: name " +
+                            std::to_string(most_joints) + " at most",
                  .place = {}};
   }
   auto opened = open(params);

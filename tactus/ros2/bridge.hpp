@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/core/joints.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/ros2/names.hpp>
@@ -9,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tactus::ros2 {
 
@@ -19,23 +21,29 @@ constexpr auto enumerators(OperatingState) {
                     Enumerator{OperatingState::paused, "PAUSED"}, Enumerator{OperatingState::fault, "FAULT"}};
 }
 
-/// What the other programs are told about one tick of a one-axis teleoperator. Positions and forces are positive toward
-/// the environment, unless said otherwise.
-struct Snapshot {
-  std::int64_t stamp_ns = 0;         ///< since 1970
+/// One axis of both devices, or one joint of several, in its own unit: where a name says m and N, one that turns has
+/// rad and N m. Positions and forces are positive toward the environment, unless said otherwise.
+struct JointSnapshot {
   double master_position_m = 0.0;    ///< measured, at the motor
   double master_force_N = 0.0;       ///< commanded to the motor, behind the safety gate
   double hand_force_N = 0.0;         ///< measured, of the hand on the handle
   double slave_position_m = 0.0;     ///< measured, at the motor
   double slave_command_m = 0.0;      ///< position command as it left the master
   double environment_force_N = 0.0;  ///< as the slave told it, positive when the environment pushes it back
+};
+
+/// What the other programs are told about one tick of a teleoperator.
+struct Snapshot {
+  std::int64_t stamp_ns = 0;  ///< since 1970
+  Joints<JointSnapshot> joints{1};
   OperatingState state = OperatingState::enabled;
 };
 
 /// A teleoperator among ROS 2 nodes. Under the namespace, by default `tactus`, it publishes the topics of `topics()`
 /// and subscribes to `operator/servo_jp` (`sensor_msgs/msg/JointState` with one position in m): where another program
 /// means the operator's hand to be. Of one site alone it publishes that device's topics, with the state as
-/// `master/state` or `slave/state`.
+/// `master/state` or `slave/state`. Of devices with several joints `measured_js` has the force at each joint as its
+/// effort, and there is no `measured_cf`.
 ///
 /// The thread that steps the teleoperator calls `publish` and `take_wish`, which touch a wait-free ring, the newest
 /// wish and nothing else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and
@@ -45,6 +53,8 @@ class Bridge {
   struct Params {
     Network network = {};
     std::string name_space = "tactus";
+    /// Of both devices, in order, `most_joints` at most; none where each has one axis, which is called as the device.
+    std::vector<std::string> joints = {};
     double rate_Hz = 500.0;  ///< of the measured signals, at most; positive, up to 10 kHz
     bool master = true;      ///< whether the topics of that device are published
     bool slave = true;
@@ -59,13 +69,14 @@ class Bridge {
   };
 
   /// Opens everything and starts the thread. Errors: those of `check_namespace` and `Participant::create`;
-  /// `out_of_bounds` for the rate.
+  /// `out_of_bounds` for the rate and for the number of joints.
   static Result<Bridge> create(const Params& params);
   Bridge(Bridge&&) noexcept;
   Bridge& operator=(Bridge&&) = delete;
   ~Bridge();  ///< closes
 
-  /// Passes a snapshot on where one is due by `rate_Hz` and its stamp, or the state has changed. One thread only.
+  /// Passes a snapshot, with the joints of `Params`, on where one is due by `rate_Hz` and its stamp, or the state has
+  /// changed. One thread only.
   /// Real-time safe: wait-free, no allocation, no system call.
   void publish(const Snapshot& snapshot) noexcept;
   /// The newest position in m that another program wished since the last call, always finite and not bounded otherwise.

@@ -1,9 +1,10 @@
 #include <tactus/ros2/observer.hpp>
 
+#include <algorithm>
 #include <chrono>
-#include <optional>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace tactus::ros2 {
 
@@ -11,11 +12,13 @@ namespace {
 
 using control::SiteRole;
 using control::SiteState;
+using runtime::AxisRecord;
+using runtime::JointStreams;
 using runtime::SiteLogRecord;
 using runtime::SiteStreams;
 using TeleoperatorStream = runtime::RealTimeStreams::Teleoperator;
 
-OperatingState state_of(const SiteLogRecord& record) {
+OperatingState state_of(const control::SiteRecord& record) {
   switch (static_cast<SiteState>(record.state)) {
     case SiteState::configure:
       return OperatingState::disabled;
@@ -39,66 +42,145 @@ OperatingState together(OperatingState a, OperatingState b) {
   return OperatingState::enabled;
 }
 
-/// Both streams of a pair, read in step.
-struct PairReader {
-  SiteStreams::Site::Reader master, slave;
-  std::optional<SiteStreams::Site::Entry> told_by_master;
-  std::int64_t to_time_of_day_ns;
+/// A stream of which each tick has a record.
+template <class Stream>
+struct Followed {
+  explicit Followed(const Stream& stream) : reader(stream.watch()) {}
 
-  bool tell(Bridge& bridge, std::uint64_t& lost) {
-    SiteStreams::Site::Entry entry;
-    if (!told_by_master) {
-      if (!master.next(entry)) return false;
-      told_by_master = entry;
+  /// Goes to the record of this number, or the first behind it that was not lost; false where there is none yet.
+  bool reach(std::uint64_t number) {
+    while (!stands || entry.number < number) {
+      if (!reader.next(entry)) return false;
+      stands = true;
     }
-    if (!slave.next(entry)) return false;
-    // Where one stream lost records, the other catches up.
-    while (told_by_master->number < entry.number) {
-      if (!master.next(*told_by_master)) return told_by_master.reset(), false;
-    }
-    lost = master.lost();
-    if (told_by_master->number > entry.number) return true;
-    bridge.publish(snapshot_of(told_by_master->record, entry.record,
-                               static_cast<std::int64_t>(entry.time_ns) + to_time_of_day_ns));
-    told_by_master.reset();
     return true;
   }
+
+  typename Stream::Reader reader;
+  typename Stream::Entry entry;
+  bool stands = false;  ///< at `entry`
+};
+
+/// Streams that take a record each at every tick, read in step: where one lost some the others skip theirs.
+class InStep {
+ public:
+  /// Goes to the next tick that all of them have; false where that is still to come. `visit` calls what it is given
+  /// with each `Followed`.
+  template <class Visit>
+  bool next(const Visit& visit) {
+    while (true) {
+      std::uint64_t newest = number_;
+      bool all = true;
+      visit([&](auto& stream) {
+        all = all && stream.reach(number_);
+        if (all) newest = std::max(newest, stream.entry.number);
+      });
+      if (!all) return false;
+      if (newest == number_) break;
+      number_ = newest;
+    }
+    ++number_;
+    return true;
+  }
+
+ private:
+  std::uint64_t number_ = 0;
+};
+
+/// Both sites of one axis.
+struct PairReader {
+  Followed<SiteStreams::Site> master, slave;
+  std::int64_t to_time_of_day_ns;
+  InStep step = {};
+
+  bool tell(Bridge& bridge, std::uint64_t& lost) {
+    const bool told = step.next([this](const auto& reach) { reach(master), reach(slave); });
+    lost = master.reader.lost();
+    if (!told) return false;
+    bridge.publish(snapshot_of(master.entry.record, slave.entry.record,
+                               static_cast<std::int64_t>(master.entry.time_ns) + to_time_of_day_ns));
+    return true;
+  }
+};
+
+/// What a record of a joint or an axis tells of it; `of` keeps what the other site does.
+template <class Record>
+void tell_of(JointSnapshot& of, const Record& record, SiteRole role) {
+  const AxisRecord& axis = record;
+  if (role == SiteRole::master) {
+    of.master_position_m = axis.position_m;
+    of.master_force_N = axis.motor_force_N;
+    of.hand_force_N = axis.read_force_N;
+    of.slave_command_m = record.Record::Told::position_m;
+  } else {
+    of.slave_position_m = axis.position_m;
+    of.environment_force_N = axis.read_force_N;
+  }
+}
+
+/// Both sites of several joints.
+class JointsReader {
+ public:
+  explicit JointsReader(const JointStreams& streams, std::int64_t to_time_of_day_ns)
+      : to_time_of_day_ns_(to_time_of_day_ns) {
+    for (const auto& [role, name] : enumerators(SiteRole{})) {
+      sites_.emplace_back(streams.site(role));
+      for (std::size_t joint = 0; joint < streams.joints(); ++joint) joints_.emplace_back(streams.joint(role, joint));
+    }
+  }
+
+  bool tell(Bridge& bridge, std::uint64_t& lost) {
+    const bool told = step_.next([this](const auto& reach) {
+      for (auto& site : sites_) reach(site);
+      for (auto& joint : joints_) reach(joint);
+    });
+    lost = sites_.front().reader.lost();
+    if (!told) return false;
+    const std::size_t joints = joints_.size() / sites_.size();
+    Snapshot snapshot{.stamp_ns = static_cast<std::int64_t>(sites_.front().entry.time_ns) + to_time_of_day_ns_,
+                      .joints = Joints<JointSnapshot>(joints),
+                      .state = together(state_of(sites_[0].entry.record), state_of(sites_[1].entry.record))};
+    for (const auto& [role, name] : enumerators(SiteRole{})) {
+      const auto first = static_cast<std::size_t>(role) * joints;
+      for (std::size_t joint = 0; joint < joints; ++joint) {
+        tell_of(snapshot.joints[joint], joints_[first + joint].entry.record, role);
+      }
+    }
+    bridge.publish(snapshot);
+    return true;
+  }
+
+ private:
+  std::vector<Followed<JointStreams::Site>> sites_;    ///< by role
+  std::vector<Followed<JointStreams::Joint>> joints_;  ///< the master's, then the slave's
+  std::int64_t to_time_of_day_ns_;
+  InStep step_;
 };
 
 }  // namespace
 
 Snapshot snapshot_of(const simulation::Teleoperator::Record& record, std::int64_t stamp_ns, OperatingState state) {
-  return {.stamp_ns = stamp_ns,
-          .master_position_m = record.master_position_m,
-          .master_force_N = -record.displayed_force_N,
-          .hand_force_N = record.hand_force_N,
-          .slave_position_m = record.slave_position_m,
-          .slave_command_m = record.command_m,
-          .environment_force_N = record.told_force_N,
-          .state = state};
+  Snapshot snapshot{.stamp_ns = stamp_ns, .state = state};
+  snapshot.joints[0] = {.master_position_m = record.master_position_m,
+                        .master_force_N = -record.displayed_force_N,
+                        .hand_force_N = record.hand_force_N,
+                        .slave_position_m = record.slave_position_m,
+                        .slave_command_m = record.command_m,
+                        .environment_force_N = record.told_force_N};
+  return snapshot;
 }
 
 Snapshot snapshot_of(const SiteLogRecord& record, SiteRole role, std::int64_t stamp_ns) {
   Snapshot snapshot{.stamp_ns = stamp_ns, .state = state_of(record)};
-  if (role == SiteRole::master) {
-    snapshot.master_position_m = record.position_m;
-    snapshot.master_force_N = record.motor_force_N;
-    snapshot.hand_force_N = record.read_force_N;
-  } else {
-    snapshot.slave_position_m = record.position_m;
-    snapshot.slave_command_m = record.Heard::position_m;
-    snapshot.environment_force_N = record.read_force_N;
-  }
+  tell_of(snapshot.joints[0], record, role);
+  snapshot.joints[0].slave_command_m = role == SiteRole::slave ? record.Heard::position_m : 0.0;
   return snapshot;
 }
 
 Snapshot snapshot_of(const SiteLogRecord& master, const SiteLogRecord& slave, std::int64_t stamp_ns) {
-  Snapshot snapshot = snapshot_of(master, SiteRole::master, stamp_ns);
-  const Snapshot of_slave = snapshot_of(slave, SiteRole::slave, stamp_ns);
-  snapshot.slave_position_m = of_slave.slave_position_m;
-  snapshot.slave_command_m = master.Told::position_m;
-  snapshot.environment_force_N = of_slave.environment_force_N;
-  snapshot.state = together(snapshot.state, of_slave.state);
+  Snapshot snapshot{.stamp_ns = stamp_ns, .state = together(state_of(master), state_of(slave))};
+  tell_of(snapshot.joints[0], master, SiteRole::master);
+  tell_of(snapshot.joints[0], slave, SiteRole::slave);
   return snapshot;
 }
 
@@ -136,7 +218,7 @@ void Observer::watch(const SiteStreams& streams) {
   const SiteStreams::Site* const master = streams.of(SiteRole::master);
   const SiteStreams::Site* const slave = streams.of(SiteRole::slave);
   if (master != nullptr && slave != nullptr) {
-    sources_.push_back([both = PairReader{master->watch(), slave->watch(), std::nullopt, offset_ns}](
+    sources_.push_back([both = PairReader{Followed(*master), Followed(*slave), offset_ns}](
                            Bridge& bridge, std::uint64_t& lost) mutable { return both.tell(bridge, lost); });
     return;
   }
@@ -151,6 +233,11 @@ void Observer::watch(const SiteStreams& streams) {
           return true;
         });
   }
+}
+
+void Observer::watch(const JointStreams& streams) {
+  sources_.push_back([both = JointsReader(streams, to_time_of_day_ns() + streams.origin_ns())](
+                         Bridge& bridge, std::uint64_t& lost) mutable { return both.tell(bridge, lost); });
 }
 
 Check Observer::start() {

@@ -2,6 +2,7 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/ros2/bridge.hpp>
+#include <tactus/runtime/joint_streams.hpp>
 #include <tactus/runtime/real_time_tap.hpp>
 #include <tactus/runtime/site_log.hpp>
 #include <tactus/simulation/teleoperator.hpp>
@@ -39,6 +40,7 @@ class Observer {
   /// Tells what goes into the streams from now on. Before `start`.
   void watch(const runtime::RealTimeStreams& streams);
   void watch(const runtime::SiteStreams& streams);
+  void watch(const runtime::JointStreams& streams);
 
   /// Starts the thread. Errors: `failed` where the system gives none.
   Check start();

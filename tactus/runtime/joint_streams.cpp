@@ -6,16 +6,16 @@ namespace tactus::runtime {
 JointStreams::JointStreams(std::size_t joints)
     : servo_(std::make_shared<telemetry::RecordStream<ServoRecord>>()), origin_ns_(monotonic_ns()) {
   for (OfSite& site : sites_) {
-    site.ticks = std::make_shared<telemetry::RecordStream<SiteTickRecord>>();
+    site.ticks = std::make_shared<Site>();
     for (std::size_t joint = 0; joint < joints; ++joint) {
-      site.joints.push_back(std::make_shared<telemetry::RecordStream<JointLogRecord>>());
+      site.joints.push_back(std::make_shared<Joint>());
     }
   }
 }
 
-template <class Site>
+template <class Supervised>
 void JointStreams::OfSite::push(std::uint64_t due_ns, const station::Tick& tick, const control::SiteRequests& pressed,
-                                const Site& site, const station::Step<Site>& done) noexcept {
+                                const Supervised& site, const station::Step<Supervised>& done) noexcept {
   ticks->push(due_ns, recorded(tick, pressed, site, done));
   for (std::size_t joint = 0; joint < joints.size(); ++joint) {
     joints[joint]->push(due_ns, recorded(tick, joint, site, done));

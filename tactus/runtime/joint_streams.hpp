@@ -21,16 +21,27 @@ class JointStreams {
   /// 1 to `most_joints` at each site. Times count from now.
   explicit JointStreams(std::size_t joints);
 
-  /// A tick of both sites. Real-time safe.
+  /// A tick of both sites. One thread only. Real-time safe.
   void push(const station::Tick& tick, const control::SiteRequests& pressed,
             const station::JointLocalTeleoperator& sites, const station::JointLocalTeleoperator::Output& done) noexcept;
+
+  using Site = telemetry::RecordStream<SiteTickRecord>;
+  using Joint = telemetry::RecordStream<JointLogRecord>;
+  [[nodiscard]] const Site& site(control::SiteRole role) const noexcept { return *of(role).ticks; }
+  /// From 0.
+  [[nodiscard]] const Joint& joint(control::SiteRole role, std::size_t number) const noexcept {
+    return *of(role).joints[number];
+  }
+  [[nodiscard]] std::size_t joints() const noexcept { return sites_.front().joints.size(); }
+  /// From which the times of the records count, on CLOCK_MONOTONIC.
+  [[nodiscard]] std::int64_t origin_ns() const noexcept { return origin_ns_; }
 
   /// Calls `visit(topic, type_name, stream)` for each stream: `/master/site`, `/master/joint_1` and on, the slave's,
   /// `/servo`.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const auto& [role, name] : enumerators(control::SiteRole{})) {
-      const OfSite& site = sites_[static_cast<std::size_t>(role)];
+      const OfSite& site = of(role);
       const std::string place = std::string("/").append(name);
       visit(std::string(place).append("/site"), "tactus_msgs/msg/SiteTickRecord", *site.ticks);
       for (std::size_t joint = 0; joint < site.joints.size(); ++joint) {
@@ -43,17 +54,21 @@ class JointStreams {
 
  private:
   struct OfSite {
-    std::shared_ptr<telemetry::RecordStream<SiteTickRecord>> ticks;
-    std::vector<std::shared_ptr<telemetry::RecordStream<JointLogRecord>>> joints;
+    std::shared_ptr<Site> ticks;
+    std::vector<std::shared_ptr<Joint>> joints;
 
-    template <class Site>
-    void push(std::uint64_t due_ns, const station::Tick& tick, const control::SiteRequests& pressed, const Site& site,
-              const station::Step<Site>& done) noexcept;
+    template <class Supervised>
+    void push(std::uint64_t due_ns, const station::Tick& tick, const control::SiteRequests& pressed,
+              const Supervised& site, const station::Step<Supervised>& done) noexcept;
   };
+
+  [[nodiscard]] const OfSite& of(control::SiteRole role) const noexcept {
+    return sites_[static_cast<std::size_t>(role)];
+  }
 
   std::array<OfSite, 2> sites_;  ///< by role
   std::shared_ptr<telemetry::RecordStream<ServoRecord>> servo_;
-  std::int64_t origin_ns_;  ///< of the times, on CLOCK_MONOTONIC
+  std::int64_t origin_ns_;
 };
 
 }  // namespace tactus::runtime

@@ -59,6 +59,7 @@ struct Row {
   const char* devices;
   /// A line of the shell: `$TACTUS` and `$OWN` are the programs, `$MORE` the options of a cell.
   const char* command;
+  bool replays = false;  ///< its log
 };
 
 // A slow servo, so that a busy machine keeps up.
@@ -73,18 +74,30 @@ constexpr std::array rows{
     Row{"virtual", "one's own", "$OWN run quick.toml $slow --device carriage $MORE"},
     Row{"virtual", "a plant's", "$TACTUS run quick.toml $slow --plant bench $MORE"},
     Row{"virtual", "two sites", "$TACTUS run quick.toml $slow $taps $MORE"},
-    Row{"real", "one's own", "$OWN run quick.toml $slow --realtime --device carriage --arm --duration-s 3 $MORE <&9"},
+    Row{"real", "one's own", "$OWN run quick.toml $slow --realtime --device carriage --arm --duration-s 3 $MORE <&9",
+        true},
     Row{"real", "a plant's",
         "$TACTUS plant quick.toml $slow $taps --name $BENCH --silence-s 5 >plant 2>&1 & plant=$!\n"
         "until grep -q Plant plant; do sleep 0.05; done\n"
         "$TACTUS run quick.toml $slow $taps --realtime --plant $BENCH --plant-silence-s 5 $MORE; status=$?\n"
-        "kill $plant; wait $plant; (exit $status)"},
+        "kill $plant; wait $plant; (exit $status)",
+        true},
+    Row{"real", "a rig's",
+        "mkfifo leader follower; emulate='emulate damiao --motors 7 --model DM4340,DM4340,DM4340,DM4310'\n"
+        "$TACTUS $emulate >leader & peers=$!\n"
+        "$TACTUS $emulate >follower & peers=\"$peers $!\"\n"
+        "read leader <leader; read follower <follower\n"
+        "sed \"s|/dev/serial/by-id/LEADER|$leader|; s|/dev/serial/by-id/FOLLOWER|$follower|\" $RIGS/yam.toml "
+        ">yam.toml\n"
+        "$TACTUS run $RIGS/joints.toml --realtime --device yam.toml --arm --duration-s 3 $MORE <&9; status=$?\n"
+        "kill $peers; (exit $status)"},
     Row{"real", "two sites",
         "$TACTUS run quick.toml $slow --site slave --peer 127.0.0.1:$P0 --listen 127.0.0.1:$P1 --unencrypted "
         "--duration-s 6 <&9 >slave 2>&1 & slave=$!\n"
         "$TACTUS run quick.toml $slow --site master --peer 127.0.0.1:$P1 --listen 127.0.0.1:$P0 --unencrypted --arm "
         "--duration-s 3 $MORE <&9; status=$?\n"
-        "kill $slave; wait $slave; (exit $status)"}};
+        "kill $slave; wait $slave; (exit $status)",
+        true}};
 
 /// What a cell adds to its row.
 struct Column {
@@ -103,6 +116,7 @@ class Programs : public Command {
     quick_experiment();
     setenv("TACTUS", TACTUS_COMMAND, 1);
     setenv("OWN", TACTUS_OWN_DEVICE, 1);
+    setenv("RIGS", TACTUS_RIGS, 1);
     setenv("BENCH", ("bench" + std::to_string(getpid())).c_str(), 1);
     const int port = 20000 + 2 * (getpid() % 20000);
     setenv("P0", std::to_string(port).c_str(), 1);
@@ -175,12 +189,11 @@ TEST_P(Combination, RunsAndDeliversOrIsRefusedAsThePageSays) {
     EXPECT_GT(peer->received(topic).size(), 10U);
   }
   if (!column.log) return;
-  const bool replays = std::string(row.clock) == "real";
-  const Outcome read = replays ? tactus({"replay", "out/log", "--check", "--json"})
-                               : tactus({"export", "out/log", "--to", "mat", "--json"});
+  const Outcome read = row.replays ? tactus({"replay", "out/log", "--check", "--json"})
+                                   : tactus({"export", "out/log", "--to", "mat", "--json"});
   EXPECT_EQ(read.status, 0) << read.out << read.err;
   const auto document = nlohmann::json::parse(read.out);
-  EXPECT_GT(replays ? document["ticks"] : document["topics"][0]["messages"], 500) << read.out;
+  EXPECT_GT(row.replays ? document["ticks"] : document["topics"][0]["messages"], 500) << read.out;
 }
 INSTANTIATE_TEST_SUITE_P(, Combination,
                          ::testing::Combine(::testing::Range<std::size_t>(0, rows.size()),

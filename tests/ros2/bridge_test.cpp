@@ -34,13 +34,13 @@ TEST_F(BridgeTest, AnotherVendorReceivesWhatTheTeleoperatorDoes) {
   Bridge bridge = Bridge::create(params).value();
 
   // Numbers that have no short binary form, so that equal means equal to the last bit.
-  Snapshot at{.stamp_ns = 1'800'000'000'000'000'000,
-              .master_position_m = 0.1 / 3,
-              .master_force_N = -0.7 / 3,
-              .hand_force_N = 0.5 / 3,
-              .slave_position_m = 0.2 / 3,
-              .slave_command_m = 0.4 / 3,
-              .environment_force_N = 0.8 / 3};
+  Snapshot at{.stamp_ns = 1'800'000'000'000'000'000};
+  at.joints[0] = {.master_position_m = 0.1 / 3,
+                  .master_force_N = -0.7 / 3,
+                  .hand_force_N = 0.5 / 3,
+                  .slave_position_m = 0.2 / 3,
+                  .slave_command_m = 0.4 / 3,
+                  .environment_force_N = 0.8 / 3};
   const auto last_of = [&](const char* name) { return peer.received(topic(name)).back(); };
   const auto all_have_come = [&] {
     at.stamp_ns += 1'000'000;

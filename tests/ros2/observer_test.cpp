@@ -1,7 +1,14 @@
 #include <tactus/ros2/observer.hpp>
+#include <tactus/station/joined_devices.hpp>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
 
 #include "tests/ros2/fast_dds_peer.hpp"
 #include "tests/ros2/test_network.hpp"
+#include <examples/own-device/spring_carriage.hpp>
 #include <gtest/gtest.h>
 
 namespace tactus::ros2 {
@@ -35,7 +42,8 @@ class ObserverTest : public ::testing::Test {
   Bridge::Params params() const {
     return {.network = test::private_network(), .name_space = test::private_namespace()};
   }
-  void start(const SiteStreams& streams, const Bridge::Params& of) {
+  template <class Streams>
+  void start(const Streams& streams, const Bridge::Params& of) {
     auto made = Observer::create(of);
     ASSERT_TRUE(made) << describe(made.error());
     observer = *std::move(made);
@@ -103,6 +111,63 @@ TEST_F(ObserverTest, BothSitesAreToldFromOneTickOfEach) {
   EXPECT_EQ(test::joint_state_of(peer.received(topic("slave/setpoint_js")).back()).position, std::vector{0.75})
       << "as it left the master";
   EXPECT_EQ(observer->finish().dropped, 0U);
+}
+
+/// Two carriages as one device.
+std::unique_ptr<station::JoinedDevices> carriages(SiteRole role) {
+  std::vector<std::unique_ptr<station::Device>> owned;
+  for (int joint = 0; joint < 2; ++joint) {
+    owned.push_back(std::make_unique<SpringCarriage>(role == SiteRole::master, 1e-3));
+  }
+  return station::JoinedDevices::make(std::move(owned)).value();
+}
+
+TEST_F(ObserverTest, AllJointsAreToldInOneMessageFromOneTick) {
+  const auto leader = carriages(SiteRole::master), follower = carriages(SiteRole::slave);
+  auto sites = station::JointLocalTeleoperator::make(Joints<control::ControlParams>(2), {}, Seconds{1e-3},
+                                                     Joints<double>(2, 0.0), *leader, *follower);
+  ASSERT_TRUE(sites) << describe(sites.error());
+  runtime::JointStreams streams(2);
+  Bridge::Params of = params();
+  of.joints = {"shoulder", "elbow"};
+  start(streams, of);
+  constexpr std::array topics{"master/measured_js", "master/setpoint_js", "slave/measured_js", "slave/setpoint_js"};
+  for (const char* name : topics) peer.subscribe(topic(name), joint_state_type);
+  peer.subscribe(topic("state"), text_type);
+  station::Tick tick;
+  const auto step = [&] {
+    ++tick.number;
+    tick.deadline_ns += 1'000'000;
+    auto done = sites->step(tick, {});
+    // Numbers that tell tick, joint and signal apart.
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+      const double number = static_cast<double>(tick.number) + 0.5 * static_cast<double>(joint);
+      done.master.reading[joint] = {.position_m = number, .force_N = 2.0 * number};
+      done.master.output.site[joint].motor_force_N = 3.0 * number;
+      done.master.output.packet.message[joint].position_m = 4.0 * number;
+      done.slave.reading[joint] = {.position_m = 5.0 * number, .force_N = 6.0 * number};
+    }
+    streams.push(tick, {}, *sites, done);
+  };
+  ASSERT_TRUE(eventually([&] {
+    step();
+    return std::ranges::all_of(topics, [&](const char* name) { return !peer.received(topic(name)).empty(); }) &&
+           told("state", "DISABLED");
+  }));
+  using Numbers = std::vector<double>;
+  const auto is_of_one_tick = [](const Numbers& numbers, double factor) {
+    return numbers.size() == 2 && numbers[1] - numbers[0] == 0.5 * factor;
+  };
+  const auto last = [&](const char* name) { return test::joint_state_of(peer.received(topic(name)).back()); };
+  for (const char* name : topics) EXPECT_EQ(last(name).name, (std::vector<std::string>{"shoulder", "elbow"}));
+  EXPECT_EQ(last("slave/measured_js").frame_id, "slave");
+  EXPECT_TRUE(is_of_one_tick(last("master/measured_js").position, 1.0));
+  EXPECT_TRUE(is_of_one_tick(last("master/measured_js").effort, 2.0));
+  EXPECT_TRUE(is_of_one_tick(last("master/setpoint_js").effort, 3.0));
+  EXPECT_TRUE(is_of_one_tick(last("slave/setpoint_js").position, 4.0));
+  EXPECT_TRUE(is_of_one_tick(last("slave/measured_js").position, 5.0));
+  EXPECT_TRUE(is_of_one_tick(last("slave/measured_js").effort, -6.0));
+  for (const auto& [name, announcement] : peer.announced()) EXPECT_EQ(name.find("measured_cf"), std::string::npos);
 }
 
 }  // namespace observer_test
