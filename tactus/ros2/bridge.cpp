@@ -62,6 +62,7 @@ struct Endpoints {
   Participant participant;
   std::optional<DeviceWriters> master;
   std::optional<DeviceWriters> slave;
+  std::optional<Writer<JointState>> grip;  ///< with the master
   Writer<Text> state;
   std::optional<Reader<JointState>> servo_jp;
 };
@@ -77,6 +78,12 @@ Result<Endpoints> open(const Bridge::Params& params) {
     if (!opened) return opened.error();
     *writers = *std::move(opened);
   }
+  std::optional<Writer<JointState>> grip;
+  if (params.master) {
+    auto opened = participant->writer<JointState>(dds_topic(params.name_space, "operator/estimated_grip"));
+    if (!opened) return opened.error();
+    grip = *std::move(opened);
+  }
   const char* const state_name = master && slave ? "state" : master ? "master/state" : "slave/state";
   auto state = participant->writer<Text>(dds_topic(params.name_space, state_name));
   if (!state) return state.error();
@@ -86,7 +93,7 @@ Result<Endpoints> open(const Bridge::Params& params) {
     if (!opened) return opened.error();
     servo_jp = *std::move(opened);
   }
-  return Endpoints{*std::move(participant), master, slave, *state, servo_jp};
+  return Endpoints{*std::move(participant), master, slave, grip, *state, servo_jp};
 }
 
 }  // namespace
@@ -143,6 +150,13 @@ struct Bridge::State {
     send(writers.measured_cf, wrench(at, "master", at.hand_force_N));
   }
 
+  void tell_grip(const Snapshot& at, Writer<JointState>& writer) {
+    JointState estimate = joint_state(at, "operator");
+    estimate.name = {"grip", "grip_deviation"};
+    estimate.position = {at.estimated_grip, at.estimated_grip_deviation};
+    send(writer, estimate);
+  }
+
   void tell_slave(const Snapshot& at, DeviceWriters& writers) {
     JointState measured = joint_state(at, "slave");
     measured.position = {at.slave_position_m};
@@ -158,6 +172,7 @@ struct Bridge::State {
     if (told.measured) {
       if (dds.master) tell_master(at, *dds.master);
       if (dds.slave) tell_slave(at, *dds.slave);
+      if (dds.grip && at.estimated_grip_deviation > 0.0) tell_grip(at, *dds.grip);
       published.fetch_add(1, std::memory_order_relaxed);
     }
     if (told.state) send(dds.state, {name_of(at.state)});

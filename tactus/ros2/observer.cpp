@@ -75,6 +75,8 @@ Snapshot snapshot_of(const simulation::Teleoperator::Record& record, std::int64_
           .slave_position_m = record.slave_position_m,
           .slave_command_m = record.command_m,
           .environment_force_N = record.told_force_N,
+          .estimated_grip = record.estimated_grip,
+          .estimated_grip_deviation = record.estimated_grip_deviation,
           .state = state};
 }
 
@@ -84,6 +86,8 @@ Snapshot snapshot_of(const SiteLogRecord& record, SiteRole role, std::int64_t st
     snapshot.master_position_m = record.position_m;
     snapshot.master_force_N = record.motor_force_N;
     snapshot.hand_force_N = record.read_force_N;
+    snapshot.estimated_grip = record.estimated_grip;
+    snapshot.estimated_grip_deviation = record.estimated_grip_deviation;
   } else {
     snapshot.slave_position_m = record.position_m;
     snapshot.slave_command_m = record.Heard::position_m;

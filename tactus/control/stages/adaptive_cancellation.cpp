@@ -64,7 +64,8 @@ AdaptiveCancellation::AdaptiveCancellation(const InducedMotionModel& model, cons
       passed_share_(-std::expm1(-dt.value * 2.0 * std::numbers::pi * kept_below_Hz)),
       intended_velocity_(intended_velocity),
       residual_{high_pass.section()},
-      slope_{residual_, residual_} {
+      slope_{residual_, residual_},
+      force_(dt.value) {
   reset();
 }
 
@@ -78,6 +79,7 @@ double AdaptiveCancellation::intended(double measured_position_m) noexcept {
     slope_m[i] = slope_[i].step(tangent_[i][0]);
     unexplained_m -= slope_m[i] * pending_[i];
   }
+  force_.observe(unexplained_m);
   weigh(unexplained_m - std::clamp(unexplained_m, -step_m, step_m), slope_m);
   draw_back();
   apply();
@@ -85,6 +87,14 @@ double AdaptiveCancellation::intended(double measured_position_m) noexcept {
   intended_velocity_m_per_s_ = intended_velocity_.step(measured_position_m - model_.state[0]);
   induced_m_ = model_.state[0] - slow_part_m(model_.state[0]);
   return measured_position_m - induced_m_;
+}
+
+HandEstimate AdaptiveCancellation::hand() const noexcept {
+  // Rounding can take a variance that is nearly nothing below it.
+  const double deviation = std::sqrt(std::max(0.0, covariance_[mobility][mobility]));
+  return {.estimated_grip = grip_,
+          .estimated_grip_deviation = deviation * grip_ * grip_,
+          .linkage_excess = estimate_[linkage]};
 }
 
 void AdaptiveCancellation::weigh(double unexplained_m, const Each<double>& slope_m) noexcept {
@@ -124,6 +134,7 @@ void AdaptiveCancellation::apply() noexcept {
     residual_.section.state_1 -= slope_[i].section.state_1 * change;
     residual_.section.state_2 -= slope_[i].section.state_2 * change;
   }
+  grip_ = 1.0 / estimate_[mobility];
 }
 
 double AdaptiveCancellation::slow_part_m(double induced_m) noexcept {
@@ -133,7 +144,7 @@ double AdaptiveCancellation::slow_part_m(double induced_m) noexcept {
 }
 
 InducedMotionStep<double>::Difference AdaptiveCancellation::difference() const noexcept {
-  const double firmer = 1.0 / estimate_[mobility] - 1.0;
+  const double firmer = grip_ - 1.0;
   return {.hand_stiffness_N_per_m = firmer * hand_stiffness_N_per_m_,
           .hand_damping_N_s_per_m = firmer * hand_damping_N_s_per_m_,
           .linkage_share = estimate_[linkage],
@@ -149,7 +160,7 @@ void AdaptiveCancellation::advance(double motor_force_N) noexcept {
                                           hand_stiffness_N_per_m_ * (before_m + model_.state[2]));
   const double softer_N_per_m =
       model_.linkage_stiffness_N_per_m - (1.0 + estimate_[linkage]) * average_linkage_N_per_m_;
-  const double freed_N = identified_hand_N / (estimate_[mobility] * estimate_[mobility]);
+  const double freed_N = identified_hand_N * (grip_ * grip_);
   tangent_[mobility] = model_.tangent(tangent_[mobility], other, softer_N_per_m, freed_N, 0.0);
   tangent_[linkage] = model_.tangent(tangent_[linkage], other, softer_N_per_m, 0.0, linkage_N);
   for (Step::State& tangent : tangent_) {
@@ -167,12 +178,14 @@ void AdaptiveCancellation::reset() noexcept {
   residual_.settle(0.0);
   for (HighPass& slope : slope_) slope.settle(0.0);
   estimate_ = identified;
+  grip_ = 1.0 / identified[mobility];
   pending_ = {};
   for (std::size_t i = 0; i < parameters; ++i) {
     covariance_[i] = {};
     covariance_[i][i] = deviation[i] * deviation[i];
   }
   person_m_ = passed_m_ = 0.0;
+  force_.reset();
   primed_ = false;
   induced_m_ = 0.0;
   intended_velocity_m_per_s_ = 0.0;

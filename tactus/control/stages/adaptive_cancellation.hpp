@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tactus/control/site.hpp>
+#include <tactus/control/stages/bearable_force.hpp>
 #include <tactus/control/stages/cancellation.hpp>
 #include <tactus/signal/second_order_filter.hpp>
 
@@ -46,6 +48,9 @@ class AdaptiveCancellation {
 
   /// The position in m that the person intended, from the one measured now. Once a tick. Real-time safe.
   double intended(double measured_position_m) noexcept;
+  /// What of the force `wanted_N` this hand is shown, in N (`BearableForce`). Once a tick, before `intended`. Real-time
+  /// safe.
+  double bearable_N(double wanted_N) noexcept { return force_.step(wanted_N, grip_); }
   /// Advances model and tangents to the next tick, under the force that really acts until then. Real-time safe.
   void advance(double motor_force_N) noexcept;
   void reset() noexcept;
@@ -53,7 +58,9 @@ class AdaptiveCancellation {
   /// What was taken from the measured position at the last `intended`, in m.
   [[nodiscard]] double induced_position_m() const noexcept { return induced_m_; }
   /// How firmly the hand holds, over identified, from 1/6 to 6.
-  [[nodiscard]] double grip() const noexcept { return 1.0 / estimate_[mobility]; }
+  [[nodiscard]] double grip() const noexcept { return grip_; }
+  /// The estimate and how sure it is.
+  [[nodiscard]] HandEstimate hand() const noexcept;
 
  private:
   static constexpr std::size_t mobility = 0, linkage = 1, parameters = 2;
@@ -95,7 +102,9 @@ class AdaptiveCancellation {
   Each<HighPass> slope_;
   Each<double> estimate_{}, pending_{};  ///< pending: found, not yet applied
   Each<Each<double>> covariance_{};
+  double grip_ = 1.0;  ///< 1 over the estimated mobility
   double person_m_ = 0.0, passed_m_ = 0.0;
+  BearableForce force_;
   bool primed_ = false;
   double induced_m_ = 0.0;
   double intended_velocity_m_per_s_ = 0.0;
