@@ -59,6 +59,12 @@ AdaptiveCancellation::AdaptiveCancellation(const InducedMotionModel& model, cons
       average_linkage_N_per_m_(master.linkage.stiffness_N_per_m),
       variance_m2_(left_m2_s / dt.value),
       forgotten_share_{dt.value / remembered_s[mobility], dt.value / remembered_s[linkage]},
+      kept_{.mobility = 1.0 - 2.0 * forgotten_share_[mobility],
+            .both = 1.0 - forgotten_share_[mobility] - forgotten_share_[linkage],
+            .linkage = 1.0 - 2.0 * forgotten_share_[linkage]},
+      regained_{.mobility = 2.0 * forgotten_share_[mobility] * deviation[mobility] * deviation[mobility],
+                .both = 0.0,
+                .linkage = 2.0 * forgotten_share_[linkage] * deviation[linkage] * deviation[linkage]},
       washed_share_(-std::expm1(-dt.value * washed_per_s)),
       person_share_(-std::expm1(-dt.value * person_per_s)),
       passed_share_(-std::expm1(-dt.value * 2.0 * std::numbers::pi * kept_below_Hz)),
@@ -80,9 +86,9 @@ double AdaptiveCancellation::intended(double measured_position_m) noexcept {
     unexplained_m -= slope_m[i] * pending_[i];
   }
   force_.observe(unexplained_m);
-  weigh(unexplained_m - std::clamp(unexplained_m, -step_m, step_m), slope_m);
-  draw_back();
+  // What was found at the last tick, so that nothing here waits for what is found at this one.
   apply();
+  weigh(unexplained_m - std::clamp(unexplained_m, -step_m, step_m), slope_m);
 
   intended_velocity_m_per_s_ = intended_velocity_.step(measured_position_m - model_.state[0]);
   induced_m_ = model_.state[0] - slow_part_m(model_.state[0]);
@@ -91,32 +97,25 @@ double AdaptiveCancellation::intended(double measured_position_m) noexcept {
 
 HandEstimate AdaptiveCancellation::hand() const noexcept {
   // Rounding can take a variance that is nearly nothing below it.
-  const double deviation = std::sqrt(std::max(0.0, covariance_[mobility][mobility]));
+  const double deviation = std::sqrt(std::max(0.0, covariance_.mobility));
   return {.estimated_grip = grip_,
           .estimated_grip_deviation = deviation * grip_ * grip_,
           .linkage_excess = estimate_[linkage]};
 }
 
 void AdaptiveCancellation::weigh(double unexplained_m, const Each<double>& slope_m) noexcept {
-  Each<double> shared{};
-  for (std::size_t i = 0; i < parameters; ++i) {
-    shared[i] = covariance_[i][mobility] * slope_m[mobility] + covariance_[i][linkage] * slope_m[linkage];
-  }
+  Covariance& c = covariance_;
+  const Each<double> shared{c.mobility * slope_m[mobility] + c.both * slope_m[linkage],
+                            c.both * slope_m[mobility] + c.linkage * slope_m[linkage]};
   const double per_variance =
       1.0 / (variance_m2_ + slope_m[mobility] * shared[mobility] + slope_m[linkage] * shared[linkage]);
+  const Each<double> gain{shared[mobility] * per_variance, shared[linkage] * per_variance};
+  // What the sample told, and then what a tick forgets.
+  c.mobility = kept_.mobility * (c.mobility - gain[mobility] * shared[mobility]) + regained_.mobility;
+  c.both = kept_.both * (c.both - gain[mobility] * shared[linkage]);
+  c.linkage = kept_.linkage * (c.linkage - gain[linkage] * shared[linkage]) + regained_.linkage;
   for (std::size_t i = 0; i < parameters; ++i) {
-    pending_[i] += shared[i] * per_variance * unexplained_m;
-    for (std::size_t j = 0; j < parameters; ++j) covariance_[i][j] -= shared[i] * shared[j] * per_variance;
-  }
-}
-
-void AdaptiveCancellation::draw_back() noexcept {
-  for (std::size_t i = 0; i < parameters; ++i) {
-    for (std::size_t j = 0; j < parameters; ++j) {
-      covariance_[i][j] *= 1.0 - forgotten_share_[i] - forgotten_share_[j];
-    }
-    covariance_[i][i] += 2.0 * forgotten_share_[i] * deviation[i] * deviation[i];
-    const double found = estimate_[i] + pending_[i];
+    const double found = estimate_[i] + (pending_[i] + gain[i] * unexplained_m);
     const double drawn = found + forgotten_share_[i] * (identified[i] - found);
     pending_[i] = std::clamp(drawn, least[i], most[i]) - estimate_[i];
   }
@@ -161,8 +160,8 @@ void AdaptiveCancellation::advance(double motor_force_N) noexcept {
   const double softer_N_per_m =
       model_.linkage_stiffness_N_per_m - (1.0 + estimate_[linkage]) * average_linkage_N_per_m_;
   const double freed_N = identified_hand_N * (grip_ * grip_);
-  tangent_[mobility] = model_.tangent(tangent_[mobility], other, softer_N_per_m, freed_N, 0.0);
-  tangent_[linkage] = model_.tangent(tangent_[linkage], other, softer_N_per_m, 0.0, linkage_N);
+  model_.advance_tangents(tangent_[mobility], tangent_[linkage], other,
+                          {.hand_N = freed_N, .linkage_N = linkage_N, .softer_N_per_m = softer_N_per_m});
   for (Step::State& tangent : tangent_) {
     const double washed_m = washed_share_ * tangent[2];
     for (std::size_t mass = 0; mass < 3; ++mass) tangent[mass] -= washed_m;
@@ -180,10 +179,9 @@ void AdaptiveCancellation::reset() noexcept {
   estimate_ = identified;
   grip_ = 1.0 / identified[mobility];
   pending_ = {};
-  for (std::size_t i = 0; i < parameters; ++i) {
-    covariance_[i] = {};
-    covariance_[i][i] = deviation[i] * deviation[i];
-  }
+  covariance_ = {.mobility = deviation[mobility] * deviation[mobility],
+                 .both = 0.0,
+                 .linkage = deviation[linkage] * deviation[linkage]};
   person_m_ = passed_m_ = 0.0;
   force_.reset();
   primed_ = false;

@@ -78,12 +78,16 @@ class AdaptiveCancellation {
     }
   };
 
+  /// Of the two numbers; it is symmetric.
+  struct Covariance {
+    double mobility = 0.0, both = 0.0, linkage = 0.0;
+  };
+
   AdaptiveCancellation(const InducedMotionModel& model, const MasterModel& master,
                        const signal::FilteredDerivative& intended_velocity, const signal::SecondOrderFilter& high_pass,
                        Seconds dt);
 
   void weigh(double unexplained_m, const Each<double>& slope_m) noexcept;
-  void draw_back() noexcept;
   void apply() noexcept;
   double slow_part_m(double induced_m) noexcept;
   [[nodiscard]] Step::Difference difference() const noexcept;
@@ -94,6 +98,7 @@ class AdaptiveCancellation {
   double average_linkage_N_per_m_;
   double variance_m2_;            ///< of what a model leaves of a sample
   Each<double> forgotten_share_;  ///< of an estimate, in a tick
+  Covariance kept_, regained_;    ///< in a tick without evidence: what is left of it, and what comes to it
   double washed_share_, person_share_, passed_share_;
   signal::FilteredDerivative intended_velocity_;
 
@@ -101,7 +106,7 @@ class AdaptiveCancellation {
   HighPass residual_;
   Each<HighPass> slope_;
   Each<double> estimate_{}, pending_{};  ///< pending: found, not yet applied
-  Each<Each<double>> covariance_{};
+  Covariance covariance_{};
   double grip_ = 1.0;  ///< 1 over the estimated mobility
   double person_m_ = 0.0, passed_m_ = 0.0;
   BearableForce force_;

@@ -42,11 +42,11 @@ class BearableForce {
   /// What is shown of `wanted_N`, in N, to a hand that holds `grip` times as firmly as identified. Once a tick.
   double step(double wanted_N, double grip) noexcept {
     const double trusted_N = wanted_N * (1.0 - withheld_);
-    slow_N_ += slow_share_ * (trusted_N - slow_N_);
     const double yields = 1.0 - std::min(1.0, grip);
     lessened_ += (yields > lessened_ ? lessened_share_ : restored_share_) * (yields - lessened_);
     const double lasting_N =
         trusted_N > 0.0 ? std::clamp(slow_N_, 0.0, trusted_N) : std::clamp(slow_N_, trusted_N, 0.0);
+    slow_N_ += slow_share_ * (trusted_N - slow_N_);
     return trusted_N - lessened_ * lasting_N;
   }
   void reset() noexcept { slow_N_ = lessened_ = unexplained_m2_ = withheld_ = 0.0; }
