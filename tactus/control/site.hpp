@@ -53,6 +53,23 @@ struct MasterInput {
   double grip = 1.0;  ///< how firmly the person holds, over nominal, where a sensor tells; 1 without one
 };
 
+/// How firmly the person holds the handle and what else differs from the model that was identified, as the master's
+/// controller believes it. Where nothing is estimated, as identified and without deviation.
+struct HandEstimate {
+  double estimated_grip = 1.0;
+  double estimated_grip_deviation = 0.0;
+  double linkage_excess = 0.0;
+  static constexpr auto signals() {
+    using R = HandEstimate;
+    return List{observed("estimated_grip", &R::estimated_grip, units::none, "master", "hand", "",
+                         "How firmly the person holds, over identified."),
+                observed("estimated_grip_deviation", &R::estimated_grip_deviation, units::none, "master", "hand", "",
+                         "Standard deviation of that; 0 where nothing is estimated."),
+                observed("linkage_excess", &R::linkage_excess, units::none, "master", "hand", "",
+                         "By which share the linkage is estimated to be stiffer than identified.")};
+  }
+};
+
 /// What the master commands and tells, and what its stages made of it, for the log.
 struct MasterOutput {
   double motor_force_N = 0.0;   ///< positive toward the environment; a force that pushes the hand back is negative
@@ -60,6 +77,7 @@ struct MasterOutput {
   Message message;
   double induced_position_m = 0.0;   ///< the estimate of what the displayed force did to the motor, at this instant
   double intended_position_m = 0.0;  ///< measured less induced
+  HandEstimate hand = {};
 };
 
 /// What the slave's sensors read at a tick, and what came from the master.

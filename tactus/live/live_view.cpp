@@ -343,6 +343,8 @@ void LiveView::watch(std::size_t loop, const LoopTick& tick) {
   shown.wall_position_m = tick.wall_position_m;
   shown.slave_force_N = record.contact_force_N;
   shown.displayed_force_N = record.displayed_force_N;
+  shown.estimated_grip = record.estimated_grip;
+  shown.estimated_grip_deviation = record.estimated_grip_deviation;
   shown.in_contact = watched.judge.in_contact();
   shown.real_time_ratio = tick.real_time_ratio;
 }

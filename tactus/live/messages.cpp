@@ -52,7 +52,9 @@ std::string live_state_definition() {
          line("string", "advice", "What the verdict says of the loop, and what to try; may be empty.") +
          line("float64", "force_limit_N", "The most that is displayed at the master's motor.") +
          line("float64", "real_time_ratio", "Virtual time over real time, over the last second.") +
-         line("uint64", "dropped", "Ticks of this loop that were lost on the way to the view, since the start.");
+         line("uint64", "dropped", "Ticks of this loop that were lost on the way to the view, since the start.") +
+         line("float64", "estimated_grip", "How firmly the hand holds, over the controller's model of it.") +
+         line("float64", "estimated_grip_deviation", "Standard deviation of that; 0 where nothing is estimated.");
 }
 
 BlockBuilder::BlockBuilder(double tick_s)
@@ -111,6 +113,8 @@ std::string to_cdr(const LiveState& state) {
   writer.add(state.force_limit_N);
   writer.add(state.real_time_ratio);
   writer.add(state.dropped);
+  writer.add(state.estimated_grip);
+  writer.add(state.estimated_grip_deviation);
   return std::move(writer).take();
 }
 

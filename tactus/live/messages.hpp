@@ -98,7 +98,9 @@ struct LiveState {
   std::string verdict;
   std::string cause;
   std::string advice;
-  double force_limit_N = 0.0;  ///< most that the master's motor displays
+  double estimated_grip = 1.0;            ///< of the hand, over the one that the controller's model has
+  double estimated_grip_deviation = 0.0;  ///< standard deviation of that; 0 where nothing is estimated
+  double force_limit_N = 0.0;             ///< most that the master's motor displays
   double real_time_ratio = 0.0;
   std::uint64_t dropped = 0;  ///< ticks of this loop that the view lost
 };

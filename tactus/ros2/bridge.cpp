@@ -78,6 +78,7 @@ struct Endpoints {
   Participant participant;
   std::optional<DeviceWriters> master;
   std::optional<DeviceWriters> slave;
+  std::optional<Writer<JointState>> grip;  ///< with a master of one axis
   Writer<Text> state;
   std::optional<Reader<JointState>> servo_jp;
 };
@@ -93,6 +94,12 @@ Result<Endpoints> open(const Bridge::Params& params) {
     if (!opened) return opened.error();
     *writers = *std::move(opened);
   }
+  std::optional<Writer<JointState>> grip;
+  if (params.master && params.joints.empty()) {
+    auto opened = participant->writer<JointState>(dds_topic(params.name_space, "operator/estimated_grip"));
+    if (!opened) return opened.error();
+    grip = *std::move(opened);
+  }
   const char* const state_name = master && slave ? "state" : master ? "master/state" : "slave/state";
   auto state = participant->writer<Text>(dds_topic(params.name_space, state_name));
   if (!state) return state.error();
@@ -102,7 +109,7 @@ Result<Endpoints> open(const Bridge::Params& params) {
     if (!opened) return opened.error();
     servo_jp = *std::move(opened);
   }
-  return Endpoints{*std::move(participant), std::move(master), std::move(slave), *state, servo_jp};
+  return Endpoints{*std::move(participant), std::move(master), std::move(slave), grip, *state, servo_jp};
 }
 
 }  // namespace
@@ -171,6 +178,17 @@ struct Bridge::State {
     send(writers.setpoint_js, setpoint);
   }
 
+  void tell_grip(const Snapshot& at, Writer<JointState>& writer) {
+    const JointSnapshot& axis = at.joints[0];
+    if (!(axis.estimated_grip_deviation > 0.0)) return;
+    send(writer, {.stamp_ns = at.stamp_ns,
+                  .frame_id = "operator",
+                  .name = {"grip", "grip_deviation"},
+                  .position = {axis.estimated_grip, axis.estimated_grip_deviation},
+                  .velocity = {},
+                  .effort = {}});
+  }
+
   void tell_slave(const Snapshot& at, DeviceWriters& writers) {
     tell_measured(at, writers, &JointSnapshot::slave_position_m, &JointSnapshot::environment_force_N, -1.0);
     JointState setpoint = writers.joint_state(at);
@@ -183,6 +201,7 @@ struct Bridge::State {
     if (told.measured) {
       if (dds.master) tell_master(at, *dds.master);
       if (dds.slave) tell_slave(at, *dds.slave);
+      if (dds.grip) tell_grip(at, *dds.grip);
       published.fetch_add(1, std::memory_order_relaxed);
     }
     if (told.state) send(dds.state, {name_of(at.state)});

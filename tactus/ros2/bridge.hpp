@@ -24,12 +24,14 @@ constexpr auto enumerators(OperatingState) {
 /// One axis of both devices, or one joint of several, in its own unit: where a name says m and N, one that turns has
 /// rad and N m. Positions and forces are positive toward the environment, unless said otherwise.
 struct JointSnapshot {
-  double master_position_m = 0.0;    ///< measured, at the motor
-  double master_force_N = 0.0;       ///< commanded to the motor, behind the safety gate
-  double hand_force_N = 0.0;         ///< measured, of the hand on the handle
-  double slave_position_m = 0.0;     ///< measured, at the motor
-  double slave_command_m = 0.0;      ///< position command as it left the master
-  double environment_force_N = 0.0;  ///< as the slave told it, positive when the environment pushes it back
+  double master_position_m = 0.0;         ///< measured, at the motor
+  double master_force_N = 0.0;            ///< commanded to the motor, behind the safety gate
+  double hand_force_N = 0.0;              ///< measured, of the hand on the handle
+  double slave_position_m = 0.0;          ///< measured, at the motor
+  double slave_command_m = 0.0;           ///< position command as it left the master
+  double environment_force_N = 0.0;       ///< as the slave told it, positive when the environment pushes it back
+  double estimated_grip = 1.0;            ///< how firmly the person holds, over identified
+  double estimated_grip_deviation = 0.0;  ///< standard deviation of that; 0 where nothing is estimated
 };
 
 /// What the other programs are told about one tick of a teleoperator.

@@ -41,6 +41,7 @@ void fill(Record& record, const station::DeviceReading& reading, const Output& o
     record.handle_force_N = output.handle_force_N;
     record.induced_position_m = output.induced_position_m;
     record.intended_position_m = output.intended_position_m;
+    static_cast<control::HandEstimate&>(record) = output.hand;
   }
   static_cast<control::Message&>(static_cast<typename Record::Heard&>(record)) = heard;
   static_cast<control::Message&>(static_cast<typename Record::Told&>(record)) = told;

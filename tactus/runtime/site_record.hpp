@@ -42,7 +42,7 @@ struct SiteTickRecord : control::SiteRecord {
 
 /// One tick of one axis, or of one joint of several: what was read, and what was given. Positions and forces are
 /// positive toward the environment unless said otherwise.
-struct AxisRecord {
+struct AxisRecord : control::HandEstimate {
   double position_m = 0.0;
   double read_force_N = 0.0;
   double grip = 0.0;
@@ -52,19 +52,23 @@ struct AxisRecord {
   double intended_position_m = 0.0;
   static constexpr auto signals() {
     using R = AxisRecord;
-    return List{
-        observed("position_m", &R::position_m, units::metre, "", "", "toward the environment", "Read at the motor."),
-        observed("read_force_N", &R::read_force_N, units::newton, "", "", "",
+    return joined(
+        List{observed("position_m", &R::position_m, units::metre, "", "", "toward the environment",
+                      "Read at the motor."),
+             observed(
+                 "read_force_N", &R::read_force_N, units::newton, "", "", "",
                  "Master: read on the handle, toward the environment. Slave: read at the tip, which is pushed back."),
-        observed("grip", &R::grip, units::none, "master", "", "", "Read: how firmly the person holds, over nominal."),
-        observed("motor_force_N", &R::motor_force_N, units::newton, "", "", "toward the environment",
-                 "Commanded to the motor."),
-        observed("handle_force_N", &R::handle_force_N, units::newton, "master", "hand", "toward the environment",
-                 "Commanded to the actuator on the handle."),
-        observed("induced_position_m", &R::induced_position_m, units::metre, "master", "hand", "toward the environment",
-                 "Estimated effect of the displayed force."),
-        observed("intended_position_m", &R::intended_position_m, units::metre, "master", "hand",
-                 "toward the environment", "Measured less induced.")};
+             observed("grip", &R::grip, units::none, "master", "", "",
+                      "Read: how firmly the person holds, over nominal."),
+             observed("motor_force_N", &R::motor_force_N, units::newton, "", "", "toward the environment",
+                      "Commanded to the motor."),
+             observed("handle_force_N", &R::handle_force_N, units::newton, "master", "hand", "toward the environment",
+                      "Commanded to the actuator on the handle."),
+             observed("induced_position_m", &R::induced_position_m, units::metre, "master", "hand",
+                      "toward the environment", "Estimated effect of the displayed force."),
+             observed("intended_position_m", &R::intended_position_m, units::metre, "master", "hand",
+                      "toward the environment", "Measured less induced.")},
+        control::HandEstimate::signals());
   }
 };
 

@@ -4,7 +4,7 @@ namespace tactus::runtime {
 
 SitesRecord recorded(std::int64_t tap, const station::Tick& tick, const station::BarePair::Output& step) noexcept {
   const auto& [master, slave] = step;
-  SitesRecord record{{master.output.message}, {slave.output.message}};
+  SitesRecord record{{master.output.message}, {slave.output.message}, master.output.hand};
   record.tap = tap;
   record.tick = tick.number;
   record.missed = tick.missed;

@@ -8,7 +8,7 @@
 namespace tactus::runtime {
 
 /// All that the sites read and all that they gave in one step: with the configuration, enough to step them again.
-struct SitesRecord : Part<control::Message, "to_slave_">, Part<control::Message, "to_master_"> {
+struct SitesRecord : Part<control::Message, "to_slave_">, Part<control::Message, "to_master_">, control::HandEstimate {
   using ToSlave = Part<control::Message, "to_slave_">;
   using ToMaster = Part<control::Message, "to_master_">;
   std::int64_t tap = 0;
@@ -51,7 +51,7 @@ struct SitesRecord : Part<control::Message, "to_slave_">, Part<control::Message,
                       "toward the environment", "Measured less induced."),
              observed("slave_force_N", &R::slave_force_N, units::newton, "slave", "slave", "toward the environment",
                       "Commanded to the motor.")},
-        ToSlave::signals(), ToMaster::signals());
+        ToSlave::signals(), ToMaster::signals(), control::HandEstimate::signals());
   }
 };
 

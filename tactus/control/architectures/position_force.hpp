@@ -140,7 +140,8 @@ class PositionForceMaster {
         stages.hand_compensation.on() ? stages.hand_compensation.step(std::clamp(below_N, -limit_N, limit_N)) : below_N;
     const double damping_N = stages.damping.step(input.motor_position_m);
     // A NaN passes through clamp, so it reaches the gate, which catches and latches it.
-    const double displayed_N = std::clamp(wanted_N - damping_N, -limit_N, limit_N);
+    const double displayed_N =
+        std::clamp(stages.cancellation.bearable_N(wanted_N, limit_N) - damping_N, -limit_N, limit_N);
     const double handle_N = std::clamp(above_N, -limit_N, limit_N);
     const double intended_m = stages.cancellation.intended(input.motor_position_m, input.grip);
     const double command_m = stages.command_filter.step(gains.cancels ? intended_m : input.motor_position_m);
@@ -148,7 +149,8 @@ class PositionForceMaster {
             .handle_force_N = -handle_N,
             .message = {.position_m = gains.position_scale * command_m},
             .induced_position_m = stages.cancellation.induced_position_m(),
-            .intended_position_m = intended_m};
+            .intended_position_m = intended_m,
+            .hand = stages.cancellation.hand()};
   }
 
   /// Forces and command for this tick. Real-time safe.

@@ -130,23 +130,36 @@ struct InducedMotionStep {
     return linkage_N;
   }
 
-  /// A tick of what a small change of a parameter does to the state: linear, without friction, the linkage at its
-  /// average stiffness, `softer_N_per_m` below the initial one. What the change of the parameter adds to the forces of
-  /// hand and linkage drives it.
-  [[nodiscard]] State tangent(const State& from, const Difference& other, const Scalar& softer_N_per_m,
-                              const Scalar& hand_N, const Scalar& linkage_N) const noexcept {
-    const Scalar beyond_N = linkage_N - softer_N_per_m * stretch_in_the_middle(from);
-    State to;
-    for (std::size_t row = 0; row < to.size(); ++row) {
+  /// What a small change of two parameters adds to the forces, one of the hand and one of the linkage, in N, and how
+  /// far the linkage's average stiffness is below the initial one.
+  struct Added {
+    Scalar hand_N, linkage_N;
+    Scalar softer_N_per_m;
+  };
+  /// A tick of what these changes do to the state, for each unit of change: linear, without friction, the linkage at
+  /// its average stiffness. Both at once, so that each coefficient is fetched once.
+  void advance_tangents(State& of_hand, State& of_linkage, const Difference& other, const Added& added) const noexcept {
+    const Scalar hand_beyond_N = -added.softer_N_per_m * stretch_in_the_middle(of_hand);
+    const Scalar linkage_beyond_N = added.linkage_N - added.softer_N_per_m * stretch_in_the_middle(of_linkage);
+    const auto coasted = [this](std::size_t row, const State& from) {
       const Scalar positions =
           transition[0][row] * from[0] + transition[1][row] * from[1] + transition[2][row] * from[2];
       const Scalar velocities =
           transition[3][row] * from[3] + transition[4][row] * from[4] + transition[5][row] * from[5];
-      to[row] = (positions + velocities) + (response[2][row] - response[1][row]) * beyond_N;
+      return positions + velocities;
+    };
+    State hand, linkage_state;
+    for (std::size_t row = 0; row < hand.size(); ++row) {
+      const Scalar apart = response[2][row] - response[1][row];
+      hand[row] = coasted(row, of_hand) + apart * hand_beyond_N;
+      linkage_state[row] = coasted(row, of_linkage) + apart * linkage_beyond_N;
     }
-    const Scalar held_N = held_force_N(other, from, hand_N, to[5]);
-    for (std::size_t row = 0; row < to.size(); ++row) to[row] = to[row] + response[2][row] * held_N;
-    return to;
+    const Scalar on_hand_N = held_force_N(other, of_hand, added.hand_N, hand[5]);
+    const Scalar on_linkage_N = held_force_N(other, of_linkage, Scalar(0.0), linkage_state[5]);
+    for (std::size_t row = 0; row < hand.size(); ++row) {
+      of_hand[row] = hand[row] + response[2][row] * on_hand_N;
+      of_linkage[row] = linkage_state[row] + response[2][row] * on_linkage_N;
+    }
   }
 
  private:

@@ -59,12 +59,19 @@ AdaptiveCancellation::AdaptiveCancellation(const InducedMotionModel& model, cons
       average_linkage_N_per_m_(master.linkage.stiffness_N_per_m),
       variance_m2_(left_m2_s / dt.value),
       forgotten_share_{dt.value / remembered_s[mobility], dt.value / remembered_s[linkage]},
+      kept_{.mobility = 1.0 - 2.0 * forgotten_share_[mobility],
+            .both = 1.0 - forgotten_share_[mobility] - forgotten_share_[linkage],
+            .linkage = 1.0 - 2.0 * forgotten_share_[linkage]},
+      regained_{.mobility = 2.0 * forgotten_share_[mobility] * deviation[mobility] * deviation[mobility],
+                .both = 0.0,
+                .linkage = 2.0 * forgotten_share_[linkage] * deviation[linkage] * deviation[linkage]},
       washed_share_(-std::expm1(-dt.value * washed_per_s)),
       person_share_(-std::expm1(-dt.value * person_per_s)),
       passed_share_(-std::expm1(-dt.value * 2.0 * std::numbers::pi * kept_below_Hz)),
       intended_velocity_(intended_velocity),
       residual_{high_pass.section()},
-      slope_{residual_, residual_} {
+      slope_{residual_, residual_},
+      force_(dt.value) {
   reset();
 }
 
@@ -78,35 +85,37 @@ double AdaptiveCancellation::intended(double measured_position_m) noexcept {
     slope_m[i] = slope_[i].step(tangent_[i][0]);
     unexplained_m -= slope_m[i] * pending_[i];
   }
-  weigh(unexplained_m - std::clamp(unexplained_m, -step_m, step_m), slope_m);
-  draw_back();
+  force_.observe(unexplained_m);
+  // What was found at the last tick, so that nothing here waits for what is found at this one.
   apply();
+  weigh(unexplained_m - std::clamp(unexplained_m, -step_m, step_m), slope_m);
 
   intended_velocity_m_per_s_ = intended_velocity_.step(measured_position_m - model_.state[0]);
   induced_m_ = model_.state[0] - slow_part_m(model_.state[0]);
   return measured_position_m - induced_m_;
 }
 
-void AdaptiveCancellation::weigh(double unexplained_m, const Each<double>& slope_m) noexcept {
-  Each<double> shared{};
-  for (std::size_t i = 0; i < parameters; ++i) {
-    shared[i] = covariance_[i][mobility] * slope_m[mobility] + covariance_[i][linkage] * slope_m[linkage];
-  }
-  const double per_variance =
-      1.0 / (variance_m2_ + slope_m[mobility] * shared[mobility] + slope_m[linkage] * shared[linkage]);
-  for (std::size_t i = 0; i < parameters; ++i) {
-    pending_[i] += shared[i] * per_variance * unexplained_m;
-    for (std::size_t j = 0; j < parameters; ++j) covariance_[i][j] -= shared[i] * shared[j] * per_variance;
-  }
+HandEstimate AdaptiveCancellation::hand() const noexcept {
+  // Rounding can take a variance that is nearly nothing below it.
+  const double deviation = std::sqrt(std::max(0.0, covariance_.mobility));
+  return {.estimated_grip = grip_,
+          .estimated_grip_deviation = deviation * grip_ * grip_,
+          .linkage_excess = estimate_[linkage]};
 }
 
-void AdaptiveCancellation::draw_back() noexcept {
+void AdaptiveCancellation::weigh(double unexplained_m, const Each<double>& slope_m) noexcept {
+  Covariance& c = covariance_;
+  const Each<double> shared{c.mobility * slope_m[mobility] + c.both * slope_m[linkage],
+                            c.both * slope_m[mobility] + c.linkage * slope_m[linkage]};
+  const double per_variance =
+      1.0 / (variance_m2_ + slope_m[mobility] * shared[mobility] + slope_m[linkage] * shared[linkage]);
+  const Each<double> gain{shared[mobility] * per_variance, shared[linkage] * per_variance};
+  // What the sample told, and then what a tick forgets.
+  c.mobility = kept_.mobility * (c.mobility - gain[mobility] * shared[mobility]) + regained_.mobility;
+  c.both = kept_.both * (c.both - gain[mobility] * shared[linkage]);
+  c.linkage = kept_.linkage * (c.linkage - gain[linkage] * shared[linkage]) + regained_.linkage;
   for (std::size_t i = 0; i < parameters; ++i) {
-    for (std::size_t j = 0; j < parameters; ++j) {
-      covariance_[i][j] *= 1.0 - forgotten_share_[i] - forgotten_share_[j];
-    }
-    covariance_[i][i] += 2.0 * forgotten_share_[i] * deviation[i] * deviation[i];
-    const double found = estimate_[i] + pending_[i];
+    const double found = estimate_[i] + (pending_[i] + gain[i] * unexplained_m);
     const double drawn = found + forgotten_share_[i] * (identified[i] - found);
     pending_[i] = std::clamp(drawn, least[i], most[i]) - estimate_[i];
   }
@@ -124,6 +133,7 @@ void AdaptiveCancellation::apply() noexcept {
     residual_.section.state_1 -= slope_[i].section.state_1 * change;
     residual_.section.state_2 -= slope_[i].section.state_2 * change;
   }
+  grip_ = 1.0 / estimate_[mobility];
 }
 
 double AdaptiveCancellation::slow_part_m(double induced_m) noexcept {
@@ -133,7 +143,7 @@ double AdaptiveCancellation::slow_part_m(double induced_m) noexcept {
 }
 
 InducedMotionStep<double>::Difference AdaptiveCancellation::difference() const noexcept {
-  const double firmer = 1.0 / estimate_[mobility] - 1.0;
+  const double firmer = grip_ - 1.0;
   return {.hand_stiffness_N_per_m = firmer * hand_stiffness_N_per_m_,
           .hand_damping_N_s_per_m = firmer * hand_damping_N_s_per_m_,
           .linkage_share = estimate_[linkage],
@@ -149,9 +159,9 @@ void AdaptiveCancellation::advance(double motor_force_N) noexcept {
                                           hand_stiffness_N_per_m_ * (before_m + model_.state[2]));
   const double softer_N_per_m =
       model_.linkage_stiffness_N_per_m - (1.0 + estimate_[linkage]) * average_linkage_N_per_m_;
-  const double freed_N = identified_hand_N / (estimate_[mobility] * estimate_[mobility]);
-  tangent_[mobility] = model_.tangent(tangent_[mobility], other, softer_N_per_m, freed_N, 0.0);
-  tangent_[linkage] = model_.tangent(tangent_[linkage], other, softer_N_per_m, 0.0, linkage_N);
+  const double freed_N = identified_hand_N * (grip_ * grip_);
+  model_.advance_tangents(tangent_[mobility], tangent_[linkage], other,
+                          {.hand_N = freed_N, .linkage_N = linkage_N, .softer_N_per_m = softer_N_per_m});
   for (Step::State& tangent : tangent_) {
     const double washed_m = washed_share_ * tangent[2];
     for (std::size_t mass = 0; mass < 3; ++mass) tangent[mass] -= washed_m;
@@ -167,12 +177,13 @@ void AdaptiveCancellation::reset() noexcept {
   residual_.settle(0.0);
   for (HighPass& slope : slope_) slope.settle(0.0);
   estimate_ = identified;
+  grip_ = 1.0 / identified[mobility];
   pending_ = {};
-  for (std::size_t i = 0; i < parameters; ++i) {
-    covariance_[i] = {};
-    covariance_[i][i] = deviation[i] * deviation[i];
-  }
+  covariance_ = {.mobility = deviation[mobility] * deviation[mobility],
+                 .both = 0.0,
+                 .linkage = deviation[linkage] * deviation[linkage]};
   person_m_ = passed_m_ = 0.0;
+  force_.reset();
   primed_ = false;
   induced_m_ = 0.0;
   intended_velocity_m_per_s_ = 0.0;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tactus/control/site.hpp>
+#include <tactus/control/stages/bearable_force.hpp>
 #include <tactus/control/stages/cancellation.hpp>
 #include <tactus/signal/second_order_filter.hpp>
 
@@ -46,6 +48,9 @@ class AdaptiveCancellation {
 
   /// The position in m that the person intended, from the one measured now. Once a tick. Real-time safe.
   double intended(double measured_position_m) noexcept;
+  /// What of the force `wanted_N` this hand is shown, in N (`BearableForce`). Once a tick, before `intended`. Real-time
+  /// safe.
+  double bearable_N(double wanted_N) noexcept { return force_.step(wanted_N, grip_); }
   /// Advances model and tangents to the next tick, under the force that really acts until then. Real-time safe.
   void advance(double motor_force_N) noexcept;
   void reset() noexcept;
@@ -53,7 +58,9 @@ class AdaptiveCancellation {
   /// What was taken from the measured position at the last `intended`, in m.
   [[nodiscard]] double induced_position_m() const noexcept { return induced_m_; }
   /// How firmly the hand holds, over identified, from 1/6 to 6.
-  [[nodiscard]] double grip() const noexcept { return 1.0 / estimate_[mobility]; }
+  [[nodiscard]] double grip() const noexcept { return grip_; }
+  /// The estimate and how sure it is.
+  [[nodiscard]] HandEstimate hand() const noexcept;
 
  private:
   static constexpr std::size_t mobility = 0, linkage = 1, parameters = 2;
@@ -71,12 +78,16 @@ class AdaptiveCancellation {
     }
   };
 
+  /// Of the two numbers; it is symmetric.
+  struct Covariance {
+    double mobility = 0.0, both = 0.0, linkage = 0.0;
+  };
+
   AdaptiveCancellation(const InducedMotionModel& model, const MasterModel& master,
                        const signal::FilteredDerivative& intended_velocity, const signal::SecondOrderFilter& high_pass,
                        Seconds dt);
 
   void weigh(double unexplained_m, const Each<double>& slope_m) noexcept;
-  void draw_back() noexcept;
   void apply() noexcept;
   double slow_part_m(double induced_m) noexcept;
   [[nodiscard]] Step::Difference difference() const noexcept;
@@ -87,6 +98,7 @@ class AdaptiveCancellation {
   double average_linkage_N_per_m_;
   double variance_m2_;            ///< of what a model leaves of a sample
   Each<double> forgotten_share_;  ///< of an estimate, in a tick
+  Covariance kept_, regained_;    ///< in a tick without evidence: what is left of it, and what comes to it
   double washed_share_, person_share_, passed_share_;
   signal::FilteredDerivative intended_velocity_;
 
@@ -94,8 +106,10 @@ class AdaptiveCancellation {
   HighPass residual_;
   Each<HighPass> slope_;
   Each<double> estimate_{}, pending_{};  ///< pending: found, not yet applied
-  Each<Each<double>> covariance_{};
+  Covariance covariance_{};
+  double grip_ = 1.0;  ///< 1 over the estimated mobility
   double person_m_ = 0.0, passed_m_ = 0.0;
+  BearableForce force_;
   bool primed_ = false;
   double induced_m_ = 0.0;
   double intended_velocity_m_per_s_ = 0.0;

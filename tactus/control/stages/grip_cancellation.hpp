@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/site.hpp>
 #include <tactus/control/stages/adaptive_cancellation.hpp>
 #include <tactus/control/stages/cancellation.hpp>
 #include <tactus/control/stages/stage.hpp>
@@ -7,6 +8,7 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -80,6 +82,13 @@ class GripCancellation {
   /// The position in m that the person intended, from the one measured now. Once a tick. A sensor's grip that is not a
   /// positive number counts as 1. Real-time safe.
   double intended(double measured_position_m, double grip) noexcept;
+  /// What of the force `wanted_N` the hand is shown, in N, where no more than `limit_N` can be. Only `online` shows
+  /// less
+  /// (`BearableForce`). Once a tick, before `intended`. Real-time safe.
+  double bearable_N(double wanted_N, double limit_N) noexcept {
+    if (estimate_ != OperatorEstimate::online) return wanted_N;
+    return adaptive_.bearable_N(std::clamp(wanted_N, -limit_N, limit_N));
+  }
   /// Advances the models to the next tick, under the force that really acts until then. Real-time safe.
   void advance(double motor_force_N) noexcept;
   /// Both at once.
@@ -94,6 +103,10 @@ class GripCancellation {
   [[nodiscard]] double induced_position_m() const noexcept { return induced_m_; }
   /// The grip that is cancelled for, over nominal. That of a bank is the mean of its weights on a logarithmic scale.
   [[nodiscard]] double grip() const noexcept;
+  /// What is known of the hand. Only `online` estimates.
+  [[nodiscard]] HandEstimate hand() const noexcept {
+    return estimate_ == OperatorEstimate::online ? adaptive_.hand() : HandEstimate{};
+  }
 
  private:
   static constexpr std::size_t nominal = 2;
