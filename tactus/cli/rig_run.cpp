@@ -66,16 +66,15 @@ Result<const RigPair*> pair_of(const Rig& rig, const std::string& name) {
                        .message = "a leader and a follower are driven together: write the other one too",
                        .place = {}});
   }
-  for (const auto* side : {&*found->leader, &*found->follower}) {
-    for (const devices::RigJoint& joint : side->joints) {
-      if (joint.joint.gives_force) continue;
-      return rig.locate({.code = ErrorCode::inconsistent,
-                         .parameter = join(joint.path, "model"),
-                         .message = "a " + joint.motor.model +
-                                    " takes no command of force, and sites try each motor before they couple: such an "
-                                    "arm can be watched and not driven",
-                         .place = {}});
-    }
+  for (const devices::RigJoint& joint : found->follower->joints) {
+    if (joint.joint.gives_force) continue;
+    return rig.locate(
+        {.code = ErrorCode::inconsistent,
+         .parameter = join(joint.path, "model"),
+         .message = "a " + joint.motor.model +
+                    " takes no command of force, so it can lead and not follow: swap leader and follower, "
+                    "or watch it",
+         .place = {}});
   }
   return &*found;
 }

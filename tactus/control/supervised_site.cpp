@@ -41,12 +41,27 @@ bool contradict(Checks& checks, const Gates& gates, const Sensors& sensors, std:
   return found;
 }
 
+/// The supervision of each joint. A motor that gives next to no force, as that of a leader which is only read, is not
+/// tried: its sign can do no harm.
+template <class Params>
+auto supervision_of(const Params& params, SiteRole role) {
+  auto all = member_of_each(params, &ControlParams::supervision);
+  for_each_joint(
+      [role](SupervisionParams& supervision, const ControlParams& joint) noexcept {
+        constexpr double harmless_N = 1e-6;
+        const SafetyGate::Params& gate = role == SiteRole::master ? joint.gate : joint.slave_gate;
+        if (gate.force_limit_N < harmless_N) supervision.probe.force_N = 0.0;
+      },
+      all, params);
+  return all;
+}
+
 /// A gated site under the supervision that `params` describe. `checked` says when its force sensor cannot be right.
 template <template <class> class Supervised, class Gated, class Params>
 Result<Supervised<Gated>> supervise(Gated site, const Params& params, SiteRole role, std::int64_t session, Seconds dt,
                                     const Agreement& agreement, ForceSensorCheck::Params SupervisionParams::*checked,
                                     const char* group) {
-  const auto settings = member_of_each(params, &ControlParams::supervision);
+  const auto settings = supervision_of(params, role);
   const auto supervision = SupervisionOf<Each<Params, Message>>::make(settings, role, session, dt, agreement);
   if (!supervision) return under("supervision", supervision.error());
   const auto check = make_each<ForceSensorCheck>(member_of_each(settings, checked), dt);
