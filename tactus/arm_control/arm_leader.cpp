@@ -4,6 +4,16 @@
 #include <algorithm>
 
 namespace tactus::arm_control {
+namespace {
+
+JointVector drive_damping(const ArmLeader::Params& params, int joints) {
+  const auto each = params.drive_damping.of(static_cast<std::size_t>(joints));
+  JointVector damping(joints);
+  for (int i = 0; i < joints; ++i) damping[i] = each[static_cast<std::size_t>(i)].damping_N_m_s_per_rad;
+  return damping;
+}
+
+}  // namespace
 
 ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
                      const InducedMotion& model, const JointLowPass& force, const JointLowPass& command,
@@ -20,7 +30,10 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
       command_velocity_(command),
       gates_(gates),
       acting_(stiffness_) {
-  if (params.method != ArmMethod::position_position) return;
+  if (params.method != ArmMethod::position_position) {
+    damping_ = drive_damping(params, chain.joints());
+    return;
+  }
   for (std::size_t i = 0; i < arm.gains.size(); ++i) {
     stiffness_[static_cast<Eigen::Index>(i)] = params.force_gain * arm.gains[i].stiffness_N_m_per_rad;
     damping_[static_cast<Eigen::Index>(i)] = params.force_gain * arm.gains[i].damping_N_m_s_per_rad;
@@ -32,6 +45,7 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
   const auto chain = arm::Chain::make(arm.carried);
   if (!chain) return chain.error();
   const InducedMotion::Site site{.damping_N_s_per_m = params.damping_N_s_per_m,
+                                 .drive_damping_N_m_s_per_rad = drive_damping(params, chain->joints()),
                                  .friction_share = params.feed_forward.friction_share,
                                  .friction_velocity_rad_per_s = params.feed_forward.friction_velocity_rad_per_s};
   const auto model = InducedMotion::make(params.model, site, arm.induced, dt);
@@ -72,11 +86,11 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
     torque = gates_[static_cast<std::size_t>(i)].step(torque);
     displayed[i] = reflects ? torque - support[i] : 0.0;
   }
+  output.command.damping = damping_;
   if (!reflects) {
     output.command.position = follower.position;
     output.command.velocity = follower.velocity;
     output.command.stiffness = stiffness_;
-    output.command.damping = damping_;
   }
   output.displayed = displayed;
   output.induced = JointVector::Zero(joints);

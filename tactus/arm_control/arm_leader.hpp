@@ -37,11 +37,22 @@ struct DriveGains {
   }
 };
 
+/// Damping that a drive gives its joint by itself, without the bus's delay.
+struct DriveDamping {
+  double damping_N_m_s_per_rad = 0.0;
+  static constexpr auto fields() {
+    return List{field("damping_N_m_s_per_rad", &DriveDamping::damping_N_m_s_per_rad,
+                      arm::units::newton_metre_second_per_radian, between(0.0, 50.0),
+                      "Derivative gain of the leader's drive, towards rest.")};
+  }
+};
+
 /// The site of the arm that a person holds. Its torque is
 ///
-///     feed-forward + gain·external torque of the follower − Jᵀ·damping·J·q̇,
+///     feed-forward + gain·external torque of the follower − Jᵀ·damping·J·q̇ − drive damping·q̇,
 ///
-/// of which the middle part is displayed; with position-position it is feed-forward and the drives' law. What passes is
+/// of which the second part is displayed and the last is the drives' own; with position-position it is feed-forward and
+/// the drives' law, towards the follower. What passes is
 /// bounded by each joint's effort limit, last of all, and the model of induced motion lives on what passed.
 /// Sources: position-position as openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the
 /// leader's stiffness as i2rt's YAM has it (`bilateral_kp`, MIT); the rest as on one axis
@@ -52,6 +63,7 @@ class ArmLeader {
     ArmMethod method = ArmMethod::cancellation;
     double force_gain = 1.0;
     double damping_N_s_per_m = 0.0;
+    EachJoint<DriveDamping> drive_damping = {};
     double force_low_pass_Hz = 0.0;
     double command_low_pass_Hz = 0.0;
     FeedForward::Params feed_forward = {};
@@ -65,6 +77,8 @@ class ArmLeader {
                 "over the follower's."),
           field("damping_N_s_per_m", &P::damping_N_s_per_m, tactus::units::newton_second_per_metre,
                 between(0.0, 1000.0), "A damper at the leader's tool, by way of the bus."),
+          field("drive_damping", &P::drive_damping,
+                "What the leader's drives resist by themselves; not with position-position."),
           field("force_low_pass_Hz", &P::force_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
                 "First-order low-pass on the displayed torque; 0 is none."),
           field("command_low_pass_Hz", &P::command_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),

@@ -18,7 +18,7 @@ using arm::JointVector;
 /// Ticks stand in for the integral: M·(q̇_k − q̇_{k−1})/dt is what d/dt(M q̇) − Ṁ q̇ comes to, torque, bias and friction
 /// are the means of both ticks, and r answers a step of external torque by exactly 1 − exp(−g·k·dt) after k ticks. That
 /// form has no integrator that could drift. Velocity is what the drive tells: its step δ makes a noise of about M·δ·g.
-/// On elastic joints the link's own swing is taken for a torque from outside.
+/// On elastic joints the link's own swing is taken for a torque from outside: `ElasticTorqueObserver` is for those.
 /// Positive in the direction in which the position grows. Cutoff: up to half the sample rate. Starts at rest.
 /// Source: A. De Luca, R. Mattone, Actuator failure detection and isolation using generalized momenta, ICRA 2003.
 class ExternalTorqueObserver {

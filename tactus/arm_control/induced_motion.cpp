@@ -19,10 +19,13 @@ InducedMotion::InducedMotion(const Params& params, const Site& site, const Arm& 
       tool_m_(arm.tool_m),
       hand_(params.hand),
       site_(site),
+      drive_damping_(site.drive_damping_N_m_s_per_rad.size() == chain.joints() ? site.drive_damping_N_m_s_per_rad
+                                                                               : JointVector::Zero(chain.joints())),
       diagonal_(params.inertia == InertiaModel::diagonal),
       elastic_(params.joints == JointModel::elastic),
       joint_stiffness_(arm.joint_stiffness_N_m_per_rad),
-      joint_damping_(arm.joint_damping_N_m_s_per_rad),
+      joint_damping_(arm.joint_damping_N_m_s_per_rad.size() == chain.joints() ? arm.joint_damping_N_m_s_per_rad
+                                                                              : JointVector::Zero(chain.joints())),
       dt_s_(dt.value),
       washed_(1.0 - std::exp(-2.0 * std::numbers::pi * params.washout_Hz * dt.value)) {
   for (std::size_t i = 0; i < friction_.size(); ++i) {
@@ -35,15 +38,8 @@ Result<InducedMotion> InducedMotion::make(const Params& params, const Site& site
   if (Check wrong = signal::check(params, dt)) return *std::move(wrong);
   const auto chain = arm::Chain::make(arm.chain);
   if (!chain) return chain.error();
-  const JointVector& stiffness = arm.joint_stiffness_N_m_per_rad;
-  const JointVector& damping = arm.joint_damping_N_m_s_per_rad;
-  const bool told = stiffness.size() == chain->joints() && damping.size() == chain->joints() &&
-                    (stiffness.array() > 0.0).all() && (damping.array() >= 0.0).all();
-  if (params.joints == JointModel::elastic && !told) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = "joints",
-                 .message = "a model of elastic joints needs the stiffness of each: state it, or take them for rigid",
-                 .place = {}};
+  if (params.joints == JointModel::elastic) {
+    if (Check wrong = check_stiffness(arm.joint_stiffness_N_m_per_rad, chain->joints())) return *std::move(wrong);
   }
   return InducedMotion(params, site, arm, *chain, dt);
 }
@@ -80,9 +76,9 @@ InducedMotion::Matrices InducedMotion::matrices(const JointVector& measured_posi
   inertia += hand_.mass_kg * moving;
   const JointMatrix stiffness = hand_.stiffness_N_per_m * held;
   const JointMatrix damping = hand_.damping_N_s_per_m * held;
-  if (!elastic_) {
-    return {.inertia = inertia, .damping = damping + site_.damping_N_s_per_m * moving, .stiffness = stiffness};
-  }
+  JointMatrix of_site = site_.damping_N_s_per_m * moving;
+  of_site.diagonal() += drive_damping_;
+  if (!elastic_) return {.inertia = inertia, .damping = damping + of_site, .stiffness = stiffness};
   const StateMatrix none = StateMatrix::Zero(2 * count, 2 * count);
   Matrices found{.inertia = none, .damping = none, .stiffness = none};
   const auto join = [count](StateMatrix& matrix, const JointVector& spring) {
@@ -94,7 +90,7 @@ InducedMotion::Matrices InducedMotion::matrices(const JointVector& measured_posi
   found.inertia.bottomRightCorner(count, count) = inertia;
   found.inertia.bottomRightCorner(count, count).diagonal() -= armature_;
   found.inertia.topLeftCorner(count, count).diagonal() = armature_;
-  found.damping.topLeftCorner(count, count) = site_.damping_N_s_per_m * moving;
+  found.damping.topLeftCorner(count, count) = of_site;
   found.damping.bottomRightCorner(count, count) = damping;
   found.stiffness.bottomRightCorner(count, count) = stiffness;
   join(found.stiffness, joint_stiffness_);

@@ -2,6 +2,7 @@
 
 #include <tactus/arm/chain.hpp>
 #include <tactus/arm/hand.hpp>
+#include <tactus/arm_control/joint_model.hpp>
 #include <tactus/core/parameters.hpp>
 
 #include <array>
@@ -14,12 +15,6 @@ using arm::JointVector;
 enum class InertiaModel { full, diagonal };
 constexpr auto enumerators(InertiaModel) {
   return std::array{Enumerator{InertiaModel::full, "full"}, Enumerator{InertiaModel::diagonal, "diagonal"}};
-}
-
-/// What a model takes the joints for.
-enum class JointModel { rigid, elastic };
-constexpr auto enumerators(JointModel) {
-  return std::array{Enumerator{JointModel::rigid, "rigid"}, Enumerator{JointModel::elastic, "elastic"}};
 }
 
 /// What displayed torques do to a held arm: the motion that they induce, to be taken from the command
@@ -62,8 +57,9 @@ class InducedMotion {
   };
   /// What the leader's site does by itself on every velocity.
   struct Site {
-    double damping_N_s_per_m = 0.0;  ///< of a damper at the tool
-    double friction_share = 0.0;     ///< of the friction that feed-forward takes away
+    double damping_N_s_per_m = 0.0;                ///< of a damper at the tool
+    JointVector drive_damping_N_m_s_per_rad = {};  ///< of the leader's drives; none where it has no rows
+    double friction_share = 0.0;                   ///< of the friction that feed-forward takes away
     double friction_velocity_rad_per_s = 0.3;
   };
 
@@ -71,12 +67,12 @@ class InducedMotion {
   struct Arm {
     arm::Chain::Params chain;
     arm::Vector3 tool_m = arm::Vector3::Zero();  ///< on its last link
-    /// Of the transmissions between motors and links; none where joints are taken for rigid.
+    /// Of the transmissions between motors and links; not looked at where joints are taken for rigid.
     JointVector joint_stiffness_N_m_per_rad = {};
     JointVector joint_damping_N_m_s_per_rad = {};
   };
 
-  /// Errors: a number out of bounds; `inconsistent` for elastic joints of which not each has a stiffness and a damping.
+  /// Errors: a number out of bounds; `inconsistent` for elastic joints of which not each has a stiffness.
   static Result<InducedMotion> make(const Params& params, const Site& site, const Arm& arm, Seconds dt);
 
   /// In rad and rad/s, at this tick, without what is washed out.
@@ -108,6 +104,7 @@ class InducedMotion {
   arm::Vector3 tool_m_;
   arm::HandImpedance hand_;
   Site site_;
+  JointVector drive_damping_;
   bool diagonal_;
   bool elastic_;
   JointVector joint_stiffness_;

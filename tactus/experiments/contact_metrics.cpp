@@ -1,9 +1,9 @@
 #include <tactus/experiments/contact_metrics.hpp>
+#include <tactus/signal/root_mean_square.hpp>
 #include <tactus/signal/second_order_filter.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace tactus::experiments {
 
@@ -11,12 +11,18 @@ namespace {
 constexpr double residual_window_s = 0.1;
 }  // namespace
 
-ContactMetrics judge_contact(std::span<const double> contact_force_N, std::size_t first_touch, double tick_s) {
+std::vector<double> force_transient(std::span<const double> force_N, double tick_s) {
   auto high_pass = signal::SecondOrderFilter::make(
       {.kind = signal::FilterKind::high_pass, .frequency_Hz = transient_cutoff_Hz}, Seconds{tick_s});
   std::vector<double> transient;
-  transient.reserve(contact_force_N.size());
-  for (const double force : contact_force_N) transient.push_back(std::fabs(high_pass->step(force)));
+  transient.reserve(force_N.size());
+  for (const double force : force_N) transient.push_back(high_pass->step(force));
+  return transient;
+}
+
+ContactMetrics judge_contact(std::span<const double> contact_force_N, std::size_t first_touch, double tick_s) {
+  std::vector<double> transient = force_transient(contact_force_N, tick_s);
+  for (double& force : transient) force = std::fabs(force);
 
   const auto window = std::span(transient).subspan(first_touch);
   const double threshold = settled_share * *std::max_element(window.begin(), window.end());
@@ -33,9 +39,7 @@ ContactMetrics judge_contact(std::span<const double> contact_force_N, std::size_
 
   const auto residual_ticks =
       std::min(window.size(), static_cast<std::size_t>(std::lround(residual_window_s / tick_s)));
-  double sum = 0.0;
-  for (const double value : window.last(residual_ticks)) sum += value * value;
-  metrics.residual_rms_N = std::sqrt(sum / static_cast<double>(residual_ticks));
+  metrics.residual_rms_N = signal::root_mean_square(window.last(residual_ticks));
   return metrics;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
 namespace tactus::experiments {
 
@@ -22,6 +23,9 @@ inline constexpr double transient_cutoff_Hz = 15.0;
 inline constexpr double settled_share = 0.1;
 /// The transient must stay small for at least this long at the end of the window to count as settled.
 inline constexpr double quiet_time_s = 0.05;
+
+/// A force in N, sampled every `tick_s`, behind that high-pass. Not real-time safe.
+std::vector<double> force_transient(std::span<const double> force_N, double tick_s);
 
 /// Judges one contact from the mean contact force of each tick, in N, sampled every `tick_s`. `first_touch` is the tick
 /// of the first touch; everything from there to the end is the observation window. `contacts` and `peak_force_N` are

@@ -3,6 +3,7 @@
 #include <tactus/core/parameters.hpp>
 
 #include <algorithm>
+#include <string>
 #include <type_traits>
 
 namespace tactus::experiments {
@@ -17,6 +18,16 @@ void limit_to_bounds(T& params) {
       value = std::clamp(value, f.bounds.lower, f.bounds.upper);
     }
   });
+}
+
+/// `inconsistent` for ends of a range of the task that do not follow each other; the names are keys of `[task]`.
+inline Check check_range(double lower, double upper, const char* lower_name, const char* upper_name) {
+  if (lower <= upper) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = std::string("task.") + upper_name,
+               .message = format_number(upper) + " is less than " + lower_name + ", " + format_number(lower) +
+                          ": raise one or lower the other",
+               .place = {}};
 }
 
 }  // namespace tactus::experiments

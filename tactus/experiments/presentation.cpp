@@ -66,6 +66,17 @@ std::string gain_limit_text(const GainLimit& limit, double lowest_gain) {
   return (limit.beyond_search ? "≥ " : "") + report::number(limit.gain, 3);
 }
 
+std::string settled_combinations(std::size_t combinations, const std::vector<std::string>& failures) {
+  constexpr std::size_t most = 6;  // that are named
+  std::string text =
+      std::to_string(combinations - failures.size()) + " of " + std::to_string(combinations) + " combinations settle";
+  for (std::size_t i = 0; i < std::min(most, failures.size()); ++i) {
+    text += (i == 0 ? "; these do not: " : "; ") + failures[i];
+  }
+  if (failures.size() > most) text += " and " + std::to_string(failures.size() - most) + " more";
+  return text + ".";
+}
+
 report::Table table_of_runs(const Settings& varied, std::vector<report::Column> columns, std::string caption) {
   std::vector<report::Column> all = settings_columns(varied);
   std::move(columns.begin(), columns.end(), std::back_inserter(all));

@@ -30,6 +30,9 @@ std::optional<double> as_number(std::string_view text);
 /// A limit with `≥` where the search ended there, and `<` where not even its `lowest_gain` settled.
 std::string gain_limit_text(const GainLimit& limit, double lowest_gain);
 
+/// "3 of 5 combinations settle; these do not: force gain 4; ...": `failures` are the captions of those that do not.
+std::string settled_combinations(std::size_t combinations, const std::vector<std::string>& failures);
+
 /// A table whose rows begin with the values of the varied keys, as those of `varied` are.
 report::Table table_of_runs(const Settings& varied, std::vector<report::Column> columns, std::string caption);
 void add_row(report::Table& table, const Settings& settings, std::vector<std::string> cells);

@@ -2,6 +2,7 @@
 #include <tactus/identification/narx_fit.hpp>
 #include <tactus/identification/orthogonal_least_squares.hpp>
 #include <tactus/signal/checks.hpp>
+#include <tactus/signal/root_mean_square.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -65,12 +66,6 @@ Seen look(std::span<const SlaveMotionSample> motion, NarxMemory memory, std::siz
   return seen;
 }
 
-double rms(std::span<const double> values) {
-  double squares = 0.0;
-  for (const double value : values) squares += value * value;
-  return values.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 double value(const NarxTerm& term, const NarxMemory::Variables& variables) {
   return variables[static_cast<std::size_t>(term.variable_1)] * variables[static_cast<std::size_t>(term.variable_2)] *
          variables[static_cast<std::size_t>(term.variable_3)];
@@ -84,7 +79,7 @@ NarxScales scaled(NarxScales scales, const Seen& seen) {
     differences.push_back(seen.variables[row][NarxVariables::first_difference]);
     largest_N = std::max(largest_N, std::abs(seen.force_N[row]));
   }
-  scales.difference_scale_m = rms(differences);
+  scales.difference_scale_m = signal::root_mean_square(differences);
   scales.force_limit_N = 4.0 * largest_N;
   return scales;
 }
@@ -141,7 +136,7 @@ Result<NarxFit> fit_narx(std::span<const SlaveMotionSample> motion, const NarxSt
                  .terms = {},
                  .candidates = candidates.size(),
                  .rows = rows,
-                 .command_rms_N = rms(seen.force_N),
+                 .command_rms_N = signal::root_mean_square(seen.force_N),
                  .residual_rms_N = fit->residual_rms,
                  .simulated_rms_N = 0.0};
   std::vector<NarxTerm> terms;
@@ -157,7 +152,7 @@ Result<NarxFit> fit_narx(std::span<const SlaveMotionSample> motion, const NarxSt
   if (!estimator) return estimator.error();
   std::vector<double> left_N;
   for (const SlaveMotionSample& sample : motion) left_N.push_back(estimator->step(sample).force);
-  result.simulated_rms_N = rms(std::span(left_N).subspan(from));
+  result.simulated_rms_N = signal::root_mean_square(std::span(left_N).subspan(from));
   if (!(result.simulated_rms_N < result.command_rms_N)) {
     return too_poor("output_lags", "run freely over its own data the model leaves " +
                                        format_number(result.simulated_rms_N) + " N of " +

@@ -66,6 +66,23 @@ TEST(ArmLeader, ItsDamperResistsTheToolAlone) {
   EXPECT_NEAR(torque.dot(moving.velocity), -40.0 * velocity.squaredNorm(), 1e-12);
 }
 
+TEST(ArmLeader, ItsDrivesDampTowardsRestAndTheModelCountsWithThat) {
+  ArmLeader::Params params{.method = ArmMethod::cancellation};
+  auto bare = *ArmLeader::make(params, believed(), tick);
+  params.drive_damping.joint_1.damping_N_m_s_per_rad = 5.0;
+  auto damped = *ArmLeader::make(params, believed(), tick);
+  double free_rad = 0.0, damped_rad = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    free_rad = std::fabs(bare.step(resting(), touching(1.0)).induced[0]);
+    const auto output = damped.step(resting(), touching(1.0));
+    damped_rad = std::fabs(output.induced[0]);
+    EXPECT_EQ(output.command.damping[0], 5.0);
+    EXPECT_EQ(output.command.damping.tail<6>().norm() + output.command.stiffness.norm(), 0.0);
+    EXPECT_EQ(output.command.velocity.norm(), 0.0);
+  }
+  EXPECT_LT(damped_rad, 0.7 * free_rad);
+}
+
 TEST(ArmLeader, PositionPositionLeavesTheCouplingToTheDrives) {
   ArmLeader::Arm arm = believed();
   for (DriveGains& gains : arm.gains) gains = {.stiffness_N_m_per_rad = 240.0, .damping_N_m_s_per_rad = 3.0};
@@ -95,12 +112,13 @@ TEST(ArmFollower, CommandsItsDrivesAndTellsTheTorqueThatItWasAskedFor) {
   ArmFollower::Params params;
   params.gains.joint_2 = {.stiffness_N_m_per_rad = 200.0, .damping_N_m_s_per_rad = 2.0};
   params.torque = TorqueSource::sensor;
+  params.stiffness_share = 0.5;
   auto follower = *ArmFollower::make(params, believed().carried, tick);
   const ArmMessage wanted = touching(0.0);
   const auto output = follower.step(resting(), JointVector::Constant(7, 0.4), wanted);
-  EXPECT_EQ(output.command.stiffness[1], 200.0);
+  EXPECT_EQ(output.command.stiffness[1], 100.0);
   EXPECT_EQ(output.command.damping[1], 2.0);
-  EXPECT_EQ(output.command.stiffness[0], 100.0);
+  EXPECT_EQ(output.command.stiffness[0], 50.0);
   EXPECT_EQ(output.command.position, wanted.position);
   EXPECT_EQ(output.message.external_torque, JointVector::Constant(7, 0.4));
   params.torque = TorqueSource::observer;

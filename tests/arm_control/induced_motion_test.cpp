@@ -17,7 +17,7 @@ struct Moved {
 };
 
 /// What a burst of torque does to the simulated arm in a hand that wants it to stay, and what the model says, at each
-/// tick. `q_off` errors of the model: a factor on all it believes of inertia.
+/// tick. `believed` is a factor on all that the model believes of inertia.
 std::vector<Moved> burst(const arm::JointFriction& friction, const InducedMotion::Params& params, double torque_N_m,
                          double believed = 1.0, double joint_stiffness_N_m_per_rad = 0.0) {
   arm_plants::ArmPlant::Params plant = arm_plants::openarm_class();

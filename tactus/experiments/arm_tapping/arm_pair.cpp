@@ -1,8 +1,13 @@
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/signal/random.hpp>
 #include <tactus/urdf/urdf.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
+
+#include <Eigen/Eigenvalues>
 
 namespace tactus::experiments {
 
@@ -16,6 +21,44 @@ namespace {
 
 int steps_in_a_tick(const ArmClockParams& clock) {
   return std::max(1, static_cast<int>(std::ceil(1.0 / (clock.rate_Hz * clock.plant_step_s) - 1e-9)));
+}
+
+Vector3 outward_of(TapDirection direction) {
+  switch (direction) {
+    case TapDirection::down:
+      return Vector3::UnitZ();
+    case TapDirection::along_x:
+      return -Vector3::UnitX();
+    case TapDirection::along_y:
+      return -Vector3::UnitY();
+  }
+  return Vector3::UnitZ();
+}
+
+/// How slowly the tool moves at least, for one rad/s of all joints together: 0 where the pose is singular.
+double slowest_m_per_rad(const arm::Chain& chain, const JointVector& position, const Vector3& tool_m) {
+  const auto moving = chain.jacobian(position, chain.joints() - 1, tool_m).topRows<3>().eval();
+  const arm::Matrix3 squared = moving * moving.transpose();
+  return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<arm::Matrix3>(squared).eigenvalues()[0]));
+}
+
+/// Puts the start of `setup` at the pose and the surface in the direction that its task asks for.
+Check take_pose(ArmPairSetup& setup) {
+  constexpr double within_rad = 0.6;
+  constexpr double least_share = 0.75;
+  setup.outward = outward_of(setup.params.task.direction);
+  if (setup.params.task.pose == 0) return std::nullopt;
+  const auto chain = arm::Chain::make(setup.arm.chain);
+  if (!chain) return chain.error();
+  const double least = least_share * slowest_m_per_rad(*chain, setup.start, setup.arm.tool_m);
+  signal::Random random = signal::Random(0).fork(static_cast<std::uint64_t>(setup.params.task.pose));
+  JointVector drawn;
+  do {
+    drawn = setup.start;
+    for (double& joint : drawn) joint += random.uniform(-within_rad, within_rad);
+  } while (slowest_m_per_rad(*chain, drawn, setup.arm.tool_m) < least);
+  setup.start = drawn;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -58,6 +101,7 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::
                    .tool_m = setup.arm.tool_m,
                    .joint_stiffness_N_m_per_rad = stiffness,
                    .joint_damping_N_m_s_per_rad = damping};
+  if (Check wrong = take_pose(setup)) return *std::move(wrong);
   setup.arm.step_s = 1.0 / (params.servo.rate_Hz * steps_in_a_tick(params.servo));
   return setup;
 }
@@ -73,9 +117,10 @@ ArmPair::ArmPair(const ArmPairSetup& setup, ArmPlant leader, ArmPlant follower, 
       person_(std::move(person)),
       leader_site_(leader_site),
       follower_site_(follower_site),
+      outward_(setup.outward),
       began_m_(follower_.tool().position_m),
-      wall_{.point_m = began_m_ + wall_m * Vector3::UnitZ(),
-            .normal = Vector3::UnitZ(),
+      wall_{.point_m = began_m_ + wall_m * outward_,
+            .normal = outward_,
             .stiffness_N_per_m = setup.params.wall.stiffness_N_per_m,
             .damping_N_s_per_m = setup.params.wall.damping_N_s_per_m},
       from_follower_(arm_control::ArmMessage::at_rest(setup.start)) {
@@ -105,7 +150,8 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const arm_control::Indu
   const auto leader_site =
       arm_control::ArmLeader::make(control, {.carried = setup.arm.chain, .induced = induced, .gains = gains}, tick);
   if (!leader_site) return under("control", leader_site.error());
-  const auto follower_site = arm_control::ArmFollower::make(params.control.follower, setup.arm.chain, tick);
+  const auto follower_site = arm_control::ArmFollower::make(params.control.follower, setup.arm.chain, tick,
+                                                            induced.joint_stiffness_N_m_per_rad);
   if (!follower_site) return under("control.follower", follower_site.error());
   return ArmPair(setup, *std::move(leader), *std::move(follower), *std::move(person), *leader_site, *follower_site,
                  wall_m);
@@ -124,14 +170,14 @@ ArmRecord ArmPair::step(const Vector3& path_m, const Vector3& path_at_next_tick_
   to_follower_ = follower.command;
   person_.begin_tick(began_m_ + path_m, began_m_ + path_at_next_tick_m, at_leader);
 
-  ArmRecord record{.hand_N = -person_.force(at_leader, 0.0).force_N.z(),
-                   .leader_m = at_leader.position_m.z() - began_m_.z(),
-                   .follower_m = at_follower.position_m.z() - began_m_.z(),
+  ArmRecord record{.hand_N = -person_.force(at_leader, 0.0).force_N.dot(outward_),
+                   .leader_m = (at_leader.position_m - began_m_).dot(outward_),
+                   .follower_m = (at_follower.position_m - began_m_).dot(outward_),
                    .tools_apart_m = (at_leader.position_m - at_follower.position_m).norm()};
   for (int i = 0; i < steps_; ++i) {
     leader_.step(person_.force(leader_.tool(), i * step_s_));
     const ToolForce contact{.force_N = wall_.force_N(follower_.tool())};
-    record.contact_N += contact.force_N.z() / steps_;
+    record.contact_N += contact.force_N.dot(outward_) / steps_;
     follower_.step(contact);
   }
   return record;

@@ -12,6 +12,7 @@ struct ArmPairSetup {
   arm_plants::ArmPlant::Params arm;
   arm_control::InducedMotion::Arm induced;  ///< the same arm, without error
   arm::JointVector start;
+  arm::Vector3 outward = arm::Vector3::UnitZ();  ///< of the surface, in base axes
 };
 
 /// Reads the URDF, from `folder` on. Errors: those of `urdf::read`; `missing` without a URDF; those of the parts.
@@ -20,8 +21,8 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::
 /// What both tools did at a tick.
 struct ArmRecord {
   double contact_N = 0.0;  ///< of the wall on the follower's tool, mean of the tick
-  double hand_N = 0.0;     ///< that the hand feels of its spring and damper, up, at the tick's beginning
-  double leader_m = 0.0;   ///< height of the tools over where they began
+  double hand_N = 0.0;     ///< that the hand feels of its spring and damper, outward, at the tick's beginning
+  double leader_m = 0.0;   ///< of the tools, outward from where they began
   double follower_m = 0.0;
   double tools_apart_m = 0.0;  ///< between what the tools went from their starts
 };
@@ -34,7 +35,7 @@ struct ArmRecord {
 class ArmPair {
  public:
   /// `induced` is the arm that the model of induced motion believes in, in a hand as `hand`. The wall lies `wall_m`
-  /// over where the tools begin.
+  /// outward from where the tools begin.
   static Result<ArmPair> make(const ArmPairSetup& setup, const arm_control::InducedMotion::Arm& induced,
                               const arm::HandImpedance& hand, double wall_m);
 
@@ -56,6 +57,7 @@ class ArmPair {
   arm_plants::Person person_;
   arm_control::ArmLeader leader_site_;
   arm_control::ArmFollower follower_site_;
+  arm::Vector3 outward_;
   arm::Vector3 began_m_;
   arm_plants::Wall wall_;
   arm_control::ArmMessage from_follower_;

@@ -1,7 +1,8 @@
 #include <tactus/experiments/arm_tapping/arm_taps.hpp>
 #include <tactus/experiments/contact_metrics.hpp>
+#include <tactus/experiments/draws.hpp>
 #include <tactus/signal/random.hpp>
-#include <tactus/signal/second_order_filter.hpp>
+#include <tactus/signal/root_mean_square.hpp>
 #include <tactus/simulation/quantile.hpp>
 
 #include <algorithm>
@@ -10,8 +11,6 @@
 #include <utility>
 
 namespace tactus::experiments {
-
-using arm::Vector3;
 
 namespace {
 
@@ -26,19 +25,11 @@ std::size_t ticks_in(double duration_s, double tick_s) {
   return static_cast<std::size_t>(std::lround(duration_s / tick_s));
 }
 
-double rms(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
-}
-
 std::vector<double> transient(std::span<const ArmRecord> records, double ArmRecord::*force, double tick_s) {
-  auto high_pass = *signal::SecondOrderFilter::make(
-      {.kind = signal::FilterKind::high_pass, .frequency_Hz = transient_cutoff_Hz}, Seconds{tick_s});
-  std::vector<double> found;
-  found.reserve(records.size());
-  for (const ArmRecord& record : records) found.push_back(high_pass.step(record.*force));
-  return found;
+  std::vector<double> forces;
+  forces.reserve(records.size());
+  for (const ArmRecord& record : records) forces.push_back(record.*force);
+  return force_transient(forces, tick_s);
 }
 
 /// What the controller's model believes instead of `value`.
@@ -65,15 +56,6 @@ void draw_errors(ArmTap& tap, double error, signal::Random& random) {
   tap.hand.damping_N_s_per_m = drawn(tap.hand.damping_N_s_per_m, error, random);
 }
 
-Check check_range(double lower, double upper, const char* lower_name, const char* upper_name) {
-  if (lower <= upper) return std::nullopt;
-  return Error{.code = ErrorCode::inconsistent,
-               .parameter = std::string("task.") + upper_name,
-               .message = format_number(upper) + " is less than " + lower_name + ", " + format_number(lower) +
-                          ": raise one or lower the other",
-               .place = {}};
-}
-
 }  // namespace
 
 ArmContact judge_arm_contact(std::span<const ArmRecord> records, std::size_t first_touch, double tick_s) {
@@ -85,13 +67,14 @@ ArmContact judge_arm_contact(std::span<const ArmRecord> records, std::size_t fir
   const std::size_t end = std::min(after.size(), ticks_in(end_s, tick_s));
   for (const ArmRecord& record : after.last(end)) found.steady_N += record.contact_N / static_cast<double>(end);
   const std::span<const double> of_contact(contact);
-  found.residual_N = rms(of_contact.last(end));
-  const double touched_N = rms(of_contact.subspan(first_touch));
-  if (touched_N > 0.0) found.felt_share = rms(std::span<const double>(hand).subspan(first_touch)) / touched_N;
+  found.residual_N = signal::root_mean_square(of_contact.last(end));
+  const double touched_N = signal::root_mean_square(of_contact.subspan(first_touch));
+  if (touched_N > 0.0)
+    found.felt_share = signal::root_mean_square(std::span<const double>(hand).subspan(first_touch)) / touched_N;
   const double most_N = settled_share * found.peak_N / std::numbers::sqrt2;
   const std::size_t window = ticks_in(window_s, tick_s);
   for (std::size_t i = first_touch + ticks_in(given_time_s, tick_s); i + window <= contact.size(); ++i) {
-    if (rms(of_contact.subspan(i, window)) > most_N) found.rings = true;
+    if (signal::root_mean_square(of_contact.subspan(i, window)) > most_N) found.rings = true;
   }
   return found;
 }
@@ -139,7 +122,7 @@ ArmTaps::Contact ArmTaps::run_once(const ArmPairSetup& setup, const ArmTap& tap,
   for (std::size_t k = 0; k < last && !diverged; ++k) {
     const double now_s = static_cast<double>(k) * dt_s;
     records.push_back(
-        pair.step(tap.path.position_m(now_s) * Vector3::UnitZ(), tap.path.position_m(now_s + dt_s) * Vector3::UnitZ()));
+        pair.step(tap.path.position_m(now_s) * setup.outward, tap.path.position_m(now_s + dt_s) * setup.outward));
     const ArmRecord& record = records.back();
     if (!touched && record.contact_N > 0.0) {
       touched = true;
@@ -175,8 +158,8 @@ double ArmTaps::reach_lag_m() const {
   double most_m = 0.0;
   for (std::size_t k = 0; k < ticks_in(rest_s + reach.duration_s, pair.tick_s()); ++k) {
     const double now_s = static_cast<double>(k) * pair.tick_s();
-    const ArmRecord record = pair.step(reach.position_m(now_s) * Vector3::UnitZ(),
-                                       reach.position_m(now_s + pair.tick_s()) * Vector3::UnitZ());
+    const ArmRecord record =
+        pair.step(reach.position_m(now_s) * setup_.outward, reach.position_m(now_s + pair.tick_s()) * setup_.outward);
     most_m = std::max(most_m, record.tools_apart_m);
   }
   return most_m;

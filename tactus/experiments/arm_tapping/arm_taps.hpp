@@ -11,7 +11,7 @@ namespace tactus::experiments {
 
 /// One tap: how the person goes about it, and what the controller believes.
 struct ArmTap {
-  mechanics::MinimumJerk path;  ///< height of the tool over where it began
+  mechanics::MinimumJerk path;  ///< of the tool, outward from where it began
   double wall_m = 0.0;
   arm_control::InducedMotion::Arm induced;
   arm::HandImpedance hand;
@@ -32,8 +32,8 @@ ArmContact judge_arm_contact(std::span<const ArmRecord> records, std::size_t fir
 
 struct ArmTapResult {
   ArmContact contact;
-  bool ran_away =
-      false;  ///< presses 1.6 times as hard at its peak, 1 N more, or twice as hard in the end, as at gain 0
+  /// Presses 1.6 times as hard at its peak, 1 N more, or twice as hard in the end, as at gain 0.
+  bool ran_away = false;
   bool diverged = false;
   [[nodiscard]] bool settled() const { return contact.touched && !contact.rings && !ran_away && !diverged; }
 };
@@ -48,7 +48,7 @@ class ArmTaps {
   [[nodiscard]] double tick_s() const { return 1.0 / setup_.params.servo.rate_Hz; }
   /// Runs a tap twice, at the gain and at gain 0; with `trace`, appends every tick of the first.
   ArmTapResult run(std::size_t tap, std::vector<ArmRecord>* trace = nullptr) const;
-  /// How far the tools are apart at most while the person reaches 200 mm in 0.75 s and nothing is there.
+  /// How far the tools are apart at most while the person reaches 200 mm outward in 0.75 s and nothing is there.
   [[nodiscard]] double reach_lag_m() const;
 
  private:

@@ -2,7 +2,9 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/simulation/parallel.hpp>
 
+#include <cmath>
 #include <filesystem>
+#include <string>
 #include <utility>
 
 namespace tactus::experiments {
@@ -76,7 +78,7 @@ report::Figure arm_figure(const ArmTappingRun& run, const std::vector<ArmRecord>
       .title = "", .x = time, .y = {.label = "force", .unit = "N"}, .lines = {contact, hand}, .rules = {}};
   report::Panel heights{.title = "",
                         .x = time,
-                        .y = {.label = "height of the tool", .unit = "mm"},
+                        .y = {.label = "tool, out of the surface", .unit = "mm"},
                         .lines = {leader, follower},
                         .rules = {}};
   return {.title = "The first tap",
@@ -86,20 +88,39 @@ report::Figure arm_figure(const ArmTappingRun& run, const std::vector<ArmRecord>
           .panels = {forces, heights}};
 }
 
-report::Page arm_page(const Request& request, const report::Table& table, const std::vector<report::Figure>& figures) {
+std::string arm_verdict(const std::vector<ArmTappingRun>& runs) {
+  constexpr double settles = 0.95;  // so large a share of the taps
+  const auto of_all = [](const ArmTappingMetrics& m, double share) {
+    return std::to_string(std::lround(share * static_cast<double>(m.taps))) + " of " + std::to_string(m.taps);
+  };
+  if (runs.size() == 1) {
+    const ArmTappingMetrics& m = runs.front().metrics;
+    return (m.settled_fraction >= settles ? "Settled: " : "Not settled: ") + of_all(m, m.settled_fraction) +
+           (m.taps == 1 ? " tap" : " taps") + " settled.";
+  }
+  std::vector<std::string> failures;
+  for (const ArmTappingRun& run : runs) {
+    if (run.metrics.settled_fraction >= settles) continue;
+    failures.push_back(settings_caption(run.settings) + " (" + of_all(run.metrics, run.metrics.settled_fraction) + ")");
+  }
+  return settled_combinations(runs.size(), failures);
+}
+
+report::Page arm_page(const Request& request, const std::string& verdict, const report::Table& table,
+                      const std::vector<report::Figure>& figures) {
   report::Page page(request.name + ": " + std::string(arm_tapping_title));
+  page.paragraph(verdict);
   page.paragraph(
-      "A person holds the leader's tool, lowers it, and presses; the follower's tool meets a stiff level surface. Each "
-      "row is an ensemble of taps that differ in speed, depth and errors of the controller's model. Simulated.");
+      "A person holds the leader's tool, goes to a stiff surface, and presses; the follower's tool meets it. Each row "
+      "is an ensemble of taps that differ in speed, depth and errors of the controller's model. Simulated.");
   page.table(table);
   page.definitions(
-      {{"settled", "Share of the taps that touch, neither ring nor run away."},
+      {{"settled", "Share of the taps that touch, and neither ring nor run away. A combination settles with 95 %."},
        {"ring",
         "After 150 ms from first touch some 50 ms hold more force above 15 Hz than a sine of a tenth of the peak."},
        {"run away",
         "The peak exceeds 1.6 times that of the same tap at gain 0 by more than 1 N, the force in the end twice that, "
-        "or a "
-        "tool left its place by 300 mm."},
+        "or a tool left its place by 300 mm."},
        {"peak, steady", "Contact force, largest and mean of the last 100 ms; medians over the taps."},
        {"felt", "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS; median."},
        {"lag", "Farthest that the tools are apart in a reach of 200 mm in 0.75 s that meets nothing."}});
@@ -113,21 +134,32 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
       request, [&](const ArmTappingParams& params) { return ArmTaps::make(params, folder); });
   if (!cases) return cases.error();
 
-  // One list of all taps of all combinations, so that the last one keeps no core waiting.
+  // One list of all taps and reaches of all combinations, so that the last one keeps no core waiting.
   struct Job {
-    std::size_t run, tap;
+    std::size_t run, tap;  ///< a tap beyond the last is the reach
+  };
+  struct Results {
+    std::vector<ArmTapResult> taps;
+    double reach_lag_m = 0.0;
+    std::vector<ArmRecord> trace;  ///< of the first tap
   };
   std::vector<Job> jobs;
-  std::vector<std::vector<ArmTapResult>> results;
+  std::vector<Results> results;
   for (const auto& one : cases->all) {
-    for (std::size_t tap = 0; tap < one.prepared.size(); ++tap) jobs.push_back({results.size(), tap});
-    results.emplace_back(one.prepared.size());
+    for (std::size_t tap = 0; tap <= one.prepared.size(); ++tap) jobs.push_back({results.size(), tap});
+    results.push_back({.taps = std::vector<ArmTapResult>(one.prepared.size()), .trace = {}});
   }
   simulation::for_each_in_parallel(
       jobs.size(),
       [&](std::size_t i) {
         const auto [run, tap] = jobs[i];
-        results[run][tap] = cases->all[run].prepared.run(tap);
+        const ArmTaps& taps = cases->all[run].prepared;
+        Results& found = results[run];
+        if (tap == taps.size()) {
+          found.reach_lag_m = taps.reach_lag_m();
+        } else {
+          found.taps[tap] = taps.run(tap, tap == 0 ? &found.trace : nullptr);
+        }
       },
       progress);
 
@@ -135,14 +167,13 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
   std::vector<report::Figure> figures;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto& [settings, taps] = cases->all[i];
-    runs.push_back({settings, summarise(results[i], taps.reach_lag_m())});
-    std::vector<ArmRecord> trace;
-    taps.run(0, &trace);
-    figures.push_back(arm_figure(runs.back(), trace, taps.tick_s()));
+    runs.push_back({settings, summarise(results[i].taps, results[i].reach_lag_m)});
+    figures.push_back(arm_figure(runs.back(), results[i].trace, taps.tick_s()));
   }
   const report::Table table = arm_table(runs);
-  report::Page page = arm_page(request, table, figures);
-  return outcome_of({.text = table.to_text(),
+  const std::string verdict = arm_verdict(runs);
+  report::Page page = arm_page(request, verdict, table, figures);
+  return outcome_of({.text = verdict + "\n\n" + table.to_text(),
                      .json = arm_json(request, runs),
                      .page = std::move(page),
                      .figures = std::move(figures)},

@@ -94,7 +94,7 @@ struct ArmWallParams {
   double damping_N_s_per_m = 20.0;
   static constexpr auto fields() {
     return List{field("stiffness_N_per_m", &ArmWallParams::stiffness_N_per_m, units::newton_per_metre,
-                      between(100.0, 1e6), "Stiffness of the level surface that the follower's tool meets."),
+                      between(100.0, 1e6), "Stiffness of the flat surface that the follower's tool meets."),
                 field("damping_N_s_per_m", &ArmWallParams::damping_N_s_per_m, units::newton_second_per_metre,
                       between(0.0, 1e4), "Its damping.")};
   }
@@ -105,11 +105,20 @@ constexpr auto enumerators(ArmTappingKind) {
   return std::array{Enumerator{ArmTappingKind::arm_tapping, "arm-tapping"}};
 }
 
+/// Where the surface lies that the tool goes to, along the axes of the base.
+enum class TapDirection { down, along_x, along_y };
+constexpr auto enumerators(TapDirection) {
+  return std::array{Enumerator{TapDirection::down, "down"}, Enumerator{TapDirection::along_x, "along-x"},
+                    Enumerator{TapDirection::along_y, "along-y"}};
+}
+
 /// The taps, each with a speed, a depth and errors of the model of its own.
 struct ArmTappingTask {
   ArmTappingKind kind = ArmTappingKind::arm_tapping;
   std::int64_t taps = 32;
   std::int64_t seed = 1;
+  std::int64_t pose = 0;
+  TapDirection direction = TapDirection::down;
   double slowest_m_per_s = 0.08;
   double fastest_m_per_s = 0.16;
   double shallowest_m = 0.006;
@@ -122,6 +131,11 @@ struct ArmTappingTask {
         field("kind", &T::kind, "Which experiment this is."),
         field("taps", &T::taps, between(1, 100000), "Number of taps in the ensemble."),
         field("seed", &T::seed, non_negative, "Seed that draws the ensemble."),
+        field("pose", &T::pose, between(0, 1000),
+              "Where both arms begin: 0 at start_rad of each joint, and others drawn within 0.6 rad of it by this "
+              "number, "
+              "no nearer to a singular pose than three quarters of it."),
+        field("direction", &T::direction, "Where the surface lies that the person goes to."),
         field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
               "Slowest approach: intended speed at the surface."),
         field("fastest_m_per_s", &T::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),

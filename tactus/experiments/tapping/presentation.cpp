@@ -61,18 +61,12 @@ std::string tapping_verdict(const std::vector<TappingRun>& runs) {
     }
     return text + ".";
   }
-  constexpr std::size_t most = 6;  // that are named
-  std::size_t failed = 0;
-  std::string names;
+  std::vector<std::string> failures;
   for (const TappingRun& run : runs) {
-    if (run.metrics.verdict == Verdict::settled || failed++ >= most) continue;
-    names += (names.empty() ? "" : "; ") + settings_caption(run.settings) + " (" + verdict_of(run.metrics) + ")";
+    if (run.metrics.verdict == Verdict::settled) continue;
+    failures.push_back(settings_caption(run.settings) + " (" + verdict_of(run.metrics) + ")");
   }
-  std::string text =
-      std::to_string(runs.size() - failed) + " of " + std::to_string(runs.size()) + " combinations settle";
-  if (failed > 0) text += "; these do not: " + names;
-  if (failed > most) text += " and " + std::to_string(failed - most) + " more";
-  return text + ".";
+  return settled_combinations(runs.size(), failures);
 }
 
 std::string metrics_json(const TappingMetrics& metrics) {

@@ -16,15 +16,6 @@ namespace {
 /// The person rests this long before the reach, so that every filter is at rest too.
 constexpr double rest_s = 0.05;
 
-Check check_range(double lower, double upper, const char* lower_name, const char* upper_name) {
-  if (lower <= upper) return std::nullopt;
-  return Error{.code = ErrorCode::inconsistent,
-               .parameter = std::string("task.") + upper_name,
-               .message = format_number(upper) + " is less than " + lower_name + ", " + format_number(lower) +
-                          ": raise one or lower the other",
-               .place = {}};
-}
-
 template <class Teleoperator>
 TapResult run_tap(const Tap& tap, TapObserver judge, std::vector<simulation::Teleoperator::Record>* trace) {
   constexpr bool supervised = std::is_same_v<Teleoperator, simulation::SupervisedTeleoperator>;

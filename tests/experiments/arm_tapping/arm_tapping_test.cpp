@@ -23,6 +23,15 @@ ArmTappingParams shipped() {
   return document->read<ArmTappingParams>().value();
 }
 
+/// Without what is recommended beside it: no damping in the leader's drives, the follower as stiff as its gains say.
+ArmTappingParams bare(ArmMethod method) {
+  ArmTappingParams params = shipped();
+  params.control.method = method;
+  params.control.drive_damping = {};
+  params.control.follower.stiffness_share = 1.0;
+  return params;
+}
+
 double settled_share(ArmTappingParams params, std::int64_t taps) {
   params.task.taps = taps;
   const ArmTaps made = *ArmTaps::make(params, folder);
@@ -56,8 +65,7 @@ TEST(ArmTapping, AContactRingsWhereASineOfMoreThanATenthOfItsPeakStays) {
 }
 
 TEST(ArmTapping, TapsSettleAtASmallGainAndNotAtALargeOne) {
-  ArmTappingParams params = shipped();
-  params.control.method = ArmMethod::position_force;
+  ArmTappingParams params = bare(ArmMethod::position_force);
   params.control.force_gain = 0.5;
   EXPECT_EQ(settled_share(params, 3), 1.0);
   params.control.force_gain = 8.0;
@@ -65,14 +73,60 @@ TEST(ArmTapping, TapsSettleAtASmallGainAndNotAtALargeOne) {
 }
 
 TEST(ArmTapping, WithExactTorqueAndAFirmHandCancellationSettlesWherePlainRings) {
-  ArmTappingParams params = shipped();
+  ArmTappingParams params = bare(ArmMethod::position_force);
   params.task.model_error = 0.0;
   params.control.follower.torque = TorqueSource::sensor;
   params.control.force_gain = 4.0;
-  params.control.method = ArmMethod::position_force;
   EXPECT_EQ(settled_share(params, 4), 0.0);
   params.control.method = ArmMethod::cancellation;
   EXPECT_EQ(settled_share(params, 4), 1.0);
+}
+
+TEST(ArmTapping, AsShippedTapsSettleAtAGainAtWhichTheyRingWithoutItsDampingAndSoftness) {
+  ArmTappingParams params = shipped();
+  params.control.force_gain = 5.66;
+  EXPECT_EQ(settled_share(params, 3), 1.0);
+  params = bare(ArmMethod::position_force);
+  params.control.force_gain = 5.66;
+  EXPECT_EQ(settled_share(params, 3), 0.0);
+}
+
+TEST(ArmTapping, OnElasticJointsTapsSettleWithAnObserverThatCountsWithThem) {
+  auto document = *configuration::Document::load(folder / "arm-tapping.toml");
+  ASSERT_EQ(document.merge(*configuration::Document::load(folder / "arms/elastic-joints.toml")), std::nullopt);
+  ArmTappingParams params = document.read<ArmTappingParams>().value();
+  params.control.force_gain = 2.0;
+  EXPECT_EQ(settled_share(params, 3), 1.0);
+  params.control.follower.observer.joints = arm_control::JointModel::rigid;
+  EXPECT_EQ(settled_share(params, 3), 0.0);
+}
+
+TEST(ArmTapping, APoseIsTheSameForTheSameNumberAndAnotherForAnother) {
+  ArmTappingParams params = shipped();
+  const auto start = [&](std::int64_t pose) {
+    params.task.pose = pose;
+    return set_up_arm_pair(params, folder)->start;
+  };
+  const arm::JointVector shipped_start = start(0);
+  EXPECT_EQ(shipped_start[3], 1.4);
+  EXPECT_EQ(start(3), start(3));
+  EXPECT_GT((start(3) - start(4)).cwiseAbs().maxCoeff(), 0.1);
+  EXPECT_LE((start(3) - shipped_start).cwiseAbs().maxCoeff(), 0.6);
+}
+
+TEST(ArmTapping, ASurfaceStandsInTheDirectionOfTheTap) {
+  ArmTappingParams params = shipped();
+  params.control.force_gain = 0.0;
+  for (const TapDirection direction : {TapDirection::down, TapDirection::along_x, TapDirection::along_y}) {
+    params.task.direction = direction;
+    const ArmPairSetup setup = *set_up_arm_pair(params, folder);
+    std::vector<ArmRecord> trace;
+    const ArmTapResult tap = ArmTaps::make(params, folder)->run(0, &trace);
+    EXPECT_TRUE(tap.contact.touched);
+    EXPECT_GT(tap.contact.peak_N, 1.0);
+    EXPECT_LT(trace.back().leader_m, -0.005) << "inward";
+    EXPECT_EQ(setup.outward.norm(), 1.0);
+  }
 }
 
 TEST(ArmTapping, EqualParametersGiveEqualBits) {

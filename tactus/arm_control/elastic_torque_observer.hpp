@@ -1,0 +1,60 @@
+#pragma once
+
+#include <tactus/arm_control/external_torque_observer.hpp>
+#include <tactus/arm_control/joint_model.hpp>
+
+namespace tactus::arm_control {
+
+/// External torque of an arm with elastic joints, from its motors alone. Motors (armature B) and links (the rest of the
+/// mass matrix, M) are joined by springs K, so that
+///
+///     B·θ̈ = τ − friction − τ_J,     M·q̈ + c + gravity = τ_J + τ_ext,     q = θ − K⁻¹·τ_J,
+///
+/// and all but τ_ext follows from motor torque τ and motor velocity θ̇ by derivatives:
+///
+///     r = F(s)·( M·(θ̈ − K⁻¹·s²·τ_J) + c + gravity − τ_J ),     τ_J = τ − friction − B·θ̈.
+///
+/// F is a third-order Butterworth low-pass, whose states are the derivatives that r needs: nothing is differenced.
+/// Without K⁻¹ this is the momentum observer of rigid joints, which is wrong by M·K⁻¹·s²·τ_J: as large as the contact
+/// itself where a joint swings, and of the wrong sign beyond. F delays by 2/(2π·cutoff) what is slow, twice as long as
+/// one of first order. Damping of the springs is left out, and c and gravity are taken where the motors are.
+/// Positive in the direction in which the position grows. Starts at rest.
+/// Sources: A. De Luca, A. Albu-Schäffer, S. Haddadin, G. Hirzinger, Collision detection and safe reaction with the
+/// DLR-III lightweight robot arm, IROS 2006 (links behind springs, with sensors of τ_J); M. W. Spong, Modeling and
+/// control of elastic joint robots, 1987 (the model).
+class ElasticTorqueObserver {
+ public:
+  using Params = ExternalTorqueObserver::Params;
+
+  /// `arm` and `joint_stiffness`, in N m/rad, are what it is believed to be. Errors: those of `Chain::make`; a cutoff
+  /// out of bounds or beyond half the sample rate; `inconsistent` unless each joint has a stiffness.
+  static Result<ElasticTorqueObserver> make(const Params& params, const arm::Chain::Params& arm,
+                                            const JointVector& joint_stiffness, Seconds dt);
+
+  /// Torque on the links in N m that is not the motors', the model's gravity's, motion's or friction's. Once a tick,
+  /// with the readings of one instant. Real-time safe.
+  JointVector step(const ArmReading& reading) noexcept;
+  void reset() noexcept { started_ = false; }
+
+ private:
+  /// A signal of each joint behind F, with its first and second derivative.
+  using Filtered = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, arm::most, 3>;
+
+  ElasticTorqueObserver(const arm::Chain& model, const JointVector& armature, const JointVector& joint_stiffness,
+                        double cutoff_rad_per_s, Seconds dt);
+  [[nodiscard]] JointVector third_derivative(const Filtered& filtered, const JointVector& input) const noexcept;
+
+  arm::Chain model_;
+  JointVector armature_;
+  JointVector softness_;  ///< K⁻¹, rad/(N m)
+  double cutoff_rad_per_s_;
+  Eigen::Matrix3d kept_;       ///< of signal and derivatives, from tick to tick
+  Eigen::RowVector3d let_in_;  ///< of an input that is held for a tick
+  bool started_ = false;
+  Filtered velocity_;
+  Filtered torque_;  ///< of the motors, less friction, c and gravity
+  JointVector velocity_before_;
+  JointVector torque_before_;
+};
+
+}  // namespace tactus::arm_control
