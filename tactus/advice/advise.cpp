@@ -186,7 +186,10 @@ class Search {
     auto gripped = Trial::make(bench_.knowledge, *params, gripping, any_grip);
     if (!gripped) return gripped.error();
     const double top = std::max(reserve * own_gain, 1.01 * lowest_gain);
-    candidate.first_gain = std::min(own_gain, rounded_down(gripped->limit(lowest_gain, top).gain / reserve));
+    const GainLimit in_any_grip = gripped->limit(lowest_gain, top);
+    candidate.first_gain = std::min(own_gain, rounded_down(in_any_grip.gain / reserve));
+    // The search ends with the lowest gain that failed.
+    if (!in_any_grip.beyond_search) candidate.limiting_grip = gripped->failed_last().person.grip_change.factor;
     TappingParams believed = bench_.knowledge.drawn(*params, 0);
     believed.task.taps = 8;
     believed.control.force_gain = own_gain;

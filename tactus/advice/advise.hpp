@@ -34,6 +34,9 @@ struct Candidate {
   }
   /// The same over grips of ×0.25 to ×4 too, at most `force_gain`; 0: less than the lowest gain of the search.
   double first_gain = 0.0;
+  /// The grip over one's own, of `any_grip`, that no longer settles above `first_gain`; none where each holds as far as
+  /// was tried.
+  std::optional<double> limiting_grip = {};
   // On the rig that is believed:
   std::optional<double> hand_error;  ///< `experiments::GainScore::spectral_error`
   double effort_N = 0.0;             ///< `experiments::FreeSpaceScore::hand_force_rms_N`

@@ -12,7 +12,7 @@ namespace tactus::advice {
 
 namespace {
 
-constexpr std::string_view cancellation_key = "control.cancellation";
+constexpr const char* cancellation_words = "cancellation";
 constexpr double notch_without_a_mode_Hz = 75.0;
 
 Choice without(const std::string& key, const std::string& value) { return {.settings = {{key, value}}}; }
@@ -47,6 +47,10 @@ experiments::Settings Method::settings() const {
   return all;
 }
 
+bool Method::has(const std::string& words) const {
+  return std::any_of(choices.begin(), choices.end(), [&words](const Choice& choice) { return choice.words == words; });
+}
+
 std::string Method::words() const {
   std::vector<std::string> parts;
   for (const Choice& choice : choices) {
@@ -66,14 +70,16 @@ std::string Method::words() const {
 }
 
 std::vector<Dimension> position_force_dimensions(const control::MasterModel& model) {
+  const std::string cancellation = "control.cancellation", estimate = "control.operator_estimate";
   const std::string damping = "control.damping.damping_N_s_per_m", compensation = "control.hand_compensation_Hz";
   const std::string command = "control.command_filter", force = "control.force_filter";
   const double mode_rad_per_s = std::abs(control::linkage_mode(model).imag());
   const double mode_Hz =
       mode_rad_per_s > 0.0 ? rounded(mode_rad_per_s / (2.0 * std::numbers::pi)) : notch_without_a_mode_Hz;
   return {{{.settings = {{"control.architecture", "position-force"}}}},
-          {without(std::string(cancellation_key), "off"),
-           {.settings = {{std::string(cancellation_key), "on"}}, .words = "cancellation"}},
+          {without(cancellation, "off"), {.settings = {{cancellation, "on"}}, .words = cancellation_words}},
+          {without(estimate, "off"),
+           {.settings = {{estimate, "online"}}, .words = "an estimate of the grip", .within = cancellation_words}},
           {without(damping, "0"), with_number(damping, 5.0, "local damping of {} N s/m"),
            with_number(damping, 10.0, "local damping of {} N s/m")},
           {without(compensation, "0"), with_number(compensation, 200.0, "hand compensation up to {} Hz")},
@@ -102,6 +108,7 @@ std::vector<Method> combine(const std::vector<Dimension>& dimensions, std::size_
     std::vector<Counted> longer;
     for (const Counted& before : all) {
       for (const Choice& choice : dimension) {
+        if (!choice.within.empty() && !before.method.has(choice.within)) continue;
         Counted one = before;
         one.method.choices.push_back(choice);
         const bool more = !choice.words.empty() && !choice.tuned.empty();

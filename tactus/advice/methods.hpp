@@ -14,6 +14,7 @@ struct Choice {
   experiments::Settings settings;
   std::string words = {};  ///< for a person: `a notch in the command at {} Hz`, {} for the number; empty for without
   std::string tuned = {};  ///< key whose number is the one in the words and may be moved; empty for none
+  std::string within = {};  ///< words of the choice of an earlier dimension that this is a part of; empty for none
   bool operator==(const Choice&) const = default;
 };
 
@@ -24,19 +25,21 @@ using Dimension = std::vector<Choice>;
 struct Method {
   std::vector<Choice> choices;
   [[nodiscard]] experiments::Settings settings() const;
+  /// Whether one of the choices has these words, as they stand in it.
+  [[nodiscard]] bool has(const std::string& words) const;
   /// For a person, `cancellation and local damping of 5 N s/m`; `no stage` for none.
   [[nodiscard]] std::string words() const;
   bool operator==(const Method&) const = default;
 };
 
-/// The dimensions of position-force control that are searched: cancellation, local damping, hand compensation, filter
-/// of the command, filter of the force. Notches stand at the master's mode in the hand as `model` has it.
+/// The dimensions of position-force control that are searched: cancellation, an estimate of the grip within it, local
+/// damping, hand compensation, filter of the command, filter of the force. Notches stand at the master's mode in the hand as `model` has it.
 std::vector<Dimension> position_force_dimensions(const control::MasterModel& model);
 /// Other architectures, for where position-force control settles at no gain. They reflect less of the force.
 std::vector<Dimension> other_dimensions();
 
-/// Every combination with at most `stages` choices that are more than "without", cancellation not counted, and no two
-/// filters; those with fewer first.
+/// Every combination with at most `stages` choices that are more than "without", cancellation and what is within it not
+/// counted, and no two filters; those with fewer first.
 std::vector<Method> combine(const std::vector<Dimension>& dimensions, std::size_t stages);
 
 /// The method with each of its tuned numbers at a factor of 0.7 and of 1.4, one at a time.

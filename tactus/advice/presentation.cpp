@@ -67,6 +67,13 @@ std::string limited_by_text(const Advice& advice) {
   return "Limited by no single thing of those that were tried.";
 }
 
+/// `four times as firm as yours`.
+std::string words_of_grip(double factor) {
+  if (factor == 1.0) return "as firm as yours";
+  if (factor == any_grip[1]) return "a quarter as firm as yours";
+  return number(factor) + " times as firm as yours";
+}
+
 report::Table table_of(const Bench& bench, const Advice& advice) {
   report::Table table({{"configuration", "", Align::left},
                        {"force gain"},
@@ -115,6 +122,7 @@ void add_gains(Json& object, const Candidate& candidate) {
   object["force_gain"] = candidate.force_gain;
   if (candidate.censored()) object["force_gain_censored"] = true;
   object["first_gain"] = candidate.first_gain;
+  object["first_gain_limited_by_grip"] = candidate.limiting_grip ? Json(*candidate.limiting_grip) : Json(nullptr);
   if (candidate.first_gain == 0.0 || (candidate.censored() && candidate.first_gain == candidate.force_gain)) {
     object["first_gain_censored"] = true;
   }
@@ -160,6 +168,7 @@ std::string json_of(const Bench& bench, const Advice& advice) {
   } else {
     document["force_gain"] = 0.0;
     document["first_gain"] = 0.0;
+    document["first_gain_limited_by_grip"] = nullptr;
   }
   document["expected"] = expected_json(advice);
   document["limited_by"] = limited_by_json(advice);
@@ -220,15 +229,17 @@ std::string sentence(const Bench& bench, const Advice& advice) {
   }
   if (start.first_gain == 0.0) {
     return "Use a force gain of up to " + number(start.force_gain) + with +
-           ", in your own grip alone: in one a quarter or four times as firm no gain of " + number(lowest_gain) +
-           " or more settles" + display + ".";
+           ", in your own grip alone: in one " + words_of_grip(start.limiting_grip.value_or(1.0)) + " no gain of " +
+           number(lowest_gain) + " or more settles" + display + ".";
   }
   if (start.first_gain >= start.force_gain) {
     return "Start at a force gain of " + number(start.force_gain) + with +
            ": it holds in any grip from a quarter to four times as firm as yours" + display + ".";
   }
-  return "Start at a force gain of " + number(start.first_gain) + with + " and go up to " + number(start.force_gain) +
-         " in your own grip" + display + ".";
+  const std::string limit =
+      start.limiting_grip ? " (more does not settle in a grip " + words_of_grip(*start.limiting_grip) + ")" : "";
+  return "Start at a force gain of " + number(start.first_gain) + with + limit + " and go up to " +
+         number(start.force_gain) + " in your own grip" + display + ".";
 }
 
 std::string next_measurement(const Bench& bench, const Advice& advice) {
