@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -21,6 +22,7 @@ constexpr double about_as_good = 0.9;
 constexpr std::size_t halvings = 3;
 /// Draws of each step; what confirms an answer has seen no search.
 constexpr Draws screening{.first = 0, .rigs = 4, .taps = 4};
+constexpr Draws screening_grips{.first = 0, .rigs = 2, .taps = 4};
 constexpr Draws deciding{.first = 0, .rigs = 12, .taps = 6};
 constexpr Draws gripping{.first = 0, .rigs = 5, .taps = 4};
 constexpr Draws confirming{.first = 1000, .rigs = 8, .taps = 20, .coarse = false};
@@ -117,7 +119,7 @@ class Search {
       }
     }
     const auto tuned_limits =
-        limits_of(bench_, tuned, force_limit_N, screening, screening_resolution, part(progress_, 0.35, 0.5));
+        limits_of(bench_, tuned, force_limit_N, screening, screening_resolution, part(progress_, 0.35, 0.45));
     if (!tuned_limits) return tuned_limits.error();
     std::vector<Method> chosen;
     for (const std::size_t i : best) {
@@ -130,6 +132,7 @@ class Search {
       }
       chosen.push_back(*method);
     }
+    if (auto error = add_for_any_grip(chosen, methods, force_limit_N)) return error;
     const auto decided =
         limits_of(bench_, chosen, force_limit_N, deciding, experiments::gain_resolution, part(progress_, 0.5, 0.7));
     if (!decided) return decided.error();
@@ -139,6 +142,21 @@ class Search {
       candidates_.push_back(std::move(candidate));
     }
     return rank();
+  }
+
+  /// Adds what holds best over all grips of the methods that follow the grip, with a stage at most: a lag costs a light
+  /// hand most.
+  Check add_for_any_grip(std::vector<Method>& chosen, const std::vector<Method>& methods, double force_limit_N) const {
+    std::vector<Method> following;
+    std::copy_if(methods.begin(), methods.end(), std::back_inserter(following),
+                 [](const Method& method) { return method.has(grip_estimate) && method.stages() <= 1; });
+    const auto limits = limits_of(bench_, following, force_limit_N, screening_grips, screening_resolution,
+                                  part(progress_, 0.45, 0.5), any_grip);
+    if (!limits) return limits.error();
+    for (const std::size_t i : best_of(*limits, 1)) {
+      if (std::find(chosen.begin(), chosen.end(), following[i]) == chosen.end()) chosen.push_back(following[i]);
+    }
+    return {};
   }
 
   /// Leaves out what holds on no rig that no search saw, unless a gain was given.
@@ -248,12 +266,13 @@ class Search {
 }  // namespace
 
 Result<std::vector<GainLimit>> limits_of(const Bench& bench, const std::vector<Method>& methods, double force_limit_N,
-                                         const Draws& draws, double resolution, const Progress& progress) {
+                                         const Draws& draws, double resolution, const Progress& progress,
+                                         std::span<const double> grips) {
   std::vector<std::optional<Trial>> trials(methods.size());
   for (std::size_t i = 0; i < methods.size(); ++i) {
     const auto params = params_of(bench, methods[i], force_limit_N);
     if (!params) return params.error();
-    if (auto trial = Trial::make(bench.knowledge, *params, draws)) trials[i] = *std::move(trial);
+    if (auto trial = Trial::make(bench.knowledge, *params, draws, grips)) trials[i] = *std::move(trial);
   }
   std::vector<GainLimit> limits(methods.size());
   simulation::for_each_in_parallel(

@@ -47,8 +47,14 @@ experiments::Settings Method::settings() const {
   return all;
 }
 
-bool Method::has(const std::string& words) const {
-  return std::any_of(choices.begin(), choices.end(), [&words](const Choice& choice) { return choice.words == words; });
+bool Method::has(std::string_view words) const {
+  return std::any_of(choices.begin(), choices.end(), [words](const Choice& choice) { return choice.words == words; });
+}
+
+std::size_t Method::stages() const {
+  return static_cast<std::size_t>(std::count_if(choices.begin(), choices.end(), [](const Choice& choice) {
+    return !choice.words.empty() && !choice.tuned.empty();
+  }));
 }
 
 std::string Method::words() const {
@@ -79,7 +85,7 @@ std::vector<Dimension> position_force_dimensions(const control::MasterModel& mod
   return {{{.settings = {{"control.architecture", "position-force"}}}},
           {without(cancellation, "off"), {.settings = {{cancellation, "on"}}, .words = cancellation_words}},
           {without(estimate, "off"),
-           {.settings = {{estimate, "online"}}, .words = "an estimate of the grip", .within = cancellation_words}},
+           {.settings = {{estimate, "online"}}, .words = std::string(grip_estimate), .within = cancellation_words}},
           {without(damping, "0"), with_number(damping, 5.0, "local damping of {} N s/m"),
            with_number(damping, 10.0, "local damping of {} N s/m")},
           {without(compensation, "0"), with_number(compensation, 200.0, "hand compensation up to {} Hz")},
@@ -101,7 +107,7 @@ std::vector<Dimension> other_dimensions() {
 std::vector<Method> combine(const std::vector<Dimension>& dimensions, std::size_t stages) {
   struct Counted {
     Method method;
-    std::size_t stages = 0, filters = 0;
+    std::size_t filters = 0;
   };
   std::vector<Counted> all(1);
   for (const Dimension& dimension : dimensions) {
@@ -111,15 +117,14 @@ std::vector<Method> combine(const std::vector<Dimension>& dimensions, std::size_
         if (!choice.within.empty() && !before.method.has(choice.within)) continue;
         Counted one = before;
         one.method.choices.push_back(choice);
-        const bool more = !choice.words.empty() && !choice.tuned.empty();
-        one.stages += more ? 1U : 0U;
-        one.filters += more && is_filter(choice) ? 1U : 0U;
-        if (one.stages <= stages && one.filters <= 1) longer.push_back(std::move(one));
+        one.filters += !choice.words.empty() && is_filter(choice) ? 1U : 0U;
+        if (one.method.stages() <= stages && one.filters <= 1) longer.push_back(std::move(one));
       }
     }
     all = std::move(longer);
   }
-  std::stable_sort(all.begin(), all.end(), [](const Counted& a, const Counted& b) { return a.stages < b.stages; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Counted& a, const Counted& b) { return a.method.stages() < b.method.stages(); });
   std::vector<Method> methods;
   std::transform(all.begin(), all.end(), std::back_inserter(methods),
                  [](Counted& one) { return std::move(one.method); });
