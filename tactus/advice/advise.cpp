@@ -104,8 +104,7 @@ class Search {
  private:
   /// Leaves the finalists in `candidates_`, the one to take first.
   Check look_among(const std::vector<Method>& methods, double force_limit_N) {
-    auto limits =
-        limits_of(bench_, methods, force_limit_N, screening, screening_resolution, part(progress_, 0.0, 0.35));
+    const auto limits = screened(methods, force_limit_N);
     if (!limits) return limits.error();
     const std::vector<std::size_t> best = best_of(*limits, finalists);
     if (best.empty()) return {};
@@ -142,6 +141,41 @@ class Search {
       candidates_.push_back(std::move(candidate));
     }
     return rank();
+  }
+
+  /// The limits over the screening's draws of those that can be among the finalists, 0 for others. A limit on the first
+  /// of these rigs alone is no less than that on all, so the methods are tried in its order until enough are better
+  /// than it is for those that are left.
+  [[nodiscard]] Result<std::vector<GainLimit>> screened(const std::vector<Method>& methods,
+                                                        double force_limit_N) const {
+    constexpr std::size_t at_once = 4;
+    Draws one = screening;
+    one.rigs = 1;
+    const auto most = limits_of(bench_, methods, force_limit_N, one, screening_resolution, part(progress_, 0.0, 0.2));
+    if (!most) return most.error();
+    const std::vector<std::size_t> order = best_of(*most, methods.size());
+    std::vector<GainLimit> limits(methods.size());
+    for (std::size_t first = 0; first < order.size(); first += at_once) {
+      // Of equals the first counts, as in `best_of`.
+      const double bound = (*most)[order[first]].gain;
+      std::size_t better = 0;
+      for (std::size_t i = 0; i < limits.size(); ++i) {
+        if (limits[i].gain > bound || (limits[i].gain == bound && i < order[first])) ++better;
+      }
+      if (better >= finalists) break;
+      const std::vector<std::size_t> now(
+          order.begin() + static_cast<std::ptrdiff_t>(first),
+          order.begin() + static_cast<std::ptrdiff_t>(std::min(first + at_once, order.size())));
+      std::vector<Method> some;
+      std::transform(now.begin(), now.end(), std::back_inserter(some), [&](std::size_t i) { return methods[i]; });
+      const double done = 0.2 + 0.15 * static_cast<double>(first) / static_cast<double>(order.size());
+      const auto found =
+          limits_of(bench_, some, force_limit_N, screening, screening_resolution, [&](double) { progress_(done); });
+      if (!found) return found.error();
+      for (std::size_t i = 0; i < now.size(); ++i) limits[now[i]] = (*found)[i];
+    }
+    progress_(0.35);
+    return limits;
   }
 
   /// Adds what holds best over all grips of the methods that follow the grip, with a stage at most: a lag costs a light
