@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -21,6 +22,7 @@ constexpr double about_as_good = 0.9;
 constexpr std::size_t halvings = 3;
 /// Draws of each step; what confirms an answer has seen no search.
 constexpr Draws screening{.first = 0, .rigs = 4, .taps = 4};
+constexpr Draws screening_grips{.first = 0, .rigs = 2, .taps = 4};
 constexpr Draws deciding{.first = 0, .rigs = 12, .taps = 6};
 constexpr Draws gripping{.first = 0, .rigs = 5, .taps = 4};
 constexpr Draws confirming{.first = 1000, .rigs = 8, .taps = 20, .coarse = false};
@@ -102,8 +104,7 @@ class Search {
  private:
   /// Leaves the finalists in `candidates_`, the one to take first.
   Check look_among(const std::vector<Method>& methods, double force_limit_N) {
-    auto limits =
-        limits_of(bench_, methods, force_limit_N, screening, screening_resolution, part(progress_, 0.0, 0.35));
+    const auto limits = screened(methods, force_limit_N);
     if (!limits) return limits.error();
     const std::vector<std::size_t> best = best_of(*limits, finalists);
     if (best.empty()) return {};
@@ -117,7 +118,7 @@ class Search {
       }
     }
     const auto tuned_limits =
-        limits_of(bench_, tuned, force_limit_N, screening, screening_resolution, part(progress_, 0.35, 0.5));
+        limits_of(bench_, tuned, force_limit_N, screening, screening_resolution, part(progress_, 0.35, 0.45));
     if (!tuned_limits) return tuned_limits.error();
     std::vector<Method> chosen;
     for (const std::size_t i : best) {
@@ -130,6 +131,7 @@ class Search {
       }
       chosen.push_back(*method);
     }
+    if (auto error = add_for_any_grip(chosen, methods, force_limit_N)) return error;
     const auto decided =
         limits_of(bench_, chosen, force_limit_N, deciding, experiments::gain_resolution, part(progress_, 0.5, 0.7));
     if (!decided) return decided.error();
@@ -139,6 +141,56 @@ class Search {
       candidates_.push_back(std::move(candidate));
     }
     return rank();
+  }
+
+  /// The limits over the screening's draws of those that can be among the finalists, 0 for others. A limit on the first
+  /// of these rigs alone is no less than that on all, so the methods are tried in its order until enough are better
+  /// than it is for those that are left.
+  [[nodiscard]] Result<std::vector<GainLimit>> screened(const std::vector<Method>& methods,
+                                                        double force_limit_N) const {
+    constexpr std::size_t at_once = 4;
+    Draws one = screening;
+    one.rigs = 1;
+    const auto most = limits_of(bench_, methods, force_limit_N, one, screening_resolution, part(progress_, 0.0, 0.2));
+    if (!most) return most.error();
+    const std::vector<std::size_t> order = best_of(*most, methods.size());
+    std::vector<GainLimit> limits(methods.size());
+    for (std::size_t first = 0; first < order.size(); first += at_once) {
+      // Of equals the first counts, as in `best_of`.
+      const double bound = (*most)[order[first]].gain;
+      std::size_t better = 0;
+      for (std::size_t i = 0; i < limits.size(); ++i) {
+        if (limits[i].gain > bound || (limits[i].gain == bound && i < order[first])) ++better;
+      }
+      if (better >= finalists) break;
+      const std::vector<std::size_t> now(
+          order.begin() + static_cast<std::ptrdiff_t>(first),
+          order.begin() + static_cast<std::ptrdiff_t>(std::min(first + at_once, order.size())));
+      std::vector<Method> some;
+      std::transform(now.begin(), now.end(), std::back_inserter(some), [&](std::size_t i) { return methods[i]; });
+      const double done = 0.2 + 0.15 * static_cast<double>(first) / static_cast<double>(order.size());
+      const auto found =
+          limits_of(bench_, some, force_limit_N, screening, screening_resolution, [&](double) { progress_(done); });
+      if (!found) return found.error();
+      for (std::size_t i = 0; i < now.size(); ++i) limits[now[i]] = (*found)[i];
+    }
+    progress_(0.35);
+    return limits;
+  }
+
+  /// Adds what holds best over all grips of the methods that follow the grip, with a stage at most: a lag costs a light
+  /// hand most.
+  Check add_for_any_grip(std::vector<Method>& chosen, const std::vector<Method>& methods, double force_limit_N) const {
+    std::vector<Method> following;
+    std::copy_if(methods.begin(), methods.end(), std::back_inserter(following),
+                 [](const Method& method) { return method.has(grip_estimate) && method.stages() <= 1; });
+    const auto limits = limits_of(bench_, following, force_limit_N, screening_grips, screening_resolution,
+                                  part(progress_, 0.45, 0.5), any_grip);
+    if (!limits) return limits.error();
+    for (const std::size_t i : best_of(*limits, 1)) {
+      if (std::find(chosen.begin(), chosen.end(), following[i]) == chosen.end()) chosen.push_back(following[i]);
+    }
+    return {};
   }
 
   /// Leaves out what holds on no rig that no search saw, unless a gain was given.
@@ -186,7 +238,10 @@ class Search {
     auto gripped = Trial::make(bench_.knowledge, *params, gripping, any_grip);
     if (!gripped) return gripped.error();
     const double top = std::max(reserve * own_gain, 1.01 * lowest_gain);
-    candidate.first_gain = std::min(own_gain, rounded_down(gripped->limit(lowest_gain, top).gain / reserve));
+    const GainLimit in_any_grip = gripped->limit(lowest_gain, top);
+    candidate.first_gain = std::min(own_gain, rounded_down(in_any_grip.gain / reserve));
+    // The search ends with the lowest gain that failed.
+    if (!in_any_grip.beyond_search) candidate.limiting_grip = gripped->failed_last().person.grip_change.factor;
     TappingParams believed = bench_.knowledge.drawn(*params, 0);
     believed.task.taps = 8;
     believed.control.force_gain = own_gain;
@@ -245,12 +300,13 @@ class Search {
 }  // namespace
 
 Result<std::vector<GainLimit>> limits_of(const Bench& bench, const std::vector<Method>& methods, double force_limit_N,
-                                         const Draws& draws, double resolution, const Progress& progress) {
+                                         const Draws& draws, double resolution, const Progress& progress,
+                                         std::span<const double> grips) {
   std::vector<std::optional<Trial>> trials(methods.size());
   for (std::size_t i = 0; i < methods.size(); ++i) {
     const auto params = params_of(bench, methods[i], force_limit_N);
     if (!params) return params.error();
-    if (auto trial = Trial::make(bench.knowledge, *params, draws)) trials[i] = *std::move(trial);
+    if (auto trial = Trial::make(bench.knowledge, *params, draws, grips)) trials[i] = *std::move(trial);
   }
   std::vector<GainLimit> limits(methods.size());
   simulation::for_each_in_parallel(

@@ -6,6 +6,7 @@
 #include <tactus/experiments/experiment.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct Candidate {
   }
   /// The same over grips of ×0.25 to ×4 too, at most `force_gain`; 0: less than the lowest gain of the search.
   double first_gain = 0.0;
+  /// The grip over one's own, of `any_grip`, that no longer settles above `first_gain`; none where each holds as far as
+  /// was tried.
+  std::optional<double> limiting_grip = {};
   // On the rig that is believed:
   std::optional<double> hand_error;  ///< `experiments::GainScore::spectral_error`
   double effort_N = 0.0;             ///< `experiments::FreeSpaceScore::hand_force_rms_N`
@@ -50,7 +54,8 @@ struct Advice {
 };
 
 /// Searches, on draws of the bench's knowledge: every combination of the stages of position-force control with at most
-/// `most_stages` at a time; then, of the best, other values of their numbers; then more rigs for those. A gain holds
+/// `most_stages` at a time; then, of the best, other values of their numbers; beside them the one with an estimate of
+/// the grip, and a stage at most, that is best over all grips; then more rigs for those. A gain holds
 /// where 95 % of the taps settle on each rig, the median within 100 ms and two round trips
 /// (`experiments::taps_settle`). Where nothing settles, other architectures and then smaller displays are tried. Of
 /// those within a tenth of the largest gain, the one with the largest first gain is taken, and of those again, the one
@@ -64,6 +69,7 @@ Result<Advice> advise(const Bench& bench, const experiments::Progress& progress)
 /// those of reading the document.
 Result<std::vector<experiments::GainLimit>> limits_of(const Bench& bench, const std::vector<Method>& methods,
                                                       double force_limit_N, const Draws& draws, double resolution,
-                                                      const experiments::Progress& progress);
+                                                      const experiments::Progress& progress,
+                                                      std::span<const double> grips = own_grip);
 
 }  // namespace tactus::advice

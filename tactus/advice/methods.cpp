@@ -12,7 +12,7 @@ namespace tactus::advice {
 
 namespace {
 
-constexpr std::string_view cancellation_key = "control.cancellation";
+constexpr const char* cancellation_words = "cancellation";
 constexpr double notch_without_a_mode_Hz = 75.0;
 
 Choice without(const std::string& key, const std::string& value) { return {.settings = {{key, value}}}; }
@@ -47,6 +47,16 @@ experiments::Settings Method::settings() const {
   return all;
 }
 
+bool Method::has(std::string_view words) const {
+  return std::any_of(choices.begin(), choices.end(), [words](const Choice& choice) { return choice.words == words; });
+}
+
+std::size_t Method::stages() const {
+  return static_cast<std::size_t>(std::count_if(choices.begin(), choices.end(), [](const Choice& choice) {
+    return !choice.words.empty() && !choice.tuned.empty();
+  }));
+}
+
 std::string Method::words() const {
   std::vector<std::string> parts;
   for (const Choice& choice : choices) {
@@ -66,14 +76,16 @@ std::string Method::words() const {
 }
 
 std::vector<Dimension> position_force_dimensions(const control::MasterModel& model) {
+  const std::string cancellation = "control.cancellation", estimate = "control.operator_estimate";
   const std::string damping = "control.damping.damping_N_s_per_m", compensation = "control.hand_compensation_Hz";
   const std::string command = "control.command_filter", force = "control.force_filter";
   const double mode_rad_per_s = std::abs(control::linkage_mode(model).imag());
   const double mode_Hz =
       mode_rad_per_s > 0.0 ? rounded(mode_rad_per_s / (2.0 * std::numbers::pi)) : notch_without_a_mode_Hz;
   return {{{.settings = {{"control.architecture", "position-force"}}}},
-          {without(std::string(cancellation_key), "off"),
-           {.settings = {{std::string(cancellation_key), "on"}}, .words = "cancellation"}},
+          {without(cancellation, "off"), {.settings = {{cancellation, "on"}}, .words = cancellation_words}},
+          {without(estimate, "off"),
+           {.settings = {{estimate, "online"}}, .words = std::string(grip_estimate), .within = cancellation_words}},
           {without(damping, "0"), with_number(damping, 5.0, "local damping of {} N s/m"),
            with_number(damping, 10.0, "local damping of {} N s/m")},
           {without(compensation, "0"), with_number(compensation, 200.0, "hand compensation up to {} Hz")},
@@ -95,24 +107,24 @@ std::vector<Dimension> other_dimensions() {
 std::vector<Method> combine(const std::vector<Dimension>& dimensions, std::size_t stages) {
   struct Counted {
     Method method;
-    std::size_t stages = 0, filters = 0;
+    std::size_t filters = 0;
   };
   std::vector<Counted> all(1);
   for (const Dimension& dimension : dimensions) {
     std::vector<Counted> longer;
     for (const Counted& before : all) {
       for (const Choice& choice : dimension) {
+        if (!choice.within.empty() && !before.method.has(choice.within)) continue;
         Counted one = before;
         one.method.choices.push_back(choice);
-        const bool more = !choice.words.empty() && !choice.tuned.empty();
-        one.stages += more ? 1U : 0U;
-        one.filters += more && is_filter(choice) ? 1U : 0U;
-        if (one.stages <= stages && one.filters <= 1) longer.push_back(std::move(one));
+        one.filters += !choice.words.empty() && is_filter(choice) ? 1U : 0U;
+        if (one.method.stages() <= stages && one.filters <= 1) longer.push_back(std::move(one));
       }
     }
     all = std::move(longer);
   }
-  std::stable_sort(all.begin(), all.end(), [](const Counted& a, const Counted& b) { return a.stages < b.stages; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Counted& a, const Counted& b) { return a.method.stages() < b.method.stages(); });
   std::vector<Method> methods;
   std::transform(all.begin(), all.end(), std::back_inserter(methods),
                  [](Counted& one) { return std::move(one.method); });

@@ -102,6 +102,8 @@ Result<std::vector<Obstacle>> find_obstacles(const Bench& bench, const Candidate
         own.known = attempt.known;
         auto trial = Trial::make(bench.knowledge, changed, own);
         if (!trial || candidate.limit.beyond_search) return;
+        // What does not bring that much is not named.
+        if (!trial->settles(std::min(worth_it * candidate.limit.gain, highest_gain))) return;
         const auto limit = trial->limit(candidate.limit.gain, highest_gain);
         if (limit.gain > candidate.limit.gain) attempt.obstacle.limit = limit;
       },

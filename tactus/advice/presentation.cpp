@@ -67,6 +67,25 @@ std::string limited_by_text(const Advice& advice) {
   return "Limited by no single thing of those that were tried.";
 }
 
+/// `four times as firm as yours`.
+std::string words_of_grip(double factor) {
+  if (factor == 1.0) return "as firm as yours";
+  if (factor == any_grip[1]) return "a quarter as firm as yours";
+  return number(factor) + " times as firm as yours";
+}
+
+/// What holds farther than the start in other hands; empty where nothing does.
+std::string in_other_hands(const Bench& bench, const Advice& advice) {
+  constexpr double worth_naming = 1.2;
+  if (!advice.start) return {};
+  const auto best =
+      std::max_element(advice.alternatives.begin(), advice.alternatives.end(),
+                       [](const Candidate& a, const Candidate& b) { return a.first_gain < b.first_gain; });
+  if (best == advice.alternatives.end() || best->first_gain <= worth_naming * advice.start->first_gain) return {};
+  return "In other hands: " + words_of(bench, *best) + " settles up to " + number(best->first_gain) +
+         " in any grip from a quarter to four times as firm as yours.";
+}
+
 report::Table table_of(const Bench& bench, const Advice& advice) {
   report::Table table({{"configuration", "", Align::left},
                        {"force gain"},
@@ -115,6 +134,7 @@ void add_gains(Json& object, const Candidate& candidate) {
   object["force_gain"] = candidate.force_gain;
   if (candidate.censored()) object["force_gain_censored"] = true;
   object["first_gain"] = candidate.first_gain;
+  object["first_gain_limited_by_grip"] = candidate.limiting_grip ? Json(*candidate.limiting_grip) : Json(nullptr);
   if (candidate.first_gain == 0.0 || (candidate.censored() && candidate.first_gain == candidate.force_gain)) {
     object["first_gain_censored"] = true;
   }
@@ -160,6 +180,7 @@ std::string json_of(const Bench& bench, const Advice& advice) {
   } else {
     document["force_gain"] = 0.0;
     document["first_gain"] = 0.0;
+    document["first_gain_limited_by_grip"] = nullptr;
   }
   document["expected"] = expected_json(advice);
   document["limited_by"] = limited_by_json(advice);
@@ -219,16 +240,18 @@ std::string sentence(const Bench& bench, const Advice& advice) {
               number(start.force_limit_N) + " N";
   }
   if (start.first_gain == 0.0) {
-    return "Use a force gain of up to " + number(start.force_gain) + with +
-           ", in your own grip alone: in one a quarter or four times as firm no gain of " + number(lowest_gain) +
+    return "Use a force gain of up to " + number(start.force_gain) + with + ", in your own grip alone: in one " +
+           words_of_grip(start.limiting_grip.value_or(1.0)) + " no gain of " + number(lowest_gain) +
            " or more settles" + display + ".";
   }
   if (start.first_gain >= start.force_gain) {
     return "Start at a force gain of " + number(start.force_gain) + with +
            ": it holds in any grip from a quarter to four times as firm as yours" + display + ".";
   }
-  return "Start at a force gain of " + number(start.first_gain) + with + " and go up to " + number(start.force_gain) +
-         " in your own grip" + display + ".";
+  const std::string limit =
+      start.limiting_grip ? " (more does not settle in a grip " + words_of_grip(*start.limiting_grip) + ")" : "";
+  return "Start at a force gain of " + number(start.first_gain) + with + limit + " and go up to " +
+         number(start.force_gain) + " in your own grip" + display + ".";
 }
 
 std::string next_measurement(const Bench& bench, const Advice& advice) {
@@ -275,17 +298,19 @@ Result<experiments::Outcome> present(const Bench& bench, const Advice& advice, c
   if (!params) return params.error();
   const std::string first = sentence(bench, advice), next = next_measurement(bench, advice);
   const report::Table table = table_of(bench, advice), set = settings_table(settings);
-  const std::string limit = advice.start ? limited_by_text(advice) : "";
+  const std::string limit = advice.start ? limited_by_text(advice) : "", others = in_other_hands(bench, advice);
   report::Page page(request.name + ": what to start with");
   page.paragraph(first);
   page.table(set);
   if (!limit.empty()) page.paragraph(limit);
+  if (!others.empty()) page.paragraph(others);
   page.paragraph("Next measurement: " + next);
   page.table(table);
   page.paragraph(basis(bench));
   std::string text = first + "\n";
   if (!settings.empty()) text += "\n" + set.to_text();
   if (!limit.empty()) text += "\n" + limit + "\n";
+  if (!others.empty()) text += others + "\n";
   text += "Next measurement: " + next + "\n";
   if (advice.start || !advice.alternatives.empty()) text += "\n" + table.to_text();
   text += basis(bench);

@@ -36,6 +36,8 @@ class Trial {
 
   /// Whether `experiments::taps_settle` on every rig. The rig that failed last is tried first, which changes no answer.
   bool settles(double gain);
+  /// The rig on which the last gain that did not settle failed; before that, the first.
+  [[nodiscard]] const experiments::TappingParams& failed_last() const { return rigs_.front(); }
   /// `experiments::find_gain_limit` over `settles`.
   experiments::GainLimit limit(double lowest, double highest, double resolution = experiments::gain_resolution);
   /// Of all taps on all rigs at this gain.

@@ -16,6 +16,7 @@ constexpr double least_score = 0.55;  ///< more than untested
 constexpr double least_lead = 0.25;
 constexpr double usual_tremor_m = 1.5e-4, usual_tremor_rad = 3e-3;
 constexpr double deliberate_below_Hz = 3.0;
+constexpr double ends_below = 0.3;  ///< of the speed of the person's slower motion
 
 /// 0 at `from`, 1 at `to`, a straight line between; either may be the larger.
 double ramp(double value, double from, double to) { return std::clamp((value - from) / (to - from), 0.0, 1.0); }
@@ -42,7 +43,7 @@ struct Scored {
 /// What the tests of all mechanisms share, each 0 to 1.
 struct Shown {
   std::optional<double> slave_alone, slave_part, leads_itself, few_slave_steps, few_master_steps, standstill, contact,
-      delayed, hand, actuator;
+      delayed, hand, actuator, line_of_master;
   double steady, tremor_band, slow_enough_to_stick;
 };
 
@@ -58,6 +59,7 @@ Shown shown_by(const Oscillation& oscillation, const Evidence& evidence) {
               .delayed = {},
               .hand = {},
               .actuator = {},
+              .line_of_master = ramp(evidence.master_line, 0.15, 0.35),
               .steady = std::max(ramp(evidence.wander, 0.45, 0.25), ramp(f_Hz, 14.0, 20.0)),
               .tremor_band = std::min(ramp(f_Hz, 2.5, 3.5), ramp(f_Hz, 16.0, 13.0)),
               .slow_enough_to_stick = ramp(f_Hz, 40.0, 25.0)};
@@ -130,6 +132,7 @@ std::vector<Scored> scores(const Shown& s) {
   all.push_back(Scored{Mechanism::tremor}
                     .must(both, {master_position, slave_position})
                     .must(s.hand, {hand_force, displayed_force})
+                    .must(s.line_of_master, {master_position})
                     .must(s.tremor_band));
   std::stable_sort(all.begin(), all.end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
   return all;
@@ -183,6 +186,13 @@ std::vector<std::string> sentences(const Signals& signals, const Oscillation& os
   }
   if (evidence.master_steps && *evidence.master_steps < 6.0) {
     told.push_back("the master moves " + text(*evidence.master_steps) + " counts peak to peak");
+  }
+  if (evidence.master_line) {
+    told.push_back("of the master's motion above half of the frequency " + text(100.0 * *evidence.master_line) +
+                   " % is in this line");
+  }
+  if (evidence.motion_after) {
+    told.push_back("after it the master's slower motion is " + text(*evidence.motion_after) + " times what it was");
   }
   told.push_back("its size wanders by " + text(100.0 * evidence.wander) + " %");
   return told;
@@ -250,7 +260,12 @@ Decision decide(const Signals& signals, const Oscillation& oscillation, const Ev
   const double usual = signals.rotary ? usual_tremor_rad : usual_tremor_m;
   const bool small = motion.value_or(0.0) < usual && evidence.of(Role::slave_position).value_or(0.0) < usual;
   const bool may_be_tremor = decision.mechanism == Mechanism::tremor || decision.mechanism == Mechanism::unknown;
-  decision.harmless = (by_hand && (oscillation.frequency_Hz < deliberate_below_Hz || motion.value_or(0.0) < usual)) ||
+  // A loop that shakes goes on where the person holds still, but for a contact that is left and for what must move to
+  // stick and slip. What ends with the person's motion was a ringing after each reach.
+  const bool ends_with_motion = evidence.motion_after && *evidence.motion_after < ends_below;
+  const bool needs_motion = shown.contact.value_or(untested) >= untested || decision.mechanism == Mechanism::stick_slip;
+  decision.harmless = (ends_with_motion && !needs_motion) ||
+                      (by_hand && (oscillation.frequency_Hz < deliberate_below_Hz || motion.value_or(0.0) < usual)) ||
                       (may_be_tremor && small && shown.tremor_band > 0.0);
   return decision;
 }

@@ -56,6 +56,43 @@ double wander_of(std::span<const double> values, double frequency_Hz, Seconds dt
   return std::sqrt(std::max(0.0, vy - vty * vty / vt)) / (sy / n);
 }
 
+/// Share of the power above half of the frequency that is in the line: the median over stretches of six periods, so
+/// that a few in which something else moved change little.
+double share_of_line(std::span<const double> values, double frequency_Hz, Seconds dt) {
+  const auto stretch = std::max<std::size_t>(8, static_cast<std::size_t>(6.0 / (frequency_Hz * dt.value)));
+  const std::vector<Complex> line = demodulate(values, frequency_Hz, dt);
+  const std::vector<double> fast = without_slow(values, frequency_Hz, dt);
+  std::vector<double> shares;
+  for (std::size_t first = 0; first + stretch <= line.size(); first += stretch) {
+    double in_line = 0.0, all = 0.0;
+    for (std::size_t i = first; i < first + stretch; ++i) {
+      in_line += 0.5 * std::norm(line[i]);
+      all += fast[i] * fast[i];
+    }
+    shares.push_back(all > 0.0 ? std::min(1.0, in_line / all) : 0.0);
+  }
+  if (shares.empty()) return 0.0;
+  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
+  std::nth_element(shares.begin(), middle, shares.end());
+  return *middle;
+}
+
+/// Speed of what is slower than half of the frequency: the median from `to` on over the root mean square from `from` to
+/// `to`.
+double slow_motion_after(std::span<const double> values, std::size_t from, std::size_t to, double frequency_Hz,
+                         Seconds dt) {
+  const std::vector<double> fast = without_slow(values, frequency_Hz, dt);
+  const auto moved = [&](std::size_t i) { return std::abs((values[i] - fast[i]) - (values[i - 1] - fast[i - 1])); };
+  double during = 0.0;
+  for (std::size_t i = from + 1; i < to; ++i) during += moved(i) * moved(i) / static_cast<double>(to - from);
+  if (!(during > 0.0)) return 1.0;
+  std::vector<double> after;
+  for (std::size_t i = to + 1; i < values.size(); ++i) after.push_back(moved(i));
+  const auto middle = after.begin() + static_cast<std::ptrdiff_t>(after.size() / 2);
+  std::nth_element(after.begin(), middle, after.end());
+  return *middle / std::sqrt(during);
+}
+
 /// Cosine of the angle between a force and the velocity that belongs to a position; 0 for a force that is less than the
 /// steps of its column tell.
 double gives(const std::vector<Complex>& force, double sign, double step, const std::vector<Complex>& position) {
@@ -167,6 +204,13 @@ Evidence measure(const Signals& signals, const Oscillation& oscillation) {
   if (const Channel* slave = signals.find(Role::slave_position); slave != nullptr && !slave->constant()) {
     found.slave_steps = steps_within_a_period(part(Role::slave_position), f_Hz, slave->step, dt);
     found.standstill = share_of_standstill(part(Role::slave_position), f_Hz, slave->step, dt);
+  }
+  if (has(Role::master_position)) {
+    found.master_line = share_of_line(part(Role::master_position), f_Hz, dt);
+    constexpr double to_judge_s = 1.0;
+    if (to + static_cast<std::size_t>(to_judge_s / dt.value) < signals.samples) {
+      found.motion_after = slow_motion_after(signals.values(Role::master_position), from, to, f_Hz, dt);
+    }
   }
   if (has(Role::master_position) && has(Role::displayed_force)) {
     found.actuator_gives =

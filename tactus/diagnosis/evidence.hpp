@@ -31,6 +31,12 @@ struct Evidence {
   std::optional<double> contact;
   /// Transport delay on the way to the slave and on the way back, where a coupling by position explains the force.
   std::optional<double> delay_there_s, delay_back_s;
+  /// 0 to 1: share of the master's power above half of the frequency that is in the line; the median over stretches of
+  /// six periods.
+  std::optional<double> master_line;
+  /// Speed of the master's slower motion after the oscillation, the median, over that during it, the root mean square.
+  /// Empty where it lasts until a second before the end of the recording.
+  std::optional<double> motion_after;
   /// How much the size of the line wanders: standard deviation of its envelope over its mean, its trend taken off.
   double wander = 0;
 

@@ -174,6 +174,18 @@ void BenchKnowledge::suppose(BenchVariable variable, double share) {
   prior_[i] = {.middle = to_variable(descriptions[i], get(params_, descriptions[i])), .deviation = share};
 }
 
+double BenchKnowledge::surprise(BenchVariable variable) const {
+  const auto i = static_cast<std::size_t>(variable);
+  if (!(prior_[i].deviation > 0.0)) return 0.0;
+  const double now = to_variable(descriptions[i], get(params_, descriptions[i]));
+  return std::fabs(now - prior_[i].middle) / prior_[i].deviation;
+}
+
+void BenchKnowledge::start_from_supposed(BenchVariable variable) {
+  const auto i = static_cast<std::size_t>(variable);
+  if (prior_[i].deviation > 0.0) start_from(variable, to_value(descriptions[i], prior_[i].middle));
+}
+
 void BenchKnowledge::start_from(BenchVariable variable, double value) { describe(variable).of(params_) = value; }
 
 std::vector<double> BenchKnowledge::left_m(const BenchExperiment& experiment) const {

@@ -86,6 +86,10 @@ class BenchKnowledge {
   /// deviation (a linear variable: to `share` of its unit scale). Positions must then be weighed by what they are
   /// really off.
   void suppose(BenchVariable variable, double share);
+  /// By how many of its standard deviations this variable is away from where it was supposed; 0 where nothing was.
+  [[nodiscard]] double surprise(BenchVariable variable) const;
+  /// Fits of this variable start from where it was supposed.
+  void start_from_supposed(BenchVariable variable);
   /// Fits of this variable start from `value` from now on, above 0; what is known or supposed of it stays.
   void start_from(BenchVariable variable, double value);
   /// Takes the linkage for a linear spring from now on, without knowing it.

@@ -22,6 +22,7 @@ constexpr double difference = 1e-3;
 constexpr Index score_blocks = 20;
 /// A variable whose column, less what the others explain, is shorter than this part of the longest tells nothing.
 constexpr double smallest_column = 1e-7;
+constexpr double beyond_any = 1e100;
 
 /// Residuals and Jacobian of the first `free` variables, as Eigen's solver asks for them: those of the problem, then
 /// one for each variable with a prior.
@@ -36,9 +37,11 @@ class Functor {
   [[nodiscard]] Index values() const { return rows_; }
   [[nodiscard]] Index inputs() const { return free_; }
 
+  /// Where the model is no model the residuals are beyond any: a step there is taken back, and the fit goes on.
   int operator()(const VectorXd& x, VectorXd& residuals) {
     residuals = at(x);
-    return residuals.allFinite() ? 0 : -1;
+    if (!residuals.allFinite()) residuals.setConstant(beyond_any);
+    return 0;
   }
   int df(const VectorXd& x, MatrixXd& jacobian) {
     jacobian = columns(x, at(x), 0, free_);
@@ -109,7 +112,7 @@ Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem) {
   }
   Functor functor(problem, free, rows);
   VectorXd x = Eigen::Map<const VectorXd>(problem.start.data(), free);
-  if (VectorXd residuals(functor.values()); functor(x, residuals) != 0) {
+  if (!functor.at(x).allFinite()) {
     return inconsistent("the model is no model where the fit starts: start nearer to the device");
   }
   Eigen::LevenbergMarquardt<Functor> solver(functor);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 
 namespace tactus::identification {
@@ -78,37 +79,36 @@ class Quick {
       if (!left) return left.error();
     }
     suppose();
-    const BenchKnowledge before = knowledge_;
-    const Runs fast_before = fast_, slow_before = slow_;
+    const State before = now();
     if (auto error = fit_rounds(Order::lower_first)) return *std::move(error);
-    if (knowledge_.found(cable_stiffness).determined) return result();
-
-    // The cable's mode is misplaced: begin anew from where the highest sweep says it is. What leaves least is kept.
-    BenchKnowledge best = knowledge_;
-    Runs best_fast = fast_, best_slow = slow_;
-    double least_m2 = left_m2(fast_);
-    const auto try_again = [&](Order order, double aside) {
-      knowledge_ = before;
-      fast_ = fast_before;
-      slow_ = slow_before;
-      if (order == Order::whole) knowledge_.start_from(cable_stiffness, aside * cable_of_the_mode());
-      // One that comes to nothing is no reason to give up.
-      if (fit_rounds(order) || left_m2(fast_) >= least_m2) return;
-      least_m2 = left_m2(fast_);
-      best = knowledge_;
-      best_fast = fast_;
-      best_slow = slow_;
-    };
-    try_again(Order::lower_then_cable, 1.0);
-    for (const double aside : {1.0, 1.3, 1.0 / 1.3}) try_again(Order::whole, aside);
-    knowledge_ = best;
-    fast_ = std::move(best_fast);
-    slow_ = std::move(best_slow);
+    best_ = now();
+    least_m2_ = left_m2(fast_);
+    if (!knowledge_.found(cable_stiffness).determined) {
+      // The cable's mode is misplaced: begin anew from where the highest sweep says it is.
+      try_again(before, Order::lower_then_cable);
+      for (const double aside : {1.0, 1.3, 1.0 / 1.3}) try_again(before, Order::whole, aside);
+    }
+    // What the data sheet calls impossible is misplaced too: begin anew with that back at the data sheet.
+    State again = best_;
+    if (set_back_impossible(again.knowledge)) try_again(again, Order::whole);
+    go_to(best_);
     return result();
   }
 
  private:
   using Runs = std::vector<BenchExperiment>;
+
+  /// What is known, with how much each run counts.
+  struct State {
+    BenchKnowledge knowledge;
+    Runs fast, slow;
+  };
+  [[nodiscard]] State now() const { return {knowledge_, fast_, slow_}; }
+  void go_to(const State& state) {
+    knowledge_ = state.knowledge;
+    fast_ = state.fast;
+    slow_ = state.slow;
+  }
 
   /// What a first round fits before the whole: the chain without the highest sweep, for where the cable's mode is still
   /// misplaced it would lead astray; then also the cable placed anew; or nothing.
@@ -131,6 +131,30 @@ class Quick {
       weigh(slow_);
     }
     return {};
+  }
+
+  /// Fits anew from a state, with the cable at so many times what the highest sweep says, where that is given. What
+  /// leaves least is kept; a fit that comes to nothing is no reason to give up.
+  void try_again(const State& from, Order order, std::optional<double> aside = {}) {
+    go_to(from);
+    if (aside && order == Order::whole) knowledge_.start_from(cable_stiffness, *aside * cable_of_the_mode());
+    if (fit_rounds(order)) return;
+    const double left = left_m2(fast_);
+    if (left >= least_m2_) return;
+    least_m2_ = left;
+    best_ = now();
+  }
+
+  /// Whether there was something to set back.
+  static bool set_back_impossible(BenchKnowledge& knowledge) {
+    constexpr double impossible = 4.0;
+    bool any = false;
+    for (const BenchVariable variable : of_chain) {
+      if (knowledge.surprise(variable) < impossible) continue;
+      knowledge.start_from_supposed(variable);
+      any = true;
+    }
+    return any;
   }
 
   [[nodiscard]] double left_m2(std::span<const BenchExperiment> runs) const {
@@ -259,6 +283,8 @@ class Quick {
   Seconds tick_;
   BenchKnowledge knowledge_;
   Runs fast_, slow_;
+  State best_{knowledge_, {}, {}};
+  double least_m2_ = 0.0;
 };
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace advise_test {
 
 /// So little to choose from that a search takes a second.
 const std::vector<std::string> narrow{"control.command_filter.kind=none", "control.force_filter.kind=none",
-                                      "control.damping.damping_N_s_per_m=0", "control.hand_compensation_Hz=0"};
+                                      "control.damping.damping_N_s_per_m=0", "control.hand_compensation_Hz=0",
+                                      "control.operator_estimate=off"};
 
 Bench bench_of(std::vector<std::string> set) {
   set.insert(set.begin(), narrow.begin(), narrow.end());

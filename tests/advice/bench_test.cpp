@@ -35,21 +35,28 @@ TEST(AdviceBench, WithNothingGivenEveryChoiceIsLeft) { EXPECT_EQ(left({}), posit
 TEST(AdviceBench, AGivenWordLeavesTheChoicesThatSayTheSame) {
   EXPECT_EQ(words_of(left({"control.cancellation=on"})[1]), std::vector<std::string>{"cancellation"});
   EXPECT_EQ(words_of(left({" control.cancellation = off"})[1]), std::vector<std::string>{""});
-  const auto filters = left({"control.command_filter.kind=notch"})[4];
+  const auto filters = left({"control.command_filter.kind=notch"})[5];
   ASSERT_EQ(filters.size(), 1U);
   EXPECT_FALSE(filters[0].tuned.empty()) << "its frequency was not given";
 }
 
+TEST(AdviceBench, AnEstimateOfTheGripThatNoChoiceHasStays) {
+  const Bench bench = bench_with({"control.operator_estimate=scheduled"});
+  for (const Method& method : combine(*allowed(bench, position_force_dimensions({})), 0)) {
+    EXPECT_EQ(params_of(bench, method)->control.operator_estimate, control::OperatorEstimate::scheduled);
+  }
+}
+
 TEST(AdviceBench, AGivenNumberThatNoChoiceHasIsTheOnlyOne) {
-  const auto damping = left({"control.damping.damping_N_s_per_m=8"})[2];
+  const auto damping = left({"control.damping.damping_N_s_per_m=8"})[3];
   ASSERT_EQ(damping.size(), 1U);
   EXPECT_TRUE(damping[0].settings.empty());
-  EXPECT_EQ(words_of(left({"control.damping.damping_N_s_per_m=5.0"})[2]),
+  EXPECT_EQ(words_of(left({"control.damping.damping_N_s_per_m=5.0"})[3]),
             std::vector<std::string>{"local damping of the given N s/m"});
 }
 
 TEST(AdviceBench, AGivenFrequencyIsKeptWhereTheFilterIsChosen) {
-  const auto filters = left({"control.command_filter.frequency_Hz=60"})[4];
+  const auto filters = left({"control.command_filter.frequency_Hz=60"})[5];
   ASSERT_EQ(filters.size(), 3U);
   EXPECT_TRUE(filters[1].tuned.empty());
   for (const auto& [key, value] : filters[1].settings) EXPECT_NE(key, "control.command_filter.frequency_Hz");

@@ -14,11 +14,12 @@ std::vector<Method> all() { return combine(position_force_dimensions({}), 2); }
 
 TEST(Methods, AreEveryCombinationOfAtMostTwoStagesAndOneFilterTheSimplestFirst) {
   const auto methods = all();
-  // Without and with cancellation: none, 7 alone; damping (2) with compensation (1) or a filter (4), compensation with
-  // a filter (4).
-  EXPECT_EQ(methods.size(), 2U * (1U + 7U + 2U + 8U + 4U));
+  // Without cancellation, with it, and with an estimate of the grip within it: none, 7 alone; damping (2) with
+  // compensation (1) or a filter (4), compensation with a filter (4).
+  EXPECT_EQ(methods.size(), 3U * (1U + 7U + 2U + 8U + 4U));
   EXPECT_EQ(methods[0].words(), "no stage");
   EXPECT_EQ(methods[1].words(), "cancellation");
+  EXPECT_EQ(methods[2].words(), "cancellation and an estimate of the grip");
   for (std::size_t i = 0; i < methods.size(); ++i) {
     EXPECT_EQ(std::count(methods.begin(), methods.end(), methods[i]), 1) << methods[i].words();
   }
@@ -27,9 +28,9 @@ TEST(Methods, AreEveryCombinationOfAtMostTwoStagesAndOneFilterTheSimplestFirst) 
 TEST(Methods, EachSaysEveryKeyThatIsSearchedSoThatNothingOfTheFileIsLeftOn) {
   for (const Method& method : all()) {
     const auto settings = method.settings();
-    for (const char* key :
-         {"control.architecture", "control.cancellation", "control.damping.damping_N_s_per_m",
-          "control.hand_compensation_Hz", "control.command_filter.kind", "control.force_filter.kind"}) {
+    for (const char* key : {"control.architecture", "control.cancellation", "control.operator_estimate",
+                            "control.damping.damping_N_s_per_m", "control.hand_compensation_Hz",
+                            "control.command_filter.kind", "control.force_filter.kind"}) {
       EXPECT_EQ(std::count_if(settings.begin(), settings.end(), [&](const auto& one) { return one.first == key; }), 1)
           << method.words() << " " << key;
     }
@@ -38,7 +39,7 @@ TEST(Methods, EachSaysEveryKeyThatIsSearchedSoThatNothingOfTheFileIsLeftOn) {
 
 TEST(Methods, ANotchStandsAtTheModeOfTheMasterInTheHand) {
   const auto frequency = [](const control::MasterModel& model) {
-    return std::stod(position_force_dimensions(model)[4][1].settings[1].second);
+    return std::stod(position_force_dimensions(model)[5][1].settings[1].second);
   };
   // A hand that gives nowhere leaves motor and drum on the linkage.
   control::MasterModel held;
@@ -64,6 +65,16 @@ TEST(Methods, ATunedNumberStandsInTheWordsAndNothingElseOfTheMethodMoves) {
   for (std::size_t i = 0; i < before.size(); ++i) moved += before[i] == after[i] ? 0U : 1U;
   EXPECT_EQ(moved, 1U);
   EXPECT_TRUE(retuned(methods.front()).empty());
+}
+
+TEST(Methods, AnEstimateOfTheGripIsTriedWithCancellationAlone) {
+  std::size_t following = 0;
+  for (const Method& method : all()) {
+    if (!method.has(grip_estimate)) continue;
+    ++following;
+    EXPECT_TRUE(method.has("cancellation")) << method.words();
+  }
+  EXPECT_EQ(following, all().size() / 3);
 }
 
 TEST(Methods, ANumberIsRoundedToThreeDigits) {

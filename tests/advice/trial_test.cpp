@@ -56,6 +56,14 @@ TEST(Trial, EveryGripIsARig) {
   EXPECT_EQ(trial->rigs()[0].task.seed, trial->rigs()[2].task.seed) << "the same hand otherwise";
 }
 
+TEST(Trial, TheGripOnWhichTheSearchEndedIsTold) {
+  // A firm hand takes the damper away (docs/validation.md): four times the grip rings first.
+  auto trial = Trial::make({}, plain(), {.first = 0, .rigs = 1, .taps = 2}, std::array{1.0, 4.0});
+  const auto limit = trial->limit(0.05, 4.0);
+  ASSERT_FALSE(limit.beyond_search);
+  EXPECT_EQ(trial->failed_last().person.grip_change.factor, 4.0);
+}
+
 TEST(Trial, MetricsAreOfAllTapsOfAllRigs) {
   const auto trial = Trial::make({}, plain(), {.first = 0, .rigs = 3, .taps = 2});
   const auto metrics = trial->metrics(0.5);

@@ -29,6 +29,7 @@ Evidence in_contact() {
   evidence.standstill = 0.1;
   evidence.actuator_gives = 0.95;
   evidence.contact = 0.9;
+  evidence.master_line = 0.9;
   return evidence;
 }
 
@@ -77,6 +78,31 @@ TEST(Decide, AHandThatTakesEnergyHasNoTremorAndOneThatGivesItHas) {
   EXPECT_EQ(named(evidence, 8.0), Mechanism::induced_motion);
   evidence.hand_gives = 0.9;
   EXPECT_EQ(named(evidence, 8.0), Mechanism::tremor);
+}
+
+TEST(Decide, ATremorStandsOutOfTheMastersOwnMotion) {
+  Evidence evidence = in_contact();
+  evidence.hand_gives = 0.8;
+  evidence.actuator_gives = -0.5;
+  EXPECT_EQ(named(evidence, 8.0), Mechanism::tremor);
+  evidence.master_line = 0.03;  // somebody moves about while the slave sticks
+  EXPECT_NE(named(evidence, 8.0), Mechanism::tremor);
+}
+
+TEST(Decide, WhatEndsWithThePersonsMotionIsARingingAndNoOscillation) {
+  Evidence evidence = in_contact();
+  evidence.contact = 0.0;
+  evidence.delay_there_s = evidence.delay_back_s = 0.03;
+  EXPECT_EQ(named(evidence, 9.0), Mechanism::delay);
+  EXPECT_FALSE(decide(everything(), line(9.0), evidence).harmless);
+  evidence.motion_after = 0.8;  // it ended, and the person moves on
+  EXPECT_FALSE(decide(everything(), line(9.0), evidence).harmless);
+  evidence.motion_after = 0.1;
+  EXPECT_TRUE(decide(everything(), line(9.0), evidence).harmless);
+  // A contact that is left ends what it made.
+  Evidence left = in_contact();
+  left.motion_after = 0.1;
+  EXPECT_FALSE(decide(everything(), line(80.0), left).harmless);
 }
 
 TEST(Decide, WhereHandAndActuatorBothTakeEnergyNoneIsNamed) {

@@ -121,6 +121,20 @@ TEST(NonlinearFit, AVariableThatChangesNothingIsNamed) {
   EXPECT_EQ(fit.error().parameter, "1");
 }
 
+TEST(NonlinearFit, AStepThatIsNoModelIsTakenBackAndTheFitGoesOn) {
+  NonlinearProblem problem;
+  problem.start = {0.9};
+  bool beyond = false;
+  problem.residuals = [&beyond](std::span<const double> v) {
+    beyond = beyond || v[0] <= 0.0;  // where there is no logarithm
+    return std::vector<double>(samples, std::log(v[0] / 0.1));
+  };
+  const auto fit = fit_nonlinear(problem);
+  ASSERT_TRUE(fit);
+  EXPECT_TRUE(beyond);
+  EXPECT_NEAR(fit->found[0], 0.1, 1e-4);
+}
+
 TEST(NonlinearFit, AStartThatIsNoModelAndTooFewResidualsAreRefused) {
   NonlinearProblem problem = line_of_given_slope();
   problem.residuals = [](std::span<const double>) {
