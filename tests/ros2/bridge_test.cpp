@@ -27,7 +27,7 @@ class BridgeTest : public ::testing::Test {
 
 TEST_F(BridgeTest, AnotherVendorReceivesWhatTheTeleoperatorDoes) {
   const char* const joint_topics[] = {"master/measured_js", "master/setpoint_js", "slave/measured_js",
-                                      "slave/setpoint_js"};
+                                      "slave/setpoint_js", "operator/estimated_grip"};
   for (const char* name : joint_topics) peer.subscribe(topic(name), joint_state_type);
   for (const char* name : {"master/measured_cf", "slave/measured_cf"}) peer.subscribe(topic(name), wrench_type);
   peer.subscribe(topic("state"), text_type);
@@ -70,8 +70,8 @@ TEST_F(BridgeTest, AnotherVendorReceivesWhatTheTeleoperatorDoes) {
   EXPECT_EQ(test::wrench_of(last_of("slave/measured_cf")).frame_id, "slave");
   JointState grip = test::joint_state_of(last_of("operator/estimated_grip"));
   grip.stamp_ns = 0;
-  EXPECT_EQ(grip, (JointState{
-                      .frame_id = "operator", .name = {"grip", "grip_deviation"}, .position = {0.5 / 3, 0.1 / 3}}));
+  EXPECT_EQ(grip,
+            (JointState{.frame_id = "operator", .name = {"grip", "grip_deviation"}, .position = {0.5 / 3, 0.1 / 3}}));
   EXPECT_EQ(test::text_of(last_of("state")).data, "ENABLED");
 
   at.state = OperatingState::fault;
