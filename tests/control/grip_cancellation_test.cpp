@@ -139,17 +139,61 @@ TEST(GripCancellation, NoSampleMovesTheCommandBeyondItselfByMoreThanAStepOfTheEn
   constexpr double step_m = 1e-5;
   double largest_m = 0.0;
   for (int tick = 0; tick < 2500; ++tick) {
-    const double measured_m = path_m(tick) + hand.motor_m();
     GripCancellation likewise = cancellation;
+    const double measured_m = path_m(tick) + hand.motor_m();
     (void)likewise.intended(measured_m + 1e-3, 1.0);
     (void)cancellation.intended(measured_m, 1.0);
-    const double apart_m = std::fabs(likewise.induced_position_m() - cancellation.induced_position_m());
-    ASSERT_LE(apart_m, 2.0 * step_m + 1e-12) << tick;
-    largest_m = std::max(largest_m, apart_m);
+    ASSERT_EQ(likewise.induced_position_m(), cancellation.induced_position_m()) << tick;
+    likewise.advance(chatter_N(tick));
     cancellation.advance(chatter_N(tick));
     hand.push(chatter_N(tick));
+    // What a sample tells is applied at the next tick.
+    GripCancellation next = cancellation;
+    const double next_m = path_m(tick + 1) + hand.motor_m();
+    (void)likewise.intended(next_m, 1.0);
+    (void)next.intended(next_m, 1.0);
+    const double apart_m = std::fabs(likewise.induced_position_m() - next.induced_position_m());
+    ASSERT_LE(apart_m, 2.0 * step_m + 1e-12) << tick;
+    largest_m = std::max(largest_m, apart_m);
   }
   EXPECT_GT(largest_m, 0.5 * step_m);  // or nothing was tried
+}
+
+TEST(GripCancellation, ALightHandIsShownAnImpactWholeAndOfWhatLastsAsMuchLessAsItHoldsLessFirmly) {
+  GripCancellation cancellation = make(linear(OperatorEstimate::online));
+  Hand hand(linear(OperatorEstimate::online).cancellation.model.master);
+  ASSERT_LT(after_chatter(cancellation, hand, 0.25).grip, 0.27);
+  // The surprise of the first impacts still takes some of all force away.
+  const double whole_N = cancellation.bearable_N(4.0, 10.0);
+  EXPECT_GT(whole_N, 3.0);
+  double shown_N = 0.0;
+  for (int tick = 0; tick < 1500; ++tick) shown_N = cancellation.bearable_N(4.0, 10.0);
+  EXPECT_NEAR(shown_N, whole_N * cancellation.grip(), 0.05);
+  EXPECT_EQ(cancellation.bearable_N(0.0, 10.0), 0.0);
+}
+
+TEST(GripCancellation, MotionThatNoHandExplainsTakesForceAwayAndQuietGivesItBack) {
+  GripCancellation cancellation = make(linear(OperatorEstimate::online));
+  const auto shake = [&](int ticks, double amplitude_m) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      (void)cancellation.step({.measured_position_m = amplitude_m * std::sin(2.0 * 3.14159 * 150.0 * tick * tick_s)});
+    }
+  };
+  shake(500, 5e-5);  // 35 um RMS: what a model that fits leaves
+  EXPECT_EQ(cancellation.bearable_N(1.0, 10.0), 1.0);
+  shake(500, 2.83e-4);  // 200 um RMS: four times what is borne
+  EXPECT_NEAR(cancellation.bearable_N(1.0, 10.0), 0.25, 0.03);
+  shake(25000, 0.0);
+  EXPECT_GT(cancellation.bearable_N(1.0, 10.0), 0.98);
+}
+
+TEST(GripCancellation, OnlyAnOnlineEstimateShowsLessThanIsWanted) {
+  for (const auto estimate : {OperatorEstimate::off, OperatorEstimate::scheduled}) {
+    GripCancellation cancellation = make(linear(estimate));
+    for (int tick = 0; tick < 500; ++tick) (void)cancellation.step({.measured_position_m = 0.01 * (tick % 2)});
+    EXPECT_EQ(cancellation.bearable_N(25.0, 10.0), 25.0);
+    EXPECT_EQ(cancellation.hand().estimated_grip_deviation, 0.0);
+  }
 }
 
 TEST(GripCancellation, OnlineWithAnEulerStepIsRefused) {

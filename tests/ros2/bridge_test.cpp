@@ -27,7 +27,7 @@ class BridgeTest : public ::testing::Test {
 
 TEST_F(BridgeTest, AnotherVendorReceivesWhatTheTeleoperatorDoes) {
   const char* const joint_topics[] = {"master/measured_js", "master/setpoint_js", "slave/measured_js",
-                                      "slave/setpoint_js"};
+                                      "slave/setpoint_js", "operator/estimated_grip"};
   for (const char* name : joint_topics) peer.subscribe(topic(name), joint_state_type);
   for (const char* name : {"master/measured_cf", "slave/measured_cf"}) peer.subscribe(topic(name), wrench_type);
   peer.subscribe(topic("state"), text_type);
@@ -40,7 +40,9 @@ TEST_F(BridgeTest, AnotherVendorReceivesWhatTheTeleoperatorDoes) {
                   .hand_force_N = 0.5 / 3,
                   .slave_position_m = 0.2 / 3,
                   .slave_command_m = 0.4 / 3,
-                  .environment_force_N = 0.8 / 3};
+                  .environment_force_N = 0.8 / 3,
+                  .estimated_grip = 0.5 / 3,
+                  .estimated_grip_deviation = 0.1 / 3};
   const auto last_of = [&](const char* name) { return peer.received(topic(name)).back(); };
   const auto all_have_come = [&] {
     at.stamp_ns += 1'000'000;
@@ -66,6 +68,10 @@ TEST_F(BridgeTest, AnotherVendorReceivesWhatTheTeleoperatorDoes) {
   EXPECT_EQ(test::wrench_of(last_of("master/measured_cf")).force_N, (std::array{0.5 / 3, 0.0, 0.0}));
   EXPECT_EQ(test::wrench_of(last_of("slave/measured_cf")).force_N, (std::array{-0.8 / 3, 0.0, 0.0}));
   EXPECT_EQ(test::wrench_of(last_of("slave/measured_cf")).frame_id, "slave");
+  JointState grip = test::joint_state_of(last_of("operator/estimated_grip"));
+  grip.stamp_ns = 0;
+  EXPECT_EQ(grip,
+            (JointState{.frame_id = "operator", .name = {"grip", "grip_deviation"}, .position = {0.5 / 3, 0.1 / 3}}));
   EXPECT_EQ(test::text_of(last_of("state")).data, "ENABLED");
 
   at.state = OperatingState::fault;
@@ -88,6 +94,7 @@ TEST_F(BridgeTest, TypesNamesQualitiesAndHashesAreThoseOfRos2) {
       {topic("slave/setpoint_js"), {joint_state_type, JointState::type_hash}},
       {topic("slave/measured_cf"), {wrench_type, WrenchStamped::type_hash}},
       {topic("state"), {text_type, Text::type_hash}},
+      {topic("operator/estimated_grip"), {joint_state_type, JointState::type_hash}},
       {topic("operator/servo_jp"), {joint_state_type, JointState::type_hash}}};
   ASSERT_TRUE(eventually([&] { return peer.announced().size() == expected.size(); }));
   for (const auto& [name, announcement] : peer.announced()) {

@@ -7,6 +7,7 @@ import { compact, drawScene, fitCanvas, roomy, type Layout } from './scene/scene
 import { scaleFor } from './scene/scale';
 import { signalIndex, type Loop } from './state/loop';
 import type { Side } from './state/session';
+import { gripSentence } from './state/grip';
 import { clips, judgement, type Forces } from './state/verdict';
 
 const icons = {
@@ -112,7 +113,11 @@ export class LoopView {
     const same = this.element.dataset.verdict === verdict && element.dataset.sentence === sentence;
     // A verdict and the numbers beside it are of the same moment.
     this.textIsDue ||= !same;
-    if (this.textIsDue) this.find('.measured').textContent = measured;
+    if (this.textIsDue) {
+      this.find('.measured').textContent = measured;
+      const { estimatedGrip, gripDeviation } = this.loop.state;
+      this.find('.grip').textContent = connected ? gripSentence(estimatedGrip, gripDeviation) : '';
+    }
     if (same) return;
     this.element.dataset.verdict = verdict;
     element.dataset.sentence = sentence;

@@ -47,7 +47,8 @@ struct MasterStages {
 /// asked for, and what is off changes no bit. Damping acts on the measured position and counts as displayed force, so
 /// it drives the model of cancellation too; so does what compensation of the way from motor to hand makes of the force.
 /// That takes the force saturated, for the hand should get no more than the limit. What the actuator on the handle does
-/// is no part of the model. With cancellation off the model still runs beside the loop, so that its estimate can be
+/// is no part of the model. An online estimate of the hand lessens the force before damping (`BearableForce`). With
+/// cancellation off the model still runs beside the loop, so that its estimate can be
 /// looked at.
 class PositionForceMaster {
  public:

@@ -25,7 +25,8 @@ namespace tactus::control {
 /// 20 s for the linkage. What lies within the encoder's step is no evidence.
 ///
 /// *A change moves nothing at once.* When θ changes by Δ, the state of the model goes along by Σ ξᵢ Δᵢ, as if the model
-/// had had the new θ all the while, and as fast only as moves the command by one step of the encoder, 10 µm, a tick.
+/// had had the new θ all the while, from the tick after on and as fast only as moves the command by one step of the
+/// encoder, 10 µm, a tick.
 /// The tangents forget slow motion (their common translation leaks away at 80 /s), so that a change of estimate
 /// corrects the impact that told it and not the centimetres that a hand was pushed before.
 ///

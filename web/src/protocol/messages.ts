@@ -44,6 +44,9 @@ export interface LoopState {
   readonly forceLimit_N: number;
   readonly realTimeRatio: number;
   readonly dropped: number;
+  /** How firmly the hand holds, over the controller's model of it, and how sure that is: 0 where nothing is estimated. */
+  readonly estimatedGrip: number;
+  readonly gripDeviation: number;
 }
 
 export interface HandForce {
@@ -94,6 +97,8 @@ export function toLoopState(message: Message): LoopState {
     forceLimit_N: number(message.force_limit_n),
     realTimeRatio: number(message.real_time_ratio),
     dropped: number(message.dropped),
+    estimatedGrip: number(message.estimated_grip),
+    gripDeviation: number(message.estimated_grip_deviation),
   };
 }
 

@@ -24,6 +24,8 @@ const initial: LoopState = {
   forceLimit_N: 0,
   realTimeRatio: 0,
   dropped: 0,
+  estimatedGrip: 1,
+  gripDeviation: 0,
 };
 
 /** What is known of one of the two loops. Positions are kept in mm and forces in N, as they are shown. */

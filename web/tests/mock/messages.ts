@@ -42,6 +42,8 @@ string advice
 float64 force_limit_n
 float64 real_time_ratio
 uint64 dropped
+float64 estimated_grip
+float64 estimated_grip_deviation
 `,
   },
 } as const;
@@ -87,5 +89,7 @@ export function stateMessage(time_s: number, hand_m: number, loop: MockLoop, las
     .float64(forceLimit_N)
     .float64(1)
     .uint64(dropped)
+    .float64(0.5)
+    .float64(0.1)
     .finish();
 }

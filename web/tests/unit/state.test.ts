@@ -5,6 +5,7 @@ import { Loop, signalIndex } from '../../src/state/loop';
 import { SlidingSeries } from '../../src/state/series';
 import { linkOf, valuesOf } from '../../src/state/link';
 import { describedParameters } from '../../src/state/parameters';
+import { gripSentence } from '../../src/state/grip';
 import { clips, judgement } from '../../src/state/verdict';
 
 describe('a sliding series', () => {
@@ -181,5 +182,17 @@ describe('a link', () => {
     const initial = new Map(described.map(({ name, initial }) => [name, initial!]));
     expect(linkOf(described, initial)).toBe('');
     expect(valuesOf('#control.force_gain=much&side_by_side=7&nothing=1&left.method=&%', described).size).toBe(0);
+  });
+});
+
+describe('the grip', () => {
+  test('is told with how sure it is', () => {
+    expect(gripSentence(0.52, 0.094)).toBe('Your grip: ×0.5 ± 0.09 as firm as identified.');
+    expect(gripSentence(4.13, 0.31)).toBe('Your grip: ×4.1 ± 0.3 as firm as identified.');
+  });
+  test('is not told before it is known, nor where nothing estimates it', () => {
+    expect(gripSentence(1, 2)).toBe('Your grip: not known yet; it shows when the wall pushes back.');
+    expect(gripSentence(1, 0)).toBe('');
+    expect(gripSentence(0, 0)).toBe('');
   });
 });
