@@ -32,13 +32,14 @@ void add_onlooker_options(CLI::App& verb, OnlookerOptions& options);
 /// so the servo thread waits for none of them; they change nothing.
 class Onlookers {
  public:
-  /// Opens what is asked for before anything runs; `site` says whose topics go to ROS 2, `joints` how several are called
-  /// there. Errors: a place that is none; those of `ros2::Observer::create`.
+  /// Opens what is asked for before anything runs; `site` says whose topics go to ROS 2, `joints` how several are
+  /// called there. Errors: a place that is none; those of `ros2::Observer::create`.
   static Result<Onlookers> open(const OnlookerOptions& options, const experiments::Request& request,
                                 const std::optional<control::SiteRole>& site = {},
                                 const std::vector<std::string>& joints = {});
 
-  /// Shows what goes into these streams from now on: `RealTimeStreams`, `SiteStreams` or `JointStreams`. Before `begin`.
+  /// Shows what goes into these streams from now on: `RealTimeStreams`, `SiteStreams` or `JointStreams`. Before
+  /// `begin`.
   template <class Streams>
   void watch(const Streams& streams) {
     if (view_) {
