@@ -35,4 +35,19 @@ Check write_outcome(const OutputOptions& options, const experiments::Outcome& ou
   return output ? write_outcome(*output, outcome, files) : Check(output.error());
 }
 
+Check leave_outcome(const experiments::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
+                    LineWriter& output, LineWriter& errors) {
+  std::string where;
+  if (folder.wanted()) {
+    if (auto error = write_results(folder, outcome)) return error;
+    where = folder.report_line();
+    if (!log_error) where += folder.log_line(removed);
+  }
+  const Check unread = output.finish(folder.json() ? folder.document(outcome) : outcome.text + where);
+  if (folder.json()) errors.say(where);
+  if (!folder.wanted()) return unread;
+  if (unread) errors.say("tactus: " + describe(*unread) + "; the report has all of it\n");
+  return log_error;
+}
+
 }  // namespace tactus::cli

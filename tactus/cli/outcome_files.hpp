@@ -1,9 +1,11 @@
 #pragma once
 
+#include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/experiments/experiment.hpp>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -28,5 +30,11 @@ Check write_outcome(OutputFolder& output, const experiments::Outcome& outcome,
 /// The same to the folder that the options name.
 Check write_outcome(const OutputOptions& options, const experiments::Outcome& outcome,
                     const std::vector<NamedText>& files = {});
+
+/// The same of a run at the real clock that said a line a second, and left a log. Files first: a terminal that nobody
+/// reads keeps nothing from them, and with them what it misses is no loss. `log_error` is what went wrong with the log,
+/// of which `removed` records went for its limit.
+Check leave_outcome(const experiments::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
+                    LineWriter& output, LineWriter& errors);
 
 }  // namespace tactus::cli

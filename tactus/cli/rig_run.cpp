@@ -1,7 +1,9 @@
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/line_writer.hpp>
+#include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/person.hpp>
 #include <tactus/cli/rig_guard.hpp>
+#include <tactus/cli/rig_report.hpp>
 #include <tactus/cli/rig_run.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/document.hpp>
@@ -16,8 +18,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,7 +34,6 @@ using devices::MotorBusDevice;
 using devices::Rig;
 using devices::RigLoop;
 using devices::RigPair;
-using devices::RigSecond;
 using devices::RigSide;
 
 constexpr std::string_view suffix = ".toml";
@@ -123,45 +122,6 @@ Result<Driven> drive(const Rig& rig, const RigSide& side) {
   return driven;
 }
 
-std::string fixed(double value, int digits) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
-
-/// What a person does next, where there is something.
-std::string advice(const RigSecond& second, const RigPair& pair) {
-  using control::SiteState;
-  const auto& joint = pair.leader->joints[std::min(second.joint, pair.leader->joints.size() - 1)];
-  if (second.leader_health == station::DeviceHealth::lost || second.follower_health == station::DeviceHealth::lost) {
-    return std::string("; the ") + (second.leader_health == station::DeviceHealth::lost ? "leader" : "follower") +
-           " is lost: look at 'tactus device check'";
-  }
-  if (second.too_far) {
-    return "; too far apart to arm: move " + joint.path + " by " + fixed(second.farthest, 2) + " " +
-           joint.words().position_unit + " to where its follower is";
-  }
-  if (second.leader == SiteState::fault || second.follower == SiteState::fault) return "; type 'clear', then 'arm'";
-  const bool waits = second.leader == SiteState::configure || second.leader == SiteState::hold;
-  return waits ? "; hold the leader still and type 'arm'" : "";
-}
-
-std::string line_of(const RigSecond& second, const RigPair& pair) {
-  return fixed(second.time_s, 0) + " s: leader " + name_of(second.leader) + ", follower " + name_of(second.follower) +
-         " (" + name_of(second.cause) + "), most torque " + fixed(second.most_torque, 2) + ", farthest apart " +
-         fixed(second.farthest, 3) + advice(second, pair) + "\n";
-}
-
-std::string summary_of(const devices::RigTotals& totals, const runtime::ServoReport& servo,
-                       const std::string& ended_by) {
-  return std::to_string(totals.ticks) + " ticks in " + fixed(totals.duration_s, 1) + " s, " +
-         std::to_string(totals.active_ticks) + " of them coupled; armed " + std::to_string(totals.armings) +
-         " times, held " + std::to_string(totals.holds) + " times, a device lost in " +
-         std::to_string(totals.lost_ticks) + " ticks; " + std::to_string(servo.missed) + " deadlines missed, late " +
-         std::to_string(servo.late_ours()) + " by us and " + std::to_string(servo.late_machine()) +
-         " by the machine; ended by " + ended_by + ".\n";
-}
-
 }  // namespace
 
 bool names_a_rig(const std::string& device) {
@@ -183,6 +143,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
   const auto interruption = Interruption::start(exchange.end);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
+  LineWriter& lines = folder.json() ? errors : output;
   std::vector<std::string> names;
   for (const devices::RigJoint& joint : (*pair)->leader->joints) names.emplace_back(joint.name());
   auto onlookers = Onlookers::open(looking_on, request, {}, names);
@@ -204,6 +165,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
   const auto person = Person::listen_to(STDIN_FILENO, control::SiteRole::master, exchange, errors);
   if (!person) return person.error();
 
+  const std::string configuration = configuration::to_toml(*params);
   runtime::JointStreams streams(names.size());
   if (folder.wanted() || onlookers->any()) loop->leave_in(streams);
   std::optional<runtime::SiteLog> log;
@@ -211,35 +173,41 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
     if (Check error = folder.begin()) return error;
     runtime::LogMetadata about{{"tactus", log_origin()}};
     about["tactus"]["experiment"] = request.name;
-    about["tactus"]["configuration"] = configuration::to_toml(*params);
+    about["tactus"]["configuration"] = configuration;
     about["tactus"]["rig"] = (*pair)->name;
     auto created = runtime::SiteLog::create(folder.log_folder(), streams, about, log_limit_bytes);
     if (!created) return created.error();
     log.emplace(*std::move(created));
   }
   onlookers->watch(streams);
-  if (Check error = onlookers->begin([&output](const std::string& line) { output.say(line); })) return error;
+  if (Check error = onlookers->begin([&lines](const std::string& line) { lines.say(line); })) return error;
   auto thread = runtime::ServoThread<RigLoop>::start(servo, *std::move(loop));
   if (!thread) return thread.error();
+  RigRun run;
   const auto take_seconds = [&] {
-    while (const auto second = (*thread)->step().next_second()) output.say(line_of(*second, **pair));
+    while (const auto second = (*thread)->step().next_second()) {
+      lines.say(line_of(*second, **pair));
+      run.seconds.push_back(*second);
+    }
   };
   constexpr unsigned between_looks_us = 20'000;
   while (!(*thread)->ended()) {
     take_seconds();
     usleep(between_looks_us);
   }
-  const runtime::ServoReport report = (*thread)->finish();
+  run.servo = (*thread)->finish();
   take_seconds();
+  if (const std::string seen = onlookers->end(); !seen.empty()) lines.say(seen);
+  run.totals = (*thread)->step().totals();
+  run.ended_by = (*interruption)->signal() != 0 ? (*interruption)->name() : "its duration";
+  run.lines_dropped = lines.dropped();
   Check log_error;
-  std::string where = onlookers->end();
   if (log) {
     log_error = log->close();
-    where += std::to_string(log->dropped()) + " records of the log dropped.\n" + folder.log_line(log->removed());
+    run.log_dropped = log->dropped();
   }
-  const std::string ended_by = (*interruption)->signal() != 0 ? (*interruption)->name() : "its duration";
-  const Check unread = output.finish(summary_of((*thread)->step().totals(), report, ended_by) + where);
-  return log_error ? log_error : unread;
+  return leave_outcome(rig_outcome(run, **pair, request, configuration), folder, std::move(log_error),
+                       log ? log->removed() : 0, output, errors);
 }
 
 }  // namespace tactus::cli

@@ -140,22 +140,6 @@ runtime::LogMetadata about_run(const experiments::Request& request, const std::s
   return about;
 }
 
-/// Files first: a terminal that nobody reads keeps nothing from them, and with them what it misses is no loss.
-Check leave_outcome(const experiments::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
-                    LineWriter& output, LineWriter& errors) {
-  std::string where;
-  if (folder.wanted()) {
-    if (auto error = write_results(folder, outcome)) return error;
-    where = folder.report_line();
-    if (!log_error) where += folder.log_line(removed);
-  }
-  const Check unread = output.finish(folder.json() ? folder.document(outcome) : outcome.text + where);
-  if (folder.json()) errors.say(where);
-  if (!folder.wanted()) return unread;
-  if (unread) errors.say("tactus: " + describe(*unread) + "; the report has all of it\n");
-  return log_error;
-}
-
 void add_totals(SupervisedRun& run, const runtime::SiteLoop& loop) {
   run.sites.push_back({*run.here.one, loop.totals()});
   run.link = loop.link_totals();

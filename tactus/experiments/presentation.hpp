@@ -33,6 +33,18 @@ std::string gain_limit_text(const GainLimit& limit, double lowest_gain);
 /// "3 of 5 combinations settle; these do not: force gain 4; ...": `failures` are the captions of those that do not.
 std::string settled_combinations(std::size_t combinations, const std::vector<std::string>& failures);
 
+/// What came out, in a sentence for each run, a line each; with the run's settings before it where several were run.
+template <class Runs, class Sentence>
+std::string verdict_of_each(const Runs& runs, const Sentence& sentence) {
+  std::string text;
+  for (const auto& run : runs) {
+    if (!text.empty()) text += "\n";
+    if (!run.settings.empty()) text += settings_caption(run.settings) + ": ";
+    text += sentence(run);
+  }
+  return text;
+}
+
 /// A table whose rows begin with the values of the varied keys, as those of `varied` are.
 report::Table table_of_runs(const Settings& varied, std::vector<report::Column> columns, std::string caption);
 void add_row(report::Table& table, const Settings& settings, std::vector<std::string> cells);

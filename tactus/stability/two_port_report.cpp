@@ -50,6 +50,20 @@ report::Table summary_table(const TwoPortSweep& sweep) {
   return table;
 }
 
+std::string verdict_of(const TwoPortSweep& sweep) {
+  const TwoPortPoint &stable = least(sweep, llewellyn_of), &passive = least(sweep, passivity_of);
+  const bool is_stable = stable.llewellyn >= 1.0, is_passive = passive.passivity >= 0.0;
+  std::string text = is_passive  ? "Passive: stable between any passive hand and wall"
+                     : is_stable ? "Stable between any passive hand and wall, though not passive"
+                                 : "Not stable between any passive hand and wall";
+  if (!is_stable)
+    text += ": least Llewellyn index " + report::number(stable.llewellyn, 3) + " at " +
+            report::number(stable.frequency_Hz, 3) + " Hz, where 1 is needed";
+  const auto to_Hz = sweep.transparent_to_Hz();
+  return text + "; the wall is felt within 3 dB " +
+         (to_Hz ? "up to " + report::number(*to_Hz, 3) + " Hz." : std::string("nowhere."));
+}
+
 report::Table frequency_table(const TwoPortSweep& sweep) {
   report::Table table({{"frequency", "Hz"},
                        {"|h11|", "N s/m"},
@@ -142,7 +156,9 @@ Result<experiments::Outcome> report_two_port(const experiments::Request& request
   if (!sweep) return request.document.locate(sweep.error());
   const report::Table summary = summary_table(*sweep), table = frequency_table(*sweep);
   std::vector<report::Figure> figures{two_port_figure(*sweep), hybrid_figure(*sweep)};
+  const std::string verdict = verdict_of(*sweep);
   report::Page page(request.name + ": two-port");
+  page.paragraph(verdict);
   page.paragraph(
       "The teleoperator as a two-port between the hand on the handle and whatever the tip touches: linear, sampled, "
       "exact "
@@ -150,7 +166,7 @@ Result<experiments::Outcome> report_two_port(const experiments::Request& request
   page.table(summary);
   page.table(table);
   for (const report::Figure& figure : figures) page.figure(figure);
-  return experiments::outcome_of({.text = summary.to_text() + table.to_text(),
+  return experiments::outcome_of({.text = verdict + "\n\n" + summary.to_text() + table.to_text(),
                                   .json = json_of(request, *sweep),
                                   .page = std::move(page),
                                   .figures = std::move(figures)},

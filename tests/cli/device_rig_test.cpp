@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "tests/cli/command.hpp"
+#include "tests/cli/schema_validator.hpp"
 #include <nlohmann/json.hpp>
 
 namespace tactus::cli {
@@ -34,6 +35,10 @@ class DeviceRig : public Command {
         << content("emulate.err") << content("script.err");
     return {.status = std::atoi(content("status").c_str()), .out = content("out"), .err = content("err")};
   }
+  void expect_of_schema(const Outcome& outcome) const {
+    const auto schema = nlohmann::json::parse(tactus({"schema", "--results", "device check"}).out);
+    EXPECT_EQ(SchemaValidator(schema).faults(nlohmann::json::parse(outcome.out, nullptr, false)), "") << outcome.out;
+  }
   static bool says(const Outcome& outcome, const std::string& text) {
     return outcome.out.find(text) != std::string::npos;
   }
@@ -59,6 +64,7 @@ TEST_F(DeviceRig, APairThatIsWhatItsFileSaysIsClean) {
                    "Motors of one model cannot tell whether two were swapped: move each joint by hand under "
                    "'tactus device watch rig.toml'.\n"));
   const Outcome json = device(motors, servos + follower, "check rig.toml arm.follower.elbow --json");
+  expect_of_schema(json);
   EXPECT_EQ(json.status, 0);
   const auto told = nlohmann::json::parse(json.out);
   EXPECT_EQ(told["clean"], true);
@@ -73,6 +79,7 @@ TEST_F(DeviceRig, APairThatIsWhatItsFileSaysIsClean) {
 
 TEST_F(DeviceRig, MotorsThatAreNotTheStatedOnesAreToldWithTheirLine) {
   const Outcome swapped = device({"damiao --model DM4310,DM4340"}, damiao("DM4340", "DM4310"), "check rig.toml --json");
+  expect_of_schema(swapped);
   EXPECT_EQ(swapped.status, 1);
   const auto told = nlohmann::json::parse(swapped.out);
   EXPECT_EQ(told["clean"], false);
@@ -194,6 +201,7 @@ TEST_F(DeviceRig, AnInverse3IsCheckedThroughItsService) {
   // Its address is a URL; the rig has host and port.
   const std::string no_scheme = "x rig.toml >/dev/null 2>&1; sed -i 's|ws://||' rig.toml; $TACTUS device ";
   const Outcome clean = device({"inverse3 --port 0"}, rig, no_scheme + "check rig.toml --json");
+  expect_of_schema(clean);
   EXPECT_EQ(clean.status, 0) << clean.out << clean.err;
   const auto told = nlohmann::json::parse(clean.out);
   EXPECT_EQ(told["buses"][0]["motors"][2]["joint"], "desk.leader.z");

@@ -10,6 +10,7 @@
 #include "tests/cli/command.hpp"
 #include "tests/cli/schema_validator.hpp"
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 namespace tactus::cli {
 namespace {
@@ -70,6 +71,10 @@ TEST_F(Results, OfARunAreOfItsSchemaWhateverItsKindAndClock) {
   expect_valid("run", {"run", quick, "--set", "task.supervised=true", "--set", "control.force_gain=40", "--set",
                        "control.cancellation=off"});
   expect_valid("run", {"run", quick, "--realtime", "--priority", "10"});
+  setenv("ROS_LOCALHOST_ONLY", "1", 1);
+  expect_valid("run", {"run", quick, "--ros2", "--namespace", "results_" + std::to_string(getpid())});
+  const Json arms = expect_valid("run", {"run", experiments_folder + "/arm-tapping.toml", "--set", "task.taps=1"});
+  EXPECT_EQ(arms["runs"][0]["metrics"]["taps"], 1);
   for (const char* kind : {"force-display", "hydraulic-chirp", "inverse-model-chirp", "prediction-block"}) {
     expect_valid("run", {"run", experiments_folder + "/" + kind + ".toml"});
   }

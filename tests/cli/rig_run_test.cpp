@@ -67,7 +67,8 @@ TEST_F(RigRun, APairOfSevenJointsAlignsAndTeleoperatesWithALogThatIsWhole) {
   }
   EXPECT_NE(said.find(whole), std::string::npos) << said;
   EXPECT_NE(said.find("5 s: leader active, follower active (none), "), std::string::npos) << said;
-  EXPECT_NE(said.find("\n0 records of the log dropped.\nLog: run/log\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)
+      << said;
   EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
   EXPECT_TRUE(std::filesystem::exists(folder() / "run/log/log.mcap"));
   // It stood 0.2 rad away; what is left holds against the friction of the joint, less than 0.02 rad at 4 N m/rad.

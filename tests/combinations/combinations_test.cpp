@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/cli/command.hpp"
+#include "tests/cli/schema_validator.hpp"
 #include "tests/live/raw_client.hpp"
 #include "tests/ros2/fast_dds_peer.hpp"
 #include "tests/ros2/test_network.hpp"
@@ -68,7 +69,7 @@ constexpr const char* functions = R"(
         --set control.supervision.longest_stall_s=0.5 --set control.supervision.overload.missed_share=0.9"
   taps="--set task.taps=4"
   # Somebody is there as long as this shell, who says nothing.
-  mkfifo person; exec 9<>person
+  rm -f person; mkfifo person; exec 9<>person
 )";
 constexpr std::array rows{
     Row{"virtual", "one's own", "$OWN run quick.toml $slow --device carriage $MORE"},
@@ -205,6 +206,24 @@ INSTANTIATE_TEST_SUITE_P(, Combination,
                            for (char& letter : name) letter = std::isalnum(letter) ? letter : '_';
                            return name;
                          });
+
+/// Sites that a person arms say a line a second; with `--json` those go to standard error.
+TEST_F(Programs, OneDocumentOfItsSchemaIsAllThatSitesPrintWithJson) {
+  const Outcome printed = tactus({"schema", "--results", "run"});
+  const SchemaValidator schema(nlohmann::json::parse(printed.out));
+  int tried = 0;
+  for (const Row& row : rows) {
+    const std::string command = row.command;
+    if (command.find("--arm") == std::string::npos) continue;
+    EXPECT_EQ(shell("MORE=--json\n" + command), 0) << content("complained");
+    const auto document = nlohmann::json::parse(content("said"), nullptr, false);
+    EXPECT_TRUE(document.is_object()) << row.devices << ": " << content("said").substr(0, 400);
+    EXPECT_EQ(schema.faults(document), "") << row.devices;
+    EXPECT_GE(document["seconds"].size(), 2U) << row.devices;
+    ++tried;
+  }
+  EXPECT_EQ(tried, 3);
+}
 
 TEST_F(Programs, MoreThatMakesNoSenseIsRefusedAsThePageSays) {
   const std::string text = page();

@@ -1,6 +1,9 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/force_display/force_display.hpp>
 
+#include <algorithm>
+#include <tuple>
+
 #include <nlohmann/json.hpp>
 
 namespace tactus::experiments {
@@ -42,6 +45,24 @@ report::Table table_of(const std::vector<DisplayRun>& runs) {
     }
   }
   return table;
+}
+
+/// Of the largest force, with the friction law under which a model that is right keeps least.
+std::string sentence_of(const DisplayRun& run) {
+  const auto& cases = run.found.cases;
+  const auto keeps_less = [](const ForceDisplayCase& a, const ForceDisplayCase& b) {
+    return std::tuple(-a.scale, a.mismatched, a.kept_fraction) < std::tuple(-b.scale, b.mismatched, b.kept_fraction);
+  };
+  const ForceDisplayCase& best = *std::min_element(cases.begin(), cases.end(), keeps_less);
+  std::string text = "A model that is right leaves " + report::number(100.0 * best.kept_fraction, 3) +
+                     " % of the induced motion in the estimate";
+  for (const ForceDisplayCase& one : cases) {
+    if (one.mismatched && one.scale == best.scale && one.friction == best.friction) {
+      text += ", one that is off " + report::number(100.0 * one.kept_fraction, 3) + " %";
+    }
+  }
+  return text + "; no estimate can leave less than the encoder's " + report::number(100.0 * best.encoder_fraction, 3) +
+         " %. Force scale " + report::number(best.scale, 2) + ", model friction " + name_of(best.friction) + ".";
 }
 
 std::string json_of(const DisplayRun& run) {
@@ -103,9 +124,10 @@ report::Figure figure_of(const DisplayRun& run) {
   return figure;
 }
 
-report::Page page_of(const Request& request, const std::vector<DisplayRun>& runs, const report::Table& table,
-                     const std::vector<report::Figure>& figures) {
+report::Page page_of(const Request& request, const std::string& verdict, const std::vector<DisplayRun>& runs,
+                     const report::Table& table, const std::vector<report::Figure>& figures) {
   report::Page page(request.name + ": " + std::string(force_display_title));
+  page.paragraph(verdict);
   page.paragraph(
       "While a person moves the handle at constant speed, a force is played that knows nothing of the motion. The "
       "motion "
@@ -143,10 +165,11 @@ Result<Displayed> ForceDisplayExperiment::run_one(const ForceDisplayParams& para
 
 Presentation ForceDisplayExperiment::present(const Request& request, const Runs& runs) const {
   const report::Table table = table_of(runs);
+  const std::string verdict = verdict_of_each(runs, [](const auto& run) { return sentence_of(run); });
   std::vector<report::Figure> figures;
   for (const Run& run : runs) figures.push_back(figure_of(run));
-  report::Page page = page_of(request, runs, table, figures);
-  return {.text = table.to_text(),
+  report::Page page = page_of(request, verdict, runs, table, figures);
+  return {.text = verdict + "\n\n" + table.to_text(),
           .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
           .page = std::move(page),
           .figures = std::move(figures)};

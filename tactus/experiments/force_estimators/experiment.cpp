@@ -1,6 +1,7 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/force_estimators/force_estimators.hpp>
 
+#include <algorithm>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -122,6 +123,22 @@ report::Figure figure_of(const EstimatorsRun& run) {
   return figure;
 }
 
+/// The best without a sensor, in contact and in free motion. The sensor stands first.
+std::string sentence_of(const EstimatorsRun& run) {
+  const auto& scores = run.found.scores;
+  const auto best = [&scores](double EstimatorScore::*error) -> const EstimatorScore& {
+    return *std::min_element(scores.begin() + 1, scores.end(),
+                             [error](const EstimatorScore& a, const EstimatorScore& b) { return a.*error < b.*error; });
+  };
+  const EstimatorScore &in_contact = best(&EstimatorScore::contact_error_N),
+                       &in_free_motion = best(&EstimatorScore::free_residual_N);
+  return "Without a sensor the " + in_contact.name + " is nearest in contact, " +
+         report::number(1e3 * in_contact.contact_error_N, 3) + " mN RMS off where the sensor is " +
+         report::number(1e3 * scores.front().contact_error_N, 3) + "; the " + in_free_motion.name +
+         " says least where nothing is touched, " + report::number(1e3 * in_free_motion.free_residual_N, 3) +
+         " mN RMS.";
+}
+
 std::string json_of(const EstimatorsRun& run) {
   nlohmann::ordered_json estimators = nlohmann::ordered_json::array();
   for (const EstimatorScore& score : run.found.scores) {
@@ -136,9 +153,11 @@ std::string json_of(const EstimatorsRun& run) {
 
 Presentation ForceEstimatorsExperiment::present(const Request& request, const Runs& runs) const {
   const report::Table table = table_of(runs);
+  const std::string verdict = verdict_of_each(runs, [](const auto& run) { return sentence_of(run); });
   const report::Table narx_table = narx_table_of(runs.front().found.narx);
   report::Figure figure = figure_of(runs.front());
   report::Page page(request.name + ": " + std::string(force_estimators_title));
+  page.paragraph(verdict);
   page.paragraph(
       "A slave rests, goes to and fro before a wall, presses onto it and leaves. Every estimator sees the same "
       "commands "
@@ -155,7 +174,7 @@ Presentation ForceEstimatorsExperiment::present(const Request& request, const Ru
                      "the model's own output i lags ago; each over its scale."},
                     {"error reduction", "Share of the squared force that the term explained when it was chosen."}});
   page.figure(figure);
-  return {.text = table.to_text() + "\n" + narx_table.to_text(),
+  return {.text = verdict + "\n\n" + table.to_text() + "\n" + narx_table.to_text(),
           .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
           .page = std::move(page),
           .figures = {std::move(figure)}};

@@ -1,7 +1,9 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/hydraulic_chirp/hydraulic_chirp.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <nlohmann/json.hpp>
 
@@ -87,6 +89,20 @@ report::Figure figure_of(const HydraulicChirpRun& run) {
   return figure;
 }
 
+/// What the best of the blocks leaves beside no prediction.
+std::string sentence_of(const HydraulicChirpRun& run) {
+  const auto& scores = run.found.scores;
+  const auto plain =
+      std::find_if(scores.begin(), scores.end(), [](const CurrentScore& one) { return one.blocks == 0; });
+  const auto best = std::min_element(scores.begin(), scores.end(), [](const CurrentScore& a, const CurrentScore& b) {
+    return std::tuple(a.blocks == 0, a.mae_mA) < std::tuple(b.blocks == 0, b.mae_mA);
+  });
+  if (plain == scores.end() || best->blocks == 0) return "No prediction was tried beside another.";
+  return "In free motion the estimate is off by " + report::number(percent_of_full(run, best->mae_mA), 2) +
+         " % of the full current with " + best->name + ", by " +
+         report::number(percent_of_full(run, plain->mae_mA), 2) + " % with " + plain->name + ".";
+}
+
 std::string json_of(const HydraulicChirpRun& run) {
   auto variants = nlohmann::ordered_json::array();
   for (const CurrentScore& score : run.found.scores) {
@@ -113,10 +129,12 @@ std::string json_of(const HydraulicChirpRun& run) {
 
 Presentation HydraulicChirpExperiment::present(const Request& request, const Runs& runs) const {
   const report::Table table = table_of(runs);
+  const std::string verdict = verdict_of_each(runs, [](const auto& run) { return sentence_of(run); });
   std::vector<report::Figure> figures;
   for (const HydraulicChirpRun& run : runs) figures.push_back(figure_of(run));
 
   report::Page page(request.name + ": " + std::string(hydraulic_chirp_title));
+  page.paragraph(verdict);
   page.paragraph(
       "A servo-hydraulic slave follows a chirp and touches nothing. An inverse model, identified on another motion, "
       "says "
@@ -131,7 +149,7 @@ Presentation HydraulicChirpExperiment::present(const Request& request, const Run
         "What the fit of the current on acceleration comes to. It holds the lags of valve and sensors, "
         "which the mass as weighed does not."}});
   for (const report::Figure& figure : figures) page.figure(figure);
-  return {.text = table.to_text(),
+  return {.text = verdict + "\n\n" + table.to_text(),
           .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
           .page = std::move(page),
           .figures = std::move(figures)};

@@ -1,6 +1,9 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/hydraulic_rigid_contact/hydraulic_rigid_contact.hpp>
 
+#include <algorithm>
+#include <limits>
+
 #include <nlohmann/json.hpp>
 
 namespace tactus::experiments {
@@ -101,6 +104,23 @@ report::Figure figure_of(const ContactCase& one) {
   return figure;
 }
 
+std::string sentence_of(const ContactCase& one) {
+  std::size_t presses = 0, settled = 0;
+  double least_lead_s = std::numeric_limits<double>::infinity(), most_lead_s = -least_lead_s;
+  for (const RigidContactRun& run : one.found) {
+    for (const RigidContact& contact : run.contacts) {
+      ++presses;
+      settled += contact.settled ? 1U : 0U;
+      const double lead_s = contact.pressure_after_s - contact.estimate_after_s;
+      least_lead_s = std::min(least_lead_s, lead_s);
+      most_lead_s = std::max(most_lead_s, lead_s);
+    }
+  }
+  return std::to_string(settled) + " of " + std::to_string(presses) +
+         " presses settle without a force sensor; what is fed back is " + report::number(1e3 * least_lead_s, 3) +
+         " to " + report::number(1e3 * most_lead_s, 3) + " ms ahead of the pressures.";
+}
+
 std::string json_of(const ContactCase& one) {
   auto variants = nlohmann::ordered_json::array();
   for (const RigidContactRun& run : one.found) {
@@ -128,10 +148,12 @@ std::string json_of(const ContactCase& one) {
 
 Presentation HydraulicRigidContactExperiment::present(const Request& request, const Runs& cases) const {
   const report::Table table = table_of(cases);
+  const std::string verdict = verdict_of_each(cases, [](const auto& run) { return sentence_of(run); });
   std::vector<report::Figure> figures;
   for (const ContactCase& one : cases) figures.push_back(figure_of(one));
 
   report::Page page(request.name + ": " + std::string(hydraulic_rigid_contact_title));
+  page.paragraph(verdict);
   page.paragraph(
       "A person drives a servo-hydraulic slave into its end stop twice. Nothing measures the contact force: an inverse "
       "model says which valve current free motion would take, and what the current has beyond that is fed back.");
@@ -145,7 +167,7 @@ Presentation HydraulicRigidContactExperiment::present(const Request& request, co
         "pressures, reach half of what they end at."},
        {"lead", "By how much the estimate is earlier."}});
   for (const report::Figure& figure : figures) page.figure(figure);
-  return {.text = table.to_text(),
+  return {.text = verdict + "\n\n" + table.to_text(),
           .json = runs_json(request, cases, [](const auto& run) { return json_of(run); }),
           .page = std::move(page),
           .figures = std::move(figures)};

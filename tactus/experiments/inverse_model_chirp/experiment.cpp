@@ -61,6 +61,16 @@ report::Table band_table(const std::vector<ChirpRun>& runs) {
   return table;
 }
 
+/// On the motion that is new to all.
+std::string sentence_of(const ChirpRun& run) {
+  std::string text;
+  for (const InverseModelVariant& one : run.found.variants) {
+    text += (text.empty() ? "What is felt where nothing is touched: " : "; ") + label(one) + " " +
+            report::number(one.multisine.rms_N, 3) + " N RMS";
+  }
+  return text + ".";
+}
+
 nlohmann::ordered_json felt_json(const FeltForce& felt) {
   return {{"rms_N", felt.rms_N}, {"rms_below_2_Hz_N", felt.below_2_Hz_N}};
 }
@@ -117,10 +127,12 @@ report::Figure figure_of(const ChirpRun& run) {
 
 Presentation InverseModelChirpExperiment::present(const Request& request, const Runs& runs) const {
   const report::Table table = table_of(runs), bands = band_table(runs);
+  const std::string verdict = verdict_of_each(runs, [](const auto& run) { return sentence_of(run); });
   std::vector<report::Figure> figures;
   for (const ChirpRun& run : runs) figures.push_back(figure_of(run));
 
   report::Page page(request.name + ": " + std::string(inverse_model_chirp_title));
+  page.paragraph(verdict);
   page.paragraph(
       "A slave with transport delays and lags follows a path and touches nothing. An inverse model says from the "
       "measured position which command that took; the difference is fed back as force and should be zero. The fitted "
@@ -132,7 +144,7 @@ Presentation InverseModelChirpExperiment::present(const Request& request, const 
        {"fitted fourth order", "Numerator and denominator of degree four, output error, fitted to this chirp."},
        {"Tp", "Time constant of each block, in closed form for their number."}});
   for (const report::Figure& figure : figures) page.figure(figure);
-  return {.text = table.to_text() + "\n" + bands.to_text(),
+  return {.text = verdict + "\n\n" + table.to_text() + "\n" + bands.to_text(),
           .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
           .page = std::move(page),
           .figures = std::move(figures)};

@@ -167,6 +167,16 @@ report::Figure figure_of(const BlockRun& run) {
       .panels = {std::move(gain), std::move(phase), std::move(step)}};
 }
 
+/// What the lead of each costs.
+std::string sentence_of(const BlockRun& run) {
+  std::string text;
+  for (const PredictorRow& row : run.found) {
+    text += (text.empty() ? "What looks ahead passes noise: " : "; ") + row.name + " " +
+            report::number(1e3 * row.lead_s, 3) + " ms, times " + report::number(row.noise_gain, 3);
+  }
+  return text + ".";
+}
+
 std::string json_of(const BlockRun& run) {
   auto blocks = nlohmann::ordered_json::array(), rivals = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < run.found.size(); ++i) {
@@ -187,6 +197,7 @@ std::string json_of(const BlockRun& run) {
 }
 
 Presentation PredictionBlockExperiment::present(const Request& request, const Runs& runs) const {
+  const std::string verdict = verdict_of_each(runs, [](const auto& run) { return sentence_of(run); });
   report::Table table = table_of_runs(runs.front().settings,
                                       {{"predictor", "", report::Column::Align::left},
                                        {"lead at rest", "ms"},
@@ -204,6 +215,7 @@ Presentation PredictionBlockExperiment::present(const Request& request, const Ru
     figures.push_back(figure_of(run));
   }
   report::Page page(request.name + ": " + std::string(prediction_block_title));
+  page.paragraph(verdict);
   page.paragraph(
       "A prediction block leads by its time constant at low frequency and doubles what is fast. A polynomial through "
       "the "
@@ -214,7 +226,7 @@ Presentation PredictionBlockExperiment::present(const Request& request, const Ru
         "Up to where a predictor differs from the ideal one by task.tolerance; of blocks, the continuous ones."},
        {"gain of white noise", "RMS out over RMS in, sampled."}});
   for (const report::Figure& figure : figures) page.figure(figure);
-  return {.text = table.to_text(),
+  return {.text = verdict + "\n\n" + table.to_text(),
           .json = runs_json(request, runs, [](const auto& run) { return json_of(run); }),
           .page = std::move(page),
           .figures = std::move(figures)};

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <tactus/devices/rig/rig.hpp>
+#include <tactus/devices/rig/rig_loop.hpp>
+#include <tactus/experiments/experiment.hpp>
+#include <tactus/runtime/servo_thread.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tactus::cli {
+
+/// What a run of a rig's pair left.
+struct RigRun {
+  std::vector<devices::RigSecond> seconds;
+  devices::RigTotals totals;
+  runtime::ServoReport servo;
+  std::string ended_by;  ///< a signal, or its duration
+  std::uint64_t lines_dropped = 0;
+  std::optional<std::uint64_t> log_dropped;
+};
+
+/// A second for a terminal, with what a person does next where there is something.
+std::string line_of(const devices::RigSecond& second, const devices::RigPair& pair);
+
+/// The run for every reader. `configuration` is TOML.
+experiments::Outcome rig_outcome(const RigRun& run, const devices::RigPair& pair, const experiments::Request& request,
+                                 std::string_view configuration);
+
+}  // namespace tactus::cli
