@@ -36,7 +36,7 @@ class DeviceRig : public Command {
     return {.status = std::atoi(content("status").c_str()), .out = content("out"), .err = content("err")};
   }
   void expect_of_schema(const Outcome& outcome) const {
-    const auto schema = nlohmann::json::parse(tactus({"schema", "--results", "device check"}).out);
+    const auto schema = nlohmann::json::parse(tactus({"schema", "--results", "device", "check"}).out);
     EXPECT_EQ(SchemaValidator(schema).faults(nlohmann::json::parse(outcome.out, nullptr, false)), "") << outcome.out;
   }
   static bool says(const Outcome& outcome, const std::string& text) {

@@ -43,7 +43,7 @@ TEST_F(Export, TheTableHasEverySignalWithItsUnitAndOneRowATick) {
             "time [s],master_position [m],induced_position [m],command [m],slave_position [m],tip_position [m],"
             "displayed_force [N],handle_force [N],hand_force [N],told_force [N],contact_force [N],peak_contact_force "
             "[N],touched,"
-            "touched_at [s]");
+            "touched_at [s],estimated_grip,estimated_grip_deviation");
   EXPECT_TRUE(first.starts_with("0,")) << first;
   EXPECT_TRUE(second.starts_with("2e-04,")) << second;  // 5 kHz
 }
