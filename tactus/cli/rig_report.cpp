@@ -99,7 +99,7 @@ nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
 report::Figure seconds_figure(const RigRun& run, const RigPair& pair) {
   const devices::JointWords& words = pair.leader->joints.front().words();
   const auto panel = [&](const char* label, const char* unit, auto value) {
-    report::Line line{.name = label, .x = {}, .y = {}, .colour = 0};
+    report::Line line{.name = "", .x = {}, .y = {}, .colour = 0};
     for (const RigSecond& second : run.seconds) {
       line.x.push_back(second.time_s);
       line.y.push_back(value(second));
