@@ -294,7 +294,7 @@ std::vector<double> settled_limit(const MapResult& map, std::size_t along) {
 std::string to_csv(const MapResult& map) {
   std::string text;
   for (const MapAxis& axis : map.axes) text += axis.key + (axis.unit.empty() ? "" : " (" + axis.unit + ")") + ",";
-  text += "verdict,settling_time_s,contacts,peak_force_N,residual_rms_N\n";
+  text += "verdict,settling_time_s,settling_time_s_censored,contacts,peak_force_N,residual_rms_N\n";
   for (std::size_t i = 0; i < map.points.size(); ++i) {
     std::size_t stride = map.points.size();
     for (const MapAxis& axis : map.axes) {
@@ -303,8 +303,11 @@ std::string to_csv(const MapResult& map) {
       text += (axis.words.empty() ? exact(axis.values[at]) : axis.words[at]) + ",";
     }
     const PointResult& point = map.points[i];
-    text += std::string(name_of(point.verdict)) + "," + exact(point.settling_time_s) + "," + exact(point.contacts) +
-            "," + exact(point.peak_force_N) + "," + exact(point.residual_rms_N) + "\n";
+    const bool came_to_rest =
+        point.verdict == experiments::Verdict::settled || point.verdict == experiments::Verdict::ringing;
+    text += std::string(name_of(point.verdict)) + "," + exact(point.settling_time_s) + "," +
+            (came_to_rest ? "false" : "true") + "," + exact(point.contacts) + "," + exact(point.peak_force_N) + "," +
+            exact(point.residual_rms_N) + "\n";
   }
   return text;
 }

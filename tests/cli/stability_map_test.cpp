@@ -48,7 +48,8 @@ TEST_F(StabilityMap, LeavesTableHdf5PictureReportAndResults) {
                 plane["diverged"].get<int>(),
             120);
   const std::string table = content("results/map.csv");
-  EXPECT_TRUE(table.starts_with("control.force_gain,environment.stiffness_N_per_m (N/m),verdict,settling_time_s,"))
+  EXPECT_TRUE(table.starts_with(
+      "control.force_gain,environment.stiffness_N_per_m (N/m),verdict,settling_time_s,settling_time_s_censored,"))
       << table.substr(0, 200);
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 121);
 }
