@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,14 @@ TEST_F(StabilityMap, LeavesTableHdf5PictureReportAndResults) {
       "control.force_gain,environment.stiffness_N_per_m (N/m),verdict,settling_time_s,settling_time_s_censored,"))
       << table.substr(0, 200);
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 121);
+  std::istringstream lines(table);
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    const bool came_to_rest =
+        line.find(",settled,") != std::string::npos || line.find(",ringing,") != std::string::npos;
+    EXPECT_NE(line.find(came_to_rest ? ",false," : ",true,"), std::string::npos) << line;
+  }
 }
 
 TEST_F(StabilityMap, TheReportNamesAxesWithUnitsAndHowItWasMade) {

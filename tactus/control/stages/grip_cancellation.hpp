@@ -83,8 +83,7 @@ class GripCancellation {
   /// positive number counts as 1. Real-time safe.
   double intended(double measured_position_m, double grip) noexcept;
   /// What of the force `wanted_N` the hand is shown, in N, where no more than `limit_N` can be. Only `online` shows
-  /// less
-  /// (`BearableForce`). Once a tick, before `intended`. Real-time safe.
+  /// less (`BearableForce`). Once a tick, before `intended`. Real-time safe.
   double bearable_N(double wanted_N, double limit_N) noexcept {
     if (estimate_ != OperatorEstimate::online) return wanted_N;
     return adaptive_.bearable_N(std::clamp(wanted_N, -limit_N, limit_N));

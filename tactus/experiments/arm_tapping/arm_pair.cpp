@@ -1,13 +1,13 @@
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/random.hpp>
 #include <tactus/urdf/urdf.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
-
-#include <Eigen/Eigenvalues>
 
 namespace tactus::experiments {
 
@@ -38,8 +38,7 @@ Vector3 outward_of(TapDirection direction) {
 /// How slowly the tool moves at least, for one rad/s of all joints together: 0 where the pose is singular.
 double slowest_m_per_rad(const arm::Chain& chain, const JointVector& position, const Vector3& tool_m) {
   const auto moving = chain.jacobian(position, chain.joints() - 1, tool_m).topRows<3>().eval();
-  const arm::Matrix3 squared = moving * moving.transpose();
-  return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<arm::Matrix3>(squared).eigenvalues()[0]));
+  return std::sqrt(std::max(0.0, signal::symmetric_eigenvalues(moving * moving.transpose())[0]));
 }
 
 /// Puts the start of `setup` at the pose and the surface in the direction that its task asks for.
@@ -52,13 +51,19 @@ Check take_pose(ArmPairSetup& setup) {
   if (!chain) return chain.error();
   const double least = least_share * slowest_m_per_rad(*chain, setup.start, setup.arm.tool_m);
   signal::Random random = signal::Random(0).fork(static_cast<std::uint64_t>(setup.params.task.pose));
-  JointVector drawn;
-  do {
-    drawn = setup.start;
+  constexpr int most_draws = 1000;
+  for (int draw = 0; draw < most_draws; ++draw) {
+    JointVector drawn = setup.start;
     for (double& joint : drawn) joint += random.uniform(-within_rad, within_rad);
-  } while (slowest_m_per_rad(*chain, drawn, setup.arm.tool_m) < least);
-  setup.start = drawn;
-  return std::nullopt;
+    if (slowest_m_per_rad(*chain, drawn, setup.arm.tool_m) < least) continue;
+    setup.start = drawn;
+    return std::nullopt;
+  }
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "task.pose",
+               .message = std::to_string(setup.params.task.pose) + ": of " + std::to_string(most_draws) +
+                          " poses near start_rad none is as far from a singular one: begin nearer to one, or write 0",
+               .place = {}};
 }
 
 }  // namespace
