@@ -25,7 +25,7 @@ constexpr int receive_buffer_bytes = 1 << 16;
 Error bad_address(std::string_view text, ErrorCode code, const std::string& why) {
   return Error{.code = code,
                .parameter = {},
-               .message = why + ": write HOST:PORT, as in 192.168.1.2:7400 or [::1]:7400",
+               .message = why + ": write HOST:PORT, as in 192.168.1.2:7300 or [::1]:7300",
                .place = std::string(text)};
 }
 

@@ -171,13 +171,13 @@ TEST_F(Command, OneSiteRefusesWhatCannotBeWithTheRemedy) {
     EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
   };
   refused({}, "--peer");
-  refused({"--peer", "127.0.0.1:7400"}, "tactus key");
+  refused({"--peer", "127.0.0.1:7300"}, "tactus key");
   refused({"--peer", "127.0.0.1:99999", "--unencrypted"}, "1 to 65535");
-  refused({"--peer", "::1:7400", "--unencrypted"}, "brackets");
-  refused({"--peer", "192.0.2.1:7400", "--listen", "27411", "--unencrypted"}, "may not leave");
-  refused({"--peer", "127.0.0.1:7400", "--unencrypted", "--key", "key"}, "leave out one");
-  refused({"--peer", "127.0.0.1:7400", "--key", "missing"}, "tactus key");
-  refused({"--peer", "127.0.0.1:7400", "--unencrypted", "--vary", "control.force_gain=1,2"}, "--vary");
+  refused({"--peer", "::1:7300", "--unencrypted"}, "brackets");
+  refused({"--peer", "192.0.2.1:7300", "--listen", "27411", "--unencrypted"}, "may not leave");
+  refused({"--peer", "127.0.0.1:7300", "--unencrypted", "--key", "key"}, "leave out one");
+  refused({"--peer", "127.0.0.1:7300", "--key", "missing"}, "tactus key");
+  refused({"--peer", "127.0.0.1:7300", "--unencrypted", "--vary", "control.force_gain=1,2"}, "--vary");
 }
 
 TEST_F(Command, AKeyIsMadeOnceAndNeverOverwritten) {

@@ -122,7 +122,7 @@ TEST(Endpoint, ASiteWithAKeyAndOneInPlainTextDoNotMeet) {
 TEST(Endpoint, PlainTextOffTheLoopbackIsRefused) {
   const auto endpoint =
       Endpoint::make({.site = SiteRole::master,
-                      .peer = Address::parse("192.0.2.1:7400").value(),
+                      .peer = Address::parse("192.0.2.1:7300").value(),
                       .listen = Address::parse("0.0.0.0:" + std::to_string(testing::free_port())).value(),
                       .key = std::nullopt});
   ASSERT_FALSE(endpoint);
