@@ -4,7 +4,7 @@ namespace tactus::runtime {
 
 namespace {
 
-constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::int64_t line_every_ns = 1'000'000'000;
 
 }  // namespace
 
@@ -13,7 +13,7 @@ control::SiteRequests SiteConsole::step(const station::Tick& tick, control::Site
   if (!begun_) {
     begun_ = true;
     start_ns_ = now_ns_;
-    second_ends_ns_ = now_ns_ + second_ns;
+    second_ends_ns_ = now_ns_ + line_every_ns;
   }
   time_s_ = static_cast<double>(now_ns_ - start_ns_) * 1e-9;
 
@@ -36,7 +36,7 @@ control::SiteRequests SiteConsole::step(const station::Tick& tick, control::Site
 
 bool SiteConsole::ends_second() noexcept {
   if (now_ns_ < second_ends_ns_) return false;
-  second_ends_ns_ += second_ns;
+  second_ends_ns_ += line_every_ns;
   return true;
 }
 

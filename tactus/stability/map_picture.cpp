@@ -81,7 +81,7 @@ std::vector<double> round_steps(double from, double to) {
 using Rgb = std::array<double, 3>;
 
 /// A colour between two, as `#rrggbb`.
-std::string between(const Rgb& red, const Rgb& pale, double share) {
+std::string blend(const Rgb& red, const Rgb& pale, double share) {
   char text[8];
   const auto mixed = [&](std::size_t i) {
     return static_cast<unsigned>(std::lround(red[i] + share * (pale[i] - red[i])));
@@ -103,8 +103,8 @@ MapPicture limits_of(const MapResult& map) {
     const double share = steps.size() > 2 ? static_cast<double>(i) / static_cast<double>(steps.size() - 2) : 0.0;
     // From red to yellow.
     picture.classes.push_back({report::number(steps[i], 2) + " to " + report::number(steps[i + 1], 2),
-                               between({0xb5, 0x44, 0x3c}, {0xff, 0xf3, 0xb0}, share),
-                               between({0x7a, 0x22, 0x1c}, {0xb8, 0x9c, 0x3e}, share)});
+                               blend({0xb5, 0x44, 0x3c}, {0xff, 0xf3, 0xb0}, share),
+                               blend({0x7a, 0x22, 0x1c}, {0xb8, 0x9c, 0x3e}, share)});
   }
   picture.classes.push_back({report::number(steps.back(), 2) + " or more, where the map ends", "#cfe8d5", "#2c6142"});
   for (const double limit : settled_limit(map, 1)) {

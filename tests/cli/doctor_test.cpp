@@ -11,10 +11,10 @@ using Doctor = Command;
 using Words = std::vector<std::string>;
 using Json = nlohmann::json;
 
-const Words quick{"doctor", "--duration-s", "0.2", "--priority", "10"};
+const Words quick_look{"doctor", "--duration-s", "0.2", "--priority", "10"};
 
 Words with(const Words& more) {
-  Words all = quick;
+  Words all = quick_look;
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -42,7 +42,7 @@ TEST_F(Doctor, EveryFindingHasItsVerdictMeaningAndRemedyAndTheExitStatusSaysWhet
 }
 
 TEST_F(Doctor, APersonGetsATableAndWhatItMeans) {
-  const Outcome outcome = tactus(quick);
+  const Outcome outcome = tactus(quick_look);
   EXPECT_NE(outcome.out.find("scheduler"), std::string::npos);
   EXPECT_NE(outcome.out.find("lateness: a tick begins this long after it is due"), std::string::npos) << outcome.out;
 }

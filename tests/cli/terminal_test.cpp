@@ -37,7 +37,7 @@ class Terminal : public Command {
     EXPECT_GT(child, 0);
     std::string text;
     std::array<char, 4096> piece{};
-    for (ssize_t got = 0; (got = read(terminal, piece.data(), piece.size())) > 0;) {
+    for (ssize_t got = 0; (got = ::read(terminal, piece.data(), piece.size())) > 0;) {
       text.append(piece.data(), static_cast<std::size_t>(got));
     }
     close(terminal);

@@ -19,7 +19,7 @@ struct Press {
 };
 constexpr std::array presses{Press{0.2, 1.0, 2.0, 2.6}, Press{2.8, 3.6, 4.6, 5.2}};
 constexpr double judged_s = 0.3;
-constexpr double end_s = 5.4;
+constexpr double both_presses_s = 5.4;  ///< and the way back
 /// Where the person waits between the presses, from mid-stroke, as a share of the way to the stop.
 constexpr double waiting_share = 0.6;
 /// A master that moves less than this, RMS, has settled: what is left is the noise of the estimate and no oscillation.
@@ -124,7 +124,7 @@ Result<RigidContactRun> run_with(const HydraulicRigidContactParams& params,
                       .pressure_force_N = {},
                       .stop_force_N = {}};
   std::vector<bool> touching;
-  const auto ticks = static_cast<std::size_t>(std::lround(end_s / tick.value));
+  const auto ticks = static_cast<std::size_t>(std::lround(both_presses_s / tick.value));
   for (std::size_t i = 0; i < ticks; ++i) {
     const simulation::HydraulicRig::Sample sample = rig->sample();
     const double felt_N = estimator->step({.command = sample.current_mA, .position = sample.position_m}).force;
