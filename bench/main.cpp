@@ -79,8 +79,9 @@ int main(int count, char** arguments) {
 
   Findings findings = tactus::bench::model_tick(times);
   for (const auto& more :
-       {tactus::bench::tick_tail(), tactus::bench::force_estimators(times), tactus::bench::virtual_time(times),
-        tactus::bench::joints(times), tactus::bench::isolation(), tactus::bench::servo_step(quick)}) {
+       {tactus::bench::grip_tick(quick), tactus::bench::tick_tail(), tactus::bench::force_estimators(times),
+        tactus::bench::virtual_time(times), tactus::bench::joints(times), tactus::bench::isolation(),
+        tactus::bench::servo_step(quick)}) {
     findings.insert(findings.end(), more.begin(), more.end());
   }
   if (json) {

@@ -1,5 +1,4 @@
 #include <tactus/control/stages/cancellation.hpp>
-#include <tactus/control/stages/grip_cancellation.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -75,13 +74,6 @@ void add_model_tick() {
     const double measured_m = whole.model().motor_position_m();
     whole.step({.measured_position_m = measured_m, .motor_force_N = -force_N});
   });
-  for (const auto estimate : {control::OperatorEstimate::off, control::OperatorEstimate::online}) {
-    const auto any = *control::GripCancellation::make({.cancellation = {}, .estimate = estimate}, Seconds{tick_s});
-    add_ticks(estimate == control::OperatorEstimate::off ? "fixed hand" : "online estimate", any,
-              [](control::GripCancellation& whole, double force_N) {
-                whole.step({.measured_position_m = 0.99 * whole.induced_position_m(), .motor_force_N = -force_N});
-              });
-  }
   // Each result is the next sample, so that this is the latency of what stands between sample and command.
   add_case("after the sample", [cancellation, ticks = impact_forces().size()] {
     double position_m = 0.01;
@@ -113,8 +105,6 @@ Findings model_tick(const Times& times) {
           {section, "Euler, 5 substeps", tick_ns("euler"), "ns"},
           {section, "exact step with a hysteretic linkage, the default", tick_ns("hysteretic"), "ns"},
           {section, "cancellation around that", tick_ns("cancellation"), "ns"},
-          {section, "cancellation with an online estimate", tick_ns("online estimate"), "ns"},
-          {section, "online estimate / fixed hand", tick_ns("online estimate") / tick_ns("fixed hand")},
           {section, "odeint Euler, 5 substeps, projected friction", tick_ns("odeint projected"), "ns"},
           {section, "odeint Euler, 5 substeps, tanh friction", tick_ns("odeint tanh"), "ns"},
           {section, "exact / odeint with projected friction", tick_ns("exact") / tick_ns("odeint projected"), "",

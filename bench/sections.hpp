@@ -10,6 +10,9 @@ namespace tactus::bench {
 void add_model_tick();
 Findings model_tick(const Times& times);
 
+/// One tick of cancellation that estimates the hand, beside one with a fixed hand, in alternating passes.
+Findings grip_tick(bool quick);
+
 /// How much longer the slowest ticks of the model take than the usual ones.
 Findings tick_tail();
 
