@@ -123,8 +123,9 @@ struct InducedMotionStep {
     const Scalar slipped_N = hysteretic ? slipped_force_N(stretch_m) : Scalar(0.0);
     const Scalar linkage_N = slipped_N + linkage_stiffness_N_per_m * stretch_m;
     const Scalar beyond_N = slipped_N + other.linkage_share * linkage_N;
+    const Held held = held_by(other, state);
     Column next = coast(state, beyond_N, beyond_N, range.offset_m_per_s);
-    const Scalar held_N = held_force_N(other, state, Scalar(0.0), next[5]);
+    const Scalar held_N = held.at_rest_N - held.damping_N_s_per_m * next[5];
     for (std::size_t row = 0; row < next.size(); ++row) next[row] = next[row] + response[2][row] * held_N;
     rub(motor_force_N, next, range);
     return linkage_N;
@@ -133,7 +134,8 @@ struct InducedMotionStep {
   /// What a small change of two parameters adds to the forces, one of the hand and one of the linkage, in N, and how
   /// far the linkage's average stiffness is below the initial one.
   struct Added {
-    Scalar hand_N, linkage_N;
+    Scalar hand_N;  ///< times `Difference::yielding`
+    Scalar linkage_N;
     Scalar softer_N_per_m;
   };
   /// A tick of what these changes do to the state, for each unit of change: linear, without friction, the linkage at
@@ -154,8 +156,9 @@ struct InducedMotionStep {
       hand[row] = coasted(row, of_hand) + apart * hand_beyond_N;
       linkage_state[row] = coasted(row, of_linkage) + apart * linkage_beyond_N;
     }
-    const Scalar on_hand_N = held_force_N(other, of_hand, added.hand_N, hand[5]);
-    const Scalar on_linkage_N = held_force_N(other, of_linkage, Scalar(0.0), linkage_state[5]);
+    const Held held = held_by(other, of_hand), linkage_held = held_by(other, of_linkage);
+    const Scalar on_hand_N = (held.at_rest_N - held.damping_N_s_per_m * hand[5]) + added.hand_N;
+    const Scalar on_linkage_N = linkage_held.at_rest_N - linkage_held.damping_N_s_per_m * linkage_state[5];
     for (std::size_t row = 0; row < hand.size(); ++row) {
       of_hand[row] = hand[row] + response[2][row] * on_hand_N;
       of_linkage[row] = linkage_state[row] + response[2][row] * on_linkage_N;
@@ -183,14 +186,16 @@ struct InducedMotionStep {
     return next;
   }
 
-  /// The force `force_N` on the handle less what another hand pulls with more: its damping acts on the mean velocity
-  /// of the tick, which makes it stable whatever its size. `free_m_per_s` is the handle's at the end without it.
-  [[nodiscard]] Scalar held_force_N(const Difference& other, const State& from, const Scalar& force_N,
-                                    const Scalar& free_m_per_s) const noexcept {
-    const Scalar damping = 0.5 * other.hand_damping_N_s_per_m;
-    const Scalar wanted_N =
-        force_N - other.hand_stiffness_N_per_m * (from[2] + 0.5 * dt_s * from[5]) - damping * (from[5] + free_m_per_s);
-    return wanted_N * other.yielding;
+  /// What another hand pushes with more, as a line in the velocity that the handle would have at the end of the tick
+  /// without it: its damping acts on the mean velocity of the tick, which makes it stable whatever its size.
+  struct Held {
+    Scalar at_rest_N, damping_N_s_per_m;
+  };
+  [[nodiscard]] Held held_by(const Difference& other, const State& from) const noexcept {
+    const Scalar damping = 0.5 * other.hand_damping_N_s_per_m * other.yielding;
+    const Scalar stiffness = other.hand_stiffness_N_per_m * other.yielding;
+    return {.at_rest_N = -(stiffness * (from[2] + 0.5 * dt_s * from[5]) + damping * from[5]),
+            .damping_N_s_per_m = damping};
   }
 
   void rub(const Scalar& motor_force_N, const Column& next, const FrictionRange& range) noexcept {

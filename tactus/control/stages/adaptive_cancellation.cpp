@@ -75,6 +75,53 @@ AdaptiveCancellation::AdaptiveCancellation(const InducedMotionModel& model, cons
   reset();
 }
 
+inline void AdaptiveCancellation::weigh(double unexplained_m, const Each<double>& slope_m) noexcept {
+  Covariance& c = covariance_;
+  const Each<double> shared{c.mobility * slope_m[mobility] + c.both * slope_m[linkage],
+                            c.both * slope_m[mobility] + c.linkage * slope_m[linkage]};
+  const double per_variance =
+      1.0 / (variance_m2_ + slope_m[mobility] * shared[mobility] + slope_m[linkage] * shared[linkage]);
+  const Each<double> gain{shared[mobility] * per_variance, shared[linkage] * per_variance};
+  // What the sample told, and then what a tick forgets.
+  c.mobility = kept_.mobility * (c.mobility - gain[mobility] * shared[mobility]) + regained_.mobility;
+  c.both = kept_.both * (c.both - gain[mobility] * shared[linkage]);
+  c.linkage = kept_.linkage * (c.linkage - gain[linkage] * shared[linkage]) + regained_.linkage;
+  for (std::size_t i = 0; i < parameters; ++i) {
+    const double found = estimate_[i] + (pending_[i] + gain[i] * unexplained_m);
+    const double drawn = found + forgotten_share_[i] * (identified[i] - found);
+    pending_[i] = std::clamp(drawn, least[i], most[i]) - estimate_[i];
+  }
+}
+
+inline void AdaptiveCancellation::apply() noexcept {
+  double move_m = 0.0;
+  for (std::size_t i = 0; i < parameters; ++i) move_m += tangent_[i][0] * pending_[i];
+  const double share = std::fabs(move_m) > step_m ? step_m / std::fabs(move_m) : 1.0;
+  for (std::size_t i = 0; i < parameters; ++i) {
+    const double change = share * pending_[i];
+    estimate_[i] += change;
+    pending_[i] -= change;
+    for (std::size_t row = 0; row < model_.state.size(); ++row) model_.state[row] += tangent_[i][row] * change;
+    residual_.section.state_1 -= slope_[i].section.state_1 * change;
+    residual_.section.state_2 -= slope_[i].section.state_2 * change;
+  }
+  grip_ = 1.0 / estimate_[mobility];
+}
+
+inline double AdaptiveCancellation::slow_part_m(double induced_m) noexcept {
+  person_m_ += person_share_ * (induced_m - person_m_);
+  passed_m_ += passed_share_ * (kept_share * induced_m + (1.0 - kept_share) * person_m_ - passed_m_);
+  return passed_m_;
+}
+
+inline InducedMotionStep<double>::Difference AdaptiveCancellation::difference() const noexcept {
+  const double firmer = grip_ - 1.0;
+  return {.hand_stiffness_N_per_m = firmer * hand_stiffness_N_per_m_,
+          .hand_damping_N_s_per_m = firmer * hand_damping_N_s_per_m_,
+          .linkage_share = estimate_[linkage],
+          .yielding = model_.yielding_of(firmer * hand_damping_N_s_per_m_)};
+}
+
 double AdaptiveCancellation::intended(double measured_position_m) noexcept {
   // A start far from zero must be no transient.
   if (!primed_) residual_.settle(measured_position_m - model_.state[0]);
@@ -97,69 +144,23 @@ double AdaptiveCancellation::intended(double measured_position_m) noexcept {
 
 HandEstimate AdaptiveCancellation::hand() const noexcept {
   // Rounding can take a variance that is nearly nothing below it.
-  const double deviation = std::sqrt(std::max(0.0, covariance_.mobility));
+  const double of_mobility = std::sqrt(std::max(0.0, covariance_.mobility));
   return {.estimated_grip = grip_,
-          .estimated_grip_deviation = deviation * grip_ * grip_,
+          .estimated_grip_deviation = of_mobility * grip_ * grip_,
           .linkage_excess = estimate_[linkage]};
-}
-
-void AdaptiveCancellation::weigh(double unexplained_m, const Each<double>& slope_m) noexcept {
-  Covariance& c = covariance_;
-  const Each<double> shared{c.mobility * slope_m[mobility] + c.both * slope_m[linkage],
-                            c.both * slope_m[mobility] + c.linkage * slope_m[linkage]};
-  const double per_variance =
-      1.0 / (variance_m2_ + slope_m[mobility] * shared[mobility] + slope_m[linkage] * shared[linkage]);
-  const Each<double> gain{shared[mobility] * per_variance, shared[linkage] * per_variance};
-  // What the sample told, and then what a tick forgets.
-  c.mobility = kept_.mobility * (c.mobility - gain[mobility] * shared[mobility]) + regained_.mobility;
-  c.both = kept_.both * (c.both - gain[mobility] * shared[linkage]);
-  c.linkage = kept_.linkage * (c.linkage - gain[linkage] * shared[linkage]) + regained_.linkage;
-  for (std::size_t i = 0; i < parameters; ++i) {
-    const double found = estimate_[i] + (pending_[i] + gain[i] * unexplained_m);
-    const double drawn = found + forgotten_share_[i] * (identified[i] - found);
-    pending_[i] = std::clamp(drawn, least[i], most[i]) - estimate_[i];
-  }
-}
-
-void AdaptiveCancellation::apply() noexcept {
-  double move_m = 0.0;
-  for (std::size_t i = 0; i < parameters; ++i) move_m += tangent_[i][0] * pending_[i];
-  const double share = std::fabs(move_m) > step_m ? step_m / std::fabs(move_m) : 1.0;
-  for (std::size_t i = 0; i < parameters; ++i) {
-    const double change = share * pending_[i];
-    estimate_[i] += change;
-    pending_[i] -= change;
-    for (std::size_t row = 0; row < model_.state.size(); ++row) model_.state[row] += tangent_[i][row] * change;
-    residual_.section.state_1 -= slope_[i].section.state_1 * change;
-    residual_.section.state_2 -= slope_[i].section.state_2 * change;
-  }
-  grip_ = 1.0 / estimate_[mobility];
-}
-
-double AdaptiveCancellation::slow_part_m(double induced_m) noexcept {
-  person_m_ += person_share_ * (induced_m - person_m_);
-  passed_m_ += passed_share_ * (kept_share * induced_m + (1.0 - kept_share) * person_m_ - passed_m_);
-  return passed_m_;
-}
-
-InducedMotionStep<double>::Difference AdaptiveCancellation::difference() const noexcept {
-  const double firmer = grip_ - 1.0;
-  return {.hand_stiffness_N_per_m = firmer * hand_stiffness_N_per_m_,
-          .hand_damping_N_s_per_m = firmer * hand_damping_N_s_per_m_,
-          .linkage_share = estimate_[linkage],
-          .yielding = model_.yielding_of(firmer * hand_damping_N_s_per_m_)};
 }
 
 void AdaptiveCancellation::advance(double motor_force_N) noexcept {
   const Step::Difference other = difference();
-  const double before_m = model_.state[2], before_m_per_s = model_.state[5];
+  // What a unit more of mobility sets free of the hand's mean force in the tick: 1/θ² of it.
+  const double freed_share = 0.5 * (grip_ * grip_) * other.yielding;
+  const double damping = freed_share * hand_damping_N_s_per_m_, stiffness = freed_share * hand_stiffness_N_per_m_;
+  const double freed_before_N = damping * model_.state[5] + stiffness * model_.state[2];
   const double linkage_N = model_.advance_in_another_hand(
       other, motor_force_N, model_.friction_range(intended_velocity_m_per_s_), hysteretic_);
-  const double identified_hand_N = 0.5 * (hand_damping_N_s_per_m_ * (before_m_per_s + model_.state[5]) +
-                                          hand_stiffness_N_per_m_ * (before_m + model_.state[2]));
+  const double freed_N = freed_before_N + (damping * model_.state[5] + stiffness * model_.state[2]);
   const double softer_N_per_m =
       model_.linkage_stiffness_N_per_m - (1.0 + estimate_[linkage]) * average_linkage_N_per_m_;
-  const double freed_N = identified_hand_N * (grip_ * grip_);
   model_.advance_tangents(tangent_[mobility], tangent_[linkage], other,
                           {.hand_N = freed_N, .linkage_N = linkage_N, .softer_N_per_m = softer_N_per_m});
   for (Step::State& tangent : tangent_) {
