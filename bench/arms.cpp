@@ -40,7 +40,8 @@ bool measure(const experiments::ArmTappingParams& params, const std::filesystem:
       params.control,
       {.carried = setup->arm.chain, .induced = setup->induced, .gains = params.control.follower.gains.of(joints)},
       tick);
-  auto follower = arm_control::ArmFollower::make(params.control.follower, setup->arm.chain, tick);
+  auto follower = arm_control::ArmFollower::make(params.control.follower,
+                                                 {.chain = setup->arm.chain, .tool_m = setup->arm.tool_m}, tick);
   auto arm = arm_plants::ArmPlant::make(setup->arm, setup->start);
   if (!leader || !follower || !arm) return false;
   arm::ArmReading reading = arm->read();

@@ -4,49 +4,79 @@
 #include <algorithm>
 
 namespace tactus::arm_control {
+namespace {
 
-ArmFollower::ArmFollower(const Params& params, const FeedForward& feed_forward, const Observer& observer,
+JointVector of_each(const ArmFollower::Params& params, std::size_t joints, double DriveGains::*gain) {
+  const Joints<DriveGains> gains = params.gains.of(joints);
+  JointVector found(static_cast<Eigen::Index>(joints));
+  for (std::size_t i = 0; i < joints; ++i) found[static_cast<Eigen::Index>(i)] = gains[i].*gain;
+  return found;
+}
+
+}  // namespace
+
+ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
                          const Joints<control::ForceGate>& gates)
-    : feed_forward_(feed_forward),
+    : chain_(chain),
+      tool_m_(arm.tool_m),
+      feed_forward_(params.feed_forward, arm.chain, chain),
       observer_(observer),
       gates_(gates),
       observes_(params.torque == TorqueSource::observer),
-      stiffness_(JointVector::Zero(static_cast<Eigen::Index>(gates.size()))),
-      damping_(stiffness_) {
-  const Joints<DriveGains> gains = params.gains.of(gates.size());
-  for (std::size_t i = 0; i < gains.size(); ++i) {
-    stiffness_[static_cast<Eigen::Index>(i)] = params.stiffness_share * gains[i].stiffness_N_m_per_rad;
-    damping_[static_cast<Eigen::Index>(i)] = gains[i].damping_N_m_s_per_rad;
+      dead_band_(JointVector::Zero(chain.joints())),
+      stiffness_(params.stiffness_share * of_each(params, gates.size(), &DriveGains::stiffness_N_m_per_rad)),
+      damping_(of_each(params, gates.size(), &DriveGains::damping_N_m_s_per_rad)),
+      stiffness_limit_(stiffness_, params.tool_stiffness_limit_N_per_m),
+      damping_limit_(damping_, params.tool_damping_limit_N_s_per_m) {
+  for (Eigen::Index i = 0; i < dead_band_.size(); ++i) {
+    dead_band_[i] =
+        params.observer.dead_band_share * arm.chain.joints[static_cast<std::size_t>(i)].friction.coulomb_N_m;
   }
 }
 
-Result<ArmFollower::Observer> ArmFollower::make_observer(const TorqueObserverParams& params,
-                                                         const arm::Chain::Params& arm, const arm::Chain& chain,
-                                                         const JointVector& joint_stiffness, Seconds dt) {
+Result<ArmFollower::Observer> ArmFollower::make_observer(const TorqueObserverParams& params, const Arm& arm,
+                                                         const arm::Chain& chain, Seconds dt) {
   if (params.joints == JointModel::rigid) {
     const auto rigid = ExternalTorqueObserver::make(params, chain, dt);
     if (!rigid) return rigid.error();
     return Observer(*rigid);
   }
-  const auto elastic = ElasticTorqueObserver::make(params, arm, joint_stiffness, dt);
+  const auto elastic = ElasticTorqueObserver::make(params, arm.chain, arm.joint_stiffness_N_m_per_rad, dt);
   if (!elastic) return elastic.error();
   return Observer(*elastic);
 }
 
-Result<ArmFollower> ArmFollower::make(const Params& params, const arm::Chain::Params& arm, Seconds dt,
-                                      const JointVector& joint_stiffness) {
+Result<ArmFollower> ArmFollower::make(const Params& params, const Arm& arm, Seconds dt) {
   if (Check wrong = signal::check(params, dt)) return *std::move(wrong);
-  const auto chain = arm::Chain::make(arm);
+  const auto chain = arm::Chain::make(arm.chain);
   if (!chain) return chain.error();
-  const auto observer = make_observer(params.observer, arm, *chain, joint_stiffness, dt);
+  const auto observer = make_observer(params.observer, arm, *chain, dt);
   if (!observer) return under("observer", observer.error());
-  Joints<control::ForceGate::Params> limits(arm.joints.size());
+  Joints<control::ForceGate::Params> limits(arm.chain.joints.size());
   for (std::size_t i = 0; i < limits.size(); ++i) {
-    limits[i].force_limit_N = std::min(100.0, arm.joints[i].limits.effort_N_m);
+    limits[i].force_limit_N = std::min(100.0, arm.chain.joints[i].limits.effort_N_m);
   }
   const auto gates = make_each<control::ForceGate>(limits, dt);
   if (!gates) return gates.error();
-  return ArmFollower(params, FeedForward(params.feed_forward, arm, *chain), *observer, *gates);
+  return ArmFollower(params, arm, *chain, *observer, *gates);
+}
+
+JointVector ArmFollower::excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept {
+  const ToolJacobian tool = chain_.jacobian(reading.position, chain_.joints() - 1, tool_m_).topRows<3>();
+  arm::Vector3 excess_N = arm::Vector3::Zero();
+  if (stiffness_limit_.limits()) {
+    excess_N += stiffness_limit_.excess(tool) * (tool * (leader.position - reading.position));
+  }
+  if (damping_limit_.limits()) excess_N += damping_limit_.excess(tool) * (tool * (leader.velocity - reading.velocity));
+  return tool.transpose() * excess_N;
+}
+
+JointVector ArmFollower::observed(const ArmReading& reading) noexcept {
+  JointVector torque = std::visit([&](auto& one) { return one.step(reading); }, observer_);
+  for (Eigen::Index i = 0; i < torque.size(); ++i) {
+    torque[i] -= std::clamp(torque[i], -dead_band_[i], dead_band_[i]);
+  }
+  return torque;
 }
 
 ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVector& sensed,
@@ -57,14 +87,14 @@ ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVect
                     .stiffness = stiffness_,
                     .damping = damping_,
                     .torque = feed_forward_.torque(reading)};
+  if (stiffness_limit_.limits() || damping_limit_.limits()) output.command.torque -= excess_torque(reading, leader);
   for (std::size_t i = 0; i < gates_.size(); ++i) {
     double& torque = output.command.torque[static_cast<Eigen::Index>(i)];
     torque = gates_[i].step(torque);
   }
-  output.message = {
-      .position = reading.position,
-      .velocity = reading.velocity,
-      .external_torque = observes_ ? std::visit([&](auto& one) { return one.step(reading); }, observer_) : sensed};
+  output.message = {.position = reading.position,
+                    .velocity = reading.velocity,
+                    .external_torque = observes_ ? observed(reading) : sensed};
   return output;
 }
 

@@ -5,6 +5,7 @@
 #include <tactus/arm_control/elastic_torque_observer.hpp>
 #include <tactus/arm_control/external_torque_observer.hpp>
 #include <tactus/arm_control/feed_forward.hpp>
+#include <tactus/arm_control/tool_limit.hpp>
 
 #include <array>
 #include <variant>
@@ -17,46 +18,70 @@ constexpr auto enumerators(TorqueSource) {
   return std::array{Enumerator{TorqueSource::observer, "observer"}, Enumerator{TorqueSource::sensor, "sensor"}};
 }
 
-/// An observer of external torque, of rigid joints or of elastic ones.
+/// An observer of external torque, of rigid joints or of elastic ones, and what of it is believed.
+///
+/// A joint that rests bears any torque within its Coulomb friction, and an observer cannot tell that from one from
+/// outside. A dead band tells only what exceeds it: |r| − share·Coulomb, with the sign of r, or nothing. Without it, a
+/// false torque stands against the hand, times the gain; along a direction in which the tool hardly moves it is a
+/// large force. With it, forces within friction are not felt.
 struct TorqueObserverParams : ExternalTorqueObserver::Params {
   JointModel joints = JointModel::rigid;
+  double dead_band_share = 0.0;
   static constexpr auto fields() {
-    return joined(ExternalTorqueObserver::Params::fields(),
-                  List{field("joints", &TorqueObserverParams::joints,
-                             "What it takes the joints for: elastic ones filter in third order.")});
+    return joined(
+        ExternalTorqueObserver::Params::fields(),
+        List{field("joints", &TorqueObserverParams::joints,
+                   "What it takes the joints for: elastic ones filter in third order."),
+             field("dead_band_share", &TorqueObserverParams::dead_band_share, tactus::units::none, between(0.0, 4.0),
+                   "Share of each joint's Coulomb friction that torque must exceed to be told.")});
   }
 };
 
 /// The site of the arm that touches things: its drives pull it to where the leader wants it, by their own law, and it
-/// tells the torque from outside. Feed-forward is bounded by each joint's effort limit, 100 N m at most; the drive
+/// tells the torque from outside. What their gains come to at the tool beyond its limits is taken away over the bus
+/// (`ToolLimit`). Feed-forward is bounded by each joint's effort limit, 100 N m at most; the drive
 /// bounds the rest.
 class ArmFollower {
  public:
   struct Params {
     EachJoint<DriveGains> gains = {};
     double stiffness_share = 1.0;
+    double tool_stiffness_limit_N_per_m = 0.0;
+    double tool_damping_limit_N_s_per_m = 0.0;
     FeedForward::Params feed_forward = {};
     TorqueSource torque = TorqueSource::observer;
     TorqueObserverParams observer = {};
     static constexpr auto fields() {
       using P = Params;
-      return List{field("gains", &P::gains, "Of the drives."),
-                  field("stiffness_share", &P::stiffness_share, tactus::units::none, between(0.0, 2.0),
-                        "Share of the stiffness in gains that the drives are given; their damping stays."),
-                  field("feed_forward", &P::feed_forward, "What carries the follower and helps it against friction."),
-                  field("torque", &P::torque, "Where the external torque that comes back is from."),
-                  field("observer", &P::observer, "The observer of external torque.")};
+      return List{
+          field("gains", &P::gains, "Of the drives."),
+          field("stiffness_share", &P::stiffness_share, tactus::units::none, between(0.0, 2.0),
+                "Share of the stiffness in gains that the drives are given; their damping stays."),
+          field("tool_stiffness_limit_N_per_m", &P::tool_stiffness_limit_N_per_m, tactus::units::newton_per_metre,
+                between(0.0, 1e5),
+                "The most that the drives' stiffness may come to at the tool, in any direction; 0 is no limit."),
+          field("tool_damping_limit_N_s_per_m", &P::tool_damping_limit_N_s_per_m,
+                tactus::units::newton_second_per_metre, between(0.0, 1e4),
+                "The most that the drives' damping may come to there; 0 is no limit."),
+          field("feed_forward", &P::feed_forward, "What carries the follower and helps it against friction."),
+          field("torque", &P::torque, "Where the external torque that comes back is from."),
+          field("observer", &P::observer, "The observer of external torque.")};
     }
+  };
+  /// What the site believes of its arm.
+  struct Arm {
+    arm::Chain::Params chain;
+    arm::Vector3 tool_m = arm::Vector3::Zero();  ///< on its last link
+    /// Of the transmissions, for an observer that takes them for elastic.
+    JointVector joint_stiffness_N_m_per_rad = {};
   };
   struct Output {
     ArmCommand command;
     ArmMessage message;
   };
 
-  /// `arm` is what it is believed to be, `joint_stiffness` in N m/rad that of its transmissions, for an observer that
-  /// takes them for elastic. Errors: a number out of bounds; those of the parts.
-  static Result<ArmFollower> make(const Params& params, const arm::Chain::Params& arm, Seconds dt,
-                                  const JointVector& joint_stiffness = {});
+  /// Errors: a number out of bounds; those of the parts.
+  static Result<ArmFollower> make(const Params& params, const Arm& arm, Seconds dt);
 
   /// One tick. `sensed` is external torque as sensors in the joints tell it; not looked at where an observer is.
   /// Real-time safe.
@@ -64,17 +89,24 @@ class ArmFollower {
 
  private:
   using Observer = std::variant<ExternalTorqueObserver, ElasticTorqueObserver>;
-  static Result<Observer> make_observer(const TorqueObserverParams& params, const arm::Chain::Params& arm,
-                                        const arm::Chain& chain, const JointVector& joint_stiffness, Seconds dt);
-  ArmFollower(const Params& params, const FeedForward& feed_forward, const Observer& observer,
+  static Result<Observer> make_observer(const TorqueObserverParams& params, const Arm& arm, const arm::Chain& chain,
+                                        Seconds dt);
+  ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
               const Joints<control::ForceGate>& gates);
+  [[nodiscard]] JointVector excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept;
+  [[nodiscard]] JointVector observed(const ArmReading& reading) noexcept;
 
+  arm::Chain chain_;
+  arm::Vector3 tool_m_;
   FeedForward feed_forward_;
   Observer observer_;
   Joints<control::ForceGate> gates_;
   bool observes_;
+  JointVector dead_band_;
   JointVector stiffness_;
   JointVector damping_;
+  ToolLimit stiffness_limit_;
+  ToolLimit damping_limit_;
 };
 
 }  // namespace tactus::arm_control

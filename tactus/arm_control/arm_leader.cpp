@@ -23,17 +23,15 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
       chain_(chain),
       tool_m_(arm.induced.tool_m),
       stiffness_(JointVector::Zero(chain.joints())),
-      damping_(stiffness_),
+      damping_(params.method == ArmMethod::position_position ? stiffness_ : drive_damping(params, chain.joints())),
+      damping_limit_(damping_, params.drive_damping_limit_N_s_per_m),
       model_(model),
       force_(force),
       command_position_(command),
       command_velocity_(command),
       gates_(gates),
       acting_(stiffness_) {
-  if (params.method != ArmMethod::position_position) {
-    damping_ = drive_damping(params, chain.joints());
-    return;
-  }
+  if (params.method != ArmMethod::position_position) return;
   for (std::size_t i = 0; i < arm.gains.size(); ++i) {
     stiffness_[static_cast<Eigen::Index>(i)] = params.force_gain * arm.gains[i].stiffness_N_m_per_rad;
     damping_[static_cast<Eigen::Index>(i)] = params.force_gain * arm.gains[i].damping_N_m_s_per_rad;
@@ -46,6 +44,7 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
   if (!chain) return chain.error();
   const InducedMotion::Site site{.damping_N_s_per_m = params.damping_N_s_per_m,
                                  .drive_damping_N_m_s_per_rad = drive_damping(params, chain->joints()),
+                                 .drive_damping_limit_N_s_per_m = params.drive_damping_limit_N_s_per_m,
                                  .friction_share = params.feed_forward.friction_share,
                                  .friction_velocity_rad_per_s = params.feed_forward.friction_velocity_rad_per_s};
   const auto model = InducedMotion::make(params.model, site, arm.induced, dt);
@@ -72,9 +71,13 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
   }
   const bool reflects = params_.method != ArmMethod::position_position;
   JointVector support = feed_forward_.torque(reading);
-  if (params_.damping_N_s_per_m > 0.0) {
-    const auto moving = chain_.jacobian(reading.position, joints - 1, tool_m_).topRows<3>().eval();
-    support -= params_.damping_N_s_per_m * (moving.transpose() * (moving * reading.velocity));
+  const bool gives_back = reflects && damping_limit_.limits();
+  if (params_.damping_N_s_per_m > 0.0 || gives_back) {
+    const ToolJacobian tool = chain_.jacobian(reading.position, joints - 1, tool_m_).topRows<3>();
+    const arm::Vector3 velocity = tool * reading.velocity;
+    arm::Vector3 force_N = -params_.damping_N_s_per_m * velocity;
+    if (gives_back) force_N += damping_limit_.excess(tool) * velocity;
+    support += tool.transpose() * force_N;
   }
   JointVector displayed = JointVector::Zero(joints);
   if (reflects) displayed = params_.force_gain * force_.step(follower.external_torque);

@@ -5,6 +5,7 @@
 #include <tactus/arm_control/feed_forward.hpp>
 #include <tactus/arm_control/induced_motion.hpp>
 #include <tactus/arm_control/joint_low_pass.hpp>
+#include <tactus/arm_control/tool_limit.hpp>
 #include <tactus/control/force_gate.hpp>
 
 #include <array>
@@ -51,7 +52,8 @@ struct DriveDamping {
 ///
 ///     feed-forward + gain·external torque of the follower − Jᵀ·damping·J·q̇ − drive damping·q̇,
 ///
-/// of which the second part is displayed and the last is the drives' own; with position-position it is feed-forward and
+/// of which the second part is displayed and the last is the drives' own. What that comes to at the tool beyond a limit
+/// is given back over the bus (`ToolLimit`). With position-position it is feed-forward and
 /// the drives' law, towards the follower. What passes is
 /// bounded by each joint's effort limit, last of all, and the model of induced motion lives on what passed.
 /// Sources: position-position as openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the
@@ -64,6 +66,7 @@ class ArmLeader {
     double force_gain = 1.0;
     double damping_N_s_per_m = 0.0;
     EachJoint<DriveDamping> drive_damping = {};
+    double drive_damping_limit_N_s_per_m = 0.0;
     double force_low_pass_Hz = 0.0;
     double command_low_pass_Hz = 0.0;
     FeedForward::Params feed_forward = {};
@@ -79,6 +82,9 @@ class ArmLeader {
                 between(0.0, 1000.0), "A damper at the leader's tool, by way of the bus."),
           field("drive_damping", &P::drive_damping,
                 "What the leader's drives resist by themselves; not with position-position."),
+          field("drive_damping_limit_N_s_per_m", &P::drive_damping_limit_N_s_per_m,
+                tactus::units::newton_second_per_metre, between(0.0, 1e4),
+                "The most that drive_damping may come to at the tool, in any direction; 0 is no limit."),
           field("force_low_pass_Hz", &P::force_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
                 "First-order low-pass on the displayed torque; 0 is none."),
           field("command_low_pass_Hz", &P::command_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
@@ -119,6 +125,7 @@ class ArmLeader {
   arm::Vector3 tool_m_;
   JointVector stiffness_;
   JointVector damping_;
+  ToolLimit damping_limit_;
   InducedMotion model_;
   JointLowPass force_;
   JointLowPass command_position_;

@@ -21,6 +21,7 @@ InducedMotion::InducedMotion(const Params& params, const Site& site, const Arm& 
       site_(site),
       drive_damping_(site.drive_damping_N_m_s_per_rad.size() == chain.joints() ? site.drive_damping_N_m_s_per_rad
                                                                                : JointVector::Zero(chain.joints())),
+      drive_damping_limit_(drive_damping_, site.drive_damping_limit_N_s_per_m),
       diagonal_(params.inertia == InertiaModel::diagonal),
       elastic_(params.joints == JointModel::elastic),
       joint_stiffness_(arm.joint_stiffness_N_m_per_rad),
@@ -78,6 +79,10 @@ InducedMotion::Matrices InducedMotion::matrices(const JointVector& measured_posi
   const JointMatrix damping = hand_.damping_N_s_per_m * held;
   JointMatrix of_site = site_.damping_N_s_per_m * moving;
   of_site.diagonal() += drive_damping_;
+  if (drive_damping_limit_.limits()) {
+    const ToolJacobian tool = jacobian.topRows<3>();
+    of_site -= tool.transpose() * drive_damping_limit_.excess(tool) * tool;
+  }
   if (!elastic_) return {.inertia = inertia, .damping = damping + of_site, .stiffness = stiffness};
   const StateMatrix none = StateMatrix::Zero(2 * count, 2 * count);
   Matrices found{.inertia = none, .damping = none, .stiffness = none};

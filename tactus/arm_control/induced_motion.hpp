@@ -3,6 +3,7 @@
 #include <tactus/arm/chain.hpp>
 #include <tactus/arm/hand.hpp>
 #include <tactus/arm_control/joint_model.hpp>
+#include <tactus/arm_control/tool_limit.hpp>
 #include <tactus/core/parameters.hpp>
 
 #include <array>
@@ -59,6 +60,7 @@ class InducedMotion {
   struct Site {
     double damping_N_s_per_m = 0.0;                ///< of a damper at the tool
     JointVector drive_damping_N_m_s_per_rad = {};  ///< of the leader's drives; none where it has no rows
+    double drive_damping_limit_N_s_per_m = 0.0;    ///< of what that is at the tool; 0 is none
     double friction_share = 0.0;                   ///< of the friction that feed-forward takes away
     double friction_velocity_rad_per_s = 0.3;
   };
@@ -105,6 +107,7 @@ class InducedMotion {
   arm::HandImpedance hand_;
   Site site_;
   JointVector drive_damping_;
+  ToolLimit drive_damping_limit_;
   bool diagonal_;
   bool elastic_;
   JointVector joint_stiffness_;

@@ -1,4 +1,5 @@
 #include <tactus/arm_control/arm_follower.hpp>
+#include <tactus/signal/decompositions.hpp>
 
 #include <cmath>
 
@@ -16,6 +17,8 @@ ArmLeader::Arm believed() {
           .induced = {.chain = plant.chain, .tool_m = plant.tool_m},
           .gains = Joints<DriveGains>(7)};
 }
+
+ArmFollower::Arm touching_arm() { return {.chain = believed().carried, .tool_m = believed().induced.tool_m}; }
 
 ArmReading resting() {
   return {.position = arm_plants::bent(), .velocity = JointVector::Zero(7), .torque = JointVector::Zero(7)};
@@ -113,7 +116,7 @@ TEST(ArmFollower, CommandsItsDrivesAndTellsTheTorqueThatItWasAskedFor) {
   params.gains.joint_2 = {.stiffness_N_m_per_rad = 200.0, .damping_N_m_s_per_rad = 2.0};
   params.torque = TorqueSource::sensor;
   params.stiffness_share = 0.5;
-  auto follower = *ArmFollower::make(params, believed().carried, tick);
+  auto follower = *ArmFollower::make(params, touching_arm(), tick);
   const ArmMessage wanted = touching(0.0);
   const auto output = follower.step(resting(), JointVector::Constant(7, 0.4), wanted);
   EXPECT_EQ(output.command.stiffness[1], 100.0);
@@ -122,7 +125,7 @@ TEST(ArmFollower, CommandsItsDrivesAndTellsTheTorqueThatItWasAskedFor) {
   EXPECT_EQ(output.command.position, wanted.position);
   EXPECT_EQ(output.message.external_torque, JointVector::Constant(7, 0.4));
   params.torque = TorqueSource::observer;
-  auto observing = *ArmFollower::make(params, believed().carried, tick);
+  auto observing = *ArmFollower::make(params, touching_arm(), tick);
   ArmReading held = resting();
   held.torque = arm::Chain::make(believed().carried)->gravity_torque(held.position);
   held.torque[3] -= 1.0;  // somebody lifts it
@@ -131,13 +134,116 @@ TEST(ArmFollower, CommandsItsDrivesAndTellsTheTorqueThatItWasAskedFor) {
   EXPECT_NEAR(told[3], 1.0, 1e-6);
 }
 
+TEST(ArmFollower, TakesAwayWhatItsDrivesAreAtTheToolBeyondTheLimits) {
+  ArmFollower::Params params;  // drives of 100 N m/rad and 1 N m s/rad
+  auto free = *ArmFollower::make(params, touching_arm(), tick);
+  params.tool_stiffness_limit_N_per_m = 300.0;
+  params.tool_damping_limit_N_s_per_m = 4.0;
+  auto limited = *ArmFollower::make(params, touching_arm(), tick);
+  const arm::Chain chain = *arm::Chain::make(believed().carried);
+  const ToolJacobian tool = chain.jacobian(arm_plants::bent(), 6, touching_arm().tool_m).topRows<3>();
+  const JointVector moved = JointVector::LinSpaced(7, -0.02, 0.03);
+  ArmMessage wanted = touching(0.0);
+  const auto taken = [&] {
+    const JointVector none = JointVector::Zero(7);
+    return JointVector(free.step(resting(), none, wanted).command.torque -
+                       limited.step(resting(), none, wanted).command.torque);
+  };
+  wanted.position += moved;
+  const arm::Matrix3 stiff = ToolLimit(JointVector::Constant(7, 100.0), 300.0).excess(tool);
+  EXPECT_GT(taken().norm(), 0.1);
+  EXPECT_LT((taken() - tool.transpose() * (stiff * (tool * moved))).norm(), 1e-9);
+  wanted.position -= moved;
+  wanted.velocity = moved;
+  const arm::Matrix3 damped = ToolLimit(JointVector::Constant(7, 1.0), 4.0).excess(tool);
+  EXPECT_LT((taken() - tool.transpose() * (damped * (tool * moved))).norm(), 1e-9);
+}
+
+TEST(ArmFollower, TellsOnlyTorqueThatItsFrictionCannotHide) {
+  ArmFollower::Arm arm = touching_arm();
+  for (arm::JointParams& joint : arm.chain.joints) joint.friction.coulomb_N_m = 0.4;
+  ArmFollower::Params params;
+  params.observer.dead_band_share = 0.5;
+  auto follower = *ArmFollower::make(params, arm, tick);
+  ArmReading held = resting();
+  held.torque = arm::Chain::make(arm.chain)->gravity_torque(held.position);
+  held.torque[1] -= 1.0;
+  held.torque[2] += 1.0;
+  held.torque[3] -= 0.19;
+  JointVector told;
+  for (int k = 0; k < 100; ++k) told = follower.step(held, JointVector::Zero(7), touching(0.0)).message.external_torque;
+  EXPECT_NEAR(told[1], 0.8, 1e-6);
+  EXPECT_NEAR(told[2], -0.8, 1e-6);
+  EXPECT_EQ(told[3], 0.0);
+}
+
+TEST(ArmLeader, GivesBackWhatItsDrivesDampTheToolBeyondTheLimitAndTheModelCountsWithThat) {
+  ArmLeader::Params params{.method = ArmMethod::cancellation, .feed_forward = {.friction_share = 0.0}};
+  for_each_field<EachJoint<DriveDamping>>(
+      [&](const auto& each) { (params.drive_damping.*each.member).damping_N_m_s_per_rad = 5.0; });
+  auto damped = *ArmLeader::make(params, believed(), tick);
+  params.drive_damping_limit_N_s_per_m = 2.0;
+  auto limited = *ArmLeader::make(params, believed(), tick);
+  ArmReading moving = resting();
+  moving.velocity << 0.1, 0.2, -0.1, 0.3, 0.0, 0.1, 0.2;
+  const JointVector back =
+      limited.step(moving, touching(0.0)).command.torque - damped.step(moving, touching(0.0)).command.torque;
+  EXPECT_GT(back.dot(moving.velocity), 0.0);
+  EXPECT_LT(back.dot(moving.velocity), 5.0 * moving.velocity.squaredNorm()) << "less than the drives take";
+  double damped_rad = 0.0, limited_rad = 0.0;
+  for (int k = 0; k < 50; ++k) {
+    damped_rad = damped.step(resting(), touching(1.0)).induced.norm();
+    limited_rad = limited.step(resting(), touching(1.0)).induced.norm();
+  }
+  EXPECT_GT(limited_rad, 1.05 * damped_rad);
+}
+
+TEST(ArmLeader, WhereAJointDoesNotDampTheToolIsFreeAndNothingIsGivenBack) {
+  ArmLeader::Params params{.method = ArmMethod::position_force, .feed_forward = {.friction_share = 0.0}};
+  params.drive_damping.joint_1.damping_N_m_s_per_rad = 5.0;
+  params.drive_damping_limit_N_s_per_m = 2.0;
+  auto leader = *ArmLeader::make(params, believed(), tick);
+  ArmReading moving = resting();
+  moving.velocity[0] = 0.5;
+  const JointVector weight = arm::Chain::make(believed().carried)->gravity_torque(moving.position);
+  EXPECT_LT((leader.step(moving, touching(0.0)).command.torque - weight).norm(), 1e-6);
+}
+
+TEST(ToolLimit, LeavesExactlyTheLimitAtTheToolAndNothingElse) {
+  const arm::Chain chain = *arm::Chain::make(believed().carried);
+  JointVector gains(7);
+  gains << 240, 240, 240, 240, 24, 31, 25;
+  constexpr double most = 600.0;
+  for (const double bend : {0.0, 0.3, 0.8}) {
+    JointVector pose = arm_plants::bent();
+    pose[3] -= bend;
+    const ToolJacobian tool = chain.jacobian(pose, 6, touching_arm().tool_m).topRows<3>();
+    const arm::JointMatrix left =
+        arm::JointMatrix(gains.asDiagonal()) - tool.transpose() * ToolLimit(gains, most).excess(tool) * tool;
+    EXPECT_GT(signal::symmetric_eigenvalues(left)[0], 0.0);
+    const auto at_tool = [&](const Eigen::MatrixXd& of_joints) {
+      return signal::inverse(tool * signal::inverse(of_joints) * tool.transpose());
+    };
+    const auto before = signal::symmetric_eigen(at_tool(gains.asDiagonal().toDenseMatrix()));
+    EXPECT_GT(before.values[2], 2.0 * most) << "the limit is reached";
+    EXPECT_LT(before.values[0], most) << "and not along each axis";
+    const Eigen::MatrixXd wanted =
+        before.vectors * before.values.cwiseMin(most).asDiagonal() * before.vectors.transpose();
+    EXPECT_LT((at_tool(left) - wanted).norm(), 1e-3 * most);
+  }
+}
+
 TEST(ArmSites, ATickDoesNotAllocate) {
+  ArmFollower::Params limited;
+  limited.tool_stiffness_limit_N_per_m = 100.0;
+  limited.tool_damping_limit_N_s_per_m = 1.0;
   auto leader = *ArmLeader::make({.method = ArmMethod::cancellation,
                                   .damping_N_s_per_m = 10.0,
+                                  .drive_damping_limit_N_s_per_m = 5.0,
                                   .force_low_pass_Hz = 50.0,
                                   .command_low_pass_Hz = 8.0},
                                  believed(), tick);
-  auto follower = *ArmFollower::make({}, believed().carried, tick);
+  auto follower = *ArmFollower::make(limited, touching_arm(), tick);
   ArmMessage from_follower = touching(0.1);
   ArmReading reading = resting();
   const std::uint64_t before = laws::own_allocation_count();
@@ -159,7 +265,7 @@ TEST(ArmSites, RefuseNumbersOutOfBoundsByName) {
   EXPECT_EQ(ArmLeader::make(params, believed(), tick).error().parameter, "model.hand.mass_kg");
   ArmFollower::Params follower;
   follower.observer.cutoff_Hz = 700.0;
-  EXPECT_EQ(ArmFollower::make(follower, believed().carried, tick).error().parameter, "observer.cutoff_Hz");
+  EXPECT_EQ(ArmFollower::make(follower, touching_arm(), tick).error().parameter, "observer.cutoff_Hz");
 }
 
 }  // namespace

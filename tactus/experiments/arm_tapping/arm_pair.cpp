@@ -155,8 +155,12 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const arm_control::Indu
   const auto leader_site =
       arm_control::ArmLeader::make(control, {.carried = setup.arm.chain, .induced = induced, .gains = gains}, tick);
   if (!leader_site) return under("control", leader_site.error());
-  const auto follower_site = arm_control::ArmFollower::make(params.control.follower, setup.arm.chain, tick,
-                                                            induced.joint_stiffness_N_m_per_rad);
+  const auto follower_site =
+      arm_control::ArmFollower::make(params.control.follower,
+                                     {.chain = setup.arm.chain,
+                                      .tool_m = setup.arm.tool_m,
+                                      .joint_stiffness_N_m_per_rad = induced.joint_stiffness_N_m_per_rad},
+                                     tick);
   if (!follower_site) return under("control.follower", follower_site.error());
   return ArmPair(setup, *std::move(leader), *std::move(follower), *std::move(person), *leader_site, *follower_site,
                  wall_m);

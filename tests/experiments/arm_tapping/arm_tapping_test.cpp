@@ -23,12 +23,12 @@ ArmTappingParams shipped() {
   return document->read<ArmTappingParams>().value();
 }
 
-/// Without what is recommended beside it: no damping in the leader's drives, the follower as stiff as its gains say.
+/// Without what is recommended beside it.
 ArmTappingParams bare(ArmMethod method) {
-  ArmTappingParams params = shipped();
+  auto document = *configuration::Document::load(folder / "arm-tapping.toml");
+  EXPECT_EQ(document.merge(*configuration::Document::load(folder / "arms/bare.toml")), std::nullopt);
+  ArmTappingParams params = document.read<ArmTappingParams>().value();
   params.control.method = method;
-  params.control.drive_damping = {};
-  params.control.follower.stiffness_share = 1.0;
   return params;
 }
 
@@ -91,13 +91,46 @@ TEST(ArmTapping, AsShippedTapsSettleAtAGainAtWhichTheyRingWithoutItsDampingAndSo
   EXPECT_EQ(settled_share(params, 3), 0.0);
 }
 
+TEST(ArmTapping, AlongTheArmTapsSettleBecauseOfTheLimitsAtTheTool) {
+  ArmTappingParams params = shipped();
+  params.control.force_gain = 5.66;
+  params.task.direction = TapDirection::along_x;
+  EXPECT_EQ(settled_share(params, 3), 1.0);
+  params.control.follower.tool_stiffness_limit_N_per_m = 0.0;
+  params.control.follower.tool_damping_limit_N_s_per_m = 0.0;
+  EXPECT_EQ(settled_share(params, 3), 0.0);
+}
+
+TEST(ArmTapping, ASoftHandReachesASurfaceAlongTheArmBecauseOfTheDeadBand) {
+  ArmTappingParams params = shipped();
+  params.control.force_gain = 5.66;
+  params.task.direction = TapDirection::along_x;
+  params.person.hand = {.mass_kg = 0.1, .stiffness_N_per_m = 60.0, .damping_N_s_per_m = 10.0, .lever_m = 0.05};
+  EXPECT_EQ(settled_share(params, 3), 1.0);
+  params.control.follower.observer.dead_band_share = 0.0;
+  EXPECT_EQ(settled_share(params, 3), 0.0);
+}
+
 TEST(ArmTapping, OnElasticJointsTapsSettleWithAnObserverThatCountsWithThem) {
   auto document = *configuration::Document::load(folder / "arm-tapping.toml");
   ASSERT_EQ(document.merge(*configuration::Document::load(folder / "arms/elastic-joints.toml")), std::nullopt);
   ArmTappingParams params = document.read<ArmTappingParams>().value();
-  params.control.force_gain = 2.0;
+  params.control.force_gain = 4.0;
   EXPECT_EQ(settled_share(params, 3), 1.0);
   params.control.follower.observer.joints = arm_control::JointModel::rigid;
+  EXPECT_LT(settled_share(params, 3), 0.5);
+}
+
+TEST(ArmTapping, SixJointsOfTheYamClassSettleAsRecommendedAndNotWithoutIt) {
+  auto document = *configuration::Document::load(folder / "arm-tapping.toml");
+  ASSERT_EQ(document.merge(*configuration::Document::load(folder / "arms/yam-pair.toml")), std::nullopt);
+  ArmTappingParams params = document.read<ArmTappingParams>().value();
+  params.control.force_gain = 5.66;
+  EXPECT_EQ(set_up_arm_pair(params, folder)->start.size(), 6);
+  EXPECT_EQ(settled_share(params, 3), 1.0);
+  ASSERT_EQ(document.merge(*configuration::Document::load(folder / "arms/bare.toml")), std::nullopt);
+  params = document.read<ArmTappingParams>().value();
+  params.control.force_gain = 5.66;
   EXPECT_EQ(settled_share(params, 3), 0.0);
 }
 
