@@ -24,13 +24,56 @@ std::string fixed(double value, int digits) {
   return text.data();
 }
 
+const devices::RigJoint& joint_of(const devices::RigSide& side, std::size_t joint) {
+  return side.joints[std::min(joint, side.joints.size() - 1)];
+}
+
+/// What kept a side from being good, as the rest of a line.
+std::string words_of(const devices::DeviceTrouble& trouble, const char* name, const devices::RigSide& side) {
+  using devices::Trouble;
+  if (trouble.what == Trouble::none) return {};
+  const std::string place = std::string("; ") + name + ": ";
+  const std::string joint(joint_of(side, trouble.joint).name());
+  switch (trouble.what) {
+    case Trouble::bus_ended:
+      return place + "its port was closed";
+    case Trouble::bus_refused:
+      return place + "its motors are not what the rig file says";
+    case Trouble::late:
+    case Trouble::silent: {
+      // A cycle ends in time where motors are silent; only a thread that stands still ends none.
+      const bool stood = trouble.cycle_age_s > 0.5 * trouble.age_s;
+      const std::string said = trouble.fault == devices::MotorFault::lost_master
+                                   ? joint + " had not heard from us in time"
+                                   : joint + " unheard for " + fixed(1e3 * trouble.age_s, 1) + " ms";
+      return place + said + (stood ? ", no cycle of its bus for " + fixed(1e3 * trouble.cycle_age_s, 1) + " ms" : "");
+    }
+    case Trouble::motor_fault:
+      return place + joint + " has the fault " + name_of(trouble.fault);
+    case Trouble::no_power:
+      return place + joint + " has no power";
+    default:
+      return place + joint + " is beyond its limit of " + name_of(trouble.what);
+  }
+}
+
+/// What a gate latched, as the rest of a line; of a device that is lost the device says more.
+std::string words_of_fault(const RigSecond& second, const RigPair& pair) {
+  const auto& trouble = second.fault_of_leader ? second.leader_trouble : second.follower_trouble;
+  const bool told = trouble.what > devices::Trouble::silent;
+  if (second.fault == control::GateFault::none || (told && second.fault == control::GateFault::not_finite)) return {};
+  const devices::RigSide& side = second.fault_of_leader ? *pair.leader : *pair.follower;
+  return std::string("; gate of ") + joint_of(side, second.fault_joint).path + ": " + name_of(second.fault);
+}
+
 /// What a person does next, where there is something.
 std::string advice(const RigSecond& second, const RigPair& pair) {
   using control::SiteState;
   const auto& joint = pair.leader->joints[std::min(second.joint, pair.leader->joints.size() - 1)];
-  if (second.leader_health == station::DeviceHealth::lost || second.follower_health == station::DeviceHealth::lost) {
-    return std::string("; the ") + (second.leader_health == station::DeviceHealth::lost ? "leader" : "follower") +
-           " is lost: look at 'tactus device check'";
+  if (const auto worse = std::max(second.leader_health, second.follower_health);
+      worse >= station::DeviceHealth::silent) {
+    return std::string("; the ") + (second.leader_health == worse ? "leader" : "follower") + " is " + name_of(worse) +
+           ": look at 'tactus device check'";
   }
   if (second.too_far) {
     return "; too far apart to arm: move " + joint.path + " by " + fixed(second.farthest, 2) + " " +
@@ -46,7 +89,9 @@ std::string advice(const RigSecond& second, const RigPair& pair) {
 std::string line_of(const RigSecond& second, const RigPair& pair) {
   return fixed(second.time_s, 0) + " s: leader " + name_of(second.leader) + ", follower " + name_of(second.follower) +
          " (" + name_of(second.cause) + "), most torque " + fixed(second.most_torque, 2) + ", farthest apart " +
-         fixed(second.farthest, 3) + advice(second, pair) + "\n";
+         fixed(second.farthest, 3) + words_of(second.leader_trouble, "leader", *pair.leader) +
+         words_of(second.follower_trouble, "follower", *pair.follower) + words_of_fault(second, pair) +
+         advice(second, pair) + "\n";
 }
 
 namespace {
@@ -55,7 +100,8 @@ std::string summary_of(const RigRun& run) {
   const devices::RigTotals& totals = run.totals;
   return std::to_string(totals.ticks) + " ticks in " + fixed(totals.duration_s, 1) + " s, " +
          std::to_string(totals.active_ticks) + " of them coupled; armed " + std::to_string(totals.armings) +
-         " times, held " + std::to_string(totals.holds) + " times, a device lost in " +
+         " times, held " + std::to_string(totals.holds) + " times, a device late in " +
+         std::to_string(totals.late_ticks) + ", silent in " + std::to_string(totals.silent_ticks) + ", lost in " +
          std::to_string(totals.lost_ticks) + " ticks; " + std::to_string(run.servo.missed) +
          " deadlines missed, late " + std::to_string(run.servo.late_ours()) + " by us and " +
          std::to_string(run.servo.late_machine()) + " by the machine; ended by " + run.ended_by + ".";
@@ -64,6 +110,20 @@ std::string summary_of(const RigRun& run) {
 /// The joint that was farthest from its leader's.
 const devices::RigJoint& farthest_joint(const RigSecond& second, const RigPair& pair) {
   return pair.leader->joints[std::min(second.joint, pair.leader->joints.size() - 1)];
+}
+
+nlohmann::ordered_json json_of(const devices::DeviceTrouble& trouble, const devices::RigSide& side) {
+  return {{"what", name_of(trouble.what)},
+          {"joint", joint_of(side, trouble.joint).name()},
+          {"motor_fault", name_of(trouble.fault)},
+          {"age_s", trouble.age_s},
+          {"cycle_age_s", trouble.cycle_age_s}};
+}
+
+/// The path of the joint whose gate latched; empty where none did.
+std::string gate_joint(const RigSecond& second, const RigPair& pair) {
+  if (second.fault == control::GateFault::none) return {};
+  return joint_of(second.fault_of_leader ? *pair.leader : *pair.follower, second.fault_joint).path;
 }
 
 nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
@@ -75,6 +135,8 @@ nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
                    {"active_ticks", totals.active_ticks},
                    {"armings", totals.armings},
                    {"holds", totals.holds},
+                   {"late_ticks", totals.late_ticks},
+                   {"silent_ticks", totals.silent_ticks},
                    {"lost_ticks", totals.lost_ticks},
                    {"ended_by", run.ended_by},
                    {"lines_dropped", run.lines_dropped},
@@ -86,6 +148,10 @@ nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
                                    {"cause", name_of(second.cause)},
                                    {"leader_health", name_of(second.leader_health)},
                                    {"follower_health", name_of(second.follower_health)},
+                                   {"leader_trouble", json_of(second.leader_trouble, *pair.leader)},
+                                   {"follower_trouble", json_of(second.follower_trouble, *pair.follower)},
+                                   {"gate_fault", name_of(second.fault)},
+                                   {"gate_joint", gate_joint(second, pair)},
                                    {"most_torque", second.most_torque},
                                    {"farthest", second.farthest},
                                    {"joint", farthest_joint(second, pair).name()},

@@ -20,10 +20,10 @@ constexpr auto enumerators(EncoderFault) {
 
 /// Whether a measured position can be true.
 ///
-/// A jump: |x(k) − x(k−1)| > v_max · t, t being the time between the two readings. A spike is one, a counter that wraps
-/// is one, and so is the way back. A freeze: for `frozen_after_s` without a break there was a force that must move the
-/// device, and not one count came. A device may go and come back between two readings, so a long gap between them
-/// counts for at most half of that time. Such a force is
+/// A jump: |x(k) − x(k−1)| > v_max · t, t being the time between the two measurements. A spike is one, a counter that
+/// wraps is one, and so is the way back. A freeze: for `frozen_after_s` without a break there was a force that must
+/// move the device, and not one count came. A device may go and come back between two readings, so a long gap between
+/// them counts for at most half of that time. Such a force is
 ///
 /// - a motor's force that is `frozen_force_N` or more away from what it was at the last count. A device that rests, or
 ///   presses with a steady force, is not frozen, so this shows only once the force works. It must stay away: a hand
@@ -58,6 +58,7 @@ class EncoderCheck {
     double acted_N = 0.0;            ///< on the motor since the reading before
     double unbalanced_N = 0.0;       ///< what of it nothing known resists; 0 where nobody measures that
     std::int64_t elapsed_ticks = 1;  ///< since the reading before
+    double older_ticks = 0.0;        ///< by how much that one was older at its tick than this one is now
   };
   using Output = EncoderFault;
 
@@ -68,9 +69,10 @@ class EncoderCheck {
 
   /// One reading, which must be finite. After a jump the reading before stays the measure. Real-time safe.
   EncoderFault step(const Input& input) noexcept {
+    const double between_ticks = static_cast<double>(input.elapsed_ticks) + input.older_ticks;
     if (!started_ || input.position_m != position_m_) {
-      const double farthest_m = farthest_m_ * static_cast<double>(input.elapsed_ticks);
-      if (started_ && std::fabs(input.position_m - position_m_) > farthest_m) return EncoderFault::jump;
+      if (started_ && std::fabs(input.position_m - position_m_) > farthest_m_ * between_ticks)
+        return EncoderFault::jump;
       started_ = true;
       position_m_ = input.position_m;
       counted_N_ = input.acted_N;
@@ -79,7 +81,7 @@ class EncoderCheck {
     }
     const bool must_move = std::fabs(input.acted_N - counted_N_) >= frozen_force_N_ ||
                            std::fabs(input.unbalanced_N) >= unbalanced_force_N_;
-    const double gap_s = std::min(dt_s_ * static_cast<double>(input.elapsed_ticks), longest_gap_s_);
+    const double gap_s = std::clamp(dt_s_ * between_ticks, 0.0, longest_gap_s_);
     still_s_ = must_move ? still_s_ + gap_s : 0.0;
     return still_s_ >= frozen_after_s_ ? EncoderFault::frozen : EncoderFault::none;
   }

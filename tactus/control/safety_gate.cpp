@@ -11,9 +11,13 @@ double share_beyond(double value, double limit) {
   return std::clamp((SafetyGate::fault_factor - value / limit) / (SafetyGate::fault_factor - 1.0), 0.0, 1.0);
 }
 
+/// Two measurements that are closer to one another are the same one, but for how exactly its age is known.
+constexpr double least_ticks = 0.01;
+
 }  // namespace
 
-double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::optional<double> resisting_N) noexcept {
+double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::optional<double> resisting_N,
+                           double age_s) noexcept {
   elapsed_ticks = std::max<std::int64_t>(elapsed_ticks, 1);
   const double acted_N = force_.passed_N();
   allowed_N_ = thermal_.step({.acted_N = acted_N, .peak_N = force_limit_N_, .elapsed_ticks = elapsed_ticks});
@@ -23,10 +27,14 @@ double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::o
     return believed_m_;
   }
   const double net_N = acted_N - resisting_N.value_or(0.0);
+  const double older_ticks = (age_s_ - age_s) / dt_s_;
+  const double between_ticks = static_cast<double>(elapsed_ticks) + older_ticks;
   const EncoderFault wrong = encoder_.step({.position_m = position_m,
                                             .acted_N = acted_N,
                                             .unbalanced_N = resisting_N ? net_N : 0.0,
-                                            .elapsed_ticks = elapsed_ticks});
+                                            .elapsed_ticks = elapsed_ticks,
+                                            .older_ticks = older_ticks});
+  age_s_ = age_s;
   if (wrong == EncoderFault::frozen) latch(GateFault::encoder_frozen);
   if (wrong == EncoderFault::jump) {
     latch(GateFault::encoder_jump);
@@ -34,7 +42,7 @@ double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::o
     return believed_m_;
   }
   believed_m_ = position_m;
-  velocity_m_per_s_ = derivative_.step(position_m, elapsed_ticks);
+  if (between_ticks > least_ticks) velocity_m_per_s_ = derivative_.step_after(position_m, between_ticks);
   damping_N_s_per_m_ = energy_.step({.acted_N = acted_N, .position_m = position_m, .elapsed_ticks = elapsed_ticks});
   if (std::fabs(position_m) >= fault_factor * position_limit_m_) latch(GateFault::workspace);
   if (std::fabs(velocity_m_per_s_) >= fault_factor * velocity_limit_m_per_s_) latch(GateFault::velocity);
@@ -85,7 +93,7 @@ void SafetyGate::rearm() noexcept {
   reversal_.reset();
   brake_.reset();
   derivative_.reset();
-  believed_m_ = 0.0;
+  believed_m_ = age_s_ = 0.0;
   velocity_m_per_s_ = 0.0;
   damping_N_s_per_m_ = 0.0;
   let_go_ = brakes_ = false;

@@ -87,16 +87,18 @@ class SafetyGate {
     if (!brake) return under("energy", brake.error());
     const auto velocity = signal::FilteredDerivative::make({.cutoff_Hz = velocity_cutoff_Hz}, dt);
     if (!velocity) return velocity.error();
-    return SafetyGate(params, *force, *encoder, *energy, *reversal, *brake, *thermal, *velocity);
+    return SafetyGate(params, *force, *encoder, *energy, *reversal, *brake, *thermal, *velocity, dt);
   }
 
   /// Looks at a reading, before the controller does: the position in m to believe, which is the last good one where
   /// this is none. `elapsed_ticks` is more than 1 after a stall: all checks count the time that really passed.
   /// `resisting_N` is what a sensor says that pushes back against the motor: at a slave what is at its tip, at a master
-  /// the hand.
+  /// the hand. `age_s` is how old the position is at this tick, negative where it is younger. Speed and jump are judged
+  /// over the time between two measurements, which is not that between two ticks where a bus has a cycle of its own; a
+  /// position that was read before says nothing new of them.
   /// Real-time safe.
-  double believe(double position_m, std::int64_t elapsed_ticks = 1,
-                 std::optional<double> resisting_N = std::nullopt) noexcept;
+  double believe(double position_m, std::int64_t elapsed_ticks = 1, std::optional<double> resisting_N = std::nullopt,
+                 double age_s = 0.0) noexcept;
   /// The force in N that may reach the motor instead of `command_N`. Always finite. Once a tick, after `believe`.
   /// Real-time safe.
   double pass(double command_N) noexcept;
@@ -140,8 +142,9 @@ class SafetyGate {
  private:
   SafetyGate(const Params& params, const ForceGate& force, const EncoderCheck& encoder, const PassivityMonitor& energy,
              const ReversalCheck& reversal, const StoppingBrake& brake, const ThermalLimit& thermal,
-             const signal::FilteredDerivative& velocity)
-      : velocity_limit_m_per_s_(params.velocity_limit_m_per_s),
+             const signal::FilteredDerivative& velocity, Seconds dt)
+      : dt_s_(dt.value),
+        velocity_limit_m_per_s_(params.velocity_limit_m_per_s),
         position_limit_m_(params.position_limit_m),
         force_limit_N_(params.force_limit_N),
         force_(force),
@@ -157,6 +160,7 @@ class SafetyGate {
     if (this->fault() == GateFault::none || this->fault() == GateFault::energy) fault_ = fault;
   }
 
+  double dt_s_;
   double velocity_limit_m_per_s_;
   double position_limit_m_;
   double force_limit_N_;
@@ -168,6 +172,7 @@ class SafetyGate {
   ThermalLimit thermal_;
   signal::FilteredDerivative derivative_;
   double believed_m_ = 0.0;
+  double age_s_ = 0.0;  ///< of what was read last, at its tick
   double velocity_m_per_s_ = 0.0;
   double damping_N_s_per_m_ = 0.0;
   double allowed_N_ = force_limit_N_;  ///< by the warmth of the motor

@@ -50,7 +50,8 @@ struct MasterInput {
   double motor_position_m = 0.0;
   double hand_force_N = 0.0;  ///< of the hand on the handle, positive when it pushes toward the environment
   Arrival arrival;
-  double grip = 1.0;  ///< how firmly the person holds, over nominal, where a sensor tells; 1 without one
+  double grip = 1.0;         ///< how firmly the person holds, over nominal, where a sensor tells; 1 without one
+  double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
 };
 
 /// How firmly the person holds the handle and what else differs from the model that was identified, as the master's
@@ -85,6 +86,7 @@ struct SlaveInput {
   double motor_position_m = 0.0;
   double tip_force_N = 0.0;  ///< positive when the environment pushes the slave back
   Arrival arrival;
+  double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
 };
 
 /// What the slave commands and tells.
@@ -100,11 +102,12 @@ inline bool is_finite(const Message& message) noexcept {
   return finite;
 }
 inline bool is_finite(const MasterInput& input) noexcept {
-  return std::isfinite(input.motor_position_m) && std::isfinite(input.hand_force_N) && std::isfinite(input.grip) &&
-         is_finite(input.arrival.message);
+  return std::isfinite(input.motor_position_m) && std::isfinite(input.motor_age_s) &&
+         std::isfinite(input.hand_force_N) && std::isfinite(input.grip) && is_finite(input.arrival.message);
 }
 inline bool is_finite(const SlaveInput& input) noexcept {
-  return std::isfinite(input.motor_position_m) && std::isfinite(input.tip_force_N) && is_finite(input.arrival.message);
+  return std::isfinite(input.motor_position_m) && std::isfinite(input.motor_age_s) &&
+         std::isfinite(input.tip_force_N) && is_finite(input.arrival.message);
 }
 
 template <class T>
@@ -128,12 +131,14 @@ inline void mend(Message& message, const Message& last) noexcept {
 }
 inline void mend(MasterInput& input, const MasterInput& last) noexcept {
   mend(input.motor_position_m, last.motor_position_m);
+  mend(input.motor_age_s, last.motor_age_s);
   mend(input.hand_force_N, last.hand_force_N);
   mend(input.grip, last.grip);
   mend(input.arrival.message, last.arrival.message);
 }
 inline void mend(SlaveInput& input, const SlaveInput& last) noexcept {
   mend(input.motor_position_m, last.motor_position_m);
+  mend(input.motor_age_s, last.motor_age_s);
   mend(input.tip_force_N, last.tip_force_N);
   mend(input.arrival.message, last.arrival.message);
 }
@@ -206,7 +211,7 @@ class MasterGates {
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// The position in m to believe, as `SafetyGate` says. Real-time safe.
   double believe(const MasterInput& read, std::int64_t elapsed_ticks) noexcept {
-    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read));
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s);
   }
   /// Puts what may reach the actuators in place of what was commanded. Real-time safe.
   void pass(MasterOutput& output) noexcept {
@@ -240,7 +245,7 @@ class SlaveGates {
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// The position in m to believe, as `SafetyGate` says. Real-time safe.
   double believe(const SlaveInput& read, std::int64_t elapsed_ticks) noexcept {
-    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read));
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s);
   }
   /// Puts what may reach the motor in place of what was commanded. Real-time safe.
   void pass(SlaveOutput& output) noexcept { output.motor_force_N = motor_.pass(output.motor_force_N); }

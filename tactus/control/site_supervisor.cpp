@@ -10,6 +10,7 @@ SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
   if (input.force_sensor) return SiteCause::force_sensor;
   if (input.stalled) return SiteCause::stalled;
   if (input.overloaded) return SiteCause::overloaded;
+  if (input.device_silent) return SiteCause::device;
   if (input.out_of_pace) return SiteCause::pace;
   if (input.silent) return SiteCause::silent;
   if (input.probe != SiteCause::none) return input.probe;
@@ -31,7 +32,8 @@ void SiteSupervisor::go(SiteState state, SiteCause cause, const Input& input) no
 void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
   const bool master = role_ == SiteRole::master;
   // An energy latch is no obstacle: arming empties the account.
-  const bool may = input.heard && !input.disagrees && !input.silent && !input.stalled && !input.overloaded;
+  const bool may =
+      input.heard && !input.disagrees && !input.silent && !input.stalled && !input.overloaded && !input.device_silent;
   if (!may || !(master ? asked : input.peer_armings != over_ && input.peer == SiteState::armed)) return;
   armings_ = master ? std::max(armings_, input.peer_armings) + 1 : input.peer_armings;
   state_ = SiteState::armed;

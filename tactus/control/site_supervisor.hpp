@@ -28,7 +28,8 @@ enum class SiteCause {
   probe_astray,
   emergency_stop,
   disagreement,
-  pace
+  pace,
+  device
 };
 constexpr auto enumerators(SiteCause) {
   return std::array{Enumerator{SiteCause::none, "none"},
@@ -48,7 +49,8 @@ constexpr auto enumerators(SiteCause) {
                     Enumerator{SiteCause::probe_astray, "probe-astray"},
                     Enumerator{SiteCause::emergency_stop, "emergency-stop"},
                     Enumerator{SiteCause::disagreement, "disagreement"},
-                    Enumerator{SiteCause::pace, "pace"}};
+                    Enumerator{SiteCause::pace, "pace"},
+                    Enumerator{SiteCause::device, "device"}};
 }
 
 enum class SiteRole { master, slave };
@@ -72,7 +74,7 @@ struct SiteRequests {
 ///
 ///     configure –align→ align –arm→ armed –sign probe, dead-man, and the other site armed→ active
 ///     active –dead-man let go→ armed
-///     armed, active –silence, stall, overload, other site, sensor, energy→ hold –arm→ armed
+///     armed, active –silence, stall, overload, device, other site, sensor, energy→ hold –arm→ armed
 ///     armed –no answer, sign probe not passed→ hold
 ///     any –safety gate, emergency stop→ fault –clear→ align
 ///     any but fault –about to end→ configure
@@ -101,6 +103,7 @@ class SiteSupervisor {
     bool unanswered = false;            ///< the slave has not followed the arming for too long
     bool stalled = false;               ///< this site was not stepped for too long
     bool overloaded = false;            ///< this site was not stepped too often
+    bool device_silent = false;         ///< what this site's device reads is too old
     bool out_of_pace = false;           ///< the other site's clock is not this one's
     bool force_sensor = false;          ///< the force sensor cannot be right
     SiteCause probe = SiteCause::none;  ///< why the sign probe was not passed

@@ -76,6 +76,7 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
   const SiteState state = supervision_.decide(
       {.requests = input.requests,
        .elapsed_ticks = input.elapsed_ticks,
+       .device_silent = input.device_silent,
        .fault = site_.fault(),
        .force_sensor = contradict(hand_sensor_, site_.gates(), input.sensors, input.elapsed_ticks)});
   if (supervision_.rearms()) {
@@ -113,6 +114,7 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
   const SiteState state = supervision_.decide(
       {.requests = input.requests,
        .elapsed_ticks = input.elapsed_ticks,
+       .device_silent = input.device_silent,
        .fault = site_.fault(),
        .force_sensor = contradict(force_sensor_, site_.gates(), input.sensors, input.elapsed_ticks)});
   const auto here_m = member_of_each(input.sensors, &SlaveInput::motor_position_m);

@@ -23,6 +23,7 @@ class SupervisedMasterOf {
     Sensors sensors{};  ///< its arrival is not used: packets say what came
     SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;  ///< since the step before; more after a stall
+    bool device_silent = false;      ///< what the sensors read is too old to act on
   };
   struct Output {
     typename Gated::Output site;
@@ -71,6 +72,7 @@ class SupervisedSlaveOf {
     Sensors sensors{};  ///< its arrival is not used: packets say what came
     SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;
+    bool device_silent = false;  ///< what the sensors read is too old to act on
   };
   struct Output {
     typename Gated::Output site;

@@ -161,6 +161,7 @@ SiteState SupervisionOf<Payload>::decide(const Sight& sight) noexcept {
        .unanswered = unanswered(),
        .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
        .overloaded = overloaded,
+       .device_silent = sight.device_silent,
        .out_of_pace = pace_.step(
            {.following = before_ == SiteState::active, .sequence = newest_.sequence, .elapsed_ticks = elapsed_ticks_}),
        .force_sensor = sight.force_sensor,
@@ -168,7 +169,7 @@ SiteState SupervisionOf<Payload>::decide(const Sight& sight) noexcept {
        .proved = proved_,
        .energy = sight.fault == GateFault::energy,
        .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
-  cannot_hold_ = state() == SiteState::hold && (cannot_hold_ || overloaded);
+  cannot_hold_ = state() == SiteState::hold && (cannot_hold_ || overloaded || sight.device_silent);
   if (arms_from_rest()) {
     proved_ = true;
     for_each_joint([this](bool tried) noexcept { proved_ = proved_ && !tried; }, tried_);

@@ -169,6 +169,7 @@ class SupervisionOf {
   struct Sight {
     SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;
+    bool device_silent = false;
     GateFault fault = GateFault::none;
     bool force_sensor = false;
   };
@@ -198,7 +199,8 @@ class SupervisionOf {
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
   [[nodiscard]] SiteCause cause() const noexcept { return supervisor_.cause(); }
   /// Whether the motor must get no force any more: in `fault`, and in a `hold` in which the site misses too many ticks
-  /// to close a loop, or because motor and force sensor contradict one another, when either may be wrong.
+  /// to close a loop, or does not hear its device, or because motor and force sensor contradict one another, when
+  /// either may be wrong.
   [[nodiscard]] bool lets_go() const noexcept { return state() == SiteState::fault || cannot_hold_ || contradicted(); }
   /// Whether that is because motor and force sensor contradict one another.
   [[nodiscard]] bool contradicted() const noexcept {
@@ -274,7 +276,7 @@ class SupervisionOf {
   std::int64_t answered_arming_ = 0;  ///< that packets tell: a slave's only once its motor was tried
   bool proved_ = false;               ///< the motor was tried since the site was armed, or need not be
   bool probing_ = false;              ///< the trial is under way
-  bool cannot_hold_ = false;          ///< too many ticks were missed in this hold
+  bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, or its device was silent
   double share_ = 0.0;
   SiteState before_ = SiteState::configure;
 };

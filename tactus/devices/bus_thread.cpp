@@ -46,7 +46,9 @@ class BusThread::Exchange final : public wire::WireEnd {
  private:
   void take_commands(std::int64_t now_ns) noexcept {
     if (const auto newest = owner_->commands_.newest()) commands_ = *newest;
-    const bool counts = watch_.trusts(commands_, now_ns) && !leaving_;
+    const bool heard = watch_.trusts(commands_, now_ns);
+    told_.unheard = heard ? 0 : 1;
+    const bool counts = heard && !leaving_;
     for (std::size_t motor = 0; motor < owner_->motors_; ++motor) {
       bus_->command(motor, counts ? commands_.motors[motor] : MotorCommand{});
     }

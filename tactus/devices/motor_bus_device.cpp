@@ -53,27 +53,78 @@ Joints<station::DeviceReading> MotorBusDevice::read(const station::Tick& tick) n
       turns_rad_[joint] = own.first_position_rad(motor.position_rad) - told_rad;
     }
     reading_[joint].position_m = told_rad + turns_rad_[joint];
+    reading_[joint].age_s = 1e-9 * static_cast<double>(tick.deadline_ns - motor.heard_ns);
   }
-  const DeviceHealth now = judge();
-  if (health_ != DeviceHealth::lost) health_ = now;
+  const DeviceTrouble now = found();
+  if (health_ < DeviceHealth::silent || now.what >= trouble_.what) judge(now);
   return reading_;
 }
 
-DeviceHealth MotorBusDevice::judge() noexcept {
+DeviceTrouble MotorBusDevice::found() noexcept {
+  DeviceTrouble found;
   std::int64_t oldest_ns = now_ns_;
   for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
+    if (last_.motors[joint].heard_ns >= oldest_ns) continue;
+    oldest_ns = last_.motors[joint].heard_ns;
+    found.joint = joint;
+  }
+  found.age_s = 1e-9 * static_cast<double>(now_ns_ - oldest_ns);
+  found.cycle_age_s = 1e-9 * static_cast<double>(now_ns_ - last_.time_ns);
+  const auto with = [&found](Trouble what) {
+    found.what = what;
+    return found;
+  };
+  if (!bus_->running()) return with(Trouble::bus_ended);
+  if (last_.state == BusState::refused) return with(Trouble::bus_refused);
+  bool silent = found.age_s > params_.silence_s;
+  for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
     const MotorReading& motor = last_.motors[joint];
-    oldest_ns = std::min(oldest_ns, motor.heard_ns);
     if (commands_.motors[joint].enabled == 0) continue;
     if (motor.enabled != 0) had_power_[joint] = true;
-    if (!params_.joints[joint].allows(motor, reading_[joint].position_m)) return DeviceHealth::lost;
-    const bool has_it = motor.enabled != 0 && motor.fault == MotorFault::none;
-    const bool in_time = !had_power_[joint] && now_ns_ - wanted_since_ns_[joint] < power_within_ns;
-    if (!has_it && !in_time) return DeviceHealth::lost;
+    const MotorJoint& own = params_.joints[joint];
+    const bool powerless =
+        motor.enabled == 0 && (had_power_[joint] || now_ns_ - wanted_since_ns_[joint] >= power_within_ns);
+    const bool faulty = motor.fault != MotorFault::none && (had_power_[joint] || powerless);
+    Trouble what = Trouble::none;
+    const bool unheard = (faulty && motor.fault == MotorFault::lost_master) || (powerless && last_.unheard != 0);
+    if (unheard || (faulty && motor.fault == MotorFault::silent)) {
+      if (!std::exchange(silent, true)) found.joint = joint;
+      found.fault = unheard ? MotorFault::lost_master : MotorFault::silent;
+    } else if (faulty) {
+      what = Trouble::motor_fault;
+    } else if (!own.contains(reading_[joint].position_m)) {
+      what = Trouble::position;
+    } else if (!own.allows_speed(motor)) {
+      what = Trouble::velocity;
+    } else if (!own.allows_warmth(motor)) {
+      what = Trouble::temperature;
+    } else if (powerless) {
+      what = Trouble::no_power;
+    }
+    if (what == Trouble::none) continue;
+    found.joint = joint;
+    found.fault = motor.fault;
+    return with(what);
   }
-  const double age_s = 1e-9 * static_cast<double>(now_ns_ - oldest_ns);
-  if (!bus_->running() || last_.state == BusState::refused || age_s > params_.silence_s) return DeviceHealth::lost;
-  return age_s > params_.late_s ? DeviceHealth::degraded : DeviceHealth::good;
+  if (silent) return with(Trouble::silent);
+  return with(found.age_s > params_.late_s ? Trouble::late : Trouble::none);
+}
+
+void MotorBusDevice::judge(const DeviceTrouble& trouble) noexcept {
+  trouble_ = trouble;
+  switch (trouble_.what) {
+    case Trouble::none:
+      health_ = DeviceHealth::good;
+      return;
+    case Trouble::late:
+      health_ = DeviceHealth::degraded;
+      return;
+    case Trouble::silent:
+      health_ = DeviceHealth::silent;
+      return;
+    default:
+      health_ = DeviceHealth::lost;
+  }
 }
 
 void MotorBusDevice::write(const Joints<station::DeviceCommand>& command) noexcept {
@@ -89,7 +140,7 @@ void MotorBusDevice::write(const Joints<station::DeviceCommand>& command) noexce
     motor = {.torque_Nm = own.motor_torque_Nm(command[joint].force_N), .enabled = wanted ? 1 : 0};
     any = any || wanted;
   }
-  if (!any && health_ == DeviceHealth::lost) health_ = judge();
+  if (!any && health_ >= DeviceHealth::silent) judge(found());
   commands_.time_ns = now_ns_;
   bus_->command(commands_);
 }

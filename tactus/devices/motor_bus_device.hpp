@@ -5,20 +5,56 @@
 #include <tactus/station/device.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
 namespace tactus::devices {
 
+/// What keeps a device from being good.
+enum class Trouble : std::int64_t {
+  none,
+  late,         ///< a motor's answer is old
+  silent,       ///< it is too old to act on, or so says the motor of what it heard
+  bus_ended,    ///< the port was closed
+  bus_refused,  ///< a motor is not what the file says
+  position,     ///< a joint is where it may have no power
+  velocity,     ///< it is faster than it may be
+  temperature,  ///< its motor is hotter than it may be
+  motor_fault,  ///< its motor says that something is wrong
+  no_power      ///< its motor was asked to have power and has none
+};
+constexpr auto enumerators(Trouble) {
+  return std::array{Enumerator{Trouble::none, "none"},
+                    Enumerator{Trouble::late, "late"},
+                    Enumerator{Trouble::silent, "silent"},
+                    Enumerator{Trouble::bus_ended, "bus-ended"},
+                    Enumerator{Trouble::bus_refused, "bus-refused"},
+                    Enumerator{Trouble::position, "position"},
+                    Enumerator{Trouble::velocity, "velocity"},
+                    Enumerator{Trouble::temperature, "temperature"},
+                    Enumerator{Trouble::motor_fault, "motor-fault"},
+                    Enumerator{Trouble::no_power, "no-power"}};
+}
+
+/// That, and whose it is.
+struct DeviceTrouble {
+  Trouble what = Trouble::none;
+  std::size_t joint = 0;  ///< the first that has it, or the one whose answer is oldest
+  MotorFault fault = MotorFault::none;
+  double age_s = 0.0;        ///< of the oldest answer
+  double cycle_age_s = 0.0;  ///< since a cycle of the bus ended, whoever answered: old where our own thread stood still
+};
+
 /// Motors behind a bus as the joints of a device, in the order that they have there; forces are torques in Nm,
 /// positions rad, both of the joint. A motor's torque is told from its current, so it is no reading of a hand: the
 /// force that is read is 0.
 ///
-/// `good` while every motor has answered within `late`, `degraded` when the oldest answer is older, `lost` when it is
-/// older than `silence`, when the bus ended or refused its motors, or when a joint that is to have power is where, as
-/// fast or as hot as it may not be, has a motor with a fault, or has no power a quarter of a second after it was asked
-/// for. Lost stays until a command enables nothing: then it is judged anew. A motor that gives no force gets no power,
-/// and is judged by its age alone. Wait-free but for `limits`.
+/// `good` while every motor has answered within `late`, `degraded` when the oldest answer is older, `silent` when it is
+/// older than `silence`, `lost` when the bus ended or refused its motors, or when a joint that is to have power is
+/// where, as fast or as hot as it may not be, has a motor with a fault, or has no power a quarter of a second after it
+/// was asked for. Silent and lost stay until a command enables nothing: then it is judged anew. A motor that gives no
+/// force gets no power, and is judged by its age alone. Wait-free but for `limits`.
 class MotorBusDevice final : public station::JointDevice {
  public:
   struct Params {
@@ -37,10 +73,13 @@ class MotorBusDevice final : public station::JointDevice {
   Joints<station::DeviceReading> read(const station::Tick& tick) noexcept override;
   void write(const Joints<station::DeviceCommand>& command) noexcept override;
   [[nodiscard]] station::DeviceHealth health() const noexcept override { return health_; }
+  /// What `health` was judged by.
+  [[nodiscard]] const DeviceTrouble& trouble() const noexcept { return trouble_; }
 
  private:
   MotorBusDevice(MotorLink& bus, const Params& params);
-  [[nodiscard]] station::DeviceHealth judge() noexcept;
+  void judge(const DeviceTrouble& trouble) noexcept;
+  [[nodiscard]] DeviceTrouble found() noexcept;
 
   MotorLink* bus_;
   Params params_;
@@ -51,6 +90,7 @@ class MotorBusDevice final : public station::JointDevice {
   std::array<std::int64_t, most_joints> wanted_since_ns_{};
   std::array<bool, most_joints> had_power_{}, placed_{};
   std::array<double, most_joints> turns_rad_{};  ///< whole turns between the motor's number and the joint
+  DeviceTrouble trouble_;
   station::DeviceHealth health_ = station::DeviceHealth::degraded;
 };
 

@@ -81,10 +81,13 @@ struct MotorJoint {
   [[nodiscard]] bool contains(double position_rad) const noexcept {
     return position_rad >= lower_rad && position_rad <= upper_rad;
   }
-  /// Whether it may have power where it is, with what its motor says. What a motor does not tell counts for it.
-  [[nodiscard]] bool allows(const MotorReading& motor, double joint_rad) const noexcept {
-    return contains(joint_rad) && std::fabs(velocity_rad_per_s(motor.velocity_rad_per_s)) <= velocity_limit_rad_per_s &&
-           !(motor.temperature_C > temperature_limit_C);
+  /// Whether it may have power at the speed that its motor tells.
+  [[nodiscard]] bool allows_speed(const MotorReading& motor) const noexcept {
+    return std::fabs(velocity_rad_per_s(motor.velocity_rad_per_s)) <= velocity_limit_rad_per_s;
+  }
+  /// Whether it may have power while its motor is so warm. What a motor does not tell counts for it.
+  [[nodiscard]] bool allows_warmth(const MotorReading& motor) const noexcept {
+    return !(motor.temperature_C > temperature_limit_C);
   }
   /// As its device states them. A motor that gives no force has next to none, so that nobody believes in more.
   [[nodiscard]] station::DeviceLimits limits() const noexcept {

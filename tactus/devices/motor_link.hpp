@@ -18,6 +18,7 @@ struct BusReadings {
   BusState state = BusState::asking;
   std::int64_t cycles = 0;
   std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, when the cycle ended
+  std::int64_t unheard = 0;  ///< 1: commands were older than the silence allowed, so all motors lost their power
 };
 
 /// What a tick wants of all motors.

@@ -23,6 +23,7 @@ SiteTickRecord of_site(const station::Tick& tick, const control::SiteRequests& p
   SiteTickRecord record{done.output.record};
   record.tick = tick.number;
   record.missed = tick.missed;
+  record.health = static_cast<std::int64_t>(done.health);
   record.age_s = site.heard().age_s;
   record.pressed = number_of(pressed);
   record.told_sequence = done.output.packet.sequence;
@@ -131,6 +132,7 @@ JointLogRecord recorded(const station::Tick& tick, std::size_t joint, const Site
   record.limit = static_cast<std::int64_t>(gate.limit());
   record.fault = static_cast<std::int64_t>(gate.fault());
   record.given_J = gate.given_J();
+  record.position_age_s = done.reading[joint].age_s;
   fill(record, done.reading[joint], done.output.site[joint], site.heard().message[joint],
        done.output.packet.message[joint]);
   return record;

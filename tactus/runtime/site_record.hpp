@@ -10,10 +10,13 @@
 /// What a site under supervision leaves of each tick: with the configuration, enough to step it again.
 namespace tactus::runtime {
 
+inline constexpr control::Legend health_legend = control::legend<station::DeviceHealth>("Of the device: ");
+
 /// One tick of a site, with all its joints: what supervision and the link show of it.
 struct SiteTickRecord : control::SiteRecord {
   std::int64_t tick = 0;
   std::int64_t missed = 0;
+  std::int64_t health = 0;
   double age_s = 0.0;
   double round_trip_s = 0.0;
   double link_silence_s = 0.0;
@@ -27,6 +30,7 @@ struct SiteTickRecord : control::SiteRecord {
         List{
             observed("tick", &R::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
             observed("missed", &R::missed, units::none, "", "", "", "Deadlines missed right before this one."),
+            observed("health", &R::health, units::none, "", "", "", health_legend.text),
             observed("age_s", &R::age_s, units::second, "", "", "", "Of the packet that was applied last, on arrival."),
             observed("round_trip_s", &R::round_trip_s, units::second, "", "", "", "Of the latest echo."),
             observed("link_silence_s", &R::link_silence_s, units::second, "", "", "",
@@ -92,6 +96,7 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
   std::int64_t limit = 0;
   std::int64_t fault = 0;
   double given_J = 0.0;
+  double position_age_s = 0.0;
   static constexpr auto signals() {
     using R = JointLogRecord;
     return joined(
@@ -99,7 +104,9 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
              observed("limit", &R::limit, units::none, "", "", "", control::limit_legend.text),
              observed("fault", &R::fault, units::none, "", "", "", control::fault_legend.text),
              observed("given_J", &R::given_J, units::joule, "", "", "the motor gave it",
-                      "Account of the passivity monitor.")},
+                      "Account of the passivity monitor."),
+             observed("position_age_s", &R::position_age_s, units::second, "", "", "",
+                      "Of the position at the deadline; negative where it was measured after that.")},
         AxisRecord::signals(), Heard::signals(), Told::signals());
   }
 };

@@ -83,6 +83,7 @@ Check replay_one(const LogContent& content, const LogTable& table, const experim
                                                         ": there is nothing to replay it from");
     }
     device.reading = reading_of(logged, role);
+    device.state = static_cast<station::DeviceHealth>(logged.health);
     const station::Tick tick{.number = logged.tick, .missed = logged.missed};
     const control::SiteRequests pressed = requests_of(logged.pressed);
     SiteLogRecord replayed = std::visit(
@@ -118,6 +119,8 @@ Check replay_both(const LogContent& content, const std::array<const LogTable*, 2
     next = at_master.tick + 1;
     master.reading = reading_of(at_master, SiteRole::master);
     slave.reading = reading_of(at_slave, SiteRole::slave);
+    master.state = static_cast<station::DeviceHealth>(at_master.health);
+    slave.state = static_cast<station::DeviceHealth>(at_slave.health);
     const station::Tick tick{.number = at_master.tick, .missed = at_master.missed};
     const control::SiteRequests pressed = requests_of(at_master.pressed);
     const auto done = pair->step(tick, pressed);

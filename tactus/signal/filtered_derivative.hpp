@@ -5,6 +5,7 @@
 #include <tactus/core/scalar.hpp>
 #include <tactus/signal/checks.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -77,8 +78,11 @@ class FilteredDerivative {
   /// The same where `elapsed_samples` sample times have passed since the sample before: what as many samples on the
   /// straight line between the two would have given. Real-time safe.
   double step(double position, std::int64_t elapsed_samples) noexcept {
-    if (elapsed_samples <= 1 || motion_.samples == 0.0) return motion_.step(position);
-    const auto samples = static_cast<double>(elapsed_samples);
+    return step_after(position, static_cast<double>(std::max<std::int64_t>(elapsed_samples, 1)));
+  }
+  /// The same after any positive number of sample times, whole or not. Real-time safe.
+  double step_after(double position, double samples) noexcept {
+    if (samples == 1.0 || motion_.samples == 0.0) return motion_.step(position);
     const double slope = (position - motion_.previous) / samples * motion_.rate_per_s;
     motion_.velocity = slope + std::pow(1.0 - motion_.smoothing, samples) * (motion_.velocity - slope);
     motion_.previous = position;

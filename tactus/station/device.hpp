@@ -23,11 +23,12 @@ struct DeviceLimits {
 enum class DeviceHealth {
   good,
   degraded,  ///< the reading is an old one
+  silent,    ///< it is too old to act on; a newer one may come
   lost       ///< nothing it says or does can be relied on
 };
 constexpr auto enumerators(DeviceHealth) {
   return std::array{Enumerator{DeviceHealth::good, "good"}, Enumerator{DeviceHealth::degraded, "degraded"},
-                    Enumerator{DeviceHealth::lost, "lost"}};
+                    Enumerator{DeviceHealth::silent, "silent"}, Enumerator{DeviceHealth::lost, "lost"}};
 }
 
 struct DeviceReading {
@@ -35,6 +36,7 @@ struct DeviceReading {
   double force_N = 0.0;     ///< master: hand on the handle, positive toward the environment; slave: environment on the
                             ///< tip, positive when it pushes the slave back
   double grip = 1.0;        ///< master: how firmly the person holds, over nominal, where a sensor tells
+  double age_s = 0.0;       ///< of the position at the tick's deadline; negative where it was measured after that
 };
 
 struct DeviceCommand {

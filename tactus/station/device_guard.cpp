@@ -59,9 +59,9 @@ void DeviceGuard::rearm() noexcept {
   marked_ = false;
 }
 
-void DeviceGuard::observe(double position_m, const Tick& tick) noexcept {
-  const std::int64_t now_ns = tick.deadline_ns;
-  if (!std::isfinite(position_m)) return let_go(LetGo::not_finite);
+void DeviceGuard::observe(double position_m, const Tick& tick, double age_s) noexcept {
+  if (!std::isfinite(position_m) || !std::isfinite(age_s)) return let_go(LetGo::not_finite);
+  const std::int64_t now_ns = tick.deadline_ns - std::llround(1e9 * age_s);
   if (std::fabs(position_m) > limits_.position_m) let_go(LetGo::position);
   if (marked_) {
     const double window_s = 1e-9 * static_cast<double>(std::max(now_ns - mark_ns_, speed_window_ns));
@@ -147,9 +147,9 @@ Reading GuardedDeviceOf<Reading>::read(const Tick& tick) noexcept {
   const bool silent = written_ns_ != now_.deadline_ns;
   now_ = tick;
   if (device_->health() != DeviceHealth::lost) {
-    for_each_joint(
-        [&tick](DeviceGuard& guard, const DeviceReading& joint) noexcept { guard.observe(joint.position_m, tick); },
-        guard_, reading);
+    for_each_joint([&tick](DeviceGuard& guard,
+                           const DeviceReading& joint) noexcept { guard.observe(joint.position_m, tick, joint.age_s); },
+                   guard_, reading);
   }
   if (written_ && silent) {
     if (tick.deadline_ns - written_ns_ > patience_ns_) {

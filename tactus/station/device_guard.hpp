@@ -43,8 +43,8 @@ class DeviceGuard {
  public:
   DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept;
 
-  /// What the sensors read at a tick. Real-time safe, as is all below.
-  void observe(double position_m, const Tick& tick) noexcept;
+  /// What the sensors read at a tick, and how old that is. Real-time safe, as is all below.
+  void observe(double position_m, const Tick& tick, double age_s = 0.0) noexcept;
   /// What may reach the actuators from this tick on, always finite. Ticks that were missed earn no faster change.
   DeviceCommand pass(const DeviceCommand& wanted, const Tick& tick) noexcept;
   /// Latches, for what is found elsewhere. The first cause stays.

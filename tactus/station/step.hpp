@@ -31,16 +31,19 @@ concept Supervised = requires(Site& site, const typename Site::Packet& packet) {
 template <class Site>
 struct Step {
   Each<typename Site::Sensors, DeviceReading> reading;
+  DeviceHealth health = DeviceHealth::good;
   typename Site::Output output;
 };
 
 inline void put(const DeviceReading& reading, control::MasterInput& sensors) noexcept {
   sensors.motor_position_m = reading.position_m;
+  sensors.motor_age_s = reading.age_s;
   sensors.hand_force_N = reading.force_N;
   sensors.grip = reading.grip;
 }
 inline void put(const DeviceReading& reading, control::SlaveInput& sensors) noexcept {
   sensors.motor_position_m = reading.position_m;
+  sensors.motor_age_s = reading.age_s;
   sensors.tip_force_N = reading.force_N;
 }
 inline DeviceCommand command_of(const control::MasterOutput& output, bool enabled = true) noexcept {
@@ -58,17 +61,16 @@ Joints<DeviceCommand> command_of(const Joints<Output>& output, bool enabled = tr
   return command;
 }
 
-/// What the device reads. Of a device that is lost no position is a number, so that its site lets go.
-template <Drivable Device>
-auto trusted_reading(Device& device, const Tick& tick) noexcept {
-  auto reading = device.read(tick);
-  if constexpr (requires { device.health(); }) {
-    if (device.health() == DeviceHealth::lost) {
-      for_each_joint([](DeviceReading& joint) noexcept { joint.position_m = std::numeric_limits<double>::quiet_NaN(); },
-                     reading);
-    }
-  }
-  return reading;
+/// What the device reads, and its health. Of a device that is lost no position is a number, so that its site lets go;
+/// nor of one that is silent, where no supervision could make its site hold.
+template <class Site, Drivable Device>
+void read(Device& device, const Tick& tick, Step<Site>& into) noexcept {
+  into.reading = device.read(tick);
+  if constexpr (requires { device.health(); }) into.health = device.health();
+  const bool trusted = into.health < (Supervised<Site> ? DeviceHealth::lost : DeviceHealth::silent);
+  if (trusted) return;
+  for_each_joint([](DeviceReading& joint) noexcept { joint.position_m = std::numeric_limits<double>::quiet_NaN(); },
+                 into.reading);
 }
 
 /// The tick of a site where it stands; whatever the clock, all that runs a site runs this:
@@ -80,7 +82,7 @@ auto trusted_reading(Device& device, const Tick& tick) noexcept {
 template <class Site, Drivable Device, class Way>
 Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const typename Site::Wish& wish) noexcept {
   Step<Site> done;
-  done.reading = trusted_reading(device, tick);
+  read(device, tick, done);
   using Sensors = typename Site::Sensors;
   Sensors sensors = same_for_each(done.reading, JointOf<Sensors>{});
   for_each_joint([](const DeviceReading& reading, JointOf<Sensors>& joint) noexcept { put(reading, joint); },
@@ -88,7 +90,10 @@ Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const ty
   const std::int64_t elapsed_ticks = tick.missed + 1;
   if constexpr (Supervised<Site>) {
     way.receive(tick, [&site](const typename Site::Packet& packet) noexcept { return site.take(packet); });
-    done.output = site.step({.sensors = sensors, .requests = wish, .elapsed_ticks = elapsed_ticks});
+    done.output = site.step({.sensors = sensors,
+                             .requests = wish,
+                             .elapsed_ticks = elapsed_ticks,
+                             .device_silent = done.health == DeviceHealth::silent});
     device.write(command_of(done.output.site, done.output.record.enabled));
     way.send(done.output.packet, tick);
   } else {

@@ -159,6 +159,36 @@ TEST(SafetyGate, AfterAStallTheWayInBetweenIsWorkAndSpeedAndNoJumpWhereTheTimeWa
   EXPECT_NEAR(element.velocity_m_per_s(), 0.05 / 0.1, 1e-9);
 }
 
+TEST(SafetyGate, SpeedAndJumpAreJudgedOverTheTimeBetweenMeasurementsWhateverTheTicks) {
+  // A bus of 297 cycles a second beside ticks of 500, which once stands still for 24 ms: a joint at 4 rad/s.
+  constexpr double period_s = 2e-3, cycle_s = 1.0 / 297.0, speed = 4.0;
+  const SafetyGate::Params params{.velocity_limit_m_per_s = 4.5,
+                                  .encoder = {.fastest_m_per_s = 6.0, .frozen_force_N = 0.2, .frozen_after_s = 0.01}};
+  const auto fault_at = [&](bool age_is_told) {
+    SafetyGate element = SafetyGate::make(params, Seconds{period_s}).value();
+    for (int tick = 0; tick < 500; ++tick) {
+      const double now_s = period_s * tick;
+      const double looked_s = tick >= 300 && tick < 312 ? period_s * 300 : now_s;
+      const double measured_s = cycle_s * std::floor(looked_s / cycle_s);
+      element.believe(speed * measured_s, 1, std::nullopt, age_is_told ? now_s - measured_s : 0.0);
+      // The force changes, so an encoder that gave no count would be frozen.
+      element.pass(0.5 * std::sin(0.2 * tick));
+      if (age_is_told && tick > 20) {
+        EXPECT_NEAR(element.velocity_m_per_s(), speed, 1e-6) << tick;
+      }
+    }
+    return element.fault();
+  };
+  EXPECT_EQ(fault_at(true), GateFault::none);
+  EXPECT_NE(fault_at(false), GateFault::none) << "or the limits of this test say nothing";
+  // What is beyond them over that time is still found.
+  SafetyGate element = SafetyGate::make(params, Seconds{period_s}).value();
+  element.believe(0.0, 1, std::nullopt, 0.0);
+  element.believe(0.0, 1, std::nullopt, period_s);
+  element.believe(6.1 * 2.0 * period_s, 1, std::nullopt, 0.0);
+  EXPECT_EQ(element.fault(), GateFault::encoder_jump);
+}
+
 TEST(SafetyGate, AMotorThatNothingResistsAndThatStandsStillHasAFrozenEncoder) {
   const SafetyGate made = gate({.encoder = {.unbalanced_force_N = 0.5}});
   const auto fault_after = [&](std::optional<double> resisting_N) {

@@ -166,14 +166,15 @@ TEST(BusThread, CommandsThatStopTakeThePowerAndDoNotGiveItBackByThemselves) {
   const std::int64_t cycles = bus->newest()->cycles;
   EXPECT_TRUE(tick_until(*device, 0.1, true, [&] { return bus->newest()->cycles > cycles + 50; }));
   EXPECT_TRUE(all_off());
-  EXPECT_EQ(device->health(), DeviceHealth::lost);
+  EXPECT_EQ(device->health(), DeviceHealth::silent);
+  EXPECT_EQ(device->trouble().fault, MotorFault::lost_master);
   EXPECT_TRUE(tick_until(*device, 0.0, false, [&] {
     return device->health() == DeviceHealth::good && bus->newest()->cycles > cycles + 100;
   }));
   EXPECT_TRUE(tick_until(*device, 0.1, true, all_on));
 }
 
-TEST(BusThread, ABusThatFallsSilentIsDegradedThenLost) {
+TEST(BusThread, ABusThatFallsSilentIsDegradedThenSilent) {
   Motors motors;
   auto bus = bus_at(motors);
   ASSERT_FALSE(bus->wait_until_asked(long_enough));
@@ -181,7 +182,10 @@ TEST(BusThread, ABusThatFallsSilentIsDegradedThenLost) {
   ASSERT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::good; }));
   motors.fall_silent();
   EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::degraded; }));
-  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::lost; }));
+  EXPECT_EQ(device->trouble().what, Trouble::late);
+  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::silent; }));
+  EXPECT_EQ(device->trouble().what, Trouble::silent);
+  EXPECT_GT(device->trouble().age_s, 2.0);
 }
 
 TEST(BusThread, AMotorWithAFaultUnderPowerIsLost) {
@@ -192,6 +196,9 @@ TEST(BusThread, AMotorWithAFaultUnderPowerIsLost) {
   ASSERT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::good; }));
   EXPECT_TRUE(tick_until(*device, 0.1, true, [&] { return device->health() == DeviceHealth::lost; }));
   EXPECT_EQ(bus->newest()->motors[1].fault, MotorFault::hot);
+  EXPECT_EQ(device->trouble().what, Trouble::motor_fault);
+  EXPECT_EQ(device->trouble().joint, 1U);
+  EXPECT_EQ(device->trouble().fault, MotorFault::hot);
 }
 
 TEST(BusThread, APortThatIsUnpluggedEndsItAndTheDeviceIsLost) {

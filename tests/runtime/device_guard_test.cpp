@@ -126,6 +126,25 @@ TEST(DeviceGuard, ItMeasuresSpeedItselfAndAnEncodersStepIsNoSpeed) {
   EXPECT_EQ(guard.cause(), station::LetGo::position);
 }
 
+TEST(DeviceGuard, ItMeasuresSpeedOverTheTimeBetweenMeasurements) {
+  // At 0.9 of the limit, a bus that stands still for 20 ms: what comes after that is no jump, but for who takes it for
+  // new at each tick.
+  const auto cause_at = [](bool age_is_told) {
+    station::DeviceGuard guard(limits, patience);
+    for (std::int64_t n = 0; n < 500; ++n) {
+      const double now_s = period_s * static_cast<double>(n);
+      const double measured_s = now_s > 0.05 && now_s < 0.07 ? 0.05 : now_s;
+      guard.observe(-0.05 + 0.9 * measured_s, tick(n), age_is_told ? now_s - measured_s : 0.0);
+    }
+    return guard.cause();
+  };
+  EXPECT_EQ(cause_at(true), station::LetGo::none);
+  EXPECT_EQ(cause_at(false), station::LetGo::velocity);
+  station::DeviceGuard guard(limits, patience);
+  guard.observe(0.0, tick(0), nan);
+  EXPECT_EQ(guard.cause(), station::LetGo::not_finite);
+}
+
 /// Controllers that are alive and wrong: what each commands at a tick.
 struct Wrong {
   const char* name;

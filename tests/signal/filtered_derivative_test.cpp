@@ -63,6 +63,18 @@ TEST(FilteredDerivative, AGapGivesWhatAsManySamplesOnAStraightLineWouldHaveGiven
   EXPECT_EQ(each.step(12.5, 7), 0.0) << "the first sample only initialises";
 }
 
+TEST(FilteredDerivative, TheSlopeOfARampIsExactHoweverUnevenlyItIsSampled) {
+  auto element = derivative(300.0);
+  double at_s = 0.0, velocity = 0.0;
+  element.step(0.0);
+  for (int n = 0; n < 500; ++n) {
+    const double samples = n % 3 == 0 ? 0.4 : n % 3 == 1 ? 1.0 : 2.7;
+    at_s += samples * dt_s;
+    velocity = element.step_after(0.15 * at_s, samples);
+  }
+  EXPECT_NEAR(velocity, 0.15, 1e-10);
+}
+
 TEST(FilteredDerivative, StartsWithoutAKickFarFromZeroAndAgainAfterAReset) {
   auto element = derivative(300.0);
   EXPECT_EQ(element.step(12.5), 0.0);

@@ -191,6 +191,33 @@ TEST(LocalTeleoperator, ASiteWhoseDeviceIsLostLetsGo) {
   EXPECT_FALSE(bench.loop.healthy());
 }
 
+TEST(LocalTeleoperator, ADeviceThatIsSilentIsAHoldWithoutForceAndNoFault) {
+  Bench bench;
+  bench.follow();
+  bench.master.hand_m = 0.02;
+  bench.run(0.3, {.dead_man = true});
+  ASSERT_GT(bench.slave.command.force_N, 0.1);
+  bench.slave.state = DeviceHealth::degraded;
+  bench.run(0.1, {.dead_man = true});
+  EXPECT_TRUE(bench.both(SiteState::active)) << "an old reading alone stops nobody";
+  bench.slave.state = DeviceHealth::silent;
+  bench.run(0.4, {.dead_man = true});
+  EXPECT_TRUE(bench.both(SiteState::hold));
+  EXPECT_EQ(bench.loop.sites().slave().cause(), control::SiteCause::device);
+  EXPECT_EQ(bench.loop.sites().master().cause(), control::SiteCause::peer);
+  EXPECT_EQ(bench.slave.command.force_N, 0.0);
+  EXPECT_FALSE(bench.slave.command.enabled);
+  EXPECT_TRUE(bench.loop.healthy());
+  bench.master.hand_m = 0.0;
+  bench.run(0.5, {.arm = true});
+  EXPECT_FALSE(bench.both(SiteState::armed)) << "not while it is silent";
+  bench.slave.state = DeviceHealth::good;
+  bench.run(0.05, {});
+  bench.run(0.05, {.arm = true});
+  bench.run(0.6, {.dead_man = true});
+  EXPECT_TRUE(bench.both(SiteState::active));
+}
+
 TEST(BareTeleoperator, DrivesNoDeviceThatIsNotSimulated) {
   Carriage simulation({.force_N = 5.0}, true), real(limits);
   const auto refused = BareTeleoperator::make(chosen(), {}, period, 0.0, simulation, real);
@@ -217,7 +244,7 @@ TEST(BareTeleoperator, TheGateIsTightenedToWhatTheDeviceCanDo) {
   EXPECT_EQ(slave.command.force_N, 0.0);
 }
 
-TEST(BareTeleoperator, ASiteWhoseDeviceIsLostLetsGo) {
+TEST(BareTeleoperator, ASiteWhoseDeviceIsSilentLetsGo) {
   ScriptedDevice master({.force_N = 5.0});
   ScriptedDevice slave({.force_N = 5.0});
   auto loop = BareTeleoperator::make({}, {}, period, 0.0, master, slave);
@@ -225,7 +252,7 @@ TEST(BareTeleoperator, ASiteWhoseDeviceIsLostLetsGo) {
   slave.reading.position_m = -0.01;
   for (std::int64_t number = 0; number < 50; ++number) loop->step(tick(number), 1.0);
   EXPECT_GT(slave.command.force_N, 0.1);
-  slave.state = DeviceHealth::lost;
+  slave.state = DeviceHealth::silent;  // which nothing but its gate can act on
   for (std::int64_t number = 50; number < 2000; ++number) loop->step(tick(number), 1.0);
   EXPECT_EQ(slave.command.force_N, 0.0);
   EXPECT_FALSE(loop->healthy());

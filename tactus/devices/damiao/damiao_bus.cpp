@@ -12,8 +12,9 @@ namespace {
 constexpr std::int64_t most_motors = 15;
 /// Frames to clear a fault or to enable, before a motor counts as one that refuses.
 constexpr int most_tries = 50;
-constexpr int missed_is_silent = 3;
-constexpr std::int64_t silent_asked_every_ns = 10'000'000;
+/// Cycles in a row without an answer, after which the others no longer wait for it.
+constexpr int missed_is_absent = 3;
+constexpr std::int64_t absent_asked_every_ns = 10'000'000;
 constexpr double timeout_unit_s = 50e-6;
 
 std::int64_t ns_of(double seconds) { return std::llround(seconds * 1e9); }
@@ -64,6 +65,8 @@ DamiaoBus::DamiaoBus(const DamiaoBusParams& params)
     : framing_(params.framing),
       patience_ns_(ns_of(params.patience_s)),
       shortest_cycle_ns_(ns_of(params.shortest_cycle_s)),
+      silence_ns_(ns_of(params.watchdog_s)),
+      ask_absent_ns_(std::min(absent_asked_every_ns, silence_ns_ / 4)),
       reader_(params.framing),
       outbox_(params.motors.size() * 128) {
   const auto timeout = static_cast<std::uint32_t>(std::lround(params.watchdog_s / timeout_unit_s));
@@ -123,7 +126,7 @@ std::span<const std::uint8_t> DamiaoBus::say(std::int64_t now_ns) noexcept {
   if (state_ == BusState::asking) {
     ask(now_ns);
   } else if (state_ == BusState::ready) {
-    if (in_cycle_ && (all_answered() || now_ns >= progress_ns_ + patience_ns_)) end_cycle();
+    if (in_cycle_ && (all_answered() || now_ns >= progress_ns_ + patience_ns_)) end_cycle(now_ns);
     if (!in_cycle_ && now_ns >= cycle_began_ns_ + shortest_cycle_ns_) begin_cycle(now_ns);
   }
   return outbox_.take(now_ns);
@@ -200,12 +203,19 @@ void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t 
   reading.enabled = told->status == status_enabled ? 1 : 0;
   reading.heard_ns = now_ns;
   ++reading.answers;
-  judge(motor);
+  judge(motor, now_ns);
+}
+
+bool DamiaoBus::is_absent(const Motor& motor) noexcept { return motor.missed >= missed_is_absent; }
+
+bool DamiaoBus::is_silent(const Motor& motor, std::int64_t now_ns) const noexcept {
+  // Once is not enough: where this program stood still, it was not the motor that was silent.
+  return motor.missed > 1 && (motor.reading.heard_ns < 0 || now_ns - motor.reading.heard_ns > silence_ns_);
 }
 
 /// Which fault it has, and whether that stays.
-void DamiaoBus::judge(Motor& motor) noexcept {
-  const bool silent = motor.missed >= missed_is_silent;
+void DamiaoBus::judge(Motor& motor, std::int64_t now_ns) noexcept {
+  const bool silent = is_silent(motor, now_ns);
   const MotorFault now = silent ? MotorFault::silent : fault_of(motor.status);
   if (motor.was_wanted && motor.latched == MotorFault::none) {
     if (motor.status == status_enabled) motor.had_power = true;
@@ -220,7 +230,7 @@ void DamiaoBus::judge(Motor& motor) noexcept {
 bool DamiaoBus::all_answered() const noexcept {
   bool any = false;
   for (const Motor& motor : motors_) {
-    if (motor.missed >= missed_is_silent) continue;
+    if (is_absent(motor)) continue;
     if (motor.owed > 0) return false;
     any = true;
   }
@@ -230,33 +240,33 @@ bool DamiaoBus::all_answered() const noexcept {
 void DamiaoBus::begin_cycle(std::int64_t now_ns) noexcept {
   in_cycle_ = true;
   cycle_began_ns_ = progress_ns_ = now_ns;
-  // Silent ones first: when the others have answered, nothing is left on its way.
-  for (const bool silent : {true, false}) {
+  // Absent ones first: when the others have answered, nothing is left on its way.
+  for (const bool absent : {true, false}) {
     for (Motor& motor : motors_) {
-      if ((motor.missed >= missed_is_silent) != silent) continue;
-      if (silent && now_ns < motor.asked_again_ns) continue;
-      motor.asked_again_ns = now_ns + silent_asked_every_ns;
+      if (is_absent(motor) != absent) continue;
+      if (absent && now_ns < motor.asked_again_ns) continue;
+      motor.asked_again_ns = now_ns + ask_absent_ns_;
       ++motor.owed;
-      send(frame_for(motor), now_ns);
+      send(frame_for(motor, now_ns), now_ns);
     }
   }
 }
 
-void DamiaoBus::end_cycle() noexcept {
+void DamiaoBus::end_cycle(std::int64_t now_ns) noexcept {
   in_cycle_ = false;
   ++cycles_;
   for (Motor& motor : motors_) {
-    if (motor.owed == 0) continue;
+    const bool asked = motor.owed > 0;
     // What is late comes in a later cycle and must not be taken for the answer to that one: each would begin too soon
     // from then on. What is lost is waited for once more.
     const bool heard = motor.reading.heard_ns >= cycle_began_ns_;
-    if (!heard) ++motor.missed;
-    if (heard || motor.missed >= missed_is_silent) motor.owed = 0;
-    judge(motor);
+    if (asked && !heard) ++motor.missed;
+    if (heard || is_absent(motor)) motor.owed = 0;
+    judge(motor, now_ns);
   }
 }
 
-CanFrame DamiaoBus::frame_for(Motor& motor) noexcept {
+CanFrame DamiaoBus::frame_for(Motor& motor, std::int64_t now_ns) noexcept {
   const auto id = static_cast<std::uint16_t>(motor.params.id);
   const bool wanted = motor.command.enabled != 0;
   if (wanted && !motor.was_wanted) {
@@ -265,8 +275,7 @@ CanFrame DamiaoBus::frame_for(Motor& motor) noexcept {
     motor.tries = 0;
   }
   motor.was_wanted = wanted;
-  const bool silent = motor.missed >= missed_is_silent;
-  if (!wanted || motor.latched != MotorFault::none || silent) {
+  if (!wanted || motor.latched != MotorFault::none || is_silent(motor, now_ns)) {
     return motor.status == status_enabled ? order_frame(id, Order::disable) : refresh_frame(id);
   }
   if (motor.status == status_enabled) return mit_frame(id, motor.scale, {.torque_Nm = motor.command.torque_Nm});

@@ -24,7 +24,8 @@ struct DamiaoBusParams {
     return List{
         field("framing", &DamiaoBusParams::framing, "How frames of CAN become bytes."),
         field("watchdog_s", &DamiaoBusParams::watchdog_s, units::second, between(0.002, 1.0),
-              "A motor lets go when it hears nothing for so long: its register TIMEOUT, set before it gets power."),
+              "A motor lets go when it hears nothing for so long: its register TIMEOUT, set before it gets power. One "
+              "that is not heard for so long is silent."),
         field("patience_s", &DamiaoBusParams::patience_s, units::second, between(0.0002, 0.05),
               "The longest wait for the next answer of a cycle."),
         field("shortest_cycle_s", &DamiaoBusParams::shortest_cycle_s, units::second, between(0.0001, 0.1),
@@ -39,10 +40,10 @@ struct DamiaoBusParams {
 /// each of which is answered by feedback, and ends when all have answered or the next one keeps it waiting too long.
 ///
 /// Power: a motor gets it when its command asks for it anew; a fault from before is cleared first. A fault under power,
-/// three cycles without an answer, or power lost without being asked latch its fault: it is switched off and stays so
-/// until the command asks anew. One that was silent for so long that it could have turned by half the range of its
-/// number has the fault `encoder` for good. A motor that does not answer is asked rarely, so that it costs the others
-/// nothing.
+/// no answer for longer than its own watchdog waits, or power lost without being asked latch its fault: it is switched
+/// off and stays so until the command asks anew. One that was silent for so long that it could have turned by half the
+/// range of its number has the fault `encoder` for good. A motor that missed three cycles is asked rarely, with the
+/// same command, so that it costs the others nothing; a stall of the machine ends as it began.
 class DamiaoBus final : public MotorBus {
  public:
   /// Errors: parameters outside their bounds; motors with the same identifier, or with one that commands have.
@@ -87,14 +88,17 @@ class DamiaoBus final : public MotorBus {
   void ask(std::int64_t now_ns) noexcept;
   void take(const CanFrame& frame, std::int64_t now_ns) noexcept;
   void take_feedback(Motor& motor, const CanFrame& frame, std::int64_t now_ns) noexcept;
-  void judge(Motor& motor) noexcept;
+  /// So that the others do not wait for it.
+  [[nodiscard]] static bool is_absent(const Motor& motor) noexcept;
+  [[nodiscard]] bool is_silent(const Motor& motor, std::int64_t now_ns) const noexcept;
+  void judge(Motor& motor, std::int64_t now_ns) noexcept;
   void begin_cycle(std::int64_t now_ns) noexcept;
-  void end_cycle() noexcept;
+  void end_cycle(std::int64_t now_ns) noexcept;
   [[nodiscard]] bool all_answered() const noexcept;
-  [[nodiscard]] CanFrame frame_for(Motor& motor) noexcept;
+  [[nodiscard]] CanFrame frame_for(Motor& motor, std::int64_t now_ns) noexcept;
 
   Framing framing_;
-  std::int64_t patience_ns_, shortest_cycle_ns_;
+  std::int64_t patience_ns_, shortest_cycle_ns_, silence_ns_, ask_absent_ns_;
   FrameReader reader_;
   wire::Outbox outbox_;
   std::vector<Motor> motors_;

@@ -155,7 +155,9 @@ class Inverse3Link::Worker {
 
   std::string next_message(const Device& device, Dialect dialect) {
     if (const auto newest = commands.newest()) wanted_ = *newest;
-    if (!watch_.trusts(wanted_, wire::monotonic_ns()) || !device.calibrated) {
+    const bool heard = watch_.trusts(wanted_, wire::monotonic_ns());
+    told_readings_.unheard = heard ? 0 : 1;
+    if (!heard || !device.calibrated) {
       gives_.fill(false);
       return probe_message(device.id);
     }

@@ -11,7 +11,7 @@ using station::DeviceReading;
 
 Result<RigLoop> RigLoop::make(const Joints<control::ControlParams>& control, const station::LinkParams& channel,
                               Seconds tick, const Params& params, runtime::SiteExchange& exchange,
-                              station::JointDevice& leader, station::JointDevice& follower) {
+                              MotorBusDevice& leader, MotorBusDevice& follower) {
   auto pair = station::JointLocalTeleoperator::make(control, channel, tick, Joints<double>(control.size(), 0.0), leader,
                                                     follower);
   if (!pair) return pair.error();
@@ -25,8 +25,8 @@ Result<RigLoop> RigLoop::make(const Joints<control::ControlParams>& control, con
   return RigLoop(console, params, leader, follower, scales, *std::move(pair));
 }
 
-RigLoop::RigLoop(const runtime::SiteConsole& console, const Params& params, station::JointDevice& leader,
-                 station::JointDevice& follower, const Joints<double>& scales, station::JointLocalTeleoperator pair)
+RigLoop::RigLoop(const runtime::SiteConsole& console, const Params& params, MotorBusDevice& leader,
+                 MotorBusDevice& follower, const Joints<double>& scales, station::JointLocalTeleoperator pair)
     : console_(console),
       params_(params),
       leader_(&leader),
@@ -99,6 +99,43 @@ bool RigLoop::operator()(const station::Tick& tick) noexcept {
   return !console_.over(tick, works, gives_force);
 }
 
+/// The worst of the second, of each side.
+void RigLoop::note_troubles() noexcept {
+  second_.leader_health = leader_->health();
+  second_.follower_health = follower_->health();
+  const auto note = [](DeviceTrouble& worst, const DeviceTrouble& now) {
+    if (now.what > worst.what || (now.what == worst.what && now.age_s > worst.age_s)) worst = now;
+  };
+  note(second_.leader_trouble, leader_->trouble());
+  note(second_.follower_trouble, follower_->trouble());
+  switch (std::max(second_.leader_health, second_.follower_health)) {
+    case station::DeviceHealth::good:
+      return;
+    case station::DeviceHealth::degraded:
+      ++totals_.late_ticks;
+      return;
+    case station::DeviceHealth::silent:
+      ++totals_.silent_ticks;
+      return;
+    case station::DeviceHealth::lost:
+      ++totals_.lost_ticks;
+  }
+}
+
+/// The first fault that a gate has latched.
+void RigLoop::note_fault() noexcept {
+  second_.fault = control::GateFault::none;
+  const auto look = [this](const auto& gates, bool of_leader) {
+    for (std::size_t joint = 0; joint < gates.size() && second_.fault == control::GateFault::none; ++joint) {
+      second_.fault = gates[joint].motor().fault();
+      second_.fault_joint = joint;
+      second_.fault_of_leader = of_leader;
+    }
+  };
+  look(pair_.sites().master().site().gates(), true);
+  look(pair_.sites().slave().site().gates(), false);
+}
+
 void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) noexcept {
   const auto leader = static_cast<SiteState>(done.master.output.record.state);
   const auto follower = static_cast<SiteState>(done.slave.output.record.state);
@@ -111,20 +148,21 @@ void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) no
   const bool stopped = follower == SiteState::hold || follower == SiteState::fault;
   const bool of_follower = stopped && cause(done.slave.output.record.cause) != control::SiteCause::peer;
   second_.cause = cause(of_follower ? done.slave.output.record.cause : done.master.output.record.cause);
-  second_.leader_health = leader_->health();
-  second_.follower_health = follower_->health();
+  note_troubles();
+  note_fault();
   for (std::size_t joint = 0; joint < scales_.size(); ++joint) {
     second_.most_torque = std::max({second_.most_torque, std::fabs(done.master.output.site[joint].motor_force_N),
                                     std::fabs(done.slave.output.site[joint].motor_force_N)});
   }
-  const auto lost = station::DeviceHealth::lost;
-  if (second_.leader_health == lost || second_.follower_health == lost) ++totals_.lost_ticks;
   ++totals_.ticks;
   if (active_) ++totals_.active_ticks;
   totals_.duration_s = second_.time_s = console_.time_s();
   if (!console_.ends_second()) return;
   shared_->seconds.try_push(second_);
   second_.most_torque = 0.0;
+  // What stopped them is told until they are armed again.
+  const auto stands = [](SiteState state) { return state == SiteState::hold || state == SiteState::fault; };
+  if (!stands(leader) && !stands(follower)) second_.leader_trouble = second_.follower_trouble = {};
 }
 
 std::optional<RigSecond> RigLoop::next_second() noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/control/architecture.hpp>
+#include <tactus/devices/motor_bus_device.hpp>
 #include <tactus/runtime/joint_streams.hpp>
 #include <tactus/runtime/site_console.hpp>
 #include <tactus/station/local_teleoperator.hpp>
@@ -19,6 +20,10 @@ struct RigSecond {
   control::SiteCause cause =
       control::SiteCause::started;  ///< of the leader, or of the follower where that stopped by itself
   station::DeviceHealth leader_health = station::DeviceHealth::good, follower_health = station::DeviceHealth::good;
+  DeviceTrouble leader_trouble, follower_trouble;       ///< the worst of the second, or since they stand
+  control::GateFault fault = control::GateFault::none;  ///< what a gate latched, of the leader first
+  bool fault_of_leader = false;
+  std::size_t fault_joint = 0;
   double most_torque = 0.0;  ///< of any motor of the second, either way
   double farthest = 0.0;     ///< of a joint from its leader
   std::size_t joint = 0;     ///< which one
@@ -28,7 +33,8 @@ struct RigSecond {
 /// What a pair went through.
 struct RigTotals {
   double duration_s = 0.0;
-  std::int64_t ticks = 0, active_ticks = 0, armings = 0, holds = 0, lost_ticks = 0;
+  std::int64_t ticks = 0, active_ticks = 0, armings = 0, holds = 0;
+  std::int64_t late_ticks = 0, silent_ticks = 0, lost_ticks = 0;  ///< of the worse device
 };
 
 /// A leader and a follower of several joints on one computer, supervised: the step of a servo thread. No motor has
@@ -46,7 +52,7 @@ class RigLoop {
   /// What outlives it: the exchange, and the devices.
   static Result<RigLoop> make(const Joints<control::ControlParams>& control, const station::LinkParams& channel,
                               Seconds tick, const Params& params, runtime::SiteExchange& exchange,
-                              station::JointDevice& leader, station::JointDevice& follower);
+                              MotorBusDevice& leader, MotorBusDevice& follower);
 
   /// Every tick from now on goes there too. Before the first tick.
   void leave_in(runtime::JointStreams& streams) { streams_ = &streams; }
@@ -61,15 +67,17 @@ class RigLoop {
   struct Shared {
     telemetry::Ring<RigSecond, 64> seconds;
   };
-  RigLoop(const runtime::SiteConsole& console, const Params& params, station::JointDevice& leader,
-          station::JointDevice& follower, const Joints<double>& scales, station::JointLocalTeleoperator pair);
+  RigLoop(const runtime::SiteConsole& console, const Params& params, MotorBusDevice& leader, MotorBusDevice& follower,
+          const Joints<double>& scales, station::JointLocalTeleoperator pair);
   [[nodiscard]] control::SiteRequests asked(const control::SiteRequests& pressed) noexcept;
   void judge_distance() noexcept;
+  void note_troubles() noexcept;
+  void note_fault() noexcept;
   void keep_books(const station::JointLocalTeleoperator::Output& done) noexcept;
 
   runtime::SiteConsole console_;
   Params params_;
-  station::JointDevice *leader_, *follower_;
+  MotorBusDevice *leader_, *follower_;
   Joints<double> scales_;
   station::JointLocalTeleoperator pair_;
   runtime::JointStreams* streams_ = nullptr;

@@ -12,14 +12,20 @@ namespace {
 
 constexpr std::uint8_t all = 0xfe;
 // Places in the table.
-constexpr std::size_t model = 3, own_id = 5, delay = 7, level = 8, protection = 28, mode = 33, power = 40, goal = 44,
-                      lock = 55, position = 56, velocity = 58, voltage = 62, heat = 63, condition = 65, amperes = 69,
-                      lasting_from = 5;
+constexpr std::size_t model = 3, own_id = 5, delay = 7, level = 8, protection = 28, homing = 31, mode = 33, power = 40,
+                      goal = 44, lock = 55, position = 56, velocity = 58, voltage = 62, heat = 63, condition = 65,
+                      amperes = 69, lasting_from = 5;
 constexpr std::int64_t hot_bit = 4, current_bit = 8;
 constexpr std::int64_t off_ns = 300'000'000;
 constexpr double turn_rad = 2.0 * std::numbers::pi;
 /// A 25 kg cm servo of 7.4 V takes about 3 A when it stands.
 constexpr double torque_of_one_Nm = 0.0065 * 2.45 / 3.0;
+
+/// Eleven bits and a sign: what is taken off the position.
+double homing_steps(std::int64_t offset) noexcept {
+  const auto size = static_cast<double>(offset & 0x7ff);
+  return (offset & 0x800) != 0 ? -size : size;
+}
 
 std::int64_t with_sign_bit(std::int64_t value) noexcept { return value >= 0 ? value : 0x8000 - value; }
 
@@ -111,7 +117,7 @@ void FeetechPeer::live(State& servo, std::int64_t now_ns) noexcept {
     servo.table[power] = 0;
   }
   const double steps_per_rad = 4096.0 / turn_rad;
-  const double steps = std::floor(servo.joint.position_rad * steps_per_rad + 0.5);
+  const double steps = std::floor(servo.joint.position_rad * steps_per_rad + 0.5) - homing_steps(get(servo, homing));
   put(servo, position, static_cast<std::int64_t>(steps - 4096.0 * std::floor(steps / 4096.0)));
   const double unit_rad_per_s = servo.takes_current ? 0.732 * turn_rad / 60.0 : 1.0 / steps_per_rad;
   put(servo, velocity, with_sign_bit(std::lround(servo.joint.velocity_rad_per_s / unit_rad_per_s)));
@@ -178,6 +184,16 @@ void FeetechPeer::packet_came(Bytes packet, std::int64_t now_ns) noexcept {
       status(*servo, Bytes(servo->table).subspan(given[0], given[1]), at_ns);
     }
     return;
+  }
+  if (instruction == 0x01) {
+    // One after the other, which is how a whole line is looked at in one go.
+    std::int64_t at_ns = now_ns;
+    for (const State& servo : servos_) {
+      if (!answers(servo, now_ns)) continue;
+      at_ns += delay_ns(servo);
+      status(servo, {}, at_ns);
+      at_ns += 6 * 10 * std::int64_t{1'000'000'000} / bits_per_s_;
+    }
   }
   if (instruction == 0x83 && given.size() > 2 && given[1] > 0) {
     const std::size_t stride = std::size_t{given[1]} + 1;

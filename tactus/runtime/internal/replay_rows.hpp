@@ -24,8 +24,9 @@ class RecordedDevice final : public station::Device {
   [[nodiscard]] bool simulated() const noexcept override { return true; }
   station::DeviceReading read(const station::Tick&) noexcept override { return reading; }
   void write(const station::DeviceCommand&) noexcept override {}
-  [[nodiscard]] station::DeviceHealth health() const noexcept override { return station::DeviceHealth::good; }
+  [[nodiscard]] station::DeviceHealth health() const noexcept override { return state; }
   station::DeviceReading reading;
+  station::DeviceHealth state = station::DeviceHealth::good;
 
  private:
   station::DeviceLimits limits_;

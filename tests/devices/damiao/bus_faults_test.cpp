@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tests/devices/damiao/bench.hpp"
+#include "tests/devices/seeds.hpp"
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 #include <tests/allocation_counter.hpp>
@@ -32,7 +33,7 @@ TEST(DamiaoBus, EveryFaultOfTheMotorsEndsWithoutTorqueBeyondTheCommandAndIsTold)
                          Case{FaultKind::split, MotorFault::none, true}};
   for (const Case& c : cases) {
     for (const Framing framing : all_framings) {
-      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds(5)); ++seed) {
         for (const std::uint32_t motor : {0U, 2U}) {
           const std::string what = std::string(name_of(c.kind)) + " " + name_of(framing) + " " + std::to_string(seed);
           const double torque_Nm = seed % 2 == 0 ? 0.4 : -0.4;
@@ -60,7 +61,7 @@ TEST(DamiaoBus, EveryFaultOfTheMotorsEndsWithoutTorqueBeyondTheCommandAndIsTold)
 }
 
 TEST(DamiaoBus, FaultsThatAreThereAtTheStartAreToldAndNoMotorGetsPower) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds(5)); ++seed) {
     for (const FaultKind kind : {FaultKind::silence, FaultKind::wrong_scale}) {
       Bench bench({.motors = 3, .faults = {{.kind = kind, .motor = 2}}, .seed = seed});
       bench.command_all(1.0);
@@ -87,6 +88,33 @@ TEST(DamiaoBus, FaultsThatAreThereAtTheStartAreToldAndNoMotorGetsPower) {
     EXPECT_EQ(bench.bus->reading(1).fault, MotorFault::hot);
     EXPECT_EQ(bench.bus->reading(1).temperature_C, 121.0);
     EXPECT_EQ(bench.peer->motor(1).most_torque_Nm(), 0.0);
+  }
+}
+
+TEST(DamiaoBus, SilenceShorterThanTheWatchdogOfTheMotorsIsNoFault) {
+  for (const Framing framing : all_framings) {
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds(20)); ++seed) {
+      for (const std::uint32_t motor : {0U, 2U}) {
+        for (const std::int64_t silent_ns : {5 * ms, 15 * ms, 35 * ms}) {
+          const std::string what =
+              std::string(name_of(framing)) + " " + std::to_string(seed) + " " + std::to_string(silent_ns);
+          const EmulatedFault silence{
+              .kind = FaultKind::silence, .motor = motor, .from_ns = 300 * ms, .until_ns = 300 * ms + silent_ns};
+          Bench bench({.framing = framing, .faults = {silence}, .seed = seed});
+          bench.run(200 * ms);
+          bench.command_all(0.1);
+          bench.run(100 * ms + silent_ns - ms);
+          EXPECT_LT(bench.bus->reading(1).heard_ns, 302 * ms) << what << ": it tells how old it is";
+          bench.run(30 * ms);
+          for (const std::size_t each : {0U, 1U}) {
+            EXPECT_EQ(bench.bus->reading(each).fault, MotorFault::none) << what;
+            EXPECT_TRUE(bench.peer->motor(each).enabled()) << what;
+            EXPECT_GT(bench.bus->reading(each).heard_ns, bench.now_ns - 5 * ms) << what;
+          }
+          EXPECT_TRUE(bench.never_beyond(0.1)) << what;
+        }
+      }
+    }
   }
 }
 
@@ -187,7 +215,7 @@ TEST(DamiaoBus, WhenItFallsSilentTheMotorsOwnWatchdogTakesThePower) {
 
 TEST(DamiaoBus, TwoMotorsWithOneIdentifierAreTold) {
   for (const Framing framing : all_framings) {
-    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds(20)); ++seed) {
       Bench bench({.motors = 3, .framing = framing, .faults = {{.kind = FaultKind::twin, .motor = 2}}, .seed = seed});
       bench.run(1000 * ms);
       EXPECT_EQ(bench.bus->state(), BusState::refused) << name_of(framing) << " " << seed;

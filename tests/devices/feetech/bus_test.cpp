@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 
+#include "tests/devices/seeds.hpp"
 #include <gtest/gtest.h>
 #include <tests/allocation_counter.hpp>
 
@@ -216,7 +217,7 @@ TEST(FeetechBus, AnotherModelIsRefusedByItsName) {
 TEST(FeetechBus, WhateverTheLineDoesNoServoGivesMoreThanItWasAskedFor) {
   const auto most = std::lround(0.1 / torque_of_one_Nm);
   for (const ServoFault fault : {ServoFault::none, ServoFault::silent, ServoFault::power_cycle, ServoFault::hot}) {
-    for (std::int64_t seed = 1; seed <= 25; ++seed) {
+    for (std::int64_t seed = 1; seed <= seeds(25); ++seed) {
       const LineFaults line{.corrupt = seed % 2 == 0 ? 0.01 : 0.0,
                             .garbage = seed % 3 == 0 ? 0.05 : 0.0,
                             .split = seed % 4 == 1 ? 0.05 : 0.0,

@@ -111,7 +111,7 @@ TEST(Inverse3Link, BeforeItIsCalibratedThereIsNoForceAndThatIsSaid) {
             "device 049D is not calibrated and gives no force: put its handle where Haply Hub shows it");
 }
 
-TEST(Inverse3Link, AnswersThatAreLateMakeItDegradedThenLost) {
+TEST(Inverse3Link, AnswersThatAreLateMakeItDegradedThenSilent) {
   const auto server = serve({.late_ns = 150'000'000});
   const auto link = link_to(server);
   ASSERT_FALSE(link->wait_until_asked(long_enough));
@@ -119,7 +119,7 @@ TEST(Inverse3Link, AnswersThatAreLateMakeItDegradedThenLost) {
     auto device =
         MotorBusDevice::make(*link, {.joints = Joints<MotorJoint>(3, wide()), .late_s = 0.05, .silence_s = silence_s});
     ASSERT_TRUE(device);
-    const DeviceHealth expected = silence_s > 1.0 ? DeviceHealth::degraded : DeviceHealth::lost;
+    const DeviceHealth expected = silence_s > 1.0 ? DeviceHealth::degraded : DeviceHealth::silent;
     EXPECT_TRUE(tick_until(**device, no_power, [&](const auto&) { return (*device)->health() == expected; }));
   }
 }
@@ -133,11 +133,11 @@ TEST(Inverse3Link, AConnectionThatEndsIsMadeAnewAndGivesNoForceByItself) {
   ASSERT_TRUE(device);
   ASSERT_TRUE(tick_until(**device, no_power, [&](const auto&) { return (*device)->health() == DeviceHealth::good; }));
   const Joints<station::DeviceCommand> push(3, {.force_N = 0.1, .enabled = true});
-  ASSERT_TRUE(tick_until(**device, push, [&](const auto&) { return (*device)->health() == DeviceHealth::lost; }));
+  ASSERT_TRUE(tick_until(**device, push, [&](const auto&) { return (*device)->health() == DeviceHealth::silent; }));
   const std::int64_t cycles = link->newest()->cycles;
-  // It is there again, and stays lost while power is asked for.
+  // It is there again, and stays silent while power is asked for.
   EXPECT_TRUE(tick_until(**device, push, [&](const auto&) { return link->newest()->cycles > cycles + 20; }));
-  EXPECT_EQ((*device)->health(), DeviceHealth::lost);
+  EXPECT_EQ((*device)->health(), DeviceHealth::silent);
   EXPECT_TRUE(tick_until(**device, no_power, [&](const auto&) { return (*device)->health() == DeviceHealth::good; }));
 }
 

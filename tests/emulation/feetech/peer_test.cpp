@@ -56,6 +56,27 @@ TEST(FeetechPeer, AnswersTheVectorsOfThePageWithTheirBytes) {
             28U);
 }
 
+TEST(FeetechPeer, AllAnswerAPingToAllInTurn) {
+  Bench bench({{.id = 1, .make = Make::sts3215}, {.id = 7}});
+  EXPECT_EQ(bench.ask({0xFF, 0xFF, 0xFE, 0x02, 0x01, 0xFE}),
+            (Bytes{0xFF, 0xFF, 0x01, 0x02, 0x00, 0xFC, 0xFF, 0xFF, 0x07, 0x02, 0x00, 0xF6}));
+}
+
+TEST(FeetechPeer, ItsHomingOffsetIsTakenOffThePosition) {
+  Bench bench(std::vector{FeetechPeer::Servo{.id = 1, .make = Make::sts3215}});
+  const auto told = [&bench] {
+    bench.peer.advance(bench.now_ns);
+    return bench.peer.stored(0, 56, 2);
+  };
+  bench.peer.joint(0).position_rad = std::numbers::pi;
+  bench.write(31, {100, 0});
+  EXPECT_EQ(told(), 1948);
+  bench.write(31, {0xff, 0x0f});  // -2047
+  EXPECT_EQ(told(), 4095);
+  bench.peer.joint(0).position_rad = 0.0;
+  EXPECT_EQ(told(), 2047);
+}
+
 TEST(FeetechPeer, AWrongChecksumIsNotHeard) {
   Bench bench(std::vector{FeetechPeer::Servo{.id = 1}});
   EXPECT_TRUE(bench.ask({0xFF, 0xFF, 0x01, 0x02, 0x01, 0xFA}).empty());
