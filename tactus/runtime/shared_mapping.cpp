@@ -23,12 +23,13 @@ struct Place {
 static_assert(std::atomic<char*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free, "for a handler");
 
 std::array<Place, 64> places;
-struct sigaction before {};
+struct sigaction handler_before {};
 
 /// What would have happened without us.
 void pass_on(int signal, siginfo_t* info, void* context) {
-  if ((before.sa_flags & SA_SIGINFO) != 0) return before.sa_sigaction(signal, info, context);
-  if (before.sa_handler != SIG_DFL && before.sa_handler != SIG_IGN) return before.sa_handler(signal);
+  if ((handler_before.sa_flags & SA_SIGINFO) != 0) return handler_before.sa_sigaction(signal, info, context);
+  if (handler_before.sa_handler != SIG_DFL && handler_before.sa_handler != SIG_IGN)
+    return handler_before.sa_handler(signal);
   struct sigaction ending {};
   ending.sa_handler = SIG_DFL;
   sigaction(SIGBUS, &ending, nullptr);
@@ -59,7 +60,7 @@ bool install() {
   ours.sa_sigaction = &survive;
   ours.sa_flags = SA_SIGINFO | SA_ONSTACK;
   sigemptyset(&ours.sa_mask);
-  return sigaction(SIGBUS, nullptr, &before) == 0 && sigaction(SIGBUS, &ours, nullptr) == 0;
+  return sigaction(SIGBUS, nullptr, &handler_before) == 0 && sigaction(SIGBUS, &ours, nullptr) == 0;
 }
 
 void* mapped(std::size_t bytes, int flags, int file) {
