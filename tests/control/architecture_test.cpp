@@ -76,9 +76,12 @@ TEST(Architecture, BringsKeysOfItsOwnThatStandBesideThoseOfTheOthers) {
   EXPECT_EQ(keys_of(before).find("script"), std::string::npos);
   ASSERT_FALSE(register_architecture(by_script()));
   for (const ControlParams& params : {before, ControlParams{}}) {
-    EXPECT_NE(keys_of(params).find("\ntank.velocity.cutoff_Hz\nscript\nscript.force_N\nscript.lines\nsupervision\n"),
-              std::string::npos)
-        << keys_of(params);
+    // Where others were registered before, theirs stand between.
+    const std::string keys = keys_of(params);
+    const std::size_t own = keys.find("\nscript\nscript.force_N\nscript.lines\n");
+    ASSERT_NE(own, std::string::npos) << keys;
+    EXPECT_GT(own, keys.find("\ntank.velocity.cutoff_Hz\n")) << keys;
+    EXPECT_LT(own, keys.find("\nsupervision\n")) << keys;
   }
 }
 
