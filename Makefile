@@ -28,9 +28,10 @@ web/node_modules/.package-lock.json: web/package-lock.json
 web/dist/index.html: web/node_modules/.package-lock.json web/index.html $(shell find web/src web/public -type f)
 	npm run --prefix web build
 
+# A core has two slots for tests (tests/CMakeLists.txt).
 test: configure ## Build everything and run the test suite
 	cmake --build --preset release --parallel $(JOBS)
-	ctest --preset release --parallel $(JOBS)
+	ctest --preset release --parallel $$((2 * $(JOBS)))
 
 bench: configure ## Build and run the benchmarks
 	cmake --build --preset release --parallel $(JOBS) --target bench_tactus

@@ -1,7 +1,8 @@
-# tactus_module(NAME [HEADERS_ONLY] [WORDS] [SOURCES file...] [LINK target...] [LINK_PRIVATE target...])
+# tactus_module(NAME [HEADERS_ONLY] [LIGHT | WORDS] [SOURCES file...] [LINK target...] [LINK_PRIVATE target...])
 #
 # Declares the library target tactus::NAME from the current folder. Headers sit beside their sources and are included
-# as <tactus/NAME/thing.hpp>. WORDS: it computes nothing that anybody waits for.
+# as <tactus/NAME/thing.hpp>. LIGHT: what it computes, it leaves to other modules. WORDS: it computes nothing that anybody
+# waits for.
 
 find_program(TACTUS_CCACHE ccache)
 if(TACTUS_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
@@ -35,15 +36,19 @@ endif()
 
 set_property(GLOBAL PROPERTY TACTUS_MODULES "")
 
-# Linked after tactus_options by what compiles in half the time and needs no more: modules that read, write and talk while
-# others compute, and tests. The compiler follows values less far then: it takes some pointers for null and some numbers
-# for unset that are not. The rest of the build, and clang, look for those.
-add_library(tactus_words INTERFACE)
-target_compile_options(tactus_words INTERFACE
+# Linked after tactus_options by what compiles in half the time and needs no more: modules that are LIGHT or WORDS, and
+# tests. The compiler follows values less far then: it takes some pointers for null and some numbers for unset that are
+# not. The rest of the build, and clang, look for those.
+add_library(tactus_light INTERFACE)
+target_compile_options(tactus_light INTERFACE
   $<$<CONFIG:Release>:-O1 -Wno-null-dereference>
   $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-Wno-maybe-uninitialized>)
+
+# The same of words. More than half of the build with the address sanitizer was spent on optimising what it had added to
+# these; in what computes, templates that are not optimised take the tests twenty times as long.
+add_library(tactus_words INTERFACE)
+target_link_libraries(tactus_words INTERFACE tactus_light)
 if(TACTUS_SANITIZE MATCHES address)
-  # More than half of that build was spent on optimising what this sanitizer had added to words and tests.
   target_compile_options(tactus_words INTERFACE -O0)
 endif()
 
@@ -57,7 +62,7 @@ function(tactus_compile_together target)
 endfunction()
 
 function(tactus_module name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "HEADERS_ONLY;WORDS" "" "SOURCES;LINK;LINK_PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "HEADERS_ONLY;LIGHT;WORDS" "" "SOURCES;LINK;LINK_PRIVATE")
   set(target tactus_${name})
   set(kind PUBLIC)
   if(arg_HEADERS_ONLY)
@@ -66,7 +71,9 @@ function(tactus_module name)
   else()
     add_library(${target} STATIC ${arg_SOURCES})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tactus_options> ${arg_LINK_PRIVATE})
-    if(arg_WORDS)
+    if(arg_LIGHT)
+      target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tactus_light>)
+    elseif(arg_WORDS)
       target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:tactus_words>)
     endif()
     tactus_compile_together(${target})
