@@ -1,4 +1,5 @@
 #include <tactus/arm_control/arm_follower.hpp>
+#include <tactus/arm_control/effort_limits.hpp>
 #include <tactus/signal/checks.hpp>
 
 #include <algorithm>
@@ -15,17 +16,16 @@ JointVector of_each(const ArmFollower::Params& params, std::size_t joints, doubl
 
 }  // namespace
 
-ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
-                         const Joints<control::ForceGate>& gates)
+ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer)
     : chain_(chain),
       tool_m_(arm.tool_m),
       feed_forward_(params.feed_forward, arm.chain, chain),
       observer_(observer),
-      gates_(gates),
+      most_(effort_limits(arm.chain)),
       observes_(params.torque == TorqueSource::observer),
       dead_band_(JointVector::Zero(chain.joints())),
-      stiffness_(params.stiffness_share * of_each(params, gates.size(), &DriveGains::stiffness_N_m_per_rad)),
-      damping_(of_each(params, gates.size(), &DriveGains::damping_N_m_s_per_rad)),
+      stiffness_(params.stiffness_share * of_each(params, arm.chain.joints.size(), &DriveGains::stiffness_N_m_per_rad)),
+      damping_(of_each(params, arm.chain.joints.size(), &DriveGains::damping_N_m_s_per_rad)),
       stiffness_limit_(stiffness_, params.tool_stiffness_limit_N_per_m),
       damping_limit_(damping_, params.tool_damping_limit_N_s_per_m) {
   for (Eigen::Index i = 0; i < dead_band_.size(); ++i) {
@@ -52,13 +52,7 @@ Result<ArmFollower> ArmFollower::make(const Params& params, const Arm& arm, Seco
   if (!chain) return chain.error();
   const auto observer = make_observer(params.observer, arm, *chain, dt);
   if (!observer) return under("observer", observer.error());
-  Joints<control::ForceGate::Params> limits(arm.chain.joints.size());
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    limits[i].force_limit_N = std::min(100.0, arm.chain.joints[i].limits.effort_N_m);
-  }
-  const auto gates = make_each<control::ForceGate>(limits, dt);
-  if (!gates) return gates.error();
-  return ArmFollower(params, arm, *chain, *observer, *gates);
+  return ArmFollower(params, arm, *chain, *observer);
 }
 
 JointVector ArmFollower::excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept {
@@ -82,16 +76,14 @@ JointVector ArmFollower::observed(const ArmReading& reading) noexcept {
 ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVector& sensed,
                                       const ArmMessage& leader) noexcept {
   Output output;
+  output.support = feed_forward_.torque(reading);
   output.command = {.position = leader.position,
                     .velocity = leader.velocity,
                     .stiffness = stiffness_,
                     .damping = damping_,
-                    .torque = feed_forward_.torque(reading)};
+                    .torque = output.support};
   if (stiffness_limit_.limits() || damping_limit_.limits()) output.command.torque -= excess_torque(reading, leader);
-  for (std::size_t i = 0; i < gates_.size(); ++i) {
-    double& torque = output.command.torque[static_cast<Eigen::Index>(i)];
-    torque = gates_[i].step(torque);
-  }
+  saturate(output.command.torque, most_);
   output.message = {.position = reading.position,
                     .velocity = reading.velocity,
                     .external_torque = observes_ ? observed(reading) : sensed};

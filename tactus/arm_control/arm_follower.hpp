@@ -39,8 +39,9 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
 
 /// The site of the arm that touches things: its drives pull it to where the leader wants it, by their own law, and it
 /// tells the torque from outside. What their gains come to at the tool beyond its limits is taken away over the bus
-/// (`ToolLimit`). Feed-forward is bounded by each joint's effort limit, 100 N m at most; the drive
-/// bounds the rest.
+/// (`ToolLimit`). What the bus carries saturates at each joint's effort limit, at 100 N m at most. Gates stand behind
+/// it
+/// (`follower_site`).
 class ArmFollower {
  public:
   struct Params {
@@ -77,6 +78,7 @@ class ArmFollower {
   };
   struct Output {
     ArmCommand command;
+    JointVector support;  ///< of the command's torque, what carries the arm and helps it against friction, N m
     ArmMessage message;
   };
 
@@ -91,8 +93,7 @@ class ArmFollower {
   using Observer = std::variant<ExternalTorqueObserver, ElasticTorqueObserver>;
   static Result<Observer> make_observer(const TorqueObserverParams& params, const Arm& arm, const arm::Chain& chain,
                                         Seconds dt);
-  ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
-              const Joints<control::ForceGate>& gates);
+  ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer);
   [[nodiscard]] JointVector excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept;
   [[nodiscard]] JointVector observed(const ArmReading& reading) noexcept;
 
@@ -100,7 +101,7 @@ class ArmFollower {
   arm::Vector3 tool_m_;
   FeedForward feed_forward_;
   Observer observer_;
-  Joints<control::ForceGate> gates_;
+  JointVector most_;  ///< torque of the bus
   bool observes_;
   JointVector dead_band_;
   JointVector stiffness_;

@@ -1,7 +1,6 @@
 #include <tactus/arm_control/arm_leader.hpp>
+#include <tactus/arm_control/effort_limits.hpp>
 #include <tactus/signal/checks.hpp>
-
-#include <algorithm>
 
 namespace tactus::arm_control {
 namespace {
@@ -16,8 +15,7 @@ JointVector drive_damping(const ArmLeader::Params& params, int joints) {
 }  // namespace
 
 ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
-                     const InducedMotion& model, const JointLowPass& force, const JointLowPass& command,
-                     const Joints<control::ForceGate>& gates)
+                     const InducedMotion& model, const JointLowPass& force, const JointLowPass& command)
     : params_(params),
       feed_forward_(feed_forward),
       chain_(chain),
@@ -29,7 +27,8 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
       force_(force),
       command_position_(command),
       command_velocity_(command),
-      gates_(gates),
+      most_(effort_limits(arm.carried)),
+      undisplayed_(stiffness_),
       acting_(stiffness_) {
   if (params.method != ArmMethod::position_position) return;
   for (std::size_t i = 0; i < arm.gains.size(); ++i) {
@@ -53,14 +52,8 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
   if (!force) return Error{force.error().code, "force_low_pass_Hz", force.error().message, {}};
   const auto command = JointLowPass::make(params.command_low_pass_Hz, dt);
   if (!command) return Error{command.error().code, "command_low_pass_Hz", command.error().message, {}};
-  Joints<control::ForceGate::Params> limits(arm.carried.joints.size());
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    limits[i].force_limit_N = std::min(100.0, arm.carried.joints[i].limits.effort_N_m);
-  }
-  const auto gates = make_each<control::ForceGate>(limits, dt);
-  if (!gates) return gates.error();
-  return ArmLeader(params, arm, FeedForward(params.feed_forward, arm.carried, *chain), *chain, *model, *force, *command,
-                   *gates);
+  return ArmLeader(params, arm, FeedForward(params.feed_forward, arm.carried, *chain), *chain, *model, *force,
+                   *command);
 }
 
 ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& follower) noexcept {
@@ -70,31 +63,30 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
     started_ = true;
   }
   const bool reflects = params_.method != ArmMethod::position_position;
-  JointVector support = feed_forward_.torque(reading);
+  Output output;
+  output.support = feed_forward_.torque(reading);
+  JointVector undisplayed = output.support;
   const bool gives_back = reflects && damping_limit_.limits();
   if (params_.damping_N_s_per_m > 0.0 || gives_back) {
     const ToolJacobian tool = chain_.jacobian(reading.position, joints - 1, tool_m_).topRows<3>();
     const arm::Vector3 velocity = tool * reading.velocity;
     arm::Vector3 force_N = -params_.damping_N_s_per_m * velocity;
     if (gives_back) force_N += damping_limit_.excess(tool) * velocity;
-    support += tool.transpose() * force_N;
+    undisplayed += tool.transpose() * force_N;
   }
   JointVector displayed = JointVector::Zero(joints);
   if (reflects) displayed = params_.force_gain * force_.step(follower.external_torque);
 
-  Output output;
-  output.command = ArmCommand::of_torque(support + displayed);
-  for (int i = 0; i < joints; ++i) {
-    double& torque = output.command.torque[i];
-    torque = gates_[static_cast<std::size_t>(i)].step(torque);
-    displayed[i] = reflects ? torque - support[i] : 0.0;
-  }
+  output.command = ArmCommand::of_torque(undisplayed + displayed);
+  saturate(output.command.torque, most_);
+  undisplayed_ = undisplayed;
   output.command.damping = damping_;
   if (!reflects) {
     output.command.position = follower.position;
     output.command.velocity = follower.velocity;
     output.command.stiffness = stiffness_;
   }
+  if (reflects) displayed = output.command.torque - undisplayed;
   output.displayed = displayed;
   output.induced = JointVector::Zero(joints);
   output.message = {
@@ -109,6 +101,10 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
   output.message.position = command_position_.step(output.message.position);
   output.message.velocity = command_velocity_.step(output.message.velocity);
   return output;
+}
+
+void ArmLeader::applied(const JointVector& torque) noexcept {
+  if (params_.method == ArmMethod::cancellation) acting_ = torque - undisplayed_;
 }
 
 }  // namespace tactus::arm_control

@@ -6,10 +6,8 @@
 #include <tactus/arm_control/induced_motion.hpp>
 #include <tactus/arm_control/joint_low_pass.hpp>
 #include <tactus/arm_control/tool_limit.hpp>
-#include <tactus/control/force_gate.hpp>
 
 #include <array>
-#include <optional>
 
 namespace tactus::arm_control {
 
@@ -54,10 +52,10 @@ struct DriveDamping {
 ///
 /// of which the second part is displayed and the last is the drives' own. What that comes to at the tool beyond a limit
 /// is given back over the bus (`ToolLimit`). With position-position it is feed-forward and
-/// the drives' law, towards the follower. What passes is
-/// bounded by each joint's effort limit, last of all, and the model of induced motion lives on what passed.
-/// Sources: position-position as openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the
-/// leader's stiffness as i2rt's YAM has it (`bilateral_kp`, MIT); the rest as on one axis
+/// the drives' law, towards the follower. What the bus carries saturates at each joint's effort limit. Gates stand
+/// behind it (`leader_site`); the model of induced motion lives on what `applied` says that they let through. Sources:
+/// position-position as openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the leader's
+/// stiffness as i2rt's YAM has it (`bilateral_kp`, MIT); the rest as on one axis
 /// (`control::PositionForceMaster`).
 class ArmLeader {
  public:
@@ -103,21 +101,23 @@ class ArmLeader {
   struct Output {
     ArmCommand command;
     ArmMessage message;
-    JointVector displayed;  ///< torque of it all that comes from the follower, N m
+    JointVector support;    ///< of the command's torque, what carries the arm and helps it against friction, N m
+    JointVector displayed;  ///< of the command's torque, what comes from the follower, N m
     JointVector induced;    ///< position that was taken from the command, rad
   };
 
-  /// Torques are bounded by the effort limits of `arm.carried`, 100 N m at most. Errors: a number out of bounds; those
+  /// Torques saturate at the effort limits of `arm.carried`, at 100 N m at most. Errors: a number out of bounds; those
   /// of the parts.
   static Result<ArmLeader> make(const Params& params, const Arm& arm, Seconds dt);
 
   /// One tick. The command acts from the next tick on, as on a bus, and the model counts with that. Real-time safe.
   Output step(const ArmReading& reading, const ArmMessage& follower) noexcept;
+  /// The torque in N m that really passed of the latest command; without that all of it did. Real-time safe.
+  void applied(const JointVector& torque) noexcept;
 
  private:
   ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
-            const InducedMotion& model, const JointLowPass& force, const JointLowPass& command,
-            const Joints<control::ForceGate>& gates);
+            const InducedMotion& model, const JointLowPass& force, const JointLowPass& command);
 
   Params params_;
   FeedForward feed_forward_;
@@ -130,9 +130,10 @@ class ArmLeader {
   JointLowPass force_;
   JointLowPass command_position_;
   JointLowPass command_velocity_;
-  Joints<control::ForceGate> gates_;
+  JointVector most_;  ///< torque of the bus
   bool started_ = false;
-  JointVector acting_;  ///< displayed torque that acts until the next tick: that of the command before
+  JointVector undisplayed_;  ///< of the latest command, what does not come from the follower
+  JointVector acting_;       ///< displayed torque that acts until the next tick: that of the command before
 };
 
 }  // namespace tactus::arm_control

@@ -129,6 +129,8 @@ class SafetyGate {
   void brake() noexcept { let_go_ = brakes_ = true; }
 
   [[nodiscard]] GateFault fault() const noexcept { return fault_ != GateFault::none ? fault_ : force_.fault(); }
+  /// Whether no command passes any more, for a fault or because it was told to let go.
+  [[nodiscard]] bool has_let_go() const noexcept { return let_go_ || fault() != GateFault::none; }
   [[nodiscard]] ActiveLimit limit() const noexcept { return limit_; }
   /// Of the reading that is believed, low-passed.
   [[nodiscard]] double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }

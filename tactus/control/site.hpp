@@ -1,8 +1,7 @@
 #pragma once
 
 #include <tactus/control/safety_gate.hpp>
-#include <tactus/core/joints.hpp>
-#include <tactus/core/signals.hpp>
+#include <tactus/control/site_signals.hpp>
 
 #include <cmath>
 #include <concepts>
@@ -11,137 +10,8 @@
 #include <type_traits>
 #include <utility>
 
-/// What the two sites of a teleoperator measure, command and tell one another, and what a controller of a site is. Of
-/// one axis each, or, as `Joints` of the same, of a device of several; positions and forces are positive toward the
-/// environment unless said otherwise.
+/// What a controller of a site is, and what stands between it and a motor.
 namespace tactus::control {
-
-/// What one site tells the other at a tick. Each architecture fills the members that it uses; the rest stay zero.
-///
-/// Its one description: what is checked, mended and sent over a network follows from it, in this order.
-struct Message {
-  double position_m = 0.0;
-  double velocity_m_per_s = 0.0;
-  double force_N = 0.0;
-  double wave = 0.0;
-  double energy_J = 0.0;
-  static constexpr auto signals() {
-    return List{
-        observed("position_m", &Message::position_m, units::metre, "", "slave", "toward the environment",
-                 "Where the other site shall be, or where this one is."),
-        observed("velocity_m_per_s", &Message::velocity_m_per_s, units::metre_per_second, "", "slave",
-                 "toward the environment", "Of that position."),
-        observed("force_N", &Message::force_N, units::newton, "", "slave", "the slave is pushed back",
-                 "Tip force, or what the architecture makes of it."),
-        observed("wave", &Message::wave, units::none, "", "", "", "Wave variable, in the square root of a watt."),
-        observed("energy_J", &Message::energy_J, units::joule, "", "", "",
-                 "Sent so far, a running total: a lost message then loses no energy.")};
-  }
-};
-
-/// The newest message of the other site. A site gets one every tick; `fresh` tells whether it arrived since the last.
-struct Arrival {
-  Message message;
-  bool fresh = false;
-};
-
-/// What the master's sensors read at a tick, and what came from the slave.
-struct MasterInput {
-  double motor_position_m = 0.0;
-  double hand_force_N = 0.0;  ///< of the hand on the handle, positive when it pushes toward the environment
-  Arrival arrival;
-  double grip = 1.0;         ///< how firmly the person holds, over nominal, where a sensor tells; 1 without one
-  double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
-};
-
-/// How firmly the person holds the handle and what else differs from the model that was identified, as the master's
-/// controller believes it. Where nothing is estimated, as identified and without deviation.
-struct HandEstimate {
-  double estimated_grip = 1.0;
-  double estimated_grip_deviation = 0.0;
-  double linkage_excess = 0.0;
-  static constexpr auto signals() {
-    using R = HandEstimate;
-    return List{observed("estimated_grip", &R::estimated_grip, units::none, "master", "hand", "",
-                         "How firmly the person holds, over identified."),
-                observed("estimated_grip_deviation", &R::estimated_grip_deviation, units::none, "master", "hand", "",
-                         "Standard deviation of that; 0 where nothing is estimated."),
-                observed("linkage_excess", &R::linkage_excess, units::none, "master", "hand", "",
-                         "By which share the linkage is estimated to be stiffer than identified.")};
-  }
-};
-
-/// What the master commands and tells, and what its stages made of it, for the log.
-struct MasterOutput {
-  double motor_force_N = 0.0;   ///< positive toward the environment; a force that pushes the hand back is negative
-  double handle_force_N = 0.0;  ///< of a second, vibrotactile actuator on the handle, same sign; zero without one
-  Message message;
-  double induced_position_m = 0.0;   ///< the estimate of what the displayed force did to the motor, at this instant
-  double intended_position_m = 0.0;  ///< measured less induced
-  HandEstimate hand = {};
-};
-
-/// What the slave's sensors read at a tick, and what came from the master.
-struct SlaveInput {
-  double motor_position_m = 0.0;
-  double tip_force_N = 0.0;  ///< positive when the environment pushes the slave back
-  Arrival arrival;
-  double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
-};
-
-/// What the slave commands and tells.
-struct SlaveOutput {
-  double motor_force_N = 0.0;  ///< positive toward the environment
-  Message message;
-};
-
-/// Whether every number that a site reads is one. Real-time safe.
-inline bool is_finite(const Message& message) noexcept {
-  bool finite = true;
-  for_each_signal<Message>([&](const auto& each) { finite = finite && std::isfinite(message.*each.member); });
-  return finite;
-}
-inline bool is_finite(const MasterInput& input) noexcept {
-  return std::isfinite(input.motor_position_m) && std::isfinite(input.motor_age_s) &&
-         std::isfinite(input.hand_force_N) && std::isfinite(input.grip) && is_finite(input.arrival.message);
-}
-inline bool is_finite(const SlaveInput& input) noexcept {
-  return std::isfinite(input.motor_position_m) && std::isfinite(input.motor_age_s) &&
-         std::isfinite(input.tip_force_N) && is_finite(input.arrival.message);
-}
-
-template <class T>
-bool is_finite(const Joints<T>& joints) noexcept {
-  bool finite = true;
-  for (const T& each : joints) finite = finite && is_finite(each);
-  return finite;
-}
-
-/// What the force sensor says that pushes back against the motor, in N: the hand, or what is at the tip. Real-time
-/// safe.
-inline double resisting_N(const MasterInput& input) noexcept { return -input.hand_force_N; }
-inline double resisting_N(const SlaveInput& input) noexcept { return input.tip_force_N; }
-
-/// Puts what was read last in the place of each number that is none. Real-time safe.
-inline void mend(double& value, double last) noexcept {
-  if (!std::isfinite(value)) value = last;
-}
-inline void mend(Message& message, const Message& last) noexcept {
-  for_each_signal<Message>([&](const auto& each) { mend(message.*each.member, last.*each.member); });
-}
-inline void mend(MasterInput& input, const MasterInput& last) noexcept {
-  mend(input.motor_position_m, last.motor_position_m);
-  mend(input.motor_age_s, last.motor_age_s);
-  mend(input.hand_force_N, last.hand_force_N);
-  mend(input.grip, last.grip);
-  mend(input.arrival.message, last.arrival.message);
-}
-inline void mend(SlaveInput& input, const SlaveInput& last) noexcept {
-  mend(input.motor_position_m, last.motor_position_m);
-  mend(input.motor_age_s, last.motor_age_s);
-  mend(input.tip_force_N, last.tip_force_N);
-  mend(input.arrival.message, last.arrival.message);
-}
 
 /// A controller of one site: where a user plugs in. Once a tick `respond` and then `applied` are called; both must not
 /// allocate, lock or throw.
@@ -152,6 +22,8 @@ class SiteController {
   /// What to do about what was measured.
   virtual Output respond(const Input& input) noexcept = 0;
   /// The force in N that the safety gate really let through to the motor, until the next tick; that of each joint.
+  /// Without what a drive's law gives, and with what of the support is still to come in: what a controller displays is
+  /// what exceeds its support.
   virtual void applied(Each<Input, double> motor_force_N) noexcept = 0;
   /// Back to the state in which it was made.
   virtual void reset() noexcept = 0;
@@ -197,6 +69,26 @@ std::unique_ptr<SlaveController> slave_controller(const E& element) {
   return std::make_unique<ControllerOf<SlaveInput, SlaveOutput, E>>(element);
 }
 
+/// Passes a motor's command, the law of its drive included, whose force is that at what was read. What is let through
+/// is cut from the whole command (`keep_part`); a gate that has let go leaves the drive no law. Real-time safe.
+template <class Input, class Output>
+void pass_command(SafetyGate& gate, const Input& read, Output& output) noexcept {
+  if (!output.law.acts()) {
+    output.law = {};
+    output.motor_force_N = gate.pass(output.motor_force_N);
+    return;
+  }
+  const double wanted_N =
+      output.motor_force_N + output.law.force_N(read.motor_position_m, read.motor_tells.velocity_m_per_s);
+  const double passed_N = gate.pass(wanted_N);
+  if (gate.has_let_go()) {
+    output.law = {};
+    output.motor_force_N = passed_N;
+  } else if (passed_N != wanted_N) {
+    keep_part(output.motor_force_N, output.law, wanted_N, passed_N);
+  }
+}
+
 /// The safety gates of the master: one for its motor, one for the actuator on its handle, which nobody measures. A
 /// command that is not finite for either of them, and any other fault, releases both: a controller that lost one number
 /// is not trusted with the other.
@@ -214,10 +106,10 @@ class MasterGates {
     return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s);
   }
   /// Puts what may reach the actuators in place of what was commanded. Real-time safe.
-  void pass(MasterOutput& output) noexcept {
+  void pass(MasterOutput& output, const MasterInput& read) noexcept {
     constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-    const bool finite = std::isfinite(output.motor_force_N) && std::isfinite(output.handle_force_N);
-    output.motor_force_N = motor_.pass(finite ? output.motor_force_N : not_a_number);
+    if (!std::isfinite(output.handle_force_N)) output.motor_force_N = not_a_number;
+    pass_command(motor_, read, output);
     output.handle_force_N = handle_.step(motor_.fault() == GateFault::none ? output.handle_force_N : not_a_number);
   }
   void reset() noexcept {
@@ -248,7 +140,7 @@ class SlaveGates {
     return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s);
   }
   /// Puts what may reach the motor in place of what was commanded. Real-time safe.
-  void pass(SlaveOutput& output) noexcept { output.motor_force_N = motor_.pass(output.motor_force_N); }
+  void pass(SlaveOutput& output, const SlaveInput& read) noexcept { pass_command(motor_, read, output); }
   void reset() noexcept { motor_.reset(); }
   void rearm() noexcept { motor_.rearm(); }
   /// Whether a force passes to the motor.
@@ -256,6 +148,13 @@ class SlaveGates {
 
  private:
   SafetyGate motor_;
+};
+
+/// What is wanted of what a controller commands: of its force and of the law of its drives, and of what of that force
+/// carries the device.
+struct Shares {
+  double force = 1.0;
+  double support = 1.0;
 };
 
 /// A controller behind its safety gates, one for each actuator. They stand outside of the controller, so none can leave
@@ -273,12 +172,17 @@ class Site {
 
   Site(std::unique_ptr<Controller> controller, const Gates& gates)
       : controller_(std::move(controller)), gates_(gates), believed_(nothing()) {}
-  Site(const Site& other) : controller_(other.controller_->clone()), gates_(other.gates_), believed_(other.believed_) {}
+  Site(const Site& other)
+      : controller_(other.controller_->clone()),
+        gates_(other.gates_),
+        believed_(other.believed_),
+        pushes_(other.pushes_) {}
   Site(Site&&) noexcept = default;
   Site& operator=(Site other) noexcept {
     std::swap(controller_, other.controller_);
     gates_ = other.gates_;
     believed_ = other.believed_;
+    pushes_ = other.pushes_;
     return *this;
   }
   ~Site() = default;
@@ -286,10 +190,10 @@ class Site {
   /// One tick; the forces in the output are what the gates let through. What the controller wants is scaled by `share`
   /// before it, which brings a force in and out. `elapsed_ticks` is more than 1 after a stall. Real-time safe.
   Output step(const Sensors& input, double share = 1.0, std::int64_t elapsed_ticks = 1) noexcept {
-    return step(input, share, elapsed_ticks, same_for_each(gates_, 0.0));
+    return step(input, {.force = share, .support = share}, elapsed_ticks, same_for_each(gates_, 0.0));
   }
-  /// The same, and `added_N` comes to it at the motor.
-  Output step(const Sensors& input, double share, std::int64_t elapsed_ticks, const Forces& added_N) noexcept {
+  /// The same with a share of its own for what carries the device, and `added_N` comes to it at the motor.
+  Output step(const Sensors& input, const Shares& shares, std::int64_t elapsed_ticks, const Forces& added_N) noexcept {
     // A site that reads nonsense lets go until it is re-armed, even where the nonsense would not have reached a force,
     // and its controller goes on with what was read last: no number that is none gets into its state.
     Sensors read = input;
@@ -305,14 +209,19 @@ class Site {
     believed_ = read;
     Output output = controller_->respond(believed_);
     Forces passed = added_N;
+    pushes_ = false;
     for_each_joint(
-        [share](JointGates& gates, JointOf<Out>& joint, double added, double& force) noexcept {
-          if (share != 1.0) scale(joint, share);
+        [this, &shares](JointGates& gates, JointOf<Out>& joint, const JointOf<In>& believed, double added,
+                        double& force) noexcept {
+          const double wanted_support_N = joint.support_N;
+          scale(joint, shares);
           if (added != 0.0) joint.motor_force_N += added;
-          gates.pass(joint);
+          gates.pass(joint, believed);
+          pushes_ = pushes_ || pushes(joint);
           force = joint.motor_force_N;
+          if (shares.support != 1.0) force += wanted_support_N - joint.support_N;
         },
-        gates_, output, added_N, passed);
+        gates_, output, believed_, added_N, passed);
     if constexpr (has_joints<In>) {
       if (const GateFault found = fault(); found != GateFault::none && found != GateFault::energy) let_go();
     }
@@ -324,6 +233,7 @@ class Site {
     controller_->reset();
     for_each_joint([](JointGates& gates) noexcept { gates.reset(); }, gates_);
     believed_ = nothing();
+    pushes_ = false;
   }
   /// The controller as made and no fault any more; the forces go on from where they are, within the rate limit.
   void rearm() noexcept {
@@ -367,6 +277,8 @@ class Site {
     for_each_joint([&passes](const JointGates& gates) noexcept { passes = passes || gates.pass_a_force(); }, gates_);
     return passes;
   }
+  /// Whether a force passes, or a drive has a law, beyond what carries the device.
+  [[nodiscard]] bool works() const noexcept { return pushes_; }
   /// To look at.
   [[nodiscard]] const Gates& gates() const noexcept { return gates_; }
 
@@ -385,15 +297,29 @@ class Site {
   }
 
  private:
-  static void scale(JointOf<Out>& output, double share) noexcept {
-    output.motor_force_N *= share;
-    if constexpr (requires { output.handle_force_N; }) output.handle_force_N *= share;
+  static void scale(JointOf<Out>& output, const Shares& shares) noexcept {
+    if (shares.force == 1.0 && shares.support == 1.0) return;
+    if (output.support_N != 0.0) {
+      const double support_N = shares.support * output.support_N;
+      output.motor_force_N = support_N + shares.force * (output.motor_force_N - output.support_N);
+      output.support_N = support_N;
+    } else {
+      output.motor_force_N *= shares.force;
+    }
+    output.law = output.law.times(shares.force);
+    if constexpr (requires { output.handle_force_N; }) output.handle_force_N *= shares.force;
+  }
+  static bool pushes(const JointOf<Out>& passed) noexcept {
+    bool pushes = passed.motor_force_N != passed.support_N || passed.law.acts();
+    if constexpr (requires { passed.handle_force_N; }) pushes = pushes || passed.handle_force_N != 0.0;
+    return pushes;
   }
   [[nodiscard]] Sensors nothing() const noexcept { return same_for_each(gates_, JointOf<In>{}); }
 
   std::unique_ptr<Controller> controller_;
   Gates gates_;
   Sensors believed_;
+  bool pushes_ = false;  ///< beyond the support, at the latest tick
 };
 
 using MasterSite = Site<MasterInput, MasterOutput, MasterGates>;

@@ -2,6 +2,8 @@
 #include <tactus/control/supervised_site.hpp>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace tactus::control {
 
@@ -56,13 +58,19 @@ auto supervision_of(const Params& params, SiteRole role) {
   return all;
 }
 
-/// A gated site under the supervision that `params` describe. `checked` says when its force sensor cannot be right.
-template <template <class> class Supervised, class Gated, class Params>
-Result<Supervised<Gated>> supervise(Gated site, const Params& params, SiteRole role, std::int64_t session, Seconds dt,
-                                    const Agreement& agreement, ForceSensorCheck::Params SupervisionParams::*checked,
-                                    const char* group) {
-  const auto settings = supervision_of(params, role);
-  const auto supervision = SupervisionOf<Each<Params, Message>>::make(settings, role, session, dt, agreement);
+/// A gated site under the supervision that `settings` describe. `checked` says when its force sensor cannot be right.
+template <template <class> class Supervised, class Gated, class Settings>
+Result<Supervised<Gated>> supervise(Gated site, const Settings& settings, SiteRole role, std::int64_t session,
+                                    Seconds dt, const Agreement& agreement,
+                                    ForceSensorCheck::Params SupervisionParams::*checked, const char* group) {
+  if (joints_of(settings) != joints_of(site.gates())) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "supervision",
+                 .message = "is of " + std::to_string(joints_of(settings)) + " joints, and the site has " +
+                            std::to_string(joints_of(site.gates())),
+                 .place = {}};
+  }
+  const auto supervision = SupervisionOf<Each<Settings, Message>>::make(settings, role, session, dt, agreement);
   if (!supervision) return under("supervision", supervision.error());
   const auto check = make_each<ForceSensorCheck>(member_of_each(settings, checked), dt);
   if (!check) return under("supervision", under(group, check.error()));
@@ -87,11 +95,10 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
   const bool follows = state == SiteState::active && !input.requests.clutch;
 
   const Sensors sensors = with(input.sensors, supervision_.arrival(offset_m_));
-  const auto probe_N =
-      supervision_.probe(member_of_each(sensors, &MasterInput::motor_position_m), site_.passes_a_force());
-  Output output{.site = site_.step(sensors, supervision_.blend(follows), input.elapsed_ticks, probe_N),
-                .packet = {},
-                .record = supervision_.record()};
+  const auto probe_N = supervision_.probe(member_of_each(sensors, &MasterInput::motor_position_m), site_.works());
+  const Shares shares{.force = supervision_.blend(follows), .support = supervision_.carry()};
+  Output output{
+      .site = site_.step(sensors, shares, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
   Payload message = member_of_each(output.site, &MasterOutput::message);
   for_each_joint(
       [&](Message& told, double& told_m, double& offset_m) noexcept {
@@ -99,6 +106,7 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
           told_m = told.position_m + offset_m;
         } else {
           offset_m = told_m - told.position_m;
+          told.velocity_m_per_s = 0.0;  // of a position that stands
         }
         told.position_m = told_m;
         output.record.offset_m = farther(output.record.offset_m, offset_m);
@@ -133,11 +141,12 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
   }
   if (supervision_.probes()) supervision_.stand(here_m);
   const Sensors sensors = with(input.sensors, supervision_.arrival(same_for_each(here_m, 0.0)));
-  const auto probe_N = supervision_.probe(here_m, site_.passes_a_force());
+  const auto probe_N = supervision_.probe(here_m, site_.works());
   const bool stands = state == SiteState::align || state == SiteState::armed;
-  const double share = supervision_.blend((stands || state == SiteState::active) && !supervision_.probes());
+  const Shares shares{.force = supervision_.blend((stands || state == SiteState::active) && !supervision_.probes()),
+                      .support = supervision_.carry()};
   Output output{
-      .site = site_.step(sensors, share, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
+      .site = site_.step(sensors, shares, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
   output.packet = supervision_.packet(member_of_each(output.site, &SlaveOutput::message));
   fill(output.record, site_, supervision_);
   return output;
@@ -155,8 +164,9 @@ auto supervised_master(const Params& params, std::int64_t session, Seconds dt, c
     -> Result<SupervisedMasterOf<decltype(make_sites(params, dt)->master)>> {
   auto sites = make_sites(params, dt);
   if (!sites) return sites.error();
-  return supervise<SupervisedMasterOf>(std::move(sites->master), params, SiteRole::master, session, dt, agreement,
-                                       &SupervisionParams::hand_sensor, "hand_sensor");
+  return supervise<SupervisedMasterOf>(std::move(sites->master), supervision_of(params, SiteRole::master),
+                                       SiteRole::master, session, dt, agreement, &SupervisionParams::hand_sensor,
+                                       "hand_sensor");
 }
 
 template <class Params>
@@ -164,11 +174,22 @@ auto supervised_slave(const Params& params, std::int64_t session, Seconds dt, co
     -> Result<SupervisedSlaveOf<decltype(make_sites(params, dt)->slave)>> {
   auto sites = make_sites(params, dt);
   if (!sites) return sites.error();
-  return supervise<SupervisedSlaveOf>(std::move(sites->slave), params, SiteRole::slave, session, dt, agreement,
-                                      &SupervisionParams::force_sensor, "force_sensor");
+  return supervise<SupervisedSlaveOf>(std::move(sites->slave), supervision_of(params, SiteRole::slave), SiteRole::slave,
+                                      session, dt, agreement, &SupervisionParams::force_sensor, "force_sensor");
 }
 
 }  // namespace
+
+Result<JointSupervisedMaster> supervise_master(JointMasterSite site, const Joints<SupervisionParams>& params,
+                                               std::int64_t session, Seconds dt, const Agreement& agreement) {
+  return supervise<SupervisedMasterOf>(std::move(site), params, SiteRole::master, session, dt, agreement,
+                                       &SupervisionParams::hand_sensor, "hand_sensor");
+}
+Result<JointSupervisedSlave> supervise_slave(JointSlaveSite site, const Joints<SupervisionParams>& params,
+                                             std::int64_t session, Seconds dt, const Agreement& agreement) {
+  return supervise<SupervisedSlaveOf>(std::move(site), params, SiteRole::slave, session, dt, agreement,
+                                      &SupervisionParams::force_sensor, "force_sensor");
+}
 
 Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt) {
   return make_supervised_master(params, session, dt, agreement_of(params, dt));

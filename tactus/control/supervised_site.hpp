@@ -122,4 +122,11 @@ Result<JointSupervisedMaster> make_supervised_master(const JointParams auto& par
 Result<JointSupervisedSlave> make_supervised_slave(const JointParams auto& params, std::int64_t session, Seconds dt,
                                                    const Agreement& agreement);
 
+/// A site of several joints whose controller is not one of `architectures()`, as one that couples them, under
+/// supervision. Errors: those of `Supervision`, under `supervision`; `inconsistent` for another number of joints.
+Result<JointSupervisedMaster> supervise_master(JointMasterSite site, const Joints<SupervisionParams>& params,
+                                               std::int64_t session, Seconds dt, const Agreement& agreement = {});
+Result<JointSupervisedSlave> supervise_slave(JointSlaveSite site, const Joints<SupervisionParams>& params,
+                                             std::int64_t session, Seconds dt, const Agreement& agreement = {});
+
 }  // namespace tactus::control

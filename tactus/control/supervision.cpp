@@ -252,6 +252,13 @@ double SupervisionOf<Payload>::blend(bool in) noexcept {
 }
 
 template <class Payload>
+double SupervisionOf<Payload>::carry() noexcept {
+  if (lets_go()) return carried_ = 0.0;
+  if (state() != SiteState::configure) return carried_ = std::min(carried_ + blend_step_, 1.0);
+  return carried_ = std::max(carried_ - blend_step_ * static_cast<double>(elapsed_ticks_), 0.0);
+}
+
+template <class Payload>
 PacketOf<Payload> SupervisionOf<Payload>::packet(const Payload& message) noexcept {
   return {.session = session_,
           .sequence = ++sequence_,

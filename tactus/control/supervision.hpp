@@ -188,6 +188,9 @@ class SupervisionOf {
   /// The share of the controller's force, on its way to 1 or 0; in `fault`, and at a master whose dead-man switch was
   /// let go, 0 at once, for the gate to ramp. Once, after `decide`.
   double blend(bool in) noexcept;
+  /// The share of what carries the device: on its way to 1 wherever the site has power and does not let go, to 0 in
+  /// `configure`; where it lets go 0 at once, for the gate to ramp. Once, after `decide`.
+  double carry() noexcept;
   /// The packet that says `message`. Once a tick.
   Packet packet(const Payload& message) noexcept;
   /// A slave's command is `position_m` until it follows.
@@ -278,6 +281,7 @@ class SupervisionOf {
   bool probing_ = false;              ///< the trial is under way
   bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, or its device was silent
   double share_ = 0.0;
+  double carried_ = 0.0;  ///< share of the support
   SiteState before_ = SiteState::configure;
 };
 using Supervision = SupervisionOf<Message>;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/drive_law.hpp>
 #include <tactus/core/joints.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/station/tick.hpp>
@@ -17,6 +18,10 @@ struct DeviceLimits {
   double rate_N_per_s = 0.0;      ///< fastest change of either force
   double velocity_m_per_s = 0.0;  ///< fastest that the device may be
   double position_m = 0.0;        ///< farthest that it may be from zero
+  /// Of the law that its drive runs by itself, largest gains; one that takes none leaves both 0. One that takes a law
+  /// tells velocity and force of its motor.
+  double stiffness_N_per_m = 0.0;
+  double damping_N_s_per_m = 0.0;
 };
 
 /// Whether a device can be trusted with the next tick.
@@ -37,12 +42,14 @@ struct DeviceReading {
                             ///< tip, positive when it pushes the slave back
   double grip = 1.0;        ///< master: how firmly the person holds, over nominal, where a sensor tells
   double age_s = 0.0;       ///< of the position at the tick's deadline; negative where it was measured after that
+  control::DriveTells motor_tells = {};
 };
 
 struct DeviceCommand {
   double force_N = 0.0;         ///< of the motor, positive toward the environment
   double handle_force_N = 0.0;  ///< of the second actuator, same sign
   bool enabled = true;          ///< false: the forces end at the rate limit, then the drive has no power
+  control::DriveLaw law = {};   ///< comes to the motor's force, for a drive that takes one
 };
 
 /// Hardware of one axis, or of several joints behind one bus, or what stands for it: where a user plugs in. Once a tick

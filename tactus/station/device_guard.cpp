@@ -10,7 +10,7 @@ namespace tactus::station {
 namespace {
 
 constexpr double no_limit = std::numeric_limits<double>::infinity();
-/// For the last bit of a command that changes exactly as fast as it may.
+/// For the last bit of a command that changes exactly as fast as it may, or with its law is exactly as strong.
 constexpr double rounding = 1.0 + 1e-9;
 
 double limit_or_none(double limit) noexcept { return limit > 0.0 ? limit : no_limit; }
@@ -46,7 +46,9 @@ DeviceGuard::DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept
               .handle_force_N = limit_or_none(limits.handle_force_N),
               .rate_N_per_s = limit_or_none(limits.rate_N_per_s),
               .velocity_m_per_s = limit_or_none(limits.velocity_m_per_s),
-              .position_m = limit_or_none(limits.position_m)},
+              .position_m = limit_or_none(limits.position_m),
+              .stiffness_N_per_m = limits.stiffness_N_per_m,
+              .damping_N_s_per_m = limits.damping_N_s_per_m},
       patience_ns_(std::llround(1e9 * patience.value)) {}
 
 void DeviceGuard::let_go(LetGo cause) noexcept {
@@ -59,8 +61,12 @@ void DeviceGuard::rearm() noexcept {
   marked_ = false;
 }
 
-void DeviceGuard::observe(double position_m, const Tick& tick, double age_s) noexcept {
-  if (!std::isfinite(position_m) || !std::isfinite(age_s)) return let_go(LetGo::not_finite);
+void DeviceGuard::observe(double position_m, const Tick& tick, double age_s, double velocity_m_per_s) noexcept {
+  if (!std::isfinite(position_m) || !std::isfinite(age_s) || !std::isfinite(velocity_m_per_s)) {
+    return let_go(LetGo::not_finite);
+  }
+  position_m_ = position_m;
+  velocity_m_per_s_ = velocity_m_per_s;
   const std::int64_t now_ns = tick.deadline_ns - std::llround(1e9 * age_s);
   if (std::fabs(position_m) > limits_.position_m) let_go(LetGo::position);
   if (marked_) {
@@ -73,8 +79,21 @@ void DeviceGuard::observe(double position_m, const Tick& tick, double age_s) noe
   mark_ns_ = now_ns;
 }
 
+control::DriveLaw DeviceGuard::allowed(const control::DriveLaw& wanted) const noexcept {
+  control::DriveLaw law = wanted;
+  law.stiffness_N_per_m = std::clamp(wanted.stiffness_N_per_m, 0.0, limits_.stiffness_N_per_m);
+  law.damping_N_s_per_m = std::clamp(wanted.damping_N_s_per_m, 0.0, limits_.damping_N_s_per_m);
+  return law;
+}
+
 DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) noexcept {
-  if (!std::isfinite(wanted.force_N) || !std::isfinite(wanted.handle_force_N)) let_go(LetGo::not_finite);
+  const control::DriveLaw law = allowed(wanted.law);
+  const bool runs_law = law.stiffness_N_per_m > 0.0 || law.damping_N_s_per_m > 0.0;
+  const double whole_N = runs_law ? wanted.force_N + law.stiffness_N_per_m * (law.position_m - position_m_) +
+                                        law.damping_N_s_per_m * (law.velocity_m_per_s - velocity_m_per_s_)
+                                  : wanted.force_N;
+  const bool gains = std::isfinite(wanted.law.stiffness_N_per_m) && std::isfinite(wanted.law.damping_N_s_per_m);
+  if (!std::isfinite(whole_N) || !std::isfinite(wanted.handle_force_N) || !gains) let_go(LetGo::not_finite);
   const std::int64_t since_ns = passed_any_ ? std::max<std::int64_t>(0, tick.deadline_ns - passed_ns_) : 0;
   const std::int64_t period_ns = since_ns / (1 + std::max<std::int64_t>(0, tick.missed));
   passed_any_ = true;
@@ -86,16 +105,29 @@ DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) n
   };
 
   if (cause_ == LetGo::none && wanted.enabled) {
-    const DeviceCommand strong{.force_N = held_to(wanted.force_N, limits_.force_N),
+    const bool strongest = runs_law && std::fabs(whole_N) <= rounding * limits_.force_N;
+    const DeviceCommand strong{.force_N = strongest ? whole_N : held_to(whole_N, limits_.force_N),
                                .handle_force_N = held_to(wanted.handle_force_N, limits_.handle_force_N)};
     const DeviceCommand now{.force_N = toward(passed_.force_N, strong.force_N),
                             .handle_force_N = toward(passed_.handle_force_N, strong.handle_force_N)};
-    const bool too_strong = strong.force_N != wanted.force_N || strong.handle_force_N != wanted.handle_force_N;
+    const bool too_strong = strong.force_N != whole_N || strong.handle_force_N != wanted.handle_force_N ||
+                            law.stiffness_N_per_m != wanted.law.stiffness_N_per_m ||
+                            law.damping_N_s_per_m != wanted.law.damping_N_s_per_m;
     const bool too_fast = now.force_N != strong.force_N || now.handle_force_N != strong.handle_force_N;
     if (too_strong || too_fast) ++held_back_;
     insisting_ns_ = too_strong || too_fast ? insisting_ns_ + period_ns : 0;
     if (insisting_ns_ > patience_ns_) let_go(too_strong ? LetGo::force : LetGo::rate);
-    return passed_ = now;
+    passed_ = now;
+    if (!runs_law) return now;
+    // Of force and law the share that passes of both; where it is none, the force alone.
+    const double share = now.force_N == whole_N ? 1.0 : now.force_N / whole_N;
+    if (!(share >= 0.0 && share <= 1.0)) return now;
+    DeviceCommand part = now;
+    part.force_N = share * wanted.force_N;
+    part.law = law;
+    part.law.stiffness_N_per_m *= share;
+    part.law.damping_N_s_per_m *= share;
+    return part;
   }
   passed_.force_N = toward(passed_.force_N, 0.0);
   passed_.handle_force_N = toward(passed_.handle_force_N, 0.0);
@@ -111,7 +143,9 @@ Check check_limits(const DeviceLimits& limits, bool simulated) {
         std::tuple{"handle_force_N", limits.handle_force_N, units::newton, false},
         std::tuple{"rate_N_per_s", limits.rate_N_per_s, units::newton_per_second, true},
         std::tuple{"velocity_m_per_s", limits.velocity_m_per_s, units::metre_per_second, true},
-        std::tuple{"position_m", limits.position_m, units::metre, true}}) {
+        std::tuple{"position_m", limits.position_m, units::metre, true},
+        std::tuple{"stiffness_N_per_m", limits.stiffness_N_per_m, units::newton_per_metre, false},
+        std::tuple{"damping_N_s_per_m", limits.damping_N_s_per_m, units::newton_second_per_metre, false}}) {
     if (!std::isfinite(value) || value < 0.0) return out_of_bounds(name, value, non_negative, unit);
     if (value == 0.0 && needed && !simulated) {
       return Error{.code = ErrorCode::missing,
@@ -147,9 +181,11 @@ Reading GuardedDeviceOf<Reading>::read(const Tick& tick) noexcept {
   const bool silent = written_ns_ != now_.deadline_ns;
   now_ = tick;
   if (device_->health() != DeviceHealth::lost) {
-    for_each_joint([&tick](DeviceGuard& guard,
-                           const DeviceReading& joint) noexcept { guard.observe(joint.position_m, tick, joint.age_s); },
-                   guard_, reading);
+    for_each_joint(
+        [&tick](DeviceGuard& guard, const DeviceReading& joint) noexcept {
+          guard.observe(joint.position_m, tick, joint.age_s, joint.motor_tells.velocity_m_per_s);
+        },
+        guard_, reading);
   }
   if (written_ && silent) {
     if (tick.deadline_ns - written_ns_ > patience_ns_) {

@@ -36,6 +36,10 @@ inline constexpr Bounds silence_bounds = between(0.001, 10.0);
 /// latch at once. From then on the force falls to zero at the rate limit, then the drive is switched off, and stays so
 /// until `rearm`. A limit of 0 is none, and without a rate limit the force falls at once.
 ///
+/// The law of a drive counts with what it gives at the newest reading. What is held back is taken from force and law in
+/// the same share, and a gain beyond its limit is held back too: to none, where the device states none. Once it has let
+/// go a drive has no law.
+///
 /// It stands behind `control::SafetyGate`, wherever the controller runs, and shares nothing with it but what both are
 /// for: no limiter, no filter, no clock of ticks. Speed is distance over time since a mark that moves on every
 /// `speed_window_ns`, so it takes an encoder's step for what it is, and finds a jump.
@@ -44,7 +48,7 @@ class DeviceGuard {
   DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept;
 
   /// What the sensors read at a tick, and how old that is. Real-time safe, as is all below.
-  void observe(double position_m, const Tick& tick, double age_s = 0.0) noexcept;
+  void observe(double position_m, const Tick& tick, double age_s = 0.0, double velocity_m_per_s = 0.0) noexcept;
   /// What may reach the actuators from this tick on, always finite. Ticks that were missed earn no faster change.
   DeviceCommand pass(const DeviceCommand& wanted, const Tick& tick) noexcept;
   /// Latches, for what is found elsewhere. The first cause stays.
@@ -63,7 +67,10 @@ class DeviceGuard {
   DeviceLimits limits_;  ///< infinite where there is none
   std::int64_t patience_ns_;
   LetGo cause_ = LetGo::none;
-  DeviceCommand passed_{.enabled = false};
+  [[nodiscard]] control::DriveLaw allowed(const control::DriveLaw& wanted) const noexcept;
+
+  DeviceCommand passed_{.enabled = false};  ///< force: with that of the law
+  double position_m_ = 0.0, velocity_m_per_s_ = 0.0;
   std::int64_t passed_ns_ = 0;
   bool passed_any_ = false;
   std::int64_t insisting_ns_ = 0;

@@ -53,13 +53,20 @@ Result<SitePair<Master, Slave>> SitePair<Master, Slave>::make(const Params& cont
   }
   auto sites = make_pair<Master, Slave>(control, tick);
   if (!sites) return under("control", sites.error());
+  auto pair = around(std::move(sites->first), std::move(sites->second), channel, tick, slave_start_m);
+  if (pair) pair->at_master_.message = first_said<Payload>(same_for_each(slave_start_m, 0.0));
+  return pair;
+}
+
+template <class Master, class Slave>
+Result<SitePair<Master, Slave>> SitePair<Master, Slave>::around(Master master, Slave slave, const LinkParams& channel,
+                                                                Seconds tick, const Lengths& slave_start_m) {
   const auto first = first_said<Payload>(slave_start_m);
   auto to_slave = Way::make(channel.to_slave, tick, first);
   if (!to_slave) return under("channel.to_slave", to_slave.error());
   auto to_master = Way::make(channel.to_master, tick, first);
   if (!to_master) return under("channel.to_master", to_master.error());
-  return SitePair(std::move(sites->first), std::move(sites->second), *std::move(to_slave), *std::move(to_master), tick,
-                  first_said<Payload>(same_for_each(slave_start_m, 0.0)));
+  return SitePair(std::move(master), std::move(slave), *std::move(to_slave), *std::move(to_master), tick, first);
 }
 
 template Result<SupervisedPair> SitePair<control::SupervisedMaster, control::SupervisedSlave>::make(
@@ -71,5 +78,9 @@ template Result<JointSupervisedPair> SitePair<control::JointSupervisedMaster, co
     const Joints<control::ControlParams>&, const LinkParams&, Seconds, const Joints<double>&);
 template Result<JointBarePair> SitePair<control::JointMasterSite, control::JointSlaveSite>::make(
     const Joints<control::ControlParams>&, const LinkParams&, Seconds, const Joints<double>&);
+template Result<JointSupervisedPair> SitePair<control::JointSupervisedMaster, control::JointSupervisedSlave>::around(
+    control::JointSupervisedMaster, control::JointSupervisedSlave, const LinkParams&, Seconds, const Joints<double>&);
+template Result<JointBarePair> SitePair<control::JointMasterSite, control::JointSlaveSite>::around(
+    control::JointMasterSite, control::JointSlaveSite, const LinkParams&, Seconds, const Joints<double>&);
 
 }  // namespace tactus::station

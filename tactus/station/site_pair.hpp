@@ -65,6 +65,10 @@ class SitePair {
   /// With a slave that rests at `slave_start_m`. Errors name `control` and `channel`.
   static Result<SitePair> make(const Params& control, const LinkParams& channel, Seconds tick,
                                const Lengths& slave_start_m);
+  /// Of sites that were made elsewhere, such as those whose controllers couple joints. The master takes the slave to
+  /// rest there too. Errors name `channel`.
+  static Result<SitePair> around(Master master, Slave slave, const LinkParams& channel, Seconds tick,
+                                 const Lengths& slave_start_m);
 
   /// One tick. Real-time safe as far as the devices are.
   template <Drivable MasterDevice, Drivable SlaveDevice>

@@ -38,19 +38,22 @@ struct Step {
 inline void put(const DeviceReading& reading, control::MasterInput& sensors) noexcept {
   sensors.motor_position_m = reading.position_m;
   sensors.motor_age_s = reading.age_s;
+  sensors.motor_tells = reading.motor_tells;
   sensors.hand_force_N = reading.force_N;
   sensors.grip = reading.grip;
 }
 inline void put(const DeviceReading& reading, control::SlaveInput& sensors) noexcept {
   sensors.motor_position_m = reading.position_m;
   sensors.motor_age_s = reading.age_s;
+  sensors.motor_tells = reading.motor_tells;
   sensors.tip_force_N = reading.force_N;
 }
 inline DeviceCommand command_of(const control::MasterOutput& output, bool enabled = true) noexcept {
-  return {.force_N = output.motor_force_N, .handle_force_N = output.handle_force_N, .enabled = enabled};
+  return {
+      .force_N = output.motor_force_N, .handle_force_N = output.handle_force_N, .enabled = enabled, .law = output.law};
 }
 inline DeviceCommand command_of(const control::SlaveOutput& output, bool enabled = true) noexcept {
-  return {.force_N = output.motor_force_N, .handle_force_N = 0.0, .enabled = enabled};
+  return {.force_N = output.motor_force_N, .handle_force_N = 0.0, .enabled = enabled, .law = output.law};
 }
 
 template <class Output>

@@ -1,3 +1,4 @@
+#include <tactus/arm_control/arm_sites.hpp>
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
 #include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/random.hpp>
@@ -13,6 +14,7 @@ namespace tactus::experiments {
 
 using arm::JointVector;
 using arm::Vector3;
+using arm_plants::ArmDevice;
 using arm_plants::ArmPlant;
 using arm_plants::ToolForce;
 using arm_plants::ToolState;
@@ -111,30 +113,24 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::
   return setup;
 }
 
-ArmPair::ArmPair(const ArmPairSetup& setup, ArmPlant leader, ArmPlant follower, arm_plants::Person person,
-                 const arm_control::ArmLeader& leader_site, const arm_control::ArmFollower& follower_site,
-                 double wall_m)
+ArmPair::ArmPair(const ArmPairSetup& setup, ArmDevice leader, ArmDevice follower, arm_plants::Person person,
+                 station::JointBarePair sites, double wall_m)
     : tick_s_(1.0 / setup.params.servo.rate_Hz),
       steps_(steps_in_a_tick(setup.params.servo)),
       step_s_(setup.arm.step_s),
       leader_(std::move(leader)),
       follower_(std::move(follower)),
       person_(std::move(person)),
-      leader_site_(leader_site),
-      follower_site_(follower_site),
+      sites_(std::move(sites)),
       outward_(setup.outward),
-      began_m_(follower_.tool().position_m),
+      began_m_(follower_.plant().tool().position_m),
       wall_{.point_m = began_m_ + wall_m * outward_,
             .normal = outward_,
             .stiffness_N_per_m = setup.params.wall.stiffness_N_per_m,
-            .damping_N_s_per_m = setup.params.wall.damping_N_s_per_m},
-      from_follower_(arm_control::ArmMessage::at_rest(setup.start)) {
-  // As long before: both sites at rest.
-  arm_control::ArmLeader at_leader = leader_site_;
-  arm_control::ArmFollower at_follower = follower_site_;
-  const auto first = at_leader.step(leader_.read(), from_follower_);
-  to_leader_ = first.command;
-  to_follower_ = at_follower.step(follower_.read(), JointVector::Zero(setup.start.size()), first.message).command;
+            .damping_N_s_per_m = setup.params.wall.damping_N_s_per_m} {
+  // As long before: both sites at rest, and their commands on the buses.
+  station::JointBarePair at_rest = sites_;
+  at_rest.step(leader_, follower_, {}, 1.0);
 }
 
 Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const arm_control::InducedMotion::Arm& induced,
@@ -152,31 +148,31 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const arm_control::Indu
   const Joints<arm_control::DriveGains> gains = params.control.follower.gains.of(setup.arm.chain.joints.size());
   arm_control::ArmLeader::Params control = params.control;
   control.model.hand = hand;
-  const auto leader_site =
-      arm_control::ArmLeader::make(control, {.carried = setup.arm.chain, .induced = induced, .gains = gains}, tick);
+  const std::size_t joints = setup.arm.chain.joints.size();
+  const Joints<control::SafetyGate::Params> gates(joints, arm_control::widest_gate());
+  auto leader_site =
+      arm_control::leader_site(control, {.carried = setup.arm.chain, .induced = induced, .gains = gains}, gates, tick);
   if (!leader_site) return under("control", leader_site.error());
-  const auto follower_site =
-      arm_control::ArmFollower::make(params.control.follower,
-                                     {.chain = setup.arm.chain,
-                                      .tool_m = setup.arm.tool_m,
-                                      .joint_stiffness_N_m_per_rad = induced.joint_stiffness_N_m_per_rad},
-                                     tick);
+  auto follower_site = arm_control::follower_site(params.control.follower,
+                                                  {.chain = setup.arm.chain,
+                                                   .tool_m = setup.arm.tool_m,
+                                                   .joint_stiffness_N_m_per_rad = induced.joint_stiffness_N_m_per_rad},
+                                                  gates, tick);
   if (!follower_site) return under("control.follower", follower_site.error());
-  return ArmPair(setup, *std::move(leader), *std::move(follower), *std::move(person), *leader_site, *follower_site,
-                 wall_m);
+  Joints<double> start(joints);
+  for (std::size_t i = 0; i < joints; ++i) start[i] = setup.start[static_cast<Eigen::Index>(i)];
+  auto sites = station::JointBarePair::around(*std::move(leader_site), *std::move(follower_site), {}, tick, start);
+  if (!sites) return sites.error();
+  const Joints<station::DeviceLimits> no_limits(joints);
+  return ArmPair(setup, {*std::move(leader), no_limits}, {*std::move(follower), no_limits}, *std::move(person),
+                 *std::move(sites), wall_m);
 }
 
 ArmRecord ArmPair::step(const Vector3& path_m, const Vector3& path_at_next_tick_m) {
-  const ToolState at_leader = leader_.tool();
-  const ToolState at_follower = follower_.tool();
-  const auto leader = leader_site_.step(leader_.read(), from_follower_);
-  const JointVector sensed = follower_.torque_of({.force_N = wall_.force_N(at_follower)});
-  const auto follower = follower_site_.step(follower_.read(), sensed, leader.message);
-  from_follower_ = follower.message;
-  leader_.write(to_leader_);
-  follower_.write(to_follower_);
-  to_leader_ = leader.command;
-  to_follower_ = follower.command;
+  const ToolState at_leader = leader_.plant().tool();
+  const ToolState at_follower = follower_.plant().tool();
+  follower_.touches({.force_N = wall_.force_N(at_follower)});
+  sites_.step(leader_, follower_, {.number = tick_++}, 1.0);
   person_.begin_tick(began_m_ + path_m, began_m_ + path_at_next_tick_m, at_leader);
 
   ArmRecord record{.hand_N = -person_.force(at_leader, 0.0).force_N.dot(outward_),
@@ -184,14 +180,14 @@ ArmRecord ArmPair::step(const Vector3& path_m, const Vector3& path_at_next_tick_
                    .follower_m = (at_follower.position_m - began_m_).dot(outward_),
                    .tools_apart_m = (at_leader.position_m - at_follower.position_m).norm()};
   for (int i = 0; i < steps_; ++i) {
-    leader_.step(person_.force(leader_.tool(), i * step_s_));
-    const ToolForce contact{.force_N = wall_.force_N(follower_.tool())};
+    leader_.step(person_.force(leader_.plant().tool(), i * step_s_));
+    const ToolForce contact{.force_N = wall_.force_N(follower_.plant().tool())};
     record.contact_N += contact.force_N.dot(outward_) / steps_;
     follower_.step(contact);
   }
   return record;
 }
 
-bool ArmPair::healthy() const { return leader_.healthy() && follower_.healthy(); }
+bool ArmPair::healthy() const { return leader_.plant().healthy() && follower_.plant().healthy(); }
 
 }  // namespace tactus::experiments

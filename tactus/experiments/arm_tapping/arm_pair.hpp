@@ -1,7 +1,10 @@
 #pragma once
 
+#include <tactus/arm_plants/arm_device.hpp>
 #include <tactus/experiments/arm_tapping/params.hpp>
+#include <tactus/station/site_pair.hpp>
 
+#include <cstdint>
 #include <filesystem>
 
 namespace tactus::experiments {
@@ -27,11 +30,12 @@ struct ArmRecord {
   double tools_apart_m = 0.0;  ///< between what the tools went from their starts
 };
 
-/// Two simulated arms with their sites, the leader in a person's hand, in virtual time.
+/// Two simulated arms with their sites, the leader in a person's hand, in virtual time. The sites are bare, as the
+/// papers have theirs, behind the widest gates.
 ///
-/// One tick: both buses are read; the leader's site steps with what the follower told at the tick before, the
-/// follower's with what the leader tells now; the commands of the tick before go to the drives, as on a bus; the person
-/// aims; the arms step.
+/// One tick: `station::step` of the leader's site with what the follower told at the tick before, then of the
+/// follower's with what the leader tells now, where the commands of the tick before go to the drives, as on a bus; the
+/// person aims; the arms step.
 class ArmPair {
  public:
   /// `induced` is the arm that the model of induced motion believes in, in a hand as `hand`. The wall lies `wall_m`
@@ -45,24 +49,20 @@ class ArmPair {
   [[nodiscard]] double tick_s() const { return tick_s_; }
 
  private:
-  ArmPair(const ArmPairSetup& setup, arm_plants::ArmPlant leader, arm_plants::ArmPlant follower,
-          arm_plants::Person person, const arm_control::ArmLeader& leader_site,
-          const arm_control::ArmFollower& follower_site, double wall_m);
+  ArmPair(const ArmPairSetup& setup, arm_plants::ArmDevice leader, arm_plants::ArmDevice follower,
+          arm_plants::Person person, station::JointBarePair sites, double wall_m);
 
   double tick_s_;
   int steps_;
   double step_s_;
-  arm_plants::ArmPlant leader_;
-  arm_plants::ArmPlant follower_;
+  arm_plants::ArmDevice leader_;
+  arm_plants::ArmDevice follower_;
   arm_plants::Person person_;
-  arm_control::ArmLeader leader_site_;
-  arm_control::ArmFollower follower_site_;
+  station::JointBarePair sites_;
+  std::int64_t tick_ = 0;
   arm::Vector3 outward_;
   arm::Vector3 began_m_;
   arm_plants::Wall wall_;
-  arm_control::ArmMessage from_follower_;
-  arm::ArmCommand to_leader_;
-  arm::ArmCommand to_follower_;
 };
 
 }  // namespace tactus::experiments

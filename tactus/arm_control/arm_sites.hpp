@@ -1,0 +1,27 @@
+#pragma once
+
+#include <tactus/arm_control/arm_follower.hpp>
+#include <tactus/arm_control/arm_leader.hpp>
+#include <tactus/control/site.hpp>
+
+/// The controllers of two arms as sites of several joints, like any other: gates stand behind them, supervision around
+/// them, and `station::step` steps them. Of a joint's message the force is the torque from outside that resists it, and
+/// its device tells velocity and torque of its motors and takes a law (`control::DriveLaw`). What the site believes to
+/// carry the arm is its support: it stays while the coupling comes and goes.
+namespace tactus::arm_control {
+
+/// The last limits before the drive of each joint, for an arm in virtual time: as wide as a gate can be, so that
+/// nothing but the arm's own limits shapes its motion.
+control::SafetyGate::Params widest_gate();
+
+/// The site of the arm that a person holds. `gates` has one for each joint; the law of a drive passes them with its
+/// force. Errors: those of `ArmLeader::make`; those of a gate, under `gate` and the joint; `inconsistent` for another
+/// number of gates.
+Result<control::JointMasterSite> leader_site(const ArmLeader::Params& params, const ArmLeader::Arm& arm,
+                                             const Joints<control::SafetyGate::Params>& gates, Seconds dt);
+/// The same of the arm that touches things. What its device reads as force at the tip is taken for what sensors in the
+/// joints tell, where `params.torque` says so.
+Result<control::JointSlaveSite> follower_site(const ArmFollower::Params& params, const ArmFollower::Arm& arm,
+                                              const Joints<control::SafetyGate::Params>& gates, Seconds dt);
+
+}  // namespace tactus::arm_control
