@@ -10,6 +10,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -87,9 +88,13 @@ double position_of(const Checked& checked, std::size_t motor) {
   return checked.side == nullptr ? of_motor_rad : checked.side->joints[motor].joint.first_position_rad(of_motor_rad);
 }
 
-std::string cell(double value) {
-  constexpr int digits = 4;
-  return std::isfinite(value) ? report::number(value, digits) : "not told";
+/// With so many digits behind the point that a row of joints stays within 80 columns.
+std::string cell(double value, int digits) {
+  if (!std::isfinite(value)) return "-";
+  const double unit = std::pow(0.1, digits);
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", digits, std::round(value / unit) * unit + 0.0);  // 0 has no sign
+  return text.data();
 }
 
 /// Of all joints of a side.
@@ -104,7 +109,7 @@ report::Table table_of(const Checked& checked) {
                                  {"scales", "", Align::left},
                                  {"firmware"},
                                  {"position", slides(checked) ? "m" : "rad"},
-                                 {"temperature", "°C"},
+                                 {"heat", "°C"},
                                  {"age", "ms"},
                                  {"state", "", Align::left}});
   report::Table table(std::move(columns));
@@ -115,8 +120,8 @@ report::Table table_of(const Checked& checked) {
     if (checked.side != nullptr) row.emplace_back(checked.side->joints[i].name());
     row.insert(row.end(), {std::to_string(stated.id), stated.model, motor.sheet.scales, motor.sheet.firmware});
     if (checked.found.heard) {
-      row.insert(row.end(), {cell(position_of(checked, i)), cell(motor.reading.temperature_C),
-                             cell(std::round(1e4 * motor.age_s) * 0.1)});
+      row.insert(row.end(),
+                 {cell(position_of(checked, i), 4), cell(motor.reading.temperature_C, 0), cell(1e3 * motor.age_s, 1)});
     } else {
       row.resize(row.size() + 3);
     }

@@ -27,8 +27,16 @@ std::string described(const devices::Answering& found) {
     text += ", bits_per_s = " + std::to_string(found.bus.bits_per_s);
   }
   text += ":";
+  std::size_t begin = 0;  // of the last line
   for (std::size_t i = 0; i < found.bus.motors.size(); ++i) {
-    text += (i == 0 ? " " : ", ") + std::to_string(found.bus.motors[i].id) + " (" + found.said[i] + ")";
+    const std::string motor = std::to_string(found.bus.motors[i].id) + " (" + found.said[i] + ")";
+    if (i > 0) text += ",";
+    // With a blank before it and a comma behind it.
+    if (text.size() - begin + motor.size() + 2 > report::text_width()) {
+      text += "\n   ";
+      begin = text.size() - 3;
+    }
+    text += " " + motor;
   }
   return text;
 }

@@ -99,7 +99,7 @@ std::string table_of(const std::vector<Shown>& all) {
                        {"moved"},
                        {"velocity"},
                        {"unit", "", report::Column::Align::left},
-                       {"temperature", "°C"},
+                       {"heat", "°C"},
                        {"age", "ms"},
                        {"state", "", report::Column::Align::left}});
   for (const Shown& one : all) {

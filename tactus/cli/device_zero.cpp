@@ -35,9 +35,30 @@ Error unheard(const RigSide& side, const BusFinding& found) {
 struct ZeroOptions {
   std::string rig;
   std::vector<std::string> joints;
+  std::string motor;  ///< of these alone, by its identifier or its joint's name; empty: all
 };
 
-/// Nothing is written unless every joint was heard.
+bool is_motor(const RigJoint& joint, const std::string& wanted) {
+  return wanted.empty() || wanted == joint.name() || wanted == std::to_string(joint.motor.id);
+}
+
+/// What is there in place of a motor that is not.
+Error no_such_motor(const ZeroOptions& options, const std::vector<const RigSide*>& sides) {
+  std::string all;
+  for (const RigSide* side : sides) {
+    for (const RigJoint& joint : side->joints) {
+      const auto holds = [&joint](const std::string& name) { return Rig::holds(name, joint.path); };
+      if (std::ranges::none_of(options.joints, holds)) continue;
+      all += (all.empty() ? "" : ", ") + std::to_string(joint.motor.id) + " (" + joint.path + ")";
+    }
+  }
+  return {.code = ErrorCode::missing,
+          .parameter = {},
+          .message = "'" + options.motor + "' is no motor and no joint there: the motors are " + all,
+          .place = "--motor"};
+}
+
+/// Nothing is written unless every joint was heard, and nothing asked where the wanted motor is not in the file.
 Result<bool> zero(const ZeroOptions& options) {
   const auto rig = Rig::load(options.rig);
   if (!rig) return rig.error();
@@ -49,6 +70,14 @@ Result<bool> zero(const ZeroOptions& options) {
       if (std::ranges::find(sides, side) == sides.end()) sides.push_back(side);
     }
   }
+  const auto wanted = [&options](const RigJoint& joint) {
+    const auto holds = [&joint](const std::string& name) { return Rig::holds(name, joint.path); };
+    return is_motor(joint, options.motor) && std::ranges::any_of(options.joints, holds);
+  };
+  const auto without = [&wanted](const RigSide* side) { return std::ranges::none_of(side->joints, wanted); };
+  const std::vector<const RigSide*> named_sides = sides;
+  std::erase_if(sides, without);
+  if (sides.empty()) return no_such_motor(options, named_sides);
   std::vector<devices::NewOffset> offsets;
   std::string told;
   for (const RigSide* side : sides) {
@@ -56,8 +85,7 @@ Result<bool> zero(const ZeroOptions& options) {
     if (!found.heard) return unheard(*side, found);
     for (std::size_t i = 0; i < side->joints.size(); ++i) {
       const RigJoint& joint = side->joints[i];
-      const auto holds = [&joint](const std::string& name) { return Rig::holds(name, joint.path); };
-      if (std::ranges::none_of(options.joints, holds)) continue;
+      if (!wanted(joint)) continue;
       const double was_rad = joint.joint.first_position_rad(found.motors[i].reading.position_rad);
       offsets.push_back({.joint = joint.path, .offset_rad = joint.joint.offset_rad - was_rad});
       constexpr int digits = 4;
@@ -85,39 +113,43 @@ const char* what_holds(double of_motor, double of_file) {
   return of_motor < of_file ? "motor" : "file";
 }
 
+/// A row for each joint, within 80 columns.
+report::Table limits_table(const RigSide& side, const BusFinding& found, const std::string& name) {
+  using Align = report::Column::Align;
+  const devices::JointWords& words = side.joints.front().words();
+  report::Table table({{"joint", "", Align::left},
+                       {"force: motor", words.force_unit},
+                       {"file", words.force_unit},
+                       {"holds", "", Align::left},
+                       {"velocity: motor", words.velocity_unit},
+                       {"file", words.velocity_unit},
+                       {"position", words.position_unit, Align::left},
+                       {"heat", "°C"}});
+  for (std::size_t i = 0; i < side.joints.size(); ++i) {
+    const RigJoint& one = side.joints[i];
+    if (!Rig::holds(name, one.path)) continue;
+    const double most_Nm = found.motors[i].sheet.torque_limit_Nm * one.joint.gear;
+    const double fastest = ability_of(side.bus.kind, one.motor).velocity_rad_per_s / one.joint.gear;
+    table.add_row({std::string(one.name()), number(most_Nm),
+                   one.joint.gives_force ? number(one.joint.torque_limit_Nm) : "-",
+                   one.joint.gives_force ? what_holds(most_Nm, one.joint.torque_limit_Nm) : "no force", number(fastest),
+                   number(one.joint.velocity_limit_rad_per_s),
+                   format_number(one.joint.lower_rad) + " to " + format_number(one.joint.upper_rad),
+                   number(one.joint.temperature_limit_C)});
+  }
+  return table;
+}
+
 Result<bool> limits(const LimitsOptions& options) {
   const auto rig = Rig::load(options.rig);
   if (!rig) return rig.error();
   const auto sides = rig->sides(options.name);
   if (!sides) return rig->locate(sides.error());
-  using Align = report::Column::Align;
-  report::Table table({{"joint", "", Align::left},
-                       {"force: motor"},
-                       {"file"},
-                       {"unit", "", Align::left},
-                       {"holds", "", Align::left},
-                       {"velocity: motor"},
-                       {"file"},
-                       {"unit", "", Align::left},
-                       {"position", "", Align::left},
-                       {"heat", "°C"}});
   for (const RigSide* side : *sides) {
     const BusFinding found = examine(*rig, *side);
     if (!found.heard) return unheard(*side, found);
-    for (std::size_t i = 0; i < side->joints.size(); ++i) {
-      const RigJoint& one = side->joints[i];
-      if (!Rig::holds(options.name, one.path)) continue;
-      const double most_Nm = found.motors[i].sheet.torque_limit_Nm * one.joint.gear;
-      const double fastest = ability_of(side->bus.kind, one.motor).velocity_rad_per_s / one.joint.gear;
-      table.add_row({one.path, number(most_Nm), one.joint.gives_force ? number(one.joint.torque_limit_Nm) : "-",
-                     one.words().force_unit,
-                     one.joint.gives_force ? what_holds(most_Nm, one.joint.torque_limit_Nm) : "gives no force",
-                     number(fastest), number(one.joint.velocity_limit_rad_per_s), one.words().velocity_unit,
-                     format_number(one.joint.lower_rad) + " to " + format_number(one.joint.upper_rad),
-                     number(one.joint.temperature_limit_C)});
-    }
+    std::cout << side->path << "\n" << limits_table(*side, found, options.name).to_text();
   }
-  std::cout << table.to_text();
   if (Check error = flush_standard_output()) return *std::move(error);
   return true;
 }
@@ -131,6 +163,8 @@ void add_device_zero(CLI::App& device, const CLI::App& app, int& status) {
   verb->add_option("RIG", options->rig, "The rig file")->required();
   verb->add_option("JOINT", options->joints, "Joints of it, or all of a side, as arm.leader.elbow or arm.leader")
       ->required();
+  verb->add_option("--motor", options->motor, "Of these one motor alone: its identifier, or its joint's name")
+      ->type_name("ID|JOINT");
   verb->callback([options, &app, &status] { end_verb(app, zero(*options), status); });
 }
 

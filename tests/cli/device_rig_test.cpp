@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -171,6 +173,29 @@ TEST_F(DeviceRig, ZeroWritesTheOffsetWithWhichTheJointIsAtZeroWhereItIs) {
       << nobody.err;
 }
 
+TEST_F(DeviceRig, ZeroOfOneMotorLeavesTheOthersOfItsArm) {
+  const std::string rig = damiao("DM4340", "DM4310");
+  for (const char* motor : {"2", "elbow"}) {
+    const Outcome one =
+        device({"damiao --model DM4340,DM4310"}, rig, std::string("zero rig.toml arm.follower --motor ") + motor);
+    EXPECT_EQ(one.status, 0) << one.err;
+    EXPECT_EQ(one.out, "arm.follower.elbow was at 0.0001907 rad and is at zero now.\n");
+    const std::string written = content("rig.toml");
+    EXPECT_NE(written.find("motor = 2\noffset_rad = -0.000191\n"), std::string::npos) << written;
+    EXPECT_EQ(written.find("offset_rad"), written.rfind("offset_rad")) << written;
+  }
+  for (const char* motor : {"3", "wrist", "arm.follower.elbow"}) {
+    const Outcome unknown = device({"damiao"}, rig, std::string("zero rig.toml arm --motor ") + motor);
+    EXPECT_EQ(unknown.status, 2);
+    EXPECT_NE(unknown.err.find(std::string("'") + motor +
+                               "' is no motor and no joint there: the motors are 1 (arm.follower.shoulder), 2 "
+                               "(arm.follower.elbow)"),
+              std::string::npos)
+        << unknown.err;
+    EXPECT_EQ(content("rig.toml").find("offset_rad"), std::string::npos);
+  }
+}
+
 TEST_F(DeviceRig, WatchShowsEachJointALineAndLimitsWhichOneHolds) {
   const Outcome watched = device({"dynamixel"}, servos, "watch rig.toml arm.leader.elbow --for 0.5");
   EXPECT_EQ(watched.status, 0) << watched.err;
@@ -180,14 +205,39 @@ TEST_F(DeviceRig, WatchShowsEachJointALineAndLimitsWhichOneHolds) {
   const Outcome limits = device({"dynamixel --fault low-limit:2"}, servos, "limits rig.toml");
   EXPECT_EQ(limits.status, 0) << limits.err;
   // 1.75 A and 0.175 A times 0.52 / 1.47 Nm/A.
-  // In 80 columns the joints stand beside one another.
-  EXPECT_TRUE(says(limits, "joint            arm.leader.shoulder  arm.leader.elbow\n")) << limits.out;
-  EXPECT_TRUE(says(limits,
-                   "force: motor     0.6190               0.06190\n"
-                   "file             0.3000               0.3000\n"
-                   "unit             N m                  N m\n"
-                   "holds            file                 motor\n"))
-      << limits.out;
+  EXPECT_EQ(limits.out.find("arm.leader\n"), 0U) << limits.out;
+  EXPECT_TRUE(says(limits, "shoulder        0.6190  0.3000  file ")) << limits.out;
+  EXPECT_TRUE(says(limits, "elbow          0.06190  0.3000  motor ")) << limits.out;
+}
+
+/// The longest line in columns, headings and rules of tables included.
+std::size_t widest(const std::string& text) {
+  std::size_t most = 0, columns = 0;
+  for (const char c : text) {
+    constexpr unsigned continued = 0x80, of_continued = 0xc0;
+    if ((static_cast<unsigned char>(c) & of_continued) != continued) ++columns;
+    if (c == '\n') columns = 0;
+    most = std::max(most, columns);
+  }
+  return most;
+}
+
+TEST_F(DeviceRig, TablesOfEightJointsHaveARowForEachAndFitInto80Columns) {
+  std::string rig = "[arm.follower]\nbus = \"damiao\"\nport = \"@1\"\n\n";
+  for (int i = 1; i <= 8; ++i) rig += joint("arm.follower.joint_" + std::to_string(i), i, "DM4310-48V", "5.0");
+  const std::vector<std::string> motors{"damiao --motors 8 --model DM4310-48V"};
+  const Outcome checked = device(motors, rig, "check rig.toml");
+  EXPECT_EQ(checked.status, 0) << checked.out << checked.err;
+  const auto table = checked.out.find("arm.follower: damiao at ");
+  ASSERT_NE(table, std::string::npos) << checked.out;
+  EXPECT_LE(widest(checked.out.substr(table)), 80U) << checked.out;
+  EXPECT_TRUE(says(checked, "\njoint_8      8  DM4310-48V  ")) << checked.out;
+  const Outcome limits = device(motors, rig, "limits rig.toml");
+  EXPECT_LE(widest(limits.out), 80U) << limits.out;
+  EXPECT_TRUE(says(limits, "\njoint_8 ")) << limits.out;
+  const Outcome probed = device(motors, rig, "list $path --probe");
+  EXPECT_LE(widest(probed.out), 80U) << probed.out;
+  EXPECT_TRUE(says(probed, " 8 (Damiao motor)\n")) << probed.out;
 }
 
 TEST_F(DeviceRig, AnInverse3IsCheckedThroughItsService) {
@@ -224,8 +274,8 @@ TEST_F(DeviceRig, ListAsksOnlyWhereItIsTold) {
   EXPECT_TRUE(says(damiao_motors, "\n  damiao, framing = \"slcan\": 1 (Damiao motor), 2 (Damiao motor)\n"))
       << damiao_motors.out;
   const Outcome feetech = device({"feetech --motors 3"}, servos, "list $path --probe");
-  EXPECT_TRUE(
-      says(feetech, "\n  feetech, bits_per_s = 1000000: 1 (Feetech servo), 2 (Feetech servo), 3 (Feetech servo)\n"))
+  EXPECT_TRUE(says(feetech,
+                   "\n  feetech, bits_per_s = 1000000: 1 (Feetech servo), 2 (Feetech servo),\n    3 (Feetech servo)\n"))
       << feetech.out;
 }
 

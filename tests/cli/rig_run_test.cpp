@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -74,6 +75,27 @@ TEST_F(RigRun, APairOfSevenJointsAlignsAndTeleoperatesWithALogThatIsWhole) {
   EXPECT_TRUE(std::filesystem::exists(folder() / "run/log/log.mcap"));
   // It stood 0.2 rad away; what is left holds against the friction of the joint, less than 0.02 rad at 4 N m/rad.
   EXPECT_LT(apart(said, "5"), 0.02) << said;
+}
+
+/// A trigger that turns half as far as the gripper. As a joint it has a quarter of its motor's inertia, so that half of
+/// the usual force tries its sign: with all of it a trigger that nobody holds is faster than it may be.
+TEST_F(RigRun, AGripperGoesAsFarAsItsTriggerTimesTheScale) {
+  const std::string rig = side("leader", "@1", "damiao", "DM4310", 1, "offset_rad = 0.2\ngear = 0.5\n") +
+                          side("follower", "@2", "damiao", "DM4310", 1, "");
+  const std::string said = shell("damiao --motors 1", "damiao --motors 1", rig, R"sh(
+    $RUN --arm --duration-s 6 --set control.supervision.probe.force_N=0.2 <&9
+    for port in $leader $follower; do
+      $TACTUS device check --bus damiao --port $port --motors 1:DM4310 --json | grep position_rad
+    done)sh");
+  const std::string key = "\"position_rad\": ";
+  const auto first = said.find(key), second = said.rfind(key);
+  ASSERT_NE(first, second) << said;
+  const double trigger_rad = std::atof(said.c_str() + first + key.size()),
+               gripper_rad = std::atof(said.c_str() + second + key.size());
+  // What the motors say, without any file. Friction leaves them less than 0.03 rad apart; without the scale it were
+  // more.
+  EXPECT_GT(std::fabs(trigger_rad), 0.05) << said;
+  EXPECT_NEAR(gripper_rad, trigger_rad / 0.5 + 0.2, 0.03) << said;
 }
 
 TEST_F(RigRun, ALeaderWithoutForceIsFollowed) {

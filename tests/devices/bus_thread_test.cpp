@@ -106,6 +106,40 @@ bool tick_until(MotorBusDevice& device, double torque_Nm, bool enabled, const st
   return false;
 }
 
+/// A trigger turns half as far as the gripper that it is coupled with: gear 0.5. Motor and joint give the same power.
+TEST(BusThread, AGripperHasAScaleAndAForceLimitOfItsOwn) {
+  Motors motors;
+  auto bus = bus_at(motors);
+  ASSERT_FALSE(bus->wait_until_asked(long_enough));
+  MotorJoint elbow;
+  elbow.lower_rad = -1000.0;
+  elbow.upper_rad = 1000.0;
+  elbow.velocity_limit_rad_per_s = 1000.0;
+  elbow.torque_limit_Nm = 10.0;
+  MotorJoint gripper = elbow;
+  gripper.gear = 0.5;
+  gripper.torque_limit_Nm = 0.1;
+  Joints<MotorJoint> joints(2, elbow);
+  joints[1] = gripper;
+  auto device = *MotorBusDevice::make(*bus, {.joints = joints, .late_s = 0.5, .silence_s = 2.0});
+  Joints<station::DeviceReading> reading;
+  ASSERT_TRUE(tick_until(*device, 0.4, true, [&] {
+    reading = device->read(tick_now());
+    return reading[1].position_m > 0.5;
+  }));
+  const BusReadings told = *bus->newest();
+  device.reset();
+  bus.reset();
+  motors.fall_silent();
+  // What the gripper is told to do ends at its own limit, and its motor turns half as far with twice the torque.
+  constexpr double lsb_Nm = 20.0 / 4095.0;
+  EXPECT_NEAR(motors.peer().motor(0).most_torque_Nm(), 0.4, lsb_Nm);
+  EXPECT_NEAR(motors.peer().motor(1).most_torque_Nm(), 0.1 / 0.5, lsb_Nm);
+  EXPECT_NEAR(gripper.position_rad(told.motors[1].position_rad), 2.0 * told.motors[1].position_rad, 1e-12);
+  EXPECT_GT(motors.peer().motor(1).position_rad(), 0.25 - 0.001);
+  EXPECT_GT(told.motors[1].position_rad, 0.25 - 0.001);
+}
+
 TEST(BusThread, MotorsBecomeADeviceAndLoseTheirPowerWhenItEnds) {
   Motors motors;
   auto bus = bus_at(motors);

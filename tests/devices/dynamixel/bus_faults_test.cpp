@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "tests/devices/dynamixel/bench.hpp"
 #include "tests/devices/seeds.hpp"
@@ -35,6 +36,47 @@ TEST(DynamixelBus, ASilentServoCostsNoOtherItsDataButInOneCycle) {
       EXPECT_EQ(rig.goal(silent), 0);
     }
   }
+}
+
+/// Counts the reads of all servos that pass.
+class Reads final : public wire::WireEnd {
+ public:
+  explicit Reads(wire::WireEnd& behind) : behind_(behind) {}
+  void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override {
+    const bool is_fast = bytes.size() > 7 && bytes[7] == 0x8a, is_plain = bytes.size() > 7 && bytes[7] == 0x82;
+    if (is_fast || is_plain) {
+      turns += is_fast == last_was_fast ? 0 : 1;
+      last_was_fast = is_fast;
+      ++(is_fast ? fast : plain);
+    }
+    behind_.hear(bytes, now_ns);
+  }
+  std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override { return behind_.say(now_ns); }
+  [[nodiscard]] std::int64_t wakes_ns() const noexcept override { return behind_.wakes_ns(); }
+
+  std::int64_t fast = 0, plain = 0, turns = 0;
+  bool last_was_fast = true;
+
+ private:
+  wire::WireEnd& behind_;
+};
+
+TEST(DynamixelBus, AfterALostAnswerAThousandPlainReadsFollowAndThenFastOnesAgain) {
+  // It is off for 300 ms, in which it is asked again every 50 ms.
+  Rig rig({.fault = ServoFault::power_cycle, .fault_from_ns = 600 * ms});
+  Reads reads(*rig.line);
+  wire::join(rig.bus, reads, 0, 590 * ms);
+  EXPECT_GT(reads.fast, 0);
+  EXPECT_EQ(reads.plain, 0);
+  wire::join(rig.bus, reads, 590 * ms, 960 * ms);
+  EXPECT_GT(rig.bus.reading(2).heard_ns, 900 * ms);
+  EXPECT_FALSE(reads.last_was_fast);
+  const std::int64_t until_it_was_back = reads.plain;
+  wire::join(rig.bus, reads, 960 * ms, 4 * second);
+  EXPECT_TRUE(reads.last_was_fast);
+  EXPECT_EQ(reads.turns, 2);  // once to plain reads, once back
+  EXPECT_GE(reads.plain, 1000);
+  EXPECT_LE(reads.plain - until_it_was_back, 1000);
 }
 
 TEST(DynamixelBus, AServoThatIsNotThereIsNamed) {
