@@ -6,8 +6,6 @@
 #include <tactus/wire/paced.hpp>
 #include <tactus/wire/talk.hpp>
 
-#include "tests/sanitizers.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -19,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/sanitizers.hpp"
 #include <gtest/gtest.h>
 
 /// What the driver costs at the real clock: beside a loop that does nothing but ask and wait, at the same peer.
