@@ -15,8 +15,9 @@ constexpr std::int64_t patience_ns = 2'000'000;
 constexpr std::int64_t again_ns = 50'000'000;
 /// How often a servo is asked in a row before it counts as one that does not answer.
 constexpr std::size_t most_tries = 10;
-/// One look at one servo in so many cycles: less than a hundredth of the bus.
-constexpr std::int64_t cycles_per_look = 32;
+/// One look at one servo in so many cycles. A cycle with a look is a sixth longer; fewer than one in a hundred are. What
+/// cannot wait for its turn is looked at at once: after a servo's alert, and after a silence.
+constexpr std::int64_t cycles_per_look = 128;
 
 }  // namespace
 }  // namespace servo
