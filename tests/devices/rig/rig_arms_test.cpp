@@ -1,0 +1,383 @@
+#include <tactus/arm_plants/person.hpp>
+#include <tactus/configuration/document.hpp>
+#include <tactus/devices/damiao/damiao_bus.hpp>
+#include <tactus/devices/rig/rig_arms.hpp>
+#include <tactus/devices/rig/rig_loop.hpp>
+#include <tactus/emulation/damiao/damiao_peer.hpp>
+#include <tactus/emulation/emulated_arm.hpp>
+#include <tactus/wire/join.hpp>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+#include <tests/allocation_counter.hpp>
+#include <tests/devices/rig/rig_files.hpp>
+
+/// Two arms with their weight behind emulated motors, in virtual time, driven as `tactus run` drives them.
+namespace tactus::devices {
+namespace rig_arms_test {
+
+using arm_plants::ToolForce;
+using arm_plants::ToolState;
+using control::SiteState;
+using emulation::EmulatedArm;
+using emulation::damiao::DamiaoPeer;
+using experiments::ArmPairSetup;
+
+constexpr std::int64_t ms = 1'000'000, tick_ns = 2 * ms;
+constexpr std::size_t joints = 7;
+const std::string rigs = TACTUS_RIG_FOLDER;
+
+ArmPairSetup setup_of(const std::string& more = {}) {
+  auto document = configuration::Document::load(rigs + "/arms.toml");
+  EXPECT_TRUE(document) << describe(document.error());
+  if (!more.empty()) {
+    EXPECT_FALSE(document->set(more));
+  }
+  const auto params = document->read<experiments::ArmTappingParams>();
+  EXPECT_TRUE(params) << describe(params.error());
+  const auto setup = experiments::set_up_arm_pair(*params, rigs);
+  EXPECT_TRUE(setup) << describe(setup.error());
+  return *setup;
+}
+
+RigPair pair_of() {
+  const auto rig = Rig::load(rigs + "/openarm-arms.toml");
+  EXPECT_TRUE(rig) << describe(rig.error());
+  return rig->pairs()[0];
+}
+
+/// A bus and its emulated motors, driven in virtual time in place of a thread's.
+class VirtualLink final : public MotorLink {
+ public:
+  VirtualLink(const RigSide& side, const EmulatedArm::Settings& settings) {
+    using emulation::damiao::MotorType;
+    damiao::DamiaoBusParams params{.framing = damiao::Framing::socketcan_fd, .watchdog_s = 0.05, .motors = {}};
+    emulation::damiao::PeerSettings motors{
+        .adapter = emulation::damiao::AdapterType::socketcan_fd, .motors = {}, .faults = {}};
+    for (const StatedMotor& motor : side.bus.motors) {
+      damiao::Model model{};
+      MotorType type{};
+      for (const auto& entry : enumerators(damiao::Model{})) {
+        if (motor.model == entry.name) model = entry.value;
+      }
+      for (const auto& entry : enumerators(MotorType{})) {
+        if (motor.model == entry.name) type = entry.value;
+      }
+      params.motors.push_back({.id = motor.id, .feedback_id = motor.id + 0x10, .model = model});
+      const auto id = static_cast<std::uint32_t>(motor.id);
+      motors.motors.push_back({.id = id, .feedback_id = id + 0x10, .type = type});
+    }
+    auto made = EmulatedArm::make(settings);
+    EXPECT_TRUE(made) << describe(made.error());
+    arm = made->get();
+    bus = *damiao::DamiaoBus::make(params);
+    peer = *DamiaoPeer::make(motors, *std::move(made));
+  }
+  void run_until(std::int64_t until_ns) {
+    while (now_ns < until_ns) {
+      const std::int64_t next_ns = std::min(until_ns, now_ns + ms / 2);
+      const bool heard = watch.trusts(wanted, now_ns);
+      for (std::size_t i = 0; i < bus->motors(); ++i) bus->command(i, heard ? wanted.motors[i] : MotorCommand{});
+      if (!cut) {
+        wire::join(*bus, *peer, now_ns, next_ns);
+      } else {
+        bus->say(next_ns);
+        peer->say(next_ns);
+      }
+      now_ns = next_ns;
+      if (bus->cycles() == told.cycles && bus->state() == told.state) continue;
+      for (std::size_t i = 0; i < bus->motors(); ++i) told.motors[i] = bus->reading(i);
+      told.state = bus->state();
+      told.cycles = bus->cycles();
+      told.time_ns = now_ns;
+      told.unheard = heard ? 0 : 1;
+    }
+  }
+  [[nodiscard]] std::size_t motors() const noexcept override { return bus->motors(); }
+  void command(const BusCommands& commands) noexcept override { wanted = commands; }
+  [[nodiscard]] std::optional<BusReadings> newest() const noexcept override { return told; }
+  [[nodiscard]] bool running() const noexcept override { return true; }
+  void stop() override {}
+  Check wait_until_asked(Seconds) override { return std::nullopt; }
+  [[nodiscard]] MotorSheet sheet(std::size_t motor) const override { return bus->sheet(motor); }
+
+  EmulatedArm* arm = nullptr;
+  std::unique_ptr<damiao::DamiaoBus> bus;
+  std::unique_ptr<DamiaoPeer> peer;
+  bool cut = false;  ///< nothing passes on the wire
+  std::int64_t now_ns = 0;
+
+ private:
+  CommandWatch watch{20 * ms};
+  BusCommands wanted;
+  BusReadings told{.motors = {}, .cycles = -1};
+};
+
+/// The pair. Hands and stands hold both arms until their motors carry them; then nobody does, but where a test says so.
+struct Bench {
+  ArmPairSetup setup = setup_of();
+  RigPair pair = *as_arms(pair_of(), setup);
+  double apart_rad = 0.15;                ///< of joint 4, leader and follower
+  std::optional<arm::Vector3> hand_at_m;  ///< where a hand holds the leader's tool, on a spring
+  std::optional<arm_plants::Wall> wall;   ///< in the follower's way
+  ToolForce hand, contact;
+  std::unique_ptr<VirtualLink> leader_link = link(*pair.leader, apart_rad, [this](const ToolState& tool) {
+    constexpr double stiffness_N_per_m = 400.0, damping_N_s_per_m = 30.0;
+    hand = {};
+    if (hand_at_m) {
+      hand.force_N = stiffness_N_per_m * (*hand_at_m - tool.position_m) - damping_N_s_per_m * tool.velocity_m_per_s;
+    }
+    return hand;
+  });
+  std::unique_ptr<VirtualLink> follower_link = link(*pair.follower, 0.0, [this](const ToolState& tool) {
+    contact = wall ? ToolForce{.force_N = wall->force_N(tool)} : ToolForce{};
+    return contact;
+  });
+  std::unique_ptr<MotorBusDevice> leader = device(*leader_link, *pair.leader);
+  std::unique_ptr<MotorBusDevice> follower = device(*follower_link, *pair.follower);
+  runtime::SiteExchange exchange;
+  std::optional<RigLoop> loop;
+  RigSecond last;
+  std::int64_t number = 0;
+
+  Bench() {
+    // Motors are asked before a tick is.
+    advance(400 * ms);
+    auto sites = arm_sites(setup, leader->limits(), follower->limits());
+    EXPECT_TRUE(sites) << describe(sites.error());
+    auto made = RigLoop::around(*std::move(sites), Seconds{1e-9 * tick_ns},
+                                {.listen_before_arming_s = 0.1, .arm_at_once = true}, exchange, *leader, *follower);
+    EXPECT_TRUE(made) << describe(made.error());
+    loop.emplace(*std::move(made));
+  }
+  std::unique_ptr<VirtualLink> link(const RigSide& side, double off_rad,
+                                    std::function<ToolForce(const ToolState&)> touched) const {
+    arm::JointVector at = setup.start;
+    at[3] += off_rad;
+    return std::make_unique<VirtualLink>(
+        side, EmulatedArm::Settings{
+                  .chain = setup.arm.chain, .held_at = at, .tool_m = setup.arm.tool_m, .touched = std::move(touched)});
+  }
+  static std::unique_ptr<MotorBusDevice> device(VirtualLink& link, const RigSide& side) {
+    return *MotorBusDevice::make(link, {.joints = side.motor_joints(), .silence_s = 0.05});
+  }
+  void advance(std::int64_t duration_ns) {
+    leader_link->run_until(leader_link->now_ns + duration_ns);
+    follower_link->run_until(follower_link->now_ns + duration_ns);
+  }
+  void run(double duration_s) {
+    for (std::int64_t i = 0; i < std::llround(duration_s * 1e9) / tick_ns; ++i) {
+      const std::int64_t now_ns = leader_link->now_ns;
+      (*loop)({.number = number++, .deadline_ns = now_ns, .began_ns = now_ns});
+      while (const auto second = loop->next_second()) last = *second;
+      advance(tick_ns);
+    }
+  }
+  /// Until both follow; false where they do not.
+  bool couple() {
+    for (int seconds = 0; seconds < 20 && last.follower != SiteState::active; ++seconds) run(1.0);
+    return last.follower == SiteState::active;
+  }
+  [[nodiscard]] static arm::JointVector positions(const VirtualLink& link) {
+    arm::JointVector q(static_cast<Eigen::Index>(joints));
+    for (std::size_t i = 0; i < joints; ++i) q[static_cast<Eigen::Index>(i)] = link.peer->motor(i).position_rad();
+    return q;
+  }
+  [[nodiscard]] static arm::JointVector torques(const VirtualLink& link) {
+    arm::JointVector torque(static_cast<Eigen::Index>(joints));
+    for (std::size_t i = 0; i < joints; ++i) torque[static_cast<Eigen::Index>(i)] = link.peer->motor(i).torque_Nm();
+    return torque;
+  }
+  [[nodiscard]] double apart() const {
+    return (positions(*leader_link) - positions(*follower_link)).cwiseAbs().maxCoeff();
+  }
+  [[nodiscard]] static arm::Vector3 tool_m(const VirtualLink& link) { return link.arm->tool().position_m; }
+};
+
+double mm_between(const arm::Vector3& one, const arm::Vector3& other) { return 1e3 * (one - other).norm(); }
+
+TEST(RigArms, AlignCarryThemselvesTryEachMotorAndTheFollowerGoesToItsLeader) {
+  Bench bench;
+  bench.run(0.05);
+  EXPECT_TRUE(bench.leader_link->arm->held());
+  const auto leader_m = Bench::tool_m(*bench.leader_link);
+  ASSERT_TRUE(bench.couple()) << name_of(bench.last.cause) << " " << name_of(bench.last.leader) << " "
+                              << name_of(bench.last.fault) << bench.last.fault_joint;
+  EXPECT_FALSE(bench.leader_link->arm->held()) << "its motors carry it";
+  EXPECT_FALSE(bench.follower_link->arm->held());
+  bench.run(3.0);
+  EXPECT_EQ(bench.last.follower, SiteState::active);
+  EXPECT_EQ(bench.loop->totals().armings, 1);
+  EXPECT_EQ(bench.loop->totals().holds, 0);
+  EXPECT_LT(bench.apart(), 0.03) << "it began 0.15 rad away";
+  EXPECT_LT(mm_between(Bench::tool_m(*bench.leader_link), leader_m), 40.0) << "nobody holds the leader";
+  EXPECT_GT(Bench::torques(*bench.leader_link).cwiseAbs().maxCoeff(), 1.0) << "it has a weight";
+}
+
+TEST(RigArms, TheFollowerFollowsAHandAndItsContactComesBack) {
+  Bench bench;
+  ASSERT_TRUE(bench.couple());
+  bench.run(2.0);
+  const arm::Vector3 began_m = Bench::tool_m(*bench.leader_link);
+  const arm::Vector3 follower_m = Bench::tool_m(*bench.follower_link);
+  const auto move = [&](const arm::Vector3& from_m, const arm::Vector3& to_m) {
+    for (int i = 1; i <= 100; ++i) {
+      bench.hand_at_m = from_m + 0.01 * i * (to_m - from_m);
+      bench.run(0.01);
+    }
+    bench.run(0.5);
+  };
+  const arm::Vector3 aside_m = began_m + arm::Vector3(0.0, 0.03, 0.03);
+  move(began_m, aside_m);
+  const arm::Vector3 went_m = Bench::tool_m(*bench.leader_link) - began_m;
+  EXPECT_GT(went_m.norm(), 0.02);
+  EXPECT_LT((Bench::tool_m(*bench.follower_link) - follower_m - went_m).norm(), 0.01);
+
+  // Down onto a stiff surface, 10 mm below where the follower is now, and 15 mm beyond.
+  bench.wall = {.point_m = Bench::tool_m(*bench.follower_link) - 0.01 * arm::Vector3::UnitZ(),
+                .normal = arm::Vector3::UnitZ(),
+                .stiffness_N_per_m = 20'000.0,
+                .damping_N_s_per_m = 20.0};
+  const auto displayed = [&] {
+    const auto chain = *arm::Chain::make(bench.setup.arm.chain);
+    return (Bench::torques(*bench.leader_link) - chain.gravity_torque(Bench::positions(*bench.leader_link))).eval();
+  };
+  const arm::JointVector before = displayed();
+  move(aside_m, aside_m - 0.025 * arm::Vector3::UnitZ());
+  EXPECT_EQ(bench.last.follower, SiteState::active);
+  const double contact_N = bench.contact.force_N.z();
+  EXPECT_GT(contact_N, 1.0);
+  EXPECT_LT(contact_N, 20.0);
+  const auto chain = *arm::Chain::make(bench.setup.arm.chain);
+  const arm::JointVector of_contact =
+      chain.jacobian(Bench::positions(*bench.follower_link), 6, bench.setup.arm.tool_m).topRows<3>().transpose() *
+      bench.contact.force_N;
+  const double share = (displayed() - before).dot(of_contact) / of_contact.squaredNorm();
+  // At a gain of 0.5, less what friction hides from the observer.
+  RecordProperty("contact_N", std::to_string(contact_N));
+  RecordProperty("displayed_share", std::to_string(share));
+  EXPECT_GT(share, 0.1);
+  EXPECT_LT(share, 0.8);
+}
+
+TEST(RigArms, LettingGoOfTheDeadManSwitchDropsNeither) {
+  Bench bench;
+  ASSERT_TRUE(bench.couple());
+  bench.run(2.0);
+  const auto leader_m = Bench::tool_m(*bench.leader_link), follower_m = Bench::tool_m(*bench.follower_link);
+  ASSERT_TRUE(bench.exchange.words.try_push(runtime::SiteWord::release));
+  bench.run(2.0);
+  EXPECT_EQ(bench.last.leader, SiteState::armed);
+  EXPECT_EQ(bench.last.follower, SiteState::armed);
+  EXPECT_LT(mm_between(Bench::tool_m(*bench.leader_link), leader_m), 15.0);
+  EXPECT_LT(mm_between(Bench::tool_m(*bench.follower_link), follower_m), 10.0);
+}
+
+TEST(RigArms, AFollowerThatIsNotHeardAnyMoreLosesItsPowerAndTheLeaderFloats) {
+  Bench bench;
+  ASSERT_TRUE(bench.couple());
+  bench.run(2.0);
+  const auto leader_m = Bench::tool_m(*bench.leader_link), follower_m = Bench::tool_m(*bench.follower_link);
+  bench.follower_link->cut = true;
+  bench.run(2.0);
+  EXPECT_EQ(bench.last.leader, SiteState::hold);
+  EXPECT_EQ(bench.last.follower, SiteState::hold);
+  EXPECT_EQ(bench.last.cause, control::SiteCause::device);
+  for (std::size_t i = 0; i < joints; ++i) {
+    EXPECT_FALSE(bench.follower_link->peer->motor(i).enabled()) << "its own watchdog";
+  }
+  EXPECT_GT(mm_between(Bench::tool_m(*bench.follower_link), follower_m), 50.0) << "it falls, as an arm without a brake";
+  EXPECT_LT(mm_between(Bench::tool_m(*bench.leader_link), leader_m), 15.0);
+  EXPECT_TRUE(bench.leader_link->peer->motor(1).enabled());
+}
+
+TEST(RigArms, ATickDoesNotAllocate) {
+  Bench bench;
+  ASSERT_TRUE(bench.couple());
+  const std::int64_t now_ns = bench.leader_link->now_ns;
+  const std::uint64_t before = laws::own_allocation_count();
+  for (int i = 0; i < 5; ++i) {
+    (*bench.loop)({.number = bench.number++, .deadline_ns = now_ns + i * tick_ns, .began_ns = now_ns + i * tick_ns});
+  }
+  EXPECT_EQ(laws::own_allocation_count(), before);
+}
+
+/// What is said of a rig and of what drives it.
+std::string problem_of(const std::string& rig_text, const ArmPairSetup& setup) {
+  const auto rig = Rig::parse(rig_text, "rig.toml");
+  if (!rig) return describe(rig.error());
+  const auto arms = as_arms(rig->pairs()[0], setup);
+  return arms ? std::string() : describe(rig->locate(arms.error()));
+}
+
+std::string rig_text(const std::string& follower_more, int count, const std::string& extra = {}) {
+  std::string text;
+  for (const std::string side : {"arm.leader", "arm.follower"}) {
+    text += rig_test::damiao_side(side, "/dev/" + side);
+    // From the last to the first: names tell which is which.
+    for (int i = count; i >= 1; --i) {
+      text +=
+          rig_test::joint(side + ".joint_" + std::to_string(i), i, "DM4310",
+                          "damping_limit_Nms_per_rad = 5.0\n" + (side == "arm.leader" ? std::string() : follower_more));
+    }
+    if (!extra.empty()) text += rig_test::joint(side + "." + extra, 8, "DM4310");
+  }
+  return text;
+}
+
+TEST(RigArms, JointsAreThoseOfTheArmByName) {
+  const ArmPairSetup setup = setup_of();
+  const std::string stiff = "stiffness_limit_Nm_per_rad = 240.0\n";
+  EXPECT_EQ(problem_of(rig_text(stiff, 7), setup), "");
+  const RigPair pair = *as_arms(Rig::parse(rig_text(stiff, 7), "rig.toml")->pairs()[0], setup);
+  EXPECT_EQ(pair.follower->joints[0].path, "arm.follower.joint_1");
+  EXPECT_EQ(pair.follower->bus.motors[6].id, 7);
+  EXPECT_NE(
+      problem_of(rig_text(stiff, 6), setup)
+          .find("rig.toml:1:1: arm.leader: the arm of ../../experiments/arms/openarm-class.urdf has a joint joint_7, "
+                "and the rig has none: write [arm.leader.joint_7]"),
+      std::string::npos)
+      << problem_of(rig_text(stiff, 6), setup);
+  EXPECT_NE(
+      problem_of(rig_text(stiff, 7, "gripper"), setup)
+          .find("arm.leader.gripper: the arm of ../../experiments/arms/openarm-class.urdf has no joint of this name "
+                "but joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7: call it as the arm does; a "
+                "gripper is not driven beside an arm, so leave it out"),
+      std::string::npos)
+      << problem_of(rig_text(stiff, 7, "gripper"), setup);
+}
+
+TEST(RigArms, ALawBeyondWhatTheRigAllowsIsRefusedBeforeAnythingMoves) {
+  const ArmPairSetup setup = setup_of();
+  EXPECT_NE(problem_of(rig_text("stiffness_limit_Nm_per_rad = 100.0\n", 7), setup)
+                .find("arm.follower.joint_1.stiffness_limit_Nm_per_rad: 100 N m/rad is less than the 144 N m/rad that "
+                      "the experiment asks of its motor's own law: write at least that, or lower the gain there"),
+            std::string::npos);
+  EXPECT_NE(problem_of(rig_text("", 7), setup).find("0 N m/rad is less than the 144 N m/rad"), std::string::npos);
+  // Position-position gives the leader's drives a stiffness too.
+  EXPECT_NE(
+      problem_of(rig_text("stiffness_limit_Nm_per_rad = 500.0\n", 7), setup_of("control.method=position-position"))
+          .find("arm.leader.joint_1.stiffness_limit_Nm_per_rad: 0 N m/rad is less than the 120 N m/rad"),
+      std::string::npos);
+  const RigPair pair = *as_arms(pair_of(), setup);
+  Joints<station::DeviceLimits> limits(joints);
+  for (std::size_t i = 0; i < joints; ++i) limits[i] = pair.leader->joints[i].joint.limits();
+  const auto refusal = [&](const std::string& key) {
+    const auto sites = arm_sites(setup_of(key), limits, limits);
+    return sites ? std::string() : describe(sites.error());
+  };
+  EXPECT_EQ(refusal("rig.follower_gate.force_limit_N=15"), "");
+  EXPECT_EQ(refusal("rig.follower_gate.force_limit_N=10")
+                .find("rig.follower_gate.force_limit_N: 10 N is the default, which protects no real device"),
+            0U);
+  EXPECT_EQ(
+      refusal("rig.probe_torque.joint_3.torque_N_m=0").find("rig.supervision.probe.force_N: 0 N m tries no motor"), 0U);
+}
+
+}  // namespace rig_arms_test
+}  // namespace tactus::devices
