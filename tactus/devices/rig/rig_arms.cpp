@@ -48,17 +48,27 @@ Joints<DriveGains> asked_of_follower(const ArmPairSetup& setup) {
   return asked;
 }
 
+/// The same of a joint that the arm does not have.
+DriveGains asked_beside(const ArmPairSetup& setup, bool leads) {
+  const experiments::GripperParams& gripper = setup.params.rig.gripper;
+  const double share = leads ? gripper.leader_share : 1.0;
+  return {.stiffness_N_m_per_rad = share * gripper.stiffness_N_m_per_rad,
+          .damping_N_m_s_per_rad = share * gripper.damping_N_m_s_per_rad};
+}
+
 Check check_joint(const RigJoint& joint, const DriveGains& asked) {
   if (joint.slides || !joint.joint.gives_force) {
     return problem_at(join(joint.path, "model"), ErrorCode::inconsistent,
-              "a " + joint.motor.model + " gives no torque to a joint that turns, so it cannot carry an arm: drive it "
-              "by a file of the kind tapping");
+                      "a " + joint.motor.model +
+                          " gives no torque to a joint that turns, so it cannot carry an arm: drive it "
+                          "by a file of the kind tapping");
   }
   const auto below = [&](const char* key, double limit, double wanted, const char* unit) -> Check {
     if (wanted <= limit) return std::nullopt;
-    return problem_at(join(joint.path, key), ErrorCode::inconsistent,
-              format_number(limit) + unit + " is less than the " + format_number(wanted) + unit +
-                  " that the experiment asks of its motor's own law: write at least that, or lower the gain there");
+    return problem_at(
+        join(joint.path, key), ErrorCode::inconsistent,
+        format_number(limit) + unit + " is less than the " + format_number(wanted) + unit +
+            " that the experiment asks of its motor's own law: write at least that, or lower the gain there");
   };
   const MotorJoint& may = joint.joint;
   if (Check error = below("stiffness_limit_Nm_per_rad", may.stiffness_limit_Nm_per_rad, asked.stiffness_N_m_per_rad,
@@ -68,27 +78,39 @@ Check check_joint(const RigJoint& joint, const DriveGains& asked) {
   return below("damping_limit_Nms_per_rad", may.damping_limit_Nms_per_rad, asked.damping_N_m_s_per_rad, " N m s/rad");
 }
 
-/// The side with its joints in the arm's order.
-Result<RigSide> in_order(const RigSide& side, const ArmPairSetup& setup, const Joints<DriveGains>& asked) {
-  for (const RigJoint& joint : side.joints) {
-    if (std::ranges::find(setup.joints, joint.name()) != setup.joints.end()) continue;
-    return problem_at(joint.path, ErrorCode::inconsistent,
-              "the arm of " + setup.params.arm.urdf + " has no joint of this name but " + listed(setup.joints) +
-                  ": call it as the arm does; a gripper is not driven beside an arm, so leave it out");
-  }
+/// The side with its joints in the arm's order, then the others.
+Result<RigSide> in_order(const RigSide& side, const ArmPairSetup& setup, const Joints<DriveGains>& asked,
+                         const DriveGains& beside) {
   RigSide ordered = side;
   ordered.joints.clear();
   ordered.bus.motors.clear();
+  const auto add = [&ordered](const RigJoint& joint, const DriveGains& gains) -> Check {
+    if (Check error = check_joint(joint, gains)) return error;
+    ordered.joints.push_back(joint);
+    ordered.bus.motors.push_back(joint.motor);
+    return std::nullopt;
+  };
   for (std::size_t i = 0; i < setup.joints.size(); ++i) {
     const auto found = std::ranges::find(side.joints, setup.joints[i], &RigJoint::name);
     if (found == side.joints.end()) {
       return problem_at(side.path, ErrorCode::missing,
-                "the arm of " + setup.params.arm.urdf + " has a joint " + setup.joints[i] + ", and the rig has none: write [" +
-                    join(side.path, setup.joints[i]) + "]");
+                        "the arm of " + setup.params.arm.urdf + " has a joint " + setup.joints[i] +
+                            ", and the rig has none: write [" + join(side.path, setup.joints[i]) + "]");
     }
-    if (Check error = check_joint(*found, asked[i])) return *std::move(error);
-    ordered.joints.push_back(*found);
-    ordered.bus.motors.push_back(found->motor);
+    if (Check error = add(*found, asked[i])) return *std::move(error);
+  }
+  const experiments::GripperParams& gripper = setup.params.rig.gripper;
+  const bool driven = gripper.stiffness_N_m_per_rad > 0.0 || gripper.damping_N_m_s_per_rad > 0.0;
+  for (const RigJoint& joint : side.joints) {
+    if (std::ranges::find(setup.joints, joint.name()) != setup.joints.end()) continue;
+    if (!driven) {
+      return problem_at(joint.path, ErrorCode::inconsistent,
+                        "the arm of " + setup.params.arm.urdf + " has no joint of this name but " +
+                            listed(setup.joints) +
+                            ": call it as the arm does; or, where it is a gripper, write its gains under [rig.gripper] "
+                            "of the experiment");
+    }
+    if (Check error = add(joint, beside)) return *std::move(error);
   }
   return ordered;
 }
@@ -108,7 +130,7 @@ Joints<SafetyGate::Params> gates(const SafetyGate::Params& of_all, const Joints<
 /// The arm with no more torque than its gates let through.
 arm::Chain::Params within(const arm::Chain::Params& chain, const Joints<SafetyGate::Params>& gates) {
   arm::Chain::Params own = chain;
-  for (std::size_t i = 0; i < gates.size(); ++i) {
+  for (std::size_t i = 0; i < own.joints.size(); ++i) {
     double& most_N_m = own.joints[i].limits.effort_N_m;
     most_N_m = std::min(most_N_m, gates[i].force_limit_N);
   }
@@ -123,8 +145,8 @@ Result<Joints<control::SupervisionParams>> supervision(const experiments::ArmRig
     if (torque[i].torque_N_m > 0.0) force_N = torque[i].torque_N_m;
     if (force_N > 0.0) continue;
     return problem_at("rig.supervision.probe.force_N", ErrorCode::inconsistent,
-              "0 N m tries no motor, and joint " + std::to_string(i + 1) +
-                  " has no torque of its own below rig.probe_torque: write more than its friction");
+                      "0 N m tries no motor, and joint " + std::to_string(i + 1) +
+                          " has no torque of its own below rig.probe_torque: write more than its friction");
   }
   return each;
 }
@@ -132,9 +154,9 @@ Result<Joints<control::SupervisionParams>> supervision(const experiments::ArmRig
 }  // namespace
 
 Result<RigPair> as_arms(const RigPair& pair, const ArmPairSetup& setup) {
-  const auto leader = in_order(*pair.leader, setup, asked_of_leader(setup));
+  const auto leader = in_order(*pair.leader, setup, asked_of_leader(setup), asked_beside(setup, true));
   if (!leader) return leader.error();
-  const auto follower = in_order(*pair.follower, setup, asked_of_follower(setup));
+  const auto follower = in_order(*pair.follower, setup, asked_of_follower(setup), asked_beside(setup, false));
   if (!follower) return follower.error();
   return RigPair{.name = pair.name, .leader = *leader, .follower = *follower};
 }
@@ -143,7 +165,13 @@ Result<station::JointSupervisedPair> arm_sites(const ArmPairSetup& setup, const 
                                                const Joints<station::DeviceLimits>& follower) {
   const auto& sites = setup.params.control;
   const experiments::ArmRigParams& rig = setup.params.rig;
-  const std::size_t joints = setup.joints.size();
+  const std::size_t of_arm = setup.joints.size(), joints = leader.size();
+  if (joints < of_arm || joints > most_joints) {
+    return out_of_bounds("joints", static_cast<double>(joints), between(static_cast<double>(of_arm), most_joints),
+                         units::none);
+  }
+  const Joints<DriveGains> beside_leader(joints - of_arm, asked_beside(setup, true));
+  const Joints<DriveGains> beside_follower(joints - of_arm, asked_beside(setup, false));
   const Seconds tick{1.0 / setup.params.servo.rate_Hz};
   if (Check error = check_gate(rig.leader_gate, "rig.leader_gate", tick)) return *std::move(error);
   if (Check error = check_gate(rig.follower_gate, "rig.follower_gate", tick)) return *std::move(error);
@@ -153,15 +181,14 @@ Result<station::JointSupervisedPair> arm_sites(const ArmPairSetup& setup, const 
   auto leads = arm_control::leader_site(sites,
                                         {.carried = within(setup.arm.chain, leader_gates),
                                          .induced = setup.induced,
-                                         .gains = sites.follower.gains.of(joints)},
-                                        leader_gates, tick);
+                                         .gains = sites.follower.gains.of(of_arm)},
+                                        leader_gates, tick, beside_leader);
   if (!leads) return under("control", leads.error());
-  auto follows = arm_control::follower_site(
-      sites.follower,
-      {.chain = within(setup.arm.chain, follower_gates),
-       .tool_m = setup.arm.tool_m,
-       .joint_stiffness_N_m_per_rad = setup.induced.joint_stiffness_N_m_per_rad},
-      follower_gates, tick);
+  auto follows = arm_control::follower_site(sites.follower,
+                                            {.chain = within(setup.arm.chain, follower_gates),
+                                             .tool_m = setup.arm.tool_m,
+                                             .joint_stiffness_N_m_per_rad = setup.induced.joint_stiffness_N_m_per_rad},
+                                            follower_gates, tick, beside_follower);
   if (!follows) return under("control.follower", follows.error());
   constexpr std::int64_t master_session = 1, slave_session = 2;
   auto master = control::supervise_master(*std::move(leads), *supervised, master_session, tick);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <tests/allocation_counter.hpp>
@@ -32,12 +33,12 @@ constexpr std::int64_t ms = 1'000'000, tick_ns = 2 * ms;
 constexpr std::size_t joints = 7;
 const std::string rigs = TACTUS_RIG_FOLDER;
 
-ArmPairSetup setup_of(const std::string& more = {}) {
+using Faults = std::vector<emulation::damiao::Fault>;
+
+ArmPairSetup setup_of(const std::vector<std::string>& more = {}) {
   auto document = configuration::Document::load(rigs + "/arms.toml");
   EXPECT_TRUE(document) << describe(document.error());
-  if (!more.empty()) {
-    EXPECT_FALSE(document->set(more));
-  }
+  for (const std::string& one : more) EXPECT_FALSE(document->set(one));
   const auto params = document->read<experiments::ArmTappingParams>();
   EXPECT_TRUE(params) << describe(params.error());
   const auto setup = experiments::set_up_arm_pair(*params, rigs);
@@ -54,11 +55,11 @@ RigPair pair_of() {
 /// A bus and its emulated motors, driven in virtual time in place of a thread's.
 class VirtualLink final : public MotorLink {
  public:
-  VirtualLink(const RigSide& side, const EmulatedArm::Settings& settings) {
+  VirtualLink(const RigSide& side, const EmulatedArm::Settings& settings, double gripper_rad, const Faults& faults) {
     using emulation::damiao::MotorType;
     damiao::DamiaoBusParams params{.framing = damiao::Framing::socketcan_fd, .watchdog_s = 0.05, .motors = {}};
     emulation::damiao::PeerSettings motors{
-        .adapter = emulation::damiao::AdapterType::socketcan_fd, .motors = {}, .faults = {}};
+        .adapter = emulation::damiao::AdapterType::socketcan_fd, .motors = {}, .faults = faults};
     for (const StatedMotor& motor : side.bus.motors) {
       damiao::Model model{};
       MotorType type{};
@@ -71,6 +72,7 @@ class VirtualLink final : public MotorLink {
       params.motors.push_back({.id = motor.id, .feedback_id = motor.id + 0x10, .model = model});
       const auto id = static_cast<std::uint32_t>(motor.id);
       motors.motors.push_back({.id = id, .feedback_id = id + 0x10, .type = type});
+      if (id > joints) motors.motors.back().joint.position_rad = gripper_rad;
     }
     auto made = EmulatedArm::make(settings);
     EXPECT_TRUE(made) << describe(made.error());
@@ -120,13 +122,14 @@ class VirtualLink final : public MotorLink {
 
 /// The pair. Hands and stands hold both arms until their motors carry them; then nobody does, but where a test says so.
 struct Bench {
+  Faults faults;  ///< of the follower
   ArmPairSetup setup = setup_of();
   RigPair pair = *as_arms(pair_of(), setup);
   double apart_rad = 0.15;                ///< of joint 4, leader and follower
   std::optional<arm::Vector3> hand_at_m;  ///< where a hand holds the leader's tool, on a spring
   std::optional<arm_plants::Wall> wall;   ///< in the follower's way
   ToolForce hand, contact;
-  std::unique_ptr<VirtualLink> leader_link = link(*pair.leader, apart_rad, [this](const ToolState& tool) {
+  std::unique_ptr<VirtualLink> leader_link = link(*pair.leader, apart_rad, 0.2, {}, [this](const ToolState& tool) {
     constexpr double stiffness_N_per_m = 400.0, damping_N_s_per_m = 30.0;
     hand = {};
     if (hand_at_m) {
@@ -134,7 +137,7 @@ struct Bench {
     }
     return hand;
   });
-  std::unique_ptr<VirtualLink> follower_link = link(*pair.follower, 0.0, [this](const ToolState& tool) {
+  std::unique_ptr<VirtualLink> follower_link = link(*pair.follower, 0.0, 0.0, faults, [this](const ToolState& tool) {
     contact = wall ? ToolForce{.force_N = wall->force_N(tool)} : ToolForce{};
     return contact;
   });
@@ -145,7 +148,7 @@ struct Bench {
   RigSecond last;
   std::int64_t number = 0;
 
-  Bench() {
+  explicit Bench(Faults of_follower = {}) : faults(std::move(of_follower)) {
     // Motors are asked before a tick is.
     advance(400 * ms);
     auto sites = arm_sites(setup, leader->limits(), follower->limits());
@@ -155,13 +158,15 @@ struct Bench {
     EXPECT_TRUE(made) << describe(made.error());
     loop.emplace(*std::move(made));
   }
-  std::unique_ptr<VirtualLink> link(const RigSide& side, double off_rad,
+  std::unique_ptr<VirtualLink> link(const RigSide& side, double off_rad, double gripper_rad, const Faults& of_it,
                                     std::function<ToolForce(const ToolState&)> touched) const {
     arm::JointVector at = setup.start;
     at[3] += off_rad;
     return std::make_unique<VirtualLink>(
-        side, EmulatedArm::Settings{
-                  .chain = setup.arm.chain, .held_at = at, .tool_m = setup.arm.tool_m, .touched = std::move(touched)});
+        side,
+        EmulatedArm::Settings{
+            .chain = setup.arm.chain, .held_at = at, .tool_m = setup.arm.tool_m, .touched = std::move(touched)},
+        gripper_rad, of_it);
   }
   static std::unique_ptr<MotorBusDevice> device(VirtualLink& link, const RigSide& side) {
     return *MotorBusDevice::make(link, {.joints = side.motor_joints(), .silence_s = 0.05});
@@ -296,6 +301,62 @@ TEST(RigArms, AFollowerThatIsNotHeardAnyMoreLosesItsPowerAndTheLeaderFloats) {
   EXPECT_TRUE(bench.leader_link->peer->motor(1).enabled());
 }
 
+TEST(RigArms, AGripperGoesToWhereItsTriggerIs) {
+  Bench bench;
+  ASSERT_TRUE(bench.couple());
+  bench.run(2.0);
+  // It was 0.2 rad away. What the trigger turned while its motor was tried is the offset that stays, as of every joint.
+  const double trigger_rad = bench.leader_link->peer->motor(7).position_rad();
+  const double gripper_rad = bench.follower_link->peer->motor(7).position_rad();
+  EXPECT_NEAR(gripper_rad, trigger_rad, 0.06);
+  EXPECT_GT(std::fabs(gripper_rad), 0.1) << "it moved";
+}
+
+/// Every fault of the emulated motors that begins while they are driven ends as docs/theory/safety.md says. The arm of
+/// a follower that lets go falls, and so its hold becomes a fault.
+TEST(RigArms, AFaultOfAMotorLetsItsArmGoAndTheOtherFloats) {
+  using emulation::damiao::FaultKind;
+  struct Case {
+    FaultKind kind;
+    std::uint32_t motor;
+    bool goes_on;
+  };
+  for (const Case& c :
+       {Case{FaultKind::silence, 2, false}, Case{FaultKind::silence, 0, false}, Case{FaultKind::bus_off, 0, false},
+        Case{FaultKind::communication_lost, 2, false}, Case{FaultKind::over_voltage, 4, false},
+        Case{FaultKind::hot_winding, 1, false}, Case{FaultKind::overload, 7, false},
+        Case{FaultKind::register_answer, 0, true}, Case{FaultKind::garbage, 0, true}}) {
+    Bench bench({{.kind = c.kind, .motor = c.motor, .from_ns = 7000 * ms}});
+    ASSERT_TRUE(bench.couple());
+    const auto leader_m = Bench::tool_m(*bench.leader_link);
+    bench.run(7.5 - 1e-9 * static_cast<double>(bench.leader_link->now_ns));
+    bench.run(1.0);
+    const std::string what = std::string(name_of(c.kind)) + ":" + std::to_string(c.motor);
+    if (c.goes_on) {
+      EXPECT_EQ(bench.last.follower, SiteState::active) << what;
+      EXPECT_EQ(bench.loop->totals().holds, 0) << what;
+      continue;
+    }
+    EXPECT_EQ(bench.last.leader, SiteState::hold) << what;
+    EXPECT_TRUE(bench.last.follower == SiteState::hold || bench.last.follower == SiteState::fault) << what;
+    for (std::size_t i = 0; i <= joints; ++i) EXPECT_FALSE(bench.follower_link->peer->motor(i).enabled()) << what << i;
+    EXPECT_LT(mm_between(Bench::tool_m(*bench.leader_link), leader_m), 15.0) << what;
+  }
+}
+
+/// The motors' own laws would go on by themselves.
+TEST(RigArms, WhenTicksStopTheMotorsLoseTheirPower) {
+  Bench bench;
+  ASSERT_TRUE(bench.couple());
+  bench.advance(15 * ms);
+  EXPECT_TRUE(bench.follower_link->peer->motor(1).enabled());
+  bench.advance(35 * ms);
+  for (std::size_t i = 0; i <= joints; ++i) {
+    EXPECT_FALSE(bench.leader_link->peer->motor(i).enabled()) << i;
+    EXPECT_FALSE(bench.follower_link->peer->motor(i).enabled()) << i;
+  }
+}
+
 TEST(RigArms, ATickDoesNotAllocate) {
   Bench bench;
   ASSERT_TRUE(bench.couple());
@@ -337,6 +398,8 @@ TEST(RigArms, JointsAreThoseOfTheArmByName) {
   const RigPair pair = *as_arms(Rig::parse(rig_text(stiff, 7), "rig.toml")->pairs()[0], setup);
   EXPECT_EQ(pair.follower->joints[0].path, "arm.follower.joint_1");
   EXPECT_EQ(pair.follower->bus.motors[6].id, 7);
+  // A joint beside the arm's comes last, whatever it is called.
+  EXPECT_EQ(as_arms(pair_of(), setup)->leader->joints[7].path, "arm.leader.gripper");
   EXPECT_NE(
       problem_of(rig_text(stiff, 6), setup)
           .find("rig.toml:1:1: arm.leader: the arm of ../../experiments/arms/openarm-class.urdf has a joint joint_7, "
@@ -344,12 +407,14 @@ TEST(RigArms, JointsAreThoseOfTheArmByName) {
       std::string::npos)
       << problem_of(rig_text(stiff, 6), setup);
   EXPECT_NE(
-      problem_of(rig_text(stiff, 7, "gripper"), setup)
+      problem_of(rig_text(stiff, 7, "gripper"),
+                 setup_of({"rig.gripper.stiffness_N_m_per_rad=0", "rig.gripper.damping_N_m_s_per_rad=0"}))
           .find("arm.leader.gripper: the arm of ../../experiments/arms/openarm-class.urdf has no joint of this name "
-                "but joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7: call it as the arm does; a "
-                "gripper is not driven beside an arm, so leave it out"),
+                "but joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7: call it as the arm does; or, where "
+                "it is a gripper, write its gains under [rig.gripper] of the experiment"),
       std::string::npos)
-      << problem_of(rig_text(stiff, 7, "gripper"), setup);
+      << problem_of(rig_text(stiff, 7, "gripper"),
+                    setup_of({"rig.gripper.stiffness_N_m_per_rad=0", "rig.gripper.damping_N_m_s_per_rad=0"}));
 }
 
 TEST(RigArms, ALawBeyondWhatTheRigAllowsIsRefusedBeforeAnythingMoves) {
@@ -361,14 +426,14 @@ TEST(RigArms, ALawBeyondWhatTheRigAllowsIsRefusedBeforeAnythingMoves) {
   EXPECT_NE(problem_of(rig_text("", 7), setup).find("0 N m/rad is less than the 144 N m/rad"), std::string::npos);
   // Position-position gives the leader's drives a stiffness too.
   EXPECT_NE(
-      problem_of(rig_text("stiffness_limit_Nm_per_rad = 500.0\n", 7), setup_of("control.method=position-position"))
+      problem_of(rig_text("stiffness_limit_Nm_per_rad = 500.0\n", 7), setup_of({"control.method=position-position"}))
           .find("arm.leader.joint_1.stiffness_limit_Nm_per_rad: 0 N m/rad is less than the 120 N m/rad"),
       std::string::npos);
   const RigPair pair = *as_arms(pair_of(), setup);
   Joints<station::DeviceLimits> limits(joints);
   for (std::size_t i = 0; i < joints; ++i) limits[i] = pair.leader->joints[i].joint.limits();
   const auto refusal = [&](const std::string& key) {
-    const auto sites = arm_sites(setup_of(key), limits, limits);
+    const auto sites = arm_sites(setup_of({key}), limits, limits);
     return sites ? std::string() : describe(sites.error());
   };
   EXPECT_EQ(refusal("rig.follower_gate.force_limit_N=15"), "");
