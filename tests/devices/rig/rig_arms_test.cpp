@@ -115,7 +115,7 @@ class VirtualLink final : public MotorLink {
   std::int64_t now_ns = 0;
 
  private:
-  CommandWatch watch{20 * ms};
+  CommandWatch watch{50 * ms};  // as that of a bus's thread
   BusCommands wanted;
   BusReadings told{.motors = {}, .cycles = -1};
 };
@@ -348,9 +348,9 @@ TEST(RigArms, AFaultOfAMotorLetsItsArmGoAndTheOtherFloats) {
 TEST(RigArms, WhenTicksStopTheMotorsLoseTheirPower) {
   Bench bench;
   ASSERT_TRUE(bench.couple());
-  bench.advance(15 * ms);
+  bench.advance(40 * ms);
   EXPECT_TRUE(bench.follower_link->peer->motor(1).enabled());
-  bench.advance(35 * ms);
+  bench.advance(20 * ms);
   for (std::size_t i = 0; i <= joints; ++i) {
     EXPECT_FALSE(bench.leader_link->peer->motor(i).enabled()) << i;
     EXPECT_FALSE(bench.follower_link->peer->motor(i).enabled()) << i;
