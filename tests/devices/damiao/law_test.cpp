@@ -27,7 +27,7 @@ constexpr std::int64_t ms = 1'000'000;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// Steps of a DM4310's frame: position, velocity, torque, gains.
 constexpr double step_rad = 25.0 / 65535.0, step_rad_per_s = 60.0 / 4095.0, step_Nm = 20.0 / 4095.0,
-                 step_Nm_per_rad = 500.0 / 4095.0, step_Nms_per_rad = 5.0 / 4095.0;
+                 step_Nm_per_rad = 500.0 / 4095.0;
 /// What does not move, so that it shows the torque alone.
 constexpr JointParams fixed{.inertia_kgm2 = 1e6, .damping_Nms_per_rad = 0.0, .friction_Nm = 0.0};
 constexpr JointParams free_joint{.inertia_kgm2 = 0.02, .damping_Nms_per_rad = 0.0, .friction_Nm = 0.0};
@@ -62,7 +62,8 @@ TEST(MotorLaw, HoldsTheMotorWhereItIsToldAgainstATorque) {
   const MotorLaw law{.position_rad = 0.3, .stiffness_Nm_per_rad = 20.0, .damping_Nms_per_rad = 0.5};
   one.command({.torque_Nm = 1.0, .enabled = 1, .law = law}, 1000 * ms);
   // A gain is cut to the next code below, and so is the rest.
-  EXPECT_NEAR(one.motor().position_rad(), 0.3 + 1.0 / 20.0, 1.0 / 20.0 * step_Nm_per_rad / 20.0 + 2.0 * step_rad + 0.001);
+  EXPECT_NEAR(one.motor().position_rad(), 0.3 + 1.0 / 20.0,
+              1.0 / 20.0 * step_Nm_per_rad / 20.0 + 2.0 * step_rad + 0.001);
   EXPECT_LT(std::fabs(one.motor().velocity_rad_per_s()), 1e-3);
 }
 
@@ -116,7 +117,8 @@ TEST(MotorLaw, WhatIsBeyondAFrameIsCutInOneShareAndNothingGrows) {
                  .law = {.position_rad = c.aim_rad, .stiffness_Nm_per_rad = c.stiffness_Nm_per_rad}},
                 50 * ms);
     const double wanted_Nm = c.torque_Nm + c.stiffness_Nm_per_rad * c.aim_rad;
-    const double lost_Nm = step_Nm + c.share * c.stiffness_Nm_per_rad * step_rad + step_Nm_per_rad * std::fabs(c.aim_rad);
+    const double lost_Nm =
+        step_Nm + c.share * c.stiffness_Nm_per_rad * step_rad + step_Nm_per_rad * std::fabs(c.aim_rad);
     EXPECT_NEAR(one.motor().torque_Nm(), c.share * wanted_Nm, lost_Nm) << c.torque_Nm;
     EXPECT_LE(std::fabs(one.motor().torque_Nm()), std::fabs(wanted_Nm) + lost_Nm);
   }
@@ -124,11 +126,10 @@ TEST(MotorLaw, WhatIsBeyondAFrameIsCutInOneShareAndNothingGrows) {
 
 TEST(MotorLaw, ANumberThatIsNoneOrANegativeGainTakesThePower) {
   const MotorLaw good{.position_rad = 0.1, .stiffness_Nm_per_rad = 10.0, .damping_Nms_per_rad = 1.0};
-  for (const auto& [member, value] : {std::pair{&MotorLaw::position_rad, nan}, std::pair{&MotorLaw::velocity_rad_per_s, nan},
-                                      std::pair{&MotorLaw::stiffness_Nm_per_rad, nan},
-                                      std::pair{&MotorLaw::damping_Nms_per_rad, nan},
-                                      std::pair{&MotorLaw::stiffness_Nm_per_rad, -1.0},
-                                      std::pair{&MotorLaw::damping_Nms_per_rad, -0.1}}) {
+  for (const auto& [member, value] :
+       {std::pair{&MotorLaw::position_rad, nan}, std::pair{&MotorLaw::velocity_rad_per_s, nan},
+        std::pair{&MotorLaw::stiffness_Nm_per_rad, nan}, std::pair{&MotorLaw::damping_Nms_per_rad, nan},
+        std::pair{&MotorLaw::stiffness_Nm_per_rad, -1.0}, std::pair{&MotorLaw::damping_Nms_per_rad, -0.1}}) {
     OneMotor one(fixed);
     one.command({.torque_Nm = 0.0, .enabled = 1, .law = good}, 20 * ms);
     ASSERT_TRUE(one.motor().enabled());
@@ -242,7 +243,8 @@ struct DeviceOnALink {
   std::unique_ptr<MotorBusDevice> device;
   explicit DeviceOnALink(const MotorJoint& joint) {
     for (std::size_t i = 0; i < 2; ++i) {
-      link.told.motors[i] = {.position_rad = 0.2, .velocity_rad_per_s = 1.0, .torque_Nm = 0.5, .enabled = 1, .heard_ns = ms, .answers = 1};
+      link.told.motors[i] = {
+          .position_rad = 0.2, .velocity_rad_per_s = 1.0, .torque_Nm = 0.5, .enabled = 1, .heard_ns = ms, .answers = 1};
     }
     link.told.state = BusState::ready;
     link.told.time_ns = ms;
@@ -282,7 +284,8 @@ TEST(MotorLaw, AJointThatMayRunNoneGetsNoneAndTheWallLetsGoOfWhoInsists) {
   joint.torque_rate_limit_Nm_per_s = 1e4;
   DeviceOnALink one(joint);
   station::GuardedJointDevice guarded(*one.device);
-  const Joints<station::DeviceCommand> command(2, {.force_N = 0.5, .law = {.position_m = 0.4, .damping_N_s_per_m = 1.0}});
+  const Joints<station::DeviceCommand> command(2,
+                                               {.force_N = 0.5, .law = {.position_m = 0.4, .damping_N_s_per_m = 1.0}});
   for (std::int64_t number = 0; number < 60; ++number) {
     guarded.read(DeviceOnALink::tick(number));
     guarded.write(command);

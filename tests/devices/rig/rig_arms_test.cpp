@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -72,6 +74,20 @@ TEST(RigArms, TheFollowerFollowsAHandAndItsContactComesBack) {
   // At a gain of 0.5, less what friction hides from the observer.
   RecordProperty("contact_N", std::to_string(contact_N));
   RecordProperty("displayed_share", std::to_string(share));
+  // Between two readings a motor goes on by its law: its torque may leave the limit by the stiffness times the way.
+  constexpr double way_rad = 0.01;
+  double beyond_Nm = -1e9;
+  for (const auto& [link, side] : {std::pair{bench.leader_link.get(), &*bench.pair.leader},
+                                   std::pair{bench.follower_link.get(), &*bench.pair.follower}}) {
+    for (std::size_t i = 0; i < joints; ++i) {
+      const MotorJoint& joint = side->joints[i].joint;
+      const auto& motor = link->peer->motor(i);
+      const double most_Nm = std::max(motor.most_torque_Nm(), -motor.least_torque_Nm());
+      beyond_Nm = std::max(beyond_Nm, most_Nm - joint.torque_limit_Nm);
+      EXPECT_LE(most_Nm, joint.torque_limit_Nm + way_rad * joint.stiffness_limit_Nm_per_rad) << side->path << i;
+    }
+  }
+  RecordProperty("beyond_Nm", std::to_string(beyond_Nm));
   EXPECT_GT(share, 0.1);
   EXPECT_LT(share, 0.8);
 }

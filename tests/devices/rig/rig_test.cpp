@@ -145,9 +145,10 @@ TEST(Rig, AStiffnessThatItsMotorCannotRunIsRefused) {
             "gear of 2 can do, 20 N m s/rad: lower it, or state the model that is there");
   const std::string servos = "[arm.leader]\nbus = \"dynamixel\"\nport = \"/dev/a\"\n" +
                              joint("arm.leader.elbow", 1, "xm430-w210", "damping_limit_Nms_per_rad = 0.1\n");
-  EXPECT_EQ(problem_of(servos),
-            "rig.toml:12:29: arm.leader.elbow.damping_limit_Nms_per_rad: a xm430-w210 runs no law by itself: remove this "
-            "key");
+  EXPECT_EQ(
+      problem_of(servos),
+      "rig.toml:12:29: arm.leader.elbow.damping_limit_Nms_per_rad: a xm430-w210 runs no law by itself: remove this "
+      "key");
 }
 
 TEST(Rig, APortOfTwoSidesIsRefusedByWhateverNameItGoes) {
