@@ -1,5 +1,5 @@
-// bench_arms [EXPERIMENT.toml]: what a tick of both sites of two arms takes, and a step of a simulated arm; then the whole
-// tick of a rig's pair, supervised and behind its walls, joint by joint and as two arms.
+// bench_arms [EXPERIMENT.toml]: what a tick of both sites of two arms takes, and a step of a simulated arm; then the
+// whole tick of a rig's pair, supervised and behind its walls, joint by joint and as two arms.
 
 #include <tactus/configuration/document.hpp>
 #include <tactus/devices/rig/rig_arms.hpp>
@@ -116,8 +116,8 @@ void measure_pairs() {
   std::printf("A rig's pair of %zu joints\n", joints);
   Told leader(joints), follower(joints);
   const Joints<control::ControlParams> control(joints, runtime::control_of(*by_joint));
-  report_pair("a tick, joint by joint", station::JointLocalTeleoperator::make(
-                                             control, {}, tick, Joints<double>(joints, 0.0), leader, follower));
+  report_pair("a tick, joint by joint",
+              station::JointLocalTeleoperator::make(control, {}, tick, Joints<double>(joints, 0.0), leader, follower));
   auto sites = devices::arm_sites(*setup, leader.limits(), follower.limits());
   if (!sites) return static_cast<void>(std::fprintf(stderr, "%s\n", describe(sites.error()).c_str()));
   report_pair("a tick, as two arms", station::JointLocalTeleoperator::around(*std::move(sites), leader, follower));
