@@ -82,6 +82,7 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::
   const std::size_t joints = read->joints.size();
   const Joints<ArmJoint> described = params.arm.joints.of(joints);
   ArmPairSetup setup{.params = params,
+                     .joints = read->joints,
                      .arm = {.chain = read->params, .motors = Joints<arm_plants::MotorParams>(joints)},
                      .induced = {},
                      .start = JointVector::Zero(static_cast<Eigen::Index>(joints))};
