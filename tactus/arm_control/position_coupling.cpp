@@ -85,6 +85,28 @@ DelayLimit limit_at(const Loop& loop, const PositionCoupling& coupling, double w
 
 }  // namespace
 
+double growth_per_s(const CoupledArm& leader, const CoupledArm& follower, const PositionCoupling& coupling,
+                    const JointVector& scale) {
+  const Eigen::Index n = scale.size();
+  const Eigen::MatrixXd pull = Eigen::VectorXd(coupling.stiffness).asDiagonal();
+  const Eigen::MatrixXd drag = Eigen::VectorXd(coupling.damping).asDiagonal();
+  const Eigen::VectorXd asked = coupling.velocity_share * coupling.damping;
+  // Positions of both arms, then velocities.
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(4 * n, 4 * n);
+  system.topRightCorner(2 * n, 2 * n).setIdentity();
+  const auto put = [&](const CoupledArm& arm, Eigen::Index own, Eigen::Index other, const Eigen::VectorXd& heard) {
+    const Eigen::MatrixXd inverse = Eigen::MatrixXd(arm.inertia).inverse();
+    const auto row = 2 * n + own;
+    system.block(row, own, n, n) = -inverse * (Eigen::MatrixXd(arm.stiffness) + pull);
+    system.block(row, other, n, n) = inverse * pull;
+    system.block(row, 2 * n + own, n, n) = -inverse * (Eigen::MatrixXd(arm.damping) + drag);
+    system.block(row, 2 * n + other, n, n) = inverse * Eigen::MatrixXd(asked.cwiseProduct(heard).asDiagonal());
+  };
+  put(leader, 0, n, Eigen::VectorXd(scale).cwiseInverse());
+  put(follower, n, 0, Eigen::VectorXd(scale));
+  return Eigen::EigenSolver<Eigen::MatrixXd>(system, false).eigenvalues().real().maxCoeff();
+}
+
 std::optional<DelayLimit> delay_limit(const CoupledArm& leader, const CoupledArm& follower,
                                       const PositionCoupling& coupling, double longest_s) {
   constexpr double lowest_Hz = 0.2, highest_Hz = 300.0;

@@ -31,6 +31,16 @@ struct CoupledArm {
   JointMatrix stiffness;
 };
 
+/// How fast motion grows, in 1/s, where nothing is old but a host reads the leader's velocities `scale` times too large
+/// and tells its drives velocities by as much too small (`arm_plants::MotorParams::velocity_scale`): the follower is
+/// asked for σ·scale·q̇₁, the leader for σ·q̇₂/scale. The largest real part of the loop's poles, so below 0, but for what
+/// nothing holds, where all dies out. `scale` is of one joint each, positive. Not real-time safe.
+///
+/// Two alike joints that move together are damped by Kd·(2 − σ (scale + 1/scale)) between them, which no stiffness
+/// changes: with σ = 1 every scale but 1 drives them, and more damping of the drives drives them more.
+double growth_per_s(const CoupledArm& leader, const CoupledArm& follower, const PositionCoupling& coupling,
+                    const JointVector& scale);
+
 /// Where a coupling begins to oscillate.
 struct DelayLimit {
   double delay_s = 0.0;  ///< one way, the mean of both ways

@@ -96,6 +96,36 @@ TEST(PositionCoupling, OfSeveralJointsOscillatesInTheOneOfTheLeastLimit) {
   EXPECT_FALSE(delay_limit(arm, arm, coupling, 0.5 * wrist->delay_s));
 }
 
+TEST(PositionCoupling, WithAWrongVelocityScaleGrowsByDampingAndNotByStiffness) {
+  const double inertia = 0.27;
+  const CoupledArm free{only(inertia), only(0.0), only(0.0)};
+  const auto growth = [&](double stiffness, double damping, double share, double scale) {
+    return growth_per_s(free, free, {one(stiffness), one(damping), share}, one(scale));
+  };
+  EXPECT_NEAR(growth(240.0, 3.0, 1.0, 1.0), 0.0, 1e-6) << "they glide together";
+  for (const double scale : {0.5, 2.0, 4.5}) {
+    // The positive root of J² s³ + 2 J Kd s² + 2 J Kp s + Kp Kd (2 − scale − 1/scale).
+    const double s = growth(240.0, 3.0, 1.0, scale), asked = scale + 1.0 / scale;
+    ASSERT_GT(s, 0.0);
+    const double terms = 2.0 * inertia * 240.0 * s;
+    EXPECT_NEAR(inertia * inertia * s * s * s + 2.0 * inertia * 3.0 * s * s + terms, 240.0 * 3.0 * (asked - 2.0),
+                1e-6 * terms);
+    EXPECT_GT(growth(240.0, 5.0, 1.0, scale), s) << "more damping drives them more";
+    EXPECT_NEAR(growth(60.0, 3.0, 1.0, scale), s, 0.5 * s) << "less stiffness hardly helps";
+    EXPECT_GT(growth(240.0, 3.0, 1.01 * 2.0 / asked, scale), 0.0);
+    EXPECT_NEAR(growth(240.0, 3.0, 0.99 * 2.0 / asked, scale), 0.0, 1e-9) << "only where they stand together";
+  }
+}
+
+TEST(PositionCoupling, WithAWrongVelocityScaleIsCalmedByAHandThatDampsMoreThanItDrives) {
+  const double driven = 3.0 * (2.0 + 0.5 - 2.0);  // N m s/rad at scale 2
+  const CoupledArm free{only(0.27), only(0.0), only(0.0)};
+  const auto held = [&](double damping) { return CoupledArm{only(0.27), only(damping), only(20.0)}; };
+  const PositionCoupling coupling{one(240.0), one(3.0), 1.0};
+  EXPECT_LT(growth_per_s(held(1.3 * driven), free, coupling, one(2.0)), 0.0);
+  EXPECT_GT(growth_per_s(held(0.7 * driven), free, coupling, one(2.0)), 0.0);
+}
+
 TEST(PositionCoupling, HeldByAHandBearsMoreDelayThanAlone) {
   const CoupledArm alone{only(0.27), only(0.0), only(0.0)}, held{only(0.35), only(6.0), only(80.0)};
   const PositionCoupling coupling{one(240.0), one(3.0), 1.0};

@@ -260,6 +260,8 @@ Result<CoupledArmsTheory> theory_of(const CoupledArmsSetup& setup) {
   const arm_control::PositionCoupling coupling{
       .stiffness = law->stiffness(), .damping = law->damping(), .velocity_share = setup.params.control.velocity_share};
   const auto at = static_cast<Eigen::Index>(setup.joint);
+  arm::JointVector scale = arm::JointVector::Ones(joints);
+  scale[at] = setup.params.cause.velocity_scale;
   return CoupledArmsTheory{.arms = arm_control::delay_limit(leader, free, coupling),
                            .motor = arm_control::delay_limit_of_joint(
                                coupling.stiffness[at], coupling.damping[at],

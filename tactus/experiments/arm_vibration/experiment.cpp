@@ -70,7 +70,8 @@ report::Table vibration_table(const std::vector<ArmVibrationRun>& runs) {
                                        {"rms at rest", "rad/s"},
                                        {"age", "ms"},
                                        {"limit", "ms"},
-                                       {"in play", "ms"}},
+                                       {"in play", "ms"},
+                                       {"growth", "1/s"}},
                                       std::string(arm_vibration_title));
   for (const ArmVibrationRun& run : runs) {
     const CoupledArmsResult& found = run.found;
@@ -82,7 +83,7 @@ report::Table vibration_table(const std::vector<ArmVibrationRun>& runs) {
          shakes ? report::number(shown.worst.frequency_Hz, 3) : "", report::number(found.moving.worst.rms_rad_per_s, 2),
          report::number(1e3 * found.moving.worst.amplitude_rad, 2),
          report::number(found.resting.worst.rms_rad_per_s, 2), report::number(1e3 * found.delay_s, 3),
-         milliseconds(run.theory.arms), milliseconds(run.theory.motor)});
+         milliseconds(run.theory.arms), milliseconds(run.theory.motor), report::number(run.theory.growth_per_s, 2)});
   }
   return table;
 }
@@ -117,7 +118,8 @@ std::string vibration_json(const Request& request, const std::vector<ArmVibratio
                     {"delay_limit_frequency_Hz", or_none(limit, &DelayLimit::frequency_Hz)},
                     {"delay_limit_joint", limit ? limit->joint + 1.0 : std::numeric_limits<double>::infinity()},
                     {"delay_limit_in_play_s", or_none(run.theory.motor, &DelayLimit::delay_s)},
-                    {"delay_limit_in_play_frequency_Hz", or_none(run.theory.motor, &DelayLimit::frequency_Hz)}});
+                    {"delay_limit_in_play_frequency_Hz", or_none(run.theory.motor, &DelayLimit::frequency_Hz)},
+                    {"growth_per_s", run.theory.growth_per_s}});
     return metrics_json(metrics);
   });
 }
@@ -175,7 +177,7 @@ report::Page vibration_page(const Request& request, const std::string& verdict, 
   page.table(table);
   page.definitions(
       {{"vibrates",
-        "Some joint of some arm shakes by more than 0.05 rad/s, root mean square, about a moving mean of a quarter of "
+        "Some joint of some arm shakes by more than 0.2 rad/s, root mean square, about a moving mean of a quarter of "
         "a "
         "second: in motion, at rest or always."},
        {"joint, frequency, rms, amplitude",
@@ -183,7 +185,8 @@ report::Page vibration_page(const Request& request, const std::string& verdict, 
        {"rms at rest", "The same in the last second."},
        {"age", "How old what a drive goes by is, from reading the other's joint on; the mean of both ways."},
        {"limit", "The age with which the linear loop oscillates, all joints, at the pose of the beginning."},
-       {"in play", "The same for the joint's motors alone, as they move within the play of their gears."}});
+       {"in play", "The same for the joint's motors alone, as they move within the play of their gears."},
+       {"growth", "How fast motion of the linear loop grows without any age, by a wrong scale of velocity."}});
   for (const report::Figure& figure : figures) page.figure(figure);
   return page;
 }
