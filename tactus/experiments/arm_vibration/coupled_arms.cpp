@@ -265,7 +265,8 @@ Result<CoupledArmsTheory> theory_of(const CoupledArmsSetup& setup) {
   return CoupledArmsTheory{.arms = arm_control::delay_limit(leader, free, coupling),
                            .motor = arm_control::delay_limit_of_joint(
                                coupling.stiffness[at], coupling.damping[at],
-                               setup.believed.joints[setup.joint].drive.reflected_kg_m2(), coupling.velocity_share)};
+                               setup.believed.joints[setup.joint].drive.reflected_kg_m2(), coupling.velocity_share),
+                           .growth_per_s = arm_control::growth_per_s(leader, free, coupling, scale)};
 }
 
 }  // namespace tactus::experiments
