@@ -215,6 +215,8 @@ Result<CoupledArmsResult> run_coupled_arms(const CoupledArmsSetup& setup) {
       const arm::ArmReading l = leader->arm.plant().read(), f = follower->arm.plant().read();
       result.records.push_back({.leader_rad = l.position[at],
                                 .follower_rad = f.position[at],
+                                .leader_rad_per_s = l.velocity[at],
+                                .follower_rad_per_s = f.velocity[at],
                                 .leader_N_m = l.torque[at] - chain->gravity_torque(l.position)[at],
                                 .follower_N_m = f.torque[at] - chain->gravity_torque(f.position)[at]});
       const double off_rad =

@@ -30,6 +30,8 @@ Result<CoupledArmsSetup> set_up_coupled_arms(const ArmVibrationParams& params, c
 struct CoupledArmsRecord {
   double leader_rad = 0.0;
   double follower_rad = 0.0;
+  double leader_rad_per_s = 0.0;  ///< as the host reads it
+  double follower_rad_per_s = 0.0;
   double leader_N_m = 0.0;  ///< of the motors, less what carries the arm
   double follower_N_m = 0.0;
 };

@@ -35,6 +35,12 @@ std::string milliseconds(const std::optional<arm_control::DelayLimit>& limit) {
   return limit ? report::number(1e3 * limit->delay_s, 3) : "any";
 }
 
+/// What nothing holds has a pole at 0, which comes out as anything near it.
+std::string growth_text(double growth_per_s) {
+  constexpr double none_per_s = 1e-3;
+  return growth_per_s > none_per_s ? report::number(growth_per_s, 2) : "none";
+}
+
 std::string words_of(const ShakingArms& arms) {
   return "joint " + std::to_string(arms.worst_joint + 1) + " at " + report::number(arms.worst.frequency_Hz, 3) +
          " Hz, " + report::number(arms.worst.rms_rad_per_s, 2) + " rad/s rms, " +
@@ -83,7 +89,7 @@ report::Table vibration_table(const std::vector<ArmVibrationRun>& runs) {
          shakes ? report::number(shown.worst.frequency_Hz, 3) : "", report::number(found.moving.worst.rms_rad_per_s, 2),
          report::number(1e3 * found.moving.worst.amplitude_rad, 2),
          report::number(found.resting.worst.rms_rad_per_s, 2), report::number(1e3 * found.delay_s, 3),
-         milliseconds(run.theory.arms), milliseconds(run.theory.motor), report::number(run.theory.growth_per_s, 2)});
+         milliseconds(run.theory.arms), milliseconds(run.theory.motor), growth_text(run.theory.growth_per_s)});
   }
   return table;
 }
@@ -154,13 +160,15 @@ std::string recording_of(const ArmVibrationRun& run) {
   std::string text =
       "# Made by tactus' simulator (arm-vibration), not measured: one joint of two arms that are coupled by position.\n"
       "# Torques are the motors' less what carries the arm; nothing touches the follower.\n"
-      "time_s,leader_position_rad,follower_position_rad,displayed_torque_N_m,tip_torque_N_m,slave_torque_N_m\n";
+      "time_s,leader_position_rad,follower_position_rad,displayed_torque_N_m,tip_torque_N_m,slave_torque_N_m,"
+      "leader_velocity_rad_per_s,follower_velocity_rad_per_s\n";
   for (std::size_t k = 0; k < run.found.records.size(); ++k) {
     const CoupledArmsRecord& record = run.found.records[k];
-    std::array<char, 120> line{};
+    std::array<char, 160> line{};
     const int length =
-        std::snprintf(line.data(), line.size(), "%.3f,%.7f,%.7f,%.5f,0,%.5f\n", 1e-3 * static_cast<double>(k),
-                      record.leader_rad, record.follower_rad, -record.leader_N_m, record.follower_N_m);
+        std::snprintf(line.data(), line.size(), "%.3f,%.7f,%.7f,%.5f,0,%.5f,%.5f,%.5f\n", 1e-3 * static_cast<double>(k),
+                      record.leader_rad, record.follower_rad, -record.leader_N_m, record.follower_N_m,
+                      record.leader_rad_per_s, record.follower_rad_per_s);
     text.append(line.data(), static_cast<std::size_t>(length));
   }
   return text;
