@@ -77,8 +77,7 @@ PolledArm::Params bus_of(const CoupledArmsSetup& setup, std::uint64_t stream) {
                         .lost_share = Joints<double>(setup.arm.motors.size(), 0.0),
                         .seed = signal::Random(static_cast<std::uint64_t>(p.task.seed)).fork(stream).bits()};
   bus.lost_share[setup.joint] = p.cause.lost_share;
-  bus.outage_ticks =
-      std::max({1.0, p.cause.outage_s * p.host.rate_Hz, p.cause.lost_share / (1.0 - p.cause.lost_share)});
+  bus.outage_ticks = std::max(1.0 / (1.0 - p.cause.lost_share), p.cause.outage_s * p.host.rate_Hz);
   return bus;
 }
 

@@ -73,7 +73,7 @@ struct VibrationCauses {
         field("lost_share", &C::lost_share, units::none, between(0.0, 0.98),
               "Share of the ticks in which the joint's drives are not heard, drawn for each arm."),
         field("outage_s", &C::outage_s, units::second, between(0.0, 1.0),
-              "How long on end it is not heard, the mean; a tick at least, and as long as the share asks for.")};
+              "How long on end it is not heard, the mean; 0 draws each tick by itself, and so does what is shorter.")};
   }
 };
 

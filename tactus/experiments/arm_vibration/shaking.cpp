@@ -10,16 +10,15 @@
 namespace tactus::experiments {
 namespace {
 
-/// What is left of values about their mean over a quarter of a second around each.
+/// What is left of values about their mean over a quarter of a second around each, where there is so much around it.
 std::vector<double> fast_part(std::span<const double> values, double rate_Hz) {
   constexpr double half_s = 0.125;
   const auto half = static_cast<std::size_t>(std::lround(half_s * rate_Hz));
   std::vector<double> sums{0.0};
   for (const double value : values) sums.push_back(sums.back() + value);
-  std::vector<double> left(values.begin(), values.end());
-  for (std::size_t i = 0; i < left.size(); ++i) {
-    const std::size_t beyond = std::min({half, i, left.size() - 1 - i});  // as far to both sides
-    left[i] -= (sums[i + beyond + 1] - sums[i - beyond]) / static_cast<double>(2 * beyond + 1);
+  std::vector<double> left;
+  for (std::size_t i = half; i + half < values.size(); ++i) {
+    left.push_back(values[i] - (sums[i + half + 1] - sums[i - half]) / static_cast<double>(2 * half + 1));
   }
   return left;
 }
