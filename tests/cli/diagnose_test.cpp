@@ -129,7 +129,7 @@ TEST_F(Diagnose, tells_a_wrong_range_of_velocity_and_an_old_reading_of_two_arms_
   EXPECT_EQ(scaled["verdict"].get<std::string>().rfind("The velocity leader_velocity is told 3.0 times", 0), 0U)
       << scaled["verdict"];
 
-  const Json old = told("old", {"host.answer_ticks=26", "task.joint=6"});
+  const Json old = told("old", {"host.answer_ticks=29", "task.joint=5"});
   ASSERT_EQ(old["oscillations"].size(), 1U) << old["verdict"];
   EXPECT_EQ(old["oscillations"][0]["mechanism"], "delay");
   EXPECT_EQ(old["verdict"].get<std::string>().find("VMAX"), std::string::npos);
