@@ -43,6 +43,7 @@ class Example final : public Application {
     return std::nullopt;
   }
   void leave(ClientId) override {}
+  void stand_alone() override {}
   void collect(const std::function<bool(std::size_t)>&, const Publish&) override {}
 
  private:

@@ -30,11 +30,12 @@ constexpr std::array asking{ServoStep{check, model_number, 0},  ServoStep{check,
 // The watchdog's 0 undoes its latch, behind which a goal is refused. Goal current is the limit when power comes on.
 constexpr std::array enabling{ServoStep{write, bus_watchdog, 0}, ServoStep{write, goal_current, 0},
                               ServoStep{write, bus_watchdog, 5}, ServoStep{write, torque_enable, 1}};
-constexpr std::array looks{hardware_error, torque_enable, bus_watchdog, voltage_and_heat};
+constexpr std::array looks{hardware_error, bus_watchdog, torque_enable, voltage_and_heat};
 
 constexpr ServoTable table{.hush = hush,
                            .enabling = enabling,
                            .looks = looks,
+                           .announced = 2,
                            .power = torque_enable,
                            .goal = goal_current,
                            .steps_per_turn = 4096,

@@ -39,6 +39,7 @@ constexpr std::int64_t steps_per_turn = 4096;
 constexpr ServoTable table{.hush = hush,
                            .enabling = enabling,
                            .looks = looks,
+                           .announced = 1,
                            .power = torque_enable,
                            .goal = goal_current,
                            .steps_per_turn = steps_per_turn,

@@ -15,8 +15,8 @@ constexpr std::int64_t patience_ns = 2'000'000;
 constexpr std::int64_t again_ns = 50'000'000;
 /// How often a servo is asked in a row before it counts as one that does not answer.
 constexpr std::size_t most_tries = 10;
-/// One look at one servo in so many cycles: less than a hundredth of the bus.
-constexpr std::int64_t cycles_per_look = 32;
+/// One look at one servo in so many cycles: a cycle with a look is a sixth longer, and few may be.
+constexpr std::int64_t cycles_per_look = 256;
 
 }  // namespace
 }  // namespace servo
@@ -83,7 +83,7 @@ void ServoBus::heard(const Answer& answer) noexcept {
     return;
   }
   Servo& servo = servos_[motor];
-  if (answer.alert && servo.ails == MotorFault::none) servo.looks |= 1;  // else it is known
+  if (answer.alert != (servo.ails != MotorFault::none)) servo.looks |= 1;  // else it is known
   if (waiting_ == Waiting::errand) {
     if (motor != errand_.motor) return;
     if (answer.refusal != 0) return errand_failed(Wrong::refused, answer.refusal);
@@ -262,8 +262,8 @@ void ServoBus::cycle_ended() noexcept {
   }
   read_ended(missing_ == 0);
   if (cycles_ % servo::cycles_per_look != 0) return;
-  const std::size_t looks = table_.looks.size();
-  servos_[look_turn_ / looks % count_].looks |= static_cast<std::uint8_t>(1U << (look_turn_ % looks));
+  const std::size_t looks = table_.looks.size() - table_.announced;
+  servos_[look_turn_ / looks % count_].looks |= static_cast<std::uint8_t>(1U << (table_.announced + look_turn_ % looks));
   ++look_turn_;
 }
 

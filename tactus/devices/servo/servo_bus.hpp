@@ -42,7 +42,9 @@ struct ServoStep {
 struct ServoTable {
   std::span<const ServoStep> hush;      ///< written to all at once before anything is asked; nobody answers
   std::span<const ServoStep> enabling;  ///< for each servo, when it is given power; only writes
-  std::span<const Register> looks;      ///< read now and then, of one servo at a time; the first tells its error
+  std::span<const Register>
+      looks;              ///< read of a servo after its alert, the first, which tells its error, or a silence, all
+  std::size_t announced;  ///< of these: the others are also read now and then, of one servo at a time
   Register power, goal;
   std::int64_t steps_per_turn;
   std::int64_t steps_until_wrap;  ///< of the position on the wire

@@ -150,7 +150,7 @@ TEST(FeetechBus, ItsCyclesTakeTheTimeOfTheirBytesAndHardlyMore) {
       const double limit = make == Make::hls3625 ? most(n, 8 + 3 * n, 15) : most(n, 0, 8);
       const double share = static_cast<double>(rig.bus.cycles() - before) / 2.0 / limit;
       EXPECT_GE(share, 0.95) << servos;
-      EXPECT_LE(share, 1.0) << servos;
+      EXPECT_LE(share, 1.0 + 0.5 / limit) << servos;  // one may have begun before
     }
   }
 }
