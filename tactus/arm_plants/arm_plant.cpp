@@ -16,6 +16,19 @@ namespace {
 
 using arm::Matrix3;
 
+/// How far a transmission is bent beyond its play.
+double bend_of(const MotorParams& motor, double apart_rad) noexcept {
+  return std::copysign(std::max(std::fabs(apart_rad) - 0.5 * motor.play_rad, 0.0), apart_rad);
+}
+
+/// Torque of the flanks on the link, against the motor: they push, and never pull.
+double flank_torque(const MotorParams& motor, double apart_rad, double apart_rad_per_s) noexcept {
+  const double bend = bend_of(motor, apart_rad);
+  if (bend == 0.0) return 0.0;
+  const double torque = -motor.joint_stiffness_N_m_per_rad * bend - motor.joint_damping_N_m_s_per_rad * apart_rad_per_s;
+  return torque * bend < 0.0 ? torque : 0.0;
+}
+
 /// What goes wrong is asked for (`healthy`); MuJoCo by itself would write a file into the current folder.
 void stay_silent(const char*) {}
 
@@ -48,6 +61,23 @@ Result<Model> load(const std::string& text) {
                .place = {}};
 }
 
+Check check(const MotorParams& motor) {
+  const auto refused = [](ErrorCode code, const char* key, const char* why) {
+    return Error{.code = code, .parameter = key, .message = why, .place = {}};
+  };
+  if (!(motor.play_rad >= 0.0 && std::isfinite(motor.play_rad))) {
+    return refused(ErrorCode::out_of_bounds, "play_rad", "must be 0 or more: write how far the link moves freely");
+  }
+  if (motor.play_rad > 0.0 && !(motor.joint_stiffness_N_m_per_rad > 0.0)) {
+    return refused(ErrorCode::inconsistent, "play_rad",
+                   "play ends at something stiff: state the joint's stiffness too, such as 10000 N m/rad");
+  }
+  if (!(motor.velocity_scale > 0.0 && std::isfinite(motor.velocity_scale))) {
+    return refused(ErrorCode::out_of_bounds, "velocity_scale", "must be positive: 1 where the host's table is right");
+  }
+  return {};
+}
+
 Check check(const ArmPlant::Params& params, const JointVector& position) {
   const std::size_t joints = params.chain.joints.size();
   if (params.motors.size() != joints || static_cast<std::size_t>(position.size()) != joints) {
@@ -57,6 +87,7 @@ Check check(const ArmPlant::Params& params, const JointVector& position) {
                  .place = {}};
   }
   for (std::size_t i = 0; i < joints; ++i) {
+    if (Check wrong = check(params.motors[i])) return under_joint<Joints<MotorParams>>(i, *std::move(wrong));
     const arm::JointFriction& friction = params.chain.joints[i].friction;
     if (friction.offset_N_m == 0.0 && friction.load == 0.0 && friction.stribeck_N_m == 0.0) continue;
     return under_joint<Joints<MotorParams>>(
@@ -165,7 +196,8 @@ Result<ArmPlant> ArmPlant::make(const Params& params, const JointVector& positio
     const double stiffness = params.motors[at].joint_stiffness_N_m_per_rad;
     engine->motor_dof[at] = dof;
     engine->elastic[at] = stiffness > 0.0;
-    const double bend = stiffness > 0.0 ? -weight[i] / stiffness : 0.0;
+    const double free = weight[i] == 0.0 ? 0.0 : std::copysign(0.5 * params.motors[at].play_rad, -weight[i]);
+    const double bend = stiffness > 0.0 ? free - weight[i] / stiffness : 0.0;
     engine->data->qpos[dof] = position[i] - bend;
     if (stiffness > 0.0) engine->data->qpos[++dof] = bend;
     ++dof;
@@ -183,7 +215,7 @@ ArmReading ArmPlant::read() const {
   for (int i = 0; i < e.joints(); ++i) {
     const MotorParams& motor = e.motors[static_cast<std::size_t>(i)];
     reading.position[i] = in_steps(reading.position[i], motor.position_step_rad);
-    reading.velocity[i] = in_steps(reading.velocity[i], motor.velocity_step_rad_per_s);
+    reading.velocity[i] = motor.velocity_scale * in_steps(reading.velocity[i], motor.velocity_step_rad_per_s);
     reading.torque[i] = in_steps(reading.torque[i], motor.torque_step_N_m);
   }
   return reading;
@@ -207,12 +239,17 @@ void ArmPlant::step(const ToolForce& on_tool) {
   applied.noalias() = jacobian.moving.transpose() * (on_tool.force_N + e.carry_N);
   applied.noalias() += jacobian.turning.transpose() * on_tool.moment_N_m;
   for (int i = 0; i < e.joints(); ++i) {
-    const double limit = e.motors[static_cast<std::size_t>(i)].torque_limit_N_m;
+    const MotorParams& motor = e.motors[static_cast<std::size_t>(i)];
+    const double limit = motor.torque_limit_N_m;
     const ArmCommand& c = e.command;
     const double wanted = c.torque[i] + c.stiffness[i] * (c.position[i] - e.data->qpos[e.dof(i)]) +
-                          c.damping[i] * (c.velocity[i] - e.data->qvel[e.dof(i)]);
+                          c.damping[i] * (c.velocity[i] / motor.velocity_scale - e.data->qvel[e.dof(i)]);
     e.torque[i] = std::clamp(wanted, -limit, limit);
     e.data->qfrc_applied[e.dof(i)] += e.torque[i];
+    if (motor.play_rad > 0.0) {
+      const std::size_t apart = e.dof(i) + 1;
+      e.data->qfrc_applied[apart] += flank_torque(motor, e.data->qpos[apart], e.data->qvel[apart]);
+    }
   }
   mj_step2(e.model.get(), e.data.get());
   mj_step1(e.model.get(), e.data.get());
@@ -237,7 +274,14 @@ double ArmPlant::energy_J() const {
   mj_energyVel(e.model.get(), e.data.get());
   e.model->opt.enableflags &= ~mjENBL_ENERGY;
   const double hand_J = -e.carry_N.dot(e.tool_position());  // what it seems to weigh in MuJoCo, it does not
-  return e.data->energy[0] + e.data->energy[1] + hand_J;
+  double flanks_J = 0.0;
+  for (int i = 0; i < e.joints(); ++i) {
+    const MotorParams& motor = e.motors[static_cast<std::size_t>(i)];
+    if (motor.play_rad == 0.0) continue;
+    const double bend = bend_of(motor, e.data->qpos[e.dof(i) + 1]);
+    flanks_J += 0.5 * motor.joint_stiffness_N_m_per_rad * bend * bend;
+  }
+  return e.data->energy[0] + e.data->energy[1] + hand_J + flanks_J;
 }
 
 bool ArmPlant::healthy() const {

@@ -24,6 +24,12 @@ struct MotorParams {
   /// Of the transmission between motor and link; 0 is rigid.
   double joint_stiffness_N_m_per_rad = 0.0;
   double joint_damping_N_m_s_per_rad = 0.0;
+  /// Play between the flanks of that transmission, from end to end: within it motor and link move freely, beyond it the
+  /// stiffness above, which then must not be 0, and the damping push and never pull.
+  double play_rad = 0.0;
+  /// The range of velocity in the host's table over the drive's own (VMAX of Damiao's drives): the host reads so many
+  /// times the velocity, and what it commands arrives divided by this. Positive.
+  double velocity_scale = 1.0;
 };
 
 /// Where the tool is and how it moves, along the axes of the base.
@@ -58,9 +64,9 @@ class ArmPlant {
     double step_s = 1e-4;
   };
 
-  /// At rest, with its links at `position`: springs of elastic joints are bent by what the links weigh. Errors: those
-  /// of `Chain::make`; `inconsistent` for other numbers of motors or positions than of joints and for friction that it
-  /// does not have; `failed` where MuJoCo refuses the arm.
+  /// At rest, with its links at `position`: springs of elastic joints are bent by what the links weigh, and play lies
+  /// on the flank that bears it. Errors: those of `Chain::make`; `inconsistent` for other numbers of motors or
+  /// positions than of joints and for friction that it does not have; `failed` where MuJoCo refuses the arm.
   static Result<ArmPlant> make(const Params& params, const JointVector& position);
 
   ArmPlant(const ArmPlant& other);

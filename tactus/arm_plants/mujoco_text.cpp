@@ -21,6 +21,10 @@ void write_joint(std::ostream& xml, const arm::JointParams& joint, const MotorPa
       << "' frictionloss='" << joint.friction.coulomb_N_m << "' " << sticks << "/>";
   if (motor.joint_stiffness_N_m_per_rad == 0.0) return;
   begin();
+  if (motor.play_rad > 0.0) {  // its flanks are forces of ours
+    xml << "/>";
+    return;
+  }
   xml << "stiffness='" << motor.joint_stiffness_N_m_per_rad << "' damping='" << motor.joint_damping_N_m_s_per_rad
       << "'/>";
 }

@@ -28,6 +28,8 @@ namespace tactus::cli {
 
 namespace {
 
+constexpr const char* recording_file = "recording.csv";
+
 struct RunOptions {
   ExperimentOptions experiment;
   std::vector<std::string> vary;
@@ -198,7 +200,9 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
   }();
   if (!outcome) return outcome.error();
 
-  if (auto error = write_outcome(*output, *outcome)) return error;
+  std::vector<NamedText> files;
+  if (!outcome->recording.empty()) files.push_back({recording_file, outcome->recording});
+  if (auto error = write_outcome(*output, *outcome, files)) return error;
   if (!output->wanted() || outcome->traces.empty()) return std::nullopt;
   if (auto error = write_run_log(output->log_folder(), *request, *outcome, options.log_limit)) return error;
   output->announce_log();
@@ -215,6 +219,7 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
       ->type_name("KEY=A,B,C")
       ->allow_extra_args(false);
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json, the figures and the log");
+  options->output.own_files = {recording_file};
   add_log_limit_option(*verb, options->log_limit);
   verb->add_flag("--realtime", options->real_time,
                  "Run it at the real clock, on a servo thread, with simulated devices, those of a plant or "

@@ -40,6 +40,19 @@ std::string when(const Signals& signals, const Oscillation& oscillation) {
   return "from " + report::number(oscillation.from_s, 3) + " s to " + report::number(oscillation.to_s, 3) + " s";
 }
 
+/// What stands before any oscillation: a range of velocity that is wrong drives two arms that are coupled by it.
+std::string wrong_velocities(const Signals& signals) {
+  std::string text;
+  for (const auto* told : {&signals.master_velocity, &signals.slave_velocity}) {
+    if (!*told || !(*told)->wrong()) continue;
+    text += "The velocity " + (*told)->name + " is told " + report::number((*told)->scale, 2) +
+            " times as large as its position moves: correct the range of velocity in the host's table or in the drive "
+            "(VMAX) before anything else; where it is asked of another drive, or of this one, it drives the motion "
+            "that it should damp. ";
+  }
+  return text;
+}
+
 std::string verdict_of(const Signals& signals, const std::vector<Finding>& findings) {
   const double highest_Hz = 0.45 / signals.sample_time.value;
   if (findings.empty()) {
@@ -137,7 +150,7 @@ Diagnosis diagnose(const Signals& signals) {
     finding.loop_gain = loop_gain_of(signals, finding.oscillation, finding.decision.mechanism);
     diagnosis.findings.push_back(std::move(finding));
   }
-  diagnosis.verdict = verdict_of(signals, diagnosis.findings);
+  diagnosis.verdict = wrong_velocities(signals) + verdict_of(signals, diagnosis.findings);
   diagnosis.record_next = record_next_of(signals, diagnosis.findings);
   return diagnosis;
 }

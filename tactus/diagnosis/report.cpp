@@ -84,6 +84,9 @@ std::string to_text(const Signals& signals, const Diagnosis& diagnosis) {
       read += (read.empty() ? "" : ", ") + std::string(words_of(role)) + " = " + channel->name;
     }
   }
+  for (const auto* told : {&signals.master_velocity, &signals.slave_velocity}) {
+    if (*told) read += ", " + (*told)->name + " (" + report::number((*told)->scale, 3) + " times its position's)";
+  }
   return text + "Read: " + read + "; every " + report::number(1e3 * signals.sample_time.value, 3) + " ms\n";
 }
 
@@ -122,6 +125,9 @@ std::string to_json(const Signals& signals, const Diagnosis& diagnosis, const st
     read[key] = channel == nullptr ? Json(nullptr) : Json(channel->name);
   }
   document["signals"] = read;
+  const auto scale = [](const std::optional<ToldVelocity>& told) { return told ? Json(told->scale) : Json(nullptr); };
+  document["told_velocity_scale"] = {{"master", scale(signals.master_velocity)},
+                                     {"slave", scale(signals.slave_velocity)}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

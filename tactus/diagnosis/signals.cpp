@@ -224,6 +224,17 @@ Result<Found> read_columns(SignalRoles roles) {
     if (auto error = take(found, roles, role, name, signal->unit, std::move(signal->values))) return *std::move(error);
   }
   if (identification::is_teleoperator_scope(*entries)) found.rotary = true;
+  for (const Role role : {Role::master_position, Role::slave_position}) {
+    const Channel* position = found.signals.find(role);
+    const std::string name = find_velocity(role == Role::master_position, *entries);
+    if (position == nullptr || name.empty() || !found.sample_time_s) continue;
+    const auto velocity = recording::read(source_of(roles, name));
+    if (!velocity) return velocity.error();
+    const auto scale = told_scale(position->values, velocity->values, Seconds{*found.sample_time_s});
+    if (!scale) continue;
+    auto& told = role == Role::master_position ? found.signals.master_velocity : found.signals.slave_velocity;
+    told = ToldVelocity{.name = name, .scale = *scale};
+  }
   return found;
 }
 

@@ -2,6 +2,7 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/core/units.hpp>
+#include <tactus/diagnosis/told_velocity.hpp>
 
 #include <array>
 #include <cstddef>
@@ -61,6 +62,8 @@ struct Signals {
   Seconds sample_time{0.0};
   std::size_t samples = 0;
   bool rotary = false;  ///< rad and N m instead of m and N
+  /// Of master and slave, where a table has a column of it that goes with the position.
+  std::optional<ToldVelocity> master_velocity = {}, slave_velocity = {};
 
   [[nodiscard]] const Channel* find(Role role) const {
     const auto& channel = channels[static_cast<std::size_t>(role)];

@@ -54,6 +54,8 @@ struct Outcome {
   std::vector<report::Figure> figures;  ///< those of the report
   std::vector<Trace> traces = {};       ///< in the order of the table; none where an experiment has no teleoperator
   std::string configuration = {};       ///< of the first combination, as TOML
+  /// Of the first combination, as a table that `tactus diagnose` reads; empty where a kind leaves traces or nothing.
+  std::string recording = {};
 };
 
 /// Called now and then with the share of the work that is done, from 0 to 1.

@@ -19,7 +19,8 @@
   KIND(hydraulic_rigid_contact_experiment) \
   KIND(sensorless_experiment)              \
   KIND(faults_experiment)                  \
-  KIND(arm_tapping_experiment)
+  KIND(arm_tapping_experiment)             \
+  KIND(arm_vibration_experiment)
 
 namespace tactus::experiments {
 

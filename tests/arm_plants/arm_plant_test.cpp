@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "tests/allocation_counter.hpp"
 #include "tests/arm_plants/openarm.hpp"
@@ -129,6 +130,74 @@ TEST(ArmPlant, FrictionHoldsAJointBelowCoulombsTorqueAndSlowsItAbove) {
   for (int i = 0; i < 10000; ++i) sliding.step(nothing);
   const double expected = 0.2 / 0.05 * (1.0 - std::exp(-0.05 / 0.02 * 1.0));
   EXPECT_NEAR(sliding.link_velocity()[0], expected, 0.01 * expected);
+}
+
+/// A link of 0.01 kg m² on a motor so heavy that it stands, with play in between.
+ArmPlant::Params rattle(double play_rad, double stiffness_N_m_per_rad) {
+  ArmPlant::Params params = turntable(1e6, {});
+  set_elastic(params, stiffness_N_m_per_rad);
+  params.motors[0].play_rad = play_rad;
+  params.step_s = 1e-5;
+  return params;
+}
+
+TEST(ArmPlant, ALinkFliesThroughItsPlayAndBouncesBetweenTheFlanks) {
+  const double play_rad = 0.02, stiffness = 500.0, inertia_kg_m2 = 0.01;
+  ArmPlant::Params params = rattle(play_rad, stiffness);
+  params.tool_m = Vector3(0.1, 0.0, 0.0);
+  ArmPlant arm = *ArmPlant::make(params, one(0.0));
+  // A force on the tool, 0.1 m out, gives it speed within a millisecond.
+  for (int i = 0; i < 100; ++i) arm.step({.force_N = Vector3(0.0, 50.0, 0.0)});
+  const double speed = arm.link_velocity()[0];
+  ASSERT_NEAR(speed, 0.1 * 50.0 * 1e-3 / inertia_kg_m2, 1e-3);
+  // Two flights and two half swings on a spring a period; it returns to where it is now with the same speed.
+  const double period_s = 2.0 * play_rad / speed + 2.0 * std::numbers::pi * std::sqrt(inertia_kg_m2 / stiffness);
+  const double start = arm.link_position()[0], energy = arm.energy_J();
+  const int periods = 5;
+  const auto steps = static_cast<int>(std::lround(periods * period_s / params.step_s));
+  double furthest = 0.0, drift_J = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    arm.step(nothing);
+    furthest = std::max(furthest, std::fabs(arm.link_position()[0]));
+    drift_J = std::max(drift_J, std::fabs(arm.energy_J() - energy));
+  }
+  EXPECT_NEAR(arm.link_position()[0], start, 0.02 * play_rad);
+  EXPECT_NEAR(arm.link_velocity()[0], speed, 1e-3);
+  EXPECT_NEAR(furthest, 0.5 * play_rad + speed * std::sqrt(inertia_kg_m2 / stiffness), 1e-4);
+  EXPECT_LT(drift_J, 0.01 * 0.5 * inertia_kg_m2 * speed * speed) << "flanks keep energy";
+}
+
+TEST(ArmPlant, PlayLiesOnTheFlankThatBearsTheWeightAndIsRefusedWithoutStiffness) {
+  ArmPlant::Params params = openarm_class();
+  set_elastic(params, 3000.0, 1.0);
+  for (MotorParams& motor : params.motors) motor.play_rad = 0.004;
+  ArmPlant arm = *ArmPlant::make(params, bent());
+  const JointVector weight = arm::Chain::make(params.chain)->gravity_torque(bent());
+  const JointVector expected = bent() + weight / 3000.0 + 0.002 * weight.cwiseSign();
+  EXPECT_LT((arm.read().position - expected).norm(), 1e-12);
+  arm.write(ArmCommand::of_torque(weight));
+  for (int i = 0; i < 1000; ++i) arm.step(nothing);
+  EXPECT_LT((arm.link_position() - bent()).norm(), 1e-6);
+
+  params.motors[2].joint_stiffness_N_m_per_rad = 0.0;
+  const auto refused = ArmPlant::make(params, bent());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().parameter, "joint_3.play_rad");
+}
+
+TEST(ArmPlant, AHostWithAWrongTableReadsAScaledVelocityAndCommandsTheOthersUnscaled) {
+  ArmPlant::Params params = turntable(0.01, {});
+  params.motors[0].velocity_scale = 2.5;
+  ArmPlant arm = *ArmPlant::make(params, one(0.0));
+  ArmCommand command = ArmCommand::of_torque(one(0.0));
+  command.damping = one(5.0);
+  command.velocity = one(1.0);
+  arm.write(command);
+  for (int i = 0; i < 10000; ++i) arm.step(nothing);
+  EXPECT_NEAR(arm.link_velocity()[0], 0.4, 1e-6) << "the drive hears 1/2.5";
+  EXPECT_NEAR(arm.read().velocity[0], 1.0, 1e-6) << "and the host reads what it asked for";
+  params.motors[0].velocity_scale = 0.0;
+  EXPECT_EQ(ArmPlant::make(params, one(0.0)).error().parameter, "joint_1.velocity_scale");
 }
 
 TEST(ArmPlant, AnElasticJointSwingsAsMotorAndLinkOnASpringDo) {

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "tests/cli/command.hpp"
 #include <gtest/gtest.h>
@@ -107,6 +108,31 @@ TEST_F(Diagnose, what_cannot_be_read_is_refused_with_place_and_remedy) {
               std::to_string(f) + "\n";
   }
   refused("turned.csv", turned, "--displayed-force-sign -1");
+}
+
+TEST_F(Diagnose, tells_a_wrong_range_of_velocity_and_an_old_reading_of_two_arms_apart) {
+  const std::string arms = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arm-vibration.toml";
+  const auto told = [&](const std::string& folder, const std::vector<std::string>& settings) {
+    std::vector<std::string> command{"run", arms, "--out", folder};
+    for (const std::string& setting : settings) command.insert(command.end(), {"--set", setting});
+    EXPECT_EQ(tactus(command).status, 0);
+    return Json::parse(tactus({"diagnose", folder + "/recording.csv", "--json"}).out);
+  };
+  const Json sound = told("sound", {});
+  EXPECT_TRUE(sound["oscillations"].empty()) << sound["verdict"];
+  EXPECT_NEAR(sound["told_velocity_scale"]["master"].get<double>(), 1.0, 0.02);
+  EXPECT_EQ(sound["verdict"].get<std::string>().find("VMAX"), std::string::npos);
+
+  const Json scaled = told("scaled", {"cause.velocity_scale=3"});
+  EXPECT_NEAR(scaled["told_velocity_scale"]["master"].get<double>(), 3.0, 0.05);
+  EXPECT_NEAR(scaled["told_velocity_scale"]["slave"].get<double>(), 1.0, 0.02);
+  EXPECT_EQ(scaled["verdict"].get<std::string>().rfind("The velocity leader_velocity is told 3.0 times", 0), 0U)
+      << scaled["verdict"];
+
+  const Json old = told("old", {"host.answer_ticks=29", "task.joint=5"});
+  ASSERT_EQ(old["oscillations"].size(), 1U) << old["verdict"];
+  EXPECT_EQ(old["oscillations"][0]["mechanism"], "delay");
+  EXPECT_EQ(old["verdict"].get<std::string>().find("VMAX"), std::string::npos);
 }
 
 }  // namespace

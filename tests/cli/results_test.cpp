@@ -75,6 +75,8 @@ TEST_F(Results, OfARunAreOfItsSchemaWhateverItsKindAndClock) {
   expect_valid("run", {"run", quick, "--ros2", "--namespace", "results_" + std::to_string(getpid())});
   const Json arms = expect_valid("run", {"run", experiments_folder + "/arm-tapping.toml", "--set", "task.taps=1"});
   EXPECT_EQ(arms["runs"][0]["metrics"]["taps"], 1);
+  const Json coupled = expect_valid("run", {"run", experiments_folder + "/arm-vibration.toml"});
+  EXPECT_EQ(coupled["runs"][0]["metrics"]["vibrates"], 0);
   for (const char* kind : {"force-display", "hydraulic-chirp", "inverse-model-chirp", "prediction-block"}) {
     expect_valid("run", {"run", experiments_folder + "/" + kind + ".toml"});
   }

@@ -1,8 +1,8 @@
 #include <tactus/arm_control/arm_sites.hpp>
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/experiments/arm_tapping/described_arm.hpp>
 #include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/random.hpp>
-#include <tactus/urdf/urdf.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -71,40 +71,18 @@ Check take_pose(ArmPairSetup& setup) {
 }  // namespace
 
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder) {
-  if (params.arm.urdf.empty()) {
-    return Error{.code = ErrorCode::missing,
-                 .parameter = "arm.urdf",
-                 .message = "which arm? Name its URDF file, such as arms/openarm-class.urdf",
-                 .place = {}};
-  }
-  const auto read = urdf::read(folder / params.arm.urdf);
-  if (!read) return Error{read.error().code, "arm.urdf", describe(read.error()), {}};
-  const std::size_t joints = read->joints.size();
-  const Joints<ArmJoint> described = params.arm.joints.of(joints);
-  ArmPairSetup setup{.params = params,
-                     .joints = read->joints,
-                     .arm = {.chain = read->params, .motors = Joints<arm_plants::MotorParams>(joints)},
-                     .induced = {},
-                     .start = JointVector::Zero(static_cast<Eigen::Index>(joints))};
+  const auto described = describe_arm(params.arm, folder);
+  if (!described) return described.error();
+  const std::size_t joints = described->arm.motors.size();
+  ArmPairSetup setup{
+      .params = params, .joints = described->joints, .arm = described->arm, .induced = {}, .start = described->start};
   JointVector stiffness = setup.start;
   JointVector damping = setup.start;
   for (std::size_t i = 0; i < joints; ++i) {
-    const ArmJoint& from = described[i];
-    arm::JointParams& joint = setup.arm.chain.joints[i];
-    joint.drive.armature_kg_m2 = from.armature_kg_m2;
-    setup.arm.motors[i] = {
-        .torque_limit_N_m = joint.limits.effort_N_m,
-        .position_step_rad = from.position_step_rad,
-        .velocity_step_rad_per_s = from.velocity_step_rad_per_s,
-        .torque_step_N_m = from.torque_step_N_m,
-        .joint_stiffness_N_m_per_rad = from.stiffness_share * params.arm.joint_stiffness_N_m_per_rad,
-        .joint_damping_N_m_s_per_rad = from.stiffness_share * params.arm.joint_damping_N_m_s_per_rad};
     const auto at = static_cast<Eigen::Index>(i);
-    setup.start[at] = from.start_rad;
     stiffness[at] = setup.arm.motors[i].joint_stiffness_N_m_per_rad;
     damping[at] = setup.arm.motors[i].joint_damping_N_m_s_per_rad;
   }
-  setup.arm.tool_m = Vector3(params.arm.tool.x_m, params.arm.tool.y_m, params.arm.tool.z_m);
   setup.induced = {.chain = setup.arm.chain,
                    .tool_m = setup.arm.tool_m,
                    .joint_stiffness_N_m_per_rad = stiffness,

@@ -1,0 +1,62 @@
+#include <tactus/diagnosis/told_velocity.hpp>
+#include <tactus/signal/random.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace tactus::diagnosis {
+namespace told_velocity_test {
+
+struct Motion {
+  std::vector<double> position, velocity;
+};
+
+/// Four seconds at 1 kHz of two swings, in steps as Damiao's drives tell them.
+Motion motion(double scale, double step_rad_per_s = 0.022) {
+  Motion found;
+  for (int k = 0; k < 4000; ++k) {
+    const double t = 1e-3 * k;
+    found.position.push_back(0.000381 * std::round((0.2 * std::sin(3.0 * t) + 0.01 * std::sin(60.0 * t)) / 0.000381));
+    const double velocity = 0.6 * std::cos(3.0 * t) + 0.6 * std::cos(60.0 * t);
+    found.velocity.push_back(scale * step_rad_per_s * std::round(velocity / step_rad_per_s));
+  }
+  return found;
+}
+
+TEST(ToldVelocity, ItsScaleIsFoundThroughTheStepsOfDrives) {
+  for (const double scale : {0.22, 1.0, 2.0, 4.5, -1.0}) {
+    const Motion told = motion(scale);
+    const auto found = told_scale(told.position, told.velocity, Seconds{1e-3});
+    ASSERT_TRUE(found) << scale;
+    EXPECT_NEAR(*found, std::fabs(scale), 0.02 * std::fabs(scale));
+    EXPECT_EQ((ToldVelocity{.scale = *found}.wrong()), std::fabs(scale) != 1.0);
+  }
+}
+
+TEST(ToldVelocity, NothingIsToldOfAnArmThatRestsOrOfWhatDoesNotGoTogether) {
+  const std::vector<double> rest(4000, 0.3), none(4000, 0.0);
+  EXPECT_FALSE(told_scale(rest, none, Seconds{1e-3}));
+  EXPECT_FALSE(told_scale(motion(1.0).position, none, Seconds{1e-3}));
+  signal::Random random(1);
+  std::vector<double> noise;
+  for (int k = 0; k < 4000; ++k) noise.push_back(random.normal());
+  EXPECT_FALSE(told_scale(motion(1.0).position, noise, Seconds{1e-3}));
+}
+
+TEST(ToldVelocity, IsFoundByNameAndUnitAndNotWhereSeveralAreAlike) {
+  const auto column = [](const std::string& name, const std::string& unit) {
+    return recording::Entry{.name = name, .unit = unit, .kind = "column", .rows = 10, .columns = 1, .readable = true};
+  };
+  const std::vector<recording::Entry> entries{column("leader_velocity", "rad/s"), column("leader_position", "rad"),
+                                              column("Slave speed", ""), column("slave speed command", "")};
+  EXPECT_EQ(find_velocity(true, entries), "leader_velocity");
+  EXPECT_EQ(find_velocity(false, entries), "Slave speed");
+  EXPECT_EQ(find_velocity(true, {column("master_vel", "deg/s")}), "") << "not in that unit";
+  EXPECT_EQ(find_velocity(true, {column("master_vel", "m/s"), column("master_vel_2", "m/s")}), "");
+}
+
+}  // namespace told_velocity_test
+}  // namespace tactus::diagnosis
