@@ -1,7 +1,11 @@
-// bench_arms [EXPERIMENT.toml]: what a tick of both sites of two arms takes, and a step of a simulated arm.
+// bench_arms [EXPERIMENT.toml]: what a tick of both sites of two arms takes, and a step of a simulated arm; then the
+// whole tick of a rig's pair, supervised and behind its walls, joint by joint and as two arms.
 
 #include <tactus/configuration/document.hpp>
+#include <tactus/devices/rig/rig_arms.hpp>
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/runtime/site_parts.hpp>
+#include <tactus/station/local_teleoperator.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -63,6 +67,62 @@ bool measure(const experiments::ArmTappingParams& params, const std::filesystem:
   return true;
 }
 
+/// Motors that tell a small motion and take everything.
+class Told final : public station::JointDevice {
+ public:
+  explicit Told(std::size_t joints) : reading_(joints) {}
+  [[nodiscard]] Joints<station::DeviceLimits> limits() const override {
+    return Joints<station::DeviceLimits>(reading_.size(), {.force_N = 15.0,
+                                                           .rate_N_per_s = 400.0,
+                                                           .velocity_m_per_s = 7.0,
+                                                           .position_m = 3.0,
+                                                           .stiffness_N_per_m = 150.0,
+                                                           .damping_N_s_per_m = 5.0});
+  }
+  Joints<station::DeviceReading> read(const station::Tick& tick) noexcept override {
+    const double turned_rad = 0.1 * std::sin(0.01 * static_cast<double>(tick.number));
+    for (std::size_t i = 0; i < reading_.size(); ++i) {
+      reading_[i].position_m = 0.3 + turned_rad;
+      reading_[i].motor_tells.velocity_m_per_s = turned_rad;
+    }
+    return reading_;
+  }
+  void write(const Joints<station::DeviceCommand>&) noexcept override {}
+  [[nodiscard]] station::DeviceHealth health() const noexcept override { return station::DeviceHealth::good; }
+
+ private:
+  Joints<station::DeviceReading> reading_;
+};
+
+void report_pair(const char* name, Result<station::JointLocalTeleoperator> pair) {
+  if (!pair) return static_cast<void>(std::fprintf(stderr, "%s\n", describe(pair.error()).c_str()));
+  report(name, 20000, 1.0, [&](int k) {
+    const std::int64_t now_ns = 2'000'000 * (k + std::int64_t{1});
+    pair->step({.number = k, .deadline_ns = now_ns, .began_ns = now_ns}, {.align = k > 10});
+  });
+}
+
+void measure_pairs() {
+  const auto joint_file = configuration::Document::load("examples/rigs/joints.toml");
+  const auto arm_file = configuration::Document::load("examples/rigs/arms.toml");
+  if (!joint_file || !arm_file) return static_cast<void>(std::fprintf(stderr, "no examples/rigs here\n"));
+  const auto by_joint = joint_file->read<experiments::TappingParams>();
+  const auto by_arm = arm_file->read<experiments::ArmTappingParams>();
+  if (!by_joint || !by_arm) return;
+  const auto setup = experiments::set_up_arm_pair(*by_arm, "examples/rigs");
+  if (!setup) return;
+  const std::size_t joints = setup->joints.size();
+  const Seconds tick{1.0 / by_arm->servo.rate_Hz};
+  std::printf("A rig's pair of %zu joints\n", joints);
+  Told leader(joints), follower(joints);
+  const Joints<control::ControlParams> control(joints, runtime::control_of(*by_joint));
+  report_pair("a tick, joint by joint",
+              station::JointLocalTeleoperator::make(control, {}, tick, Joints<double>(joints, 0.0), leader, follower));
+  auto sites = devices::arm_sites(*setup, leader.limits(), follower.limits());
+  if (!sites) return static_cast<void>(std::fprintf(stderr, "%s\n", describe(sites.error()).c_str()));
+  report_pair("a tick, as two arms", station::JointLocalTeleoperator::around(*std::move(sites), leader, follower));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -77,5 +137,7 @@ int main(int argc, char** argv) {
   params.control.model.joints = arm_control::JointModel::elastic;
   params.arm.joint_stiffness_N_m_per_rad = 3000.0;
   std::printf("Joints taken for elastic, elastic arms\n");
-  return measure(params, file.parent_path()) ? 0 : 1;
+  if (!measure(params, file.parent_path())) return 1;
+  measure_pairs();
+  return 0;
 }

@@ -13,33 +13,33 @@ using control::MasterOutput;
 using control::SlaveInput;
 using control::SlaveOutput;
 
-/// One number of each joint, of a member of a member.
+/// One number of each of the arm's joints, of a member of a member.
 template <class Input, class Get>
-JointVector each(const Joints<Input>& joints, Get&& get) noexcept {
-  JointVector found(static_cast<Eigen::Index>(joints.size()));
-  for (std::size_t i = 0; i < joints.size(); ++i) found[static_cast<Eigen::Index>(i)] = get(joints[i]);
+JointVector each(const Joints<Input>& joints, std::size_t of_arm, Get&& get) noexcept {
+  JointVector found(static_cast<Eigen::Index>(of_arm));
+  for (std::size_t i = 0; i < of_arm; ++i) found[static_cast<Eigen::Index>(i)] = get(joints[i]);
   return found;
 }
 
 template <class Input>
-ArmReading reading_of(const Joints<Input>& input) noexcept {
-  return {.position = each(input, [](const Input& joint) { return joint.motor_position_m; }),
-          .velocity = each(input, [](const Input& joint) { return joint.motor_tells.velocity_m_per_s; }),
-          .torque = each(input, [](const Input& joint) { return joint.motor_tells.force_N; })};
+ArmReading reading_of(const Joints<Input>& input, std::size_t of_arm) noexcept {
+  return {.position = each(input, of_arm, [](const Input& joint) { return joint.motor_position_m; }),
+          .velocity = each(input, of_arm, [](const Input& joint) { return joint.motor_tells.velocity_m_per_s; }),
+          .torque = each(input, of_arm, [](const Input& joint) { return joint.motor_tells.force_N; })};
 }
 
 /// What a joint tells as force resists it, and so has the other sign than the torque that turns it up.
 template <class Input>
-ArmMessage message_of(const Joints<Input>& input) noexcept {
-  return {.position = each(input, [](const Input& joint) { return joint.arrival.message.position_m; }),
-          .velocity = each(input, [](const Input& joint) { return joint.arrival.message.velocity_m_per_s; }),
-          .external_torque = each(input, [](const Input& joint) { return -joint.arrival.message.force_N; })};
+ArmMessage message_of(const Joints<Input>& input, std::size_t of_arm) noexcept {
+  return {.position = each(input, of_arm, [](const Input& joint) { return joint.arrival.message.position_m; }),
+          .velocity = each(input, of_arm, [](const Input& joint) { return joint.arrival.message.velocity_m_per_s; }),
+          .external_torque = each(input, of_arm, [](const Input& joint) { return -joint.arrival.message.force_N; })};
 }
 
 template <class Output>
 void put(const ArmCommand& command, const JointVector& support, const ArmMessage& message,
          Joints<Output>& output) noexcept {
-  for (std::size_t i = 0; i < output.size(); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(support.size()); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     Output& joint = output[i];
     joint.motor_force_N = command.torque[at];
@@ -54,15 +54,31 @@ void put(const ArmCommand& command, const JointVector& support, const ArmMessage
   }
 }
 
+/// The joints behind the arm's, each pulled to the other side's.
+template <class Input, class Output>
+void put_beside(const Joints<DriveGains>& beside, const Joints<Input>& input, Joints<Output>& output) noexcept {
+  for (std::size_t i = 0; i < beside.size(); ++i) {
+    const std::size_t at = input.size() - beside.size() + i;
+    const control::Message& other = input[at].arrival.message;
+    output[at].law = {.position_m = other.position_m,
+                      .velocity_m_per_s = other.velocity_m_per_s,
+                      .stiffness_N_per_m = beside[i].stiffness_N_m_per_rad,
+                      .damping_N_s_per_m = beside[i].damping_N_m_s_per_rad};
+    output[at].message.position_m = input[at].motor_position_m;
+    output[at].message.velocity_m_per_s = input[at].motor_tells.velocity_m_per_s;
+  }
+}
+
 /// A controller of all joints. Not an element: what an arm's model holds is not trivially copyable.
 template <class Input, class Output, class Controlled>
 class ControllerOfArm final : public control::SiteController<Joints<Input>, Joints<Output>> {
  public:
-  explicit ControllerOfArm(const Controlled& made) : made_(made), now_(made) {}
+  ControllerOfArm(const Controlled& made, std::size_t of_arm, const Joints<DriveGains>& beside)
+      : made_(made), now_(made), of_arm_(of_arm), beside_(beside) {}
   Joints<Output> respond(const Joints<Input>& input) noexcept override;
   void applied([[maybe_unused]] Joints<double> motor_force_N) noexcept override {
     if constexpr (requires { now_.applied(JointVector()); }) {
-      now_.applied(each(motor_force_N, [](double force_N) { return force_N; }));
+      now_.applied(each(motor_force_N, of_arm_, [](double force_N) { return force_N; }));
     }
   }
   void reset() noexcept override { now_ = made_; }
@@ -73,6 +89,8 @@ class ControllerOfArm final : public control::SiteController<Joints<Input>, Join
  private:
   Controlled made_;
   Controlled now_;
+  std::size_t of_arm_;
+  Joints<DriveGains> beside_;
 };
 
 using LeaderController = ControllerOfArm<MasterInput, MasterOutput, ArmLeader>;
@@ -80,10 +98,11 @@ using FollowerController = ControllerOfArm<SlaveInput, SlaveOutput, ArmFollower>
 
 template <>
 Joints<MasterOutput> LeaderController::respond(const Joints<MasterInput>& input) noexcept {
-  const auto arm = now_.step(reading_of(input), message_of(input));
+  const auto arm = now_.step(reading_of(input, of_arm_), message_of(input, of_arm_));
   Joints<MasterOutput> output(input.size());
   put(arm.command, arm.support, arm.message, output);
-  for (std::size_t i = 0; i < output.size(); ++i) {
+  put_beside(beside_, input, output);
+  for (std::size_t i = 0; i < of_arm_; ++i) {
     output[i].induced_position_m = arm.induced[static_cast<Eigen::Index>(i)];
     output[i].intended_position_m = input[i].motor_position_m - output[i].induced_position_m;
   }
@@ -92,28 +111,30 @@ Joints<MasterOutput> LeaderController::respond(const Joints<MasterInput>& input)
 
 template <>
 Joints<SlaveOutput> FollowerController::respond(const Joints<SlaveInput>& input) noexcept {
-  const JointVector sensed = each(input, [](const SlaveInput& joint) { return -joint.tip_force_N; });
-  const auto arm = now_.step(reading_of(input), sensed, message_of(input));
+  const JointVector sensed = each(input, of_arm_, [](const SlaveInput& joint) { return -joint.tip_force_N; });
+  const auto arm = now_.step(reading_of(input, of_arm_), sensed, message_of(input, of_arm_));
   Joints<SlaveOutput> output(input.size());
   put(arm.command, arm.support, arm.message, output);
+  put_beside(beside_, input, output);
   return output;
 }
 
 template <class Site, class Controller, class Controlled>
-Result<Site> site_of(const Controlled& controlled, std::size_t joints, const Joints<control::SafetyGate::Params>& gates,
-                     Seconds dt) {
-  if (gates.size() != joints) {
+Result<Site> site_of(const Controlled& controlled, std::size_t of_arm, const Joints<DriveGains>& beside,
+                     const Joints<control::SafetyGate::Params>& gates, Seconds dt) {
+  const std::size_t joints = of_arm + beside.size();
+  if (gates.size() != joints || joints > most_joints) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "gate",
                  .message = std::to_string(gates.size()) + " gates for " + std::to_string(joints) +
-                            " joints: state one for each",
+                            " joints: state one for each, of " + std::to_string(most_joints) + " at most",
                  .place = {}};
   }
   const auto made = make_each<control::SafetyGate>(gates, dt);
   if (!made) return under("gate", made.error());
   typename Site::Gates before_each(made->size(), (*made)[0]);
   for (std::size_t i = 0; i < made->size(); ++i) before_each[i] = (*made)[i];
-  return Site(std::make_unique<Controller>(controlled), before_each);
+  return Site(std::make_unique<Controller>(controlled, of_arm, beside), before_each);
 }
 
 }  // namespace
@@ -129,17 +150,19 @@ control::SafetyGate::Params widest_gate() {
 }
 
 Result<control::JointMasterSite> leader_site(const ArmLeader::Params& params, const ArmLeader::Arm& arm,
-                                             const Joints<control::SafetyGate::Params>& gates, Seconds dt) {
+                                             const Joints<control::SafetyGate::Params>& gates, Seconds dt,
+                                             const Joints<DriveGains>& beside) {
   const auto leader = ArmLeader::make(params, arm, dt);
   if (!leader) return leader.error();
-  return site_of<control::JointMasterSite, LeaderController>(*leader, arm.carried.joints.size(), gates, dt);
+  return site_of<control::JointMasterSite, LeaderController>(*leader, arm.carried.joints.size(), beside, gates, dt);
 }
 
 Result<control::JointSlaveSite> follower_site(const ArmFollower::Params& params, const ArmFollower::Arm& arm,
-                                              const Joints<control::SafetyGate::Params>& gates, Seconds dt) {
+                                              const Joints<control::SafetyGate::Params>& gates, Seconds dt,
+                                              const Joints<DriveGains>& beside) {
   const auto follower = ArmFollower::make(params, arm, dt);
   if (!follower) return follower.error();
-  return site_of<control::JointSlaveSite, FollowerController>(*follower, arm.chain.joints.size(), gates, dt);
+  return site_of<control::JointSlaveSite, FollowerController>(*follower, arm.chain.joints.size(), beside, gates, dt);
 }
 
 }  // namespace tactus::arm_control

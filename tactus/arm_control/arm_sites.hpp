@@ -15,13 +15,16 @@ namespace tactus::arm_control {
 control::SafetyGate::Params widest_gate();
 
 /// The site of the arm that a person holds. `gates` has one for each joint; the law of a drive passes them with its
-/// force. Errors: those of `ArmLeader::make`; those of a gate, under `gate` and the joint; `inconsistent` for another
-/// number of gates.
+/// force. Joints beside the arm's, such as that of a gripper, stand behind them: each drive pulls its own, with the
+/// gains `beside`, to where the other side's is, and nothing carries it. Errors: those of `ArmLeader::make`; those of a
+/// gate, under `gate` and the joint; `inconsistent` for another number of gates, or more than `most_joints` joints.
 Result<control::JointMasterSite> leader_site(const ArmLeader::Params& params, const ArmLeader::Arm& arm,
-                                             const Joints<control::SafetyGate::Params>& gates, Seconds dt);
+                                             const Joints<control::SafetyGate::Params>& gates, Seconds dt,
+                                             const Joints<DriveGains>& beside = {});
 /// The same of the arm that touches things. What its device reads as force at the tip is taken for what sensors in the
 /// joints tell, where `params.torque` says so.
 Result<control::JointSlaveSite> follower_site(const ArmFollower::Params& params, const ArmFollower::Arm& arm,
-                                              const Joints<control::SafetyGate::Params>& gates, Seconds dt);
+                                              const Joints<control::SafetyGate::Params>& gates, Seconds dt,
+                                              const Joints<DriveGains>& beside = {});
 
 }  // namespace tactus::arm_control

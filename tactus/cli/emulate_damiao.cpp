@@ -1,6 +1,12 @@
 #include <tactus/cli/emulate.hpp>
 #include <tactus/emulation/damiao/damiao_peer.hpp>
+#include <tactus/emulation/emulated_arm.hpp>
+#include <tactus/urdf/urdf.hpp>
 #include <tactus/wire/paced.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -15,18 +21,54 @@ using emulation::damiao::MotorType;
 constexpr std::int64_t bits_per_s = 921'600;
 
 struct DamiaoOptions {
-  std::uint32_t motors = 2;
+  std::optional<std::uint32_t> motors;
   std::vector<std::string> models{name_of(MotorType::dm4310)};
   std::string framing = name_of(AdapterType::usb2can);
   std::vector<std::string> faults;
   std::uint64_t seed = 1;
+  std::string arm;
+  std::vector<double> armature_kg_m2{0.01};
+  std::vector<double> held_rad;
 };
+
+Error wrong(const char* option, std::string message) {
+  return {.code = ErrorCode::inconsistent, .parameter = {}, .message = std::move(message), .place = option};
+}
+
+/// The arm that its motors move; null where each moves a joint of its own.
+Result<std::unique_ptr<emulation::EmulatedArm>> make_arm(const DamiaoOptions& options) {
+  if (options.arm.empty()) return std::unique_ptr<emulation::EmulatedArm>();
+  auto read = urdf::read(options.arm);
+  if (!read) return read.error();
+  emulation::EmulatedArm::Settings settings{.chain = std::move(read->params)};
+  const std::size_t joints = settings.chain.joints.size();
+  if (options.armature_kg_m2.size() > joints) {
+    return wrong("--armature", std::to_string(options.armature_kg_m2.size()) + " numbers for an arm of " +
+                                   std::to_string(joints) + " joints: one for each, or fewer");
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    settings.chain.joints[i].drive.armature_kg_m2 =
+        options.armature_kg_m2[std::min(i, options.armature_kg_m2.size() - 1)];
+  }
+  if (!options.held_rad.empty()) {
+    if (options.held_rad.size() != joints) {
+      return wrong("--held", std::to_string(options.held_rad.size()) + " positions for an arm of " +
+                                 std::to_string(joints) + " joints: write one for each");
+    }
+    settings.held_at = arm::JointVector::Map(options.held_rad.data(), static_cast<Eigen::Index>(joints));
+  }
+  return emulation::EmulatedArm::make(settings);
+}
 
 Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
   emulation::damiao::PeerSettings settings;
   settings.adapter = value_of<AdapterType>(options.framing);
   settings.seed = options.seed;
-  for (std::uint32_t id = 1; id <= options.motors; ++id) {
+  auto arm = make_arm(options);
+  if (!arm) return arm.error();
+  constexpr std::uint32_t usual_motors = 2;
+  const auto joints = *arm ? static_cast<std::uint32_t>((*arm)->motors()) : usual_motors;
+  for (std::uint32_t id = 1; id <= options.motors.value_or(joints); ++id) {
     settings.motors.push_back(
         {.id = id, .feedback_id = id + 0x10, .type = value_of<MotorType>(of_motor(options.models, id))});
   }
@@ -39,8 +81,8 @@ Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
     }
     settings.faults.push_back(*fault);
   }
-  auto peer = DamiaoPeer::make(settings);
-  if (!peer) return peer.error();
+  auto peer = DamiaoPeer::make(settings, *std::move(arm));
+  if (!peer) return wrong("--motors", peer.error().message);
   EmulatedPeer made{.motors = *std::move(peer), .line = nullptr};
   made.line = std::make_unique<wire::Paced>(*made.motors, wire::byte_ns(bits_per_s), wire::Paced::Line::full_duplex);
   return made;
@@ -50,7 +92,8 @@ Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
 
 std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
   auto options = std::make_shared<DamiaoOptions>();
-  verb.add_option("--motors", options->motors, "How many, with the ids 1 and on")->check(CLI::Range(1, 15));
+  verb.add_option("--motors", options->motors, "How many, with the ids 1 and on; 2, or one for each joint of --arm")
+      ->check(CLI::Range(1, 15));
   verb.add_option("--model", options->models, models_help)->delimiter(',')->check(CLI::IsMember(words_of<MotorType>()));
   // A terminal passes no frames of Linux.
   verb.add_option("--framing", options->framing, "Adapter: usb2can is Damiao's own, slcan is text")
@@ -63,6 +106,21 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
           "hot-winding, communication-lost, overload, register-answer, twin, wrap, garbage, heartbeat, bus-off, split")
       ->type_name("FAULT");
   verb.add_option("--seed", options->seed, "Of delays and garbage");
+  CLI::Option* arm = verb.add_option("--arm", options->arm,
+                                     "An arm with its weight, which the first motors move together; the others each "
+                                     "turn a joint of their own. It hangs, and without power it falls")
+                         ->type_name("URDF");
+  verb.add_option("--armature", options->armature_kg_m2,
+                  "Inertia of each motor's rotor at its joint, in kg m², with commas between; the last one goes on")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-6, 10.0))
+      ->needs(arm);
+  verb.add_option("--held", options->held_rad,
+                  "Where a hand holds it at first, in rad, with commas between; it lets go once the motors carry the arm")
+      ->type_name("Q,Q,...")
+      ->delimiter(',')
+      ->check(CLI::Range(-12.0, 12.0))
+      ->needs(arm);
   return [options] { return make_peer(*options); };
 }
 

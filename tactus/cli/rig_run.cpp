@@ -10,7 +10,9 @@
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/devices/motor_bus_device.hpp>
 #include <tactus/devices/rig/examination.hpp>
+#include <tactus/devices/rig/rig_arms.hpp>
 #include <tactus/devices/rig/rig_loop.hpp>
+#include <tactus/experiments/arm_tapping/params.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/site_log.hpp>
@@ -18,6 +20,8 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -122,7 +126,61 @@ Result<Driven> drive(const Rig& rig, const RigSide& side) {
   return driven;
 }
 
+/// The pair as the experiment drives it.
+struct Drive {
+  RigPair pair;
+  double rate_Hz = 0.0;
+  std::string configuration;
+  /// What a servo thread steps, before devices that outlive it. Errors are those of the experiment's file.
+  std::function<Result<RigLoop>(runtime::SiteExchange&, MotorBusDevice& leader, MotorBusDevice& follower)> loop;
+};
+
+/// Each joint by itself.
+Result<Drive> joint_by_joint(const experiments::Request& request, const RigPair& pair, RigLoop::Params settings) {
+  const auto params = request.document.read<experiments::TappingParams>();
+  if (!params) return params.error();
+  const Joints<control::ControlParams> joints(pair.leader->joints.size(), runtime::control_of(*params));
+  settings.listen_before_arming_s = joints[0].supervision.watchdog.timeout_s;
+  return Drive{.pair = pair,
+               .rate_Hz = params->servo.rate_Hz,
+               .configuration = configuration::to_toml(*params),
+               .loop = [joints, settings, params = *params](auto& exchange, auto& leader, auto& follower) {
+                 return RigLoop::make(joints, params.channel, Seconds{1.0 / params.servo.rate_Hz}, settings, exchange,
+                                      leader, follower);
+               }};
+}
+
+Joints<station::DeviceLimits> limits_of(const RigSide& side) {
+  Joints<station::DeviceLimits> limits(side.joints.size());
+  for (std::size_t i = 0; i < limits.size(); ++i) limits[i] = side.joints[i].joint.limits();
+  return limits;
+}
+
+/// Two arms, each with all its joints.
+Result<Drive> as_two_arms(const experiments::Request& request, const Rig& rig, const RigPair& pair,
+                          RigLoop::Params settings) {
+  const auto params = request.document.read<experiments::ArmTappingParams>();
+  if (!params) return params.error();
+  const std::filesystem::path folder = std::filesystem::path(request.document.name()).parent_path();
+  const auto setup = experiments::set_up_arm_pair(*params, folder);
+  if (!setup) return request.document.locate(setup.error());
+  auto arms = devices::as_arms(pair, *setup);
+  if (!arms) return rig.locate(arms.error());
+  auto sites = devices::arm_sites(*setup, limits_of(*arms->leader), limits_of(*arms->follower));
+  if (!sites) return request.document.locate(sites.error());
+  settings.listen_before_arming_s = params->rig.supervision.watchdog.timeout_s;
+  return Drive{.pair = *std::move(arms),
+               .rate_Hz = params->servo.rate_Hz,
+               .configuration = configuration::to_toml(*params),
+               .loop = [settings, sites = *std::move(sites), tick = Seconds{1.0 / params->servo.rate_Hz}](
+                           auto& exchange, auto& leader, auto& follower) {
+                 return RigLoop::around(sites, tick, settings, exchange, leader, follower);
+               }};
+}
+
 }  // namespace
+
+bool drives_a_rig(std::string_view kind) { return kind == "tapping" || kind == "arm-tapping"; }
 
 bool names_a_rig(const std::string& device) {
   return device.ends_with(suffix) || device.find(std::string(suffix) + ":") != std::string::npos;
@@ -131,13 +189,18 @@ bool names_a_rig(const std::string& device) {
 Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_on, runtime::ServoThreadParams servo,
               const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes) {
   if (options.devices.size() > 1) return refused("--device", "a rig has the devices of both sites: name it alone");
-  const auto params = request.document.read<experiments::TappingParams>();
-  if (!params) return params.error();
   const auto [file, name] = parts_of(options.devices.front());
   const auto rig = Rig::load(file);
   if (!rig) return rig.error();
-  const auto pair = pair_of(*rig, name);
-  if (!pair) return pair.error();
+  const auto named = pair_of(*rig, name);
+  if (!named) return named.error();
+  const RigLoop::Params settings{.duration_s = options.duration_s, .arm_at_once = options.arm};
+  const auto kind = request.document.text_at("task.kind");
+  const bool arms = kind && *kind == name_of(experiments::ArmTappingKind::arm_tapping);
+  const auto found =
+      arms ? as_two_arms(request, *rig, **named, settings) : joint_by_joint(request, **named, settings);
+  if (!found) return found.error();
+  const RigPair& pair = found->pair;
 
   runtime::SiteExchange exchange;
   const auto interruption = Interruption::start(exchange.end);
@@ -145,27 +208,23 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
   LineWriter& lines = folder.json() ? errors : output;
   std::vector<std::string> names;
-  for (const devices::RigJoint& joint : (*pair)->leader->joints) names.emplace_back(joint.name());
+  for (const devices::RigJoint& joint : pair.leader->joints) names.emplace_back(joint.name());
   auto onlookers = Onlookers::open(looking_on, request, {}, names);
   if (!onlookers) return onlookers.error();
-  if (Check unclean = refuse_unclean(*rig, **pair, errors)) return unclean;
+  if (Check unclean = refuse_unclean(*rig, pair, errors)) return unclean;
   // The devices give up their motors before the links do, and these before the guards.
   std::array<std::optional<Driven>, 2> driven;
   for (std::size_t side = 0; side < driven.size(); ++side) {
-    auto made = drive(*rig, side == 0 ? *(*pair)->leader : *(*pair)->follower);
+    auto made = drive(*rig, side == 0 ? *pair.leader : *pair.follower);
     if (!made) return made.error();
     driven[side].emplace(*std::move(made));
   }
-  const Seconds tick{1.0 / params->servo.rate_Hz};
-  servo.rate_Hz = params->servo.rate_Hz;
-  auto loop = RigLoop::make(Joints<control::ControlParams>(names.size(), runtime::control_of(*params)), params->channel,
-                            tick, {.duration_s = options.duration_s, .arm_at_once = options.arm}, exchange,
-                            *driven[0]->device, *driven[1]->device);
+  servo.rate_Hz = found->rate_Hz;
+  auto loop = found->loop(exchange, *driven[0]->device, *driven[1]->device);
   if (!loop) return request.document.locate(loop.error());
   const auto person = Person::listen_to(STDIN_FILENO, control::SiteRole::master, exchange, errors);
   if (!person) return person.error();
 
-  const std::string configuration = configuration::to_toml(*params);
   runtime::JointStreams streams(names.size());
   if (folder.wanted() || onlookers->any()) loop->leave_in(streams);
   std::optional<runtime::SiteLog> log;
@@ -173,8 +232,8 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
     if (Check error = folder.begin()) return error;
     runtime::LogMetadata about{{"tactus", log_origin()}};
     about["tactus"]["experiment"] = request.name;
-    about["tactus"]["configuration"] = configuration;
-    about["tactus"]["rig"] = (*pair)->name;
+    about["tactus"]["configuration"] = found->configuration;
+    about["tactus"]["rig"] = pair.name;
     auto created = runtime::SiteLog::create(folder.log_folder(), streams, about, log_limit_bytes);
     if (!created) return created.error();
     log.emplace(*std::move(created));
@@ -186,7 +245,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
   RigRun run;
   const auto take_seconds = [&] {
     while (const auto second = (*thread)->step().next_second()) {
-      lines.say(line_of(*second, **pair));
+      lines.say(line_of(*second, pair));
       run.seconds.push_back(*second);
     }
   };
@@ -206,7 +265,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
     log_error = log->close();
     run.log_dropped = log->dropped();
   }
-  return leave_outcome(rig_outcome(run, **pair, request, configuration), folder, std::move(log_error),
+  return leave_outcome(rig_outcome(run, pair, request, found->configuration), folder, std::move(log_error),
                        log ? log->removed() : 0, output, errors);
 }
 

@@ -9,14 +9,19 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace tactus::cli {
 
 /// Whether a `--device` names a rig file: `FILE.toml`, or `FILE.toml:PAIR`.
 bool names_a_rig(const std::string& device);
 
-/// Drives a pair of a rig under supervision, each joint by the controller of the experiment, until it is over: what
-/// `tactus run EXPERIMENT --realtime --device FILE.toml` is. Nothing gets power before the rig is clean.
+/// Whether an experiment of that kind says how a rig is driven.
+bool drives_a_rig(std::string_view kind);
+
+/// Drives a pair of a rig under supervision until it is over: what `tactus run EXPERIMENT --realtime --device FILE.toml`
+/// is. Each joint by the controller of an experiment of the kind `tapping`; two arms by the sites of one of the kind
+/// `arm-tapping`, which carry them. Nothing gets power before the rig is clean.
 Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_on, runtime::ServoThreadParams servo,
               const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes);
 

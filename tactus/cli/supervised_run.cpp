@@ -244,11 +244,13 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
   const auto experiment = experiments::choose_experiment(document);
   if (!experiment) return experiment.error();
   const SitesHere here{.one = role_of(options.site)};
-  if ((*experiment)->kind() != "tapping") {
+  const bool rig = std::ranges::any_of(options.devices, names_a_rig);
+  if (const auto kind = (*experiment)->kind(); rig ? !drives_a_rig(kind) : kind != "tapping") {
     return refused(ErrorCode::inconsistent, here.one ? "--site" : "--device",
-                   "only an experiment of the kind tapping runs as two sites");
+                   rig ? "only an experiment of the kind tapping or arm-tapping drives a rig"
+                       : "only an experiment of the kind tapping runs as two sites");
   }
-  if (std::ranges::any_of(options.devices, names_a_rig)) {
+  if (rig) {
     if (here.one) {
       return refused(ErrorCode::inconsistent, "--site",
                      "a rig has a leader and a follower, which run in one program: leave out --site");

@@ -30,7 +30,32 @@ void add_unchosen(const T& params, const T& defaults, const std::string& group, 
   });
 }
 
+/// What only a force sensor gives a meaning.
+void forgive_sensors(std::vector<Unchosen>& found) {
+  std::erase_if(found, [](const Unchosen& one) {
+    return one.key.ends_with(".unbalanced_force_N") || one.key.find(".reversal.") != std::string::npos;
+  });
+}
+
+Check refuse(const std::vector<Unchosen>& found) {
+  if (found.empty()) return {};
+  std::string message = found.front().value + " is the default, which protects no real device";
+  if (found.size() > 1) message += "; so are ";
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    message += (i == 1 ? "" : i + 1 < found.size() ? ", " : " and ") + found[i].key + " = " + found[i].value;
+  }
+  message += ": set each to what the device, and whoever touches it, can stand";
+  return Error{.code = ErrorCode::inconsistent, .parameter = found.front().key, .message = message, .place = {}};
+}
+
 }  // namespace
+
+Check refuse_default_limits(const SafetyGate::Params& gate, const std::string& name) {
+  std::vector<Unchosen> found;
+  add_unchosen(gate, SafetyGate::Params{}, name, found);
+  forgive_sensors(found);
+  return refuse(found);
+}
 
 Check refuse_default_limits(const ControlParams& params, SiteRole role) {
   const ControlParams defaults;
@@ -45,26 +70,14 @@ Check refuse_default_limits(const ControlParams& params, SiteRole role) {
   } else {
     add_unchosen(params.slave_gate, defaults.slave_gate, "slave_gate", found);
   }
-  if (!sensed) {
-    std::erase_if(found, [](const Unchosen& one) {
-      return one.key.ends_with(".unbalanced_force_N") || one.key.find(".reversal.") != std::string::npos;
-    });
-  }
+  if (!sensed) forgive_sensors(found);
   const auto& supervision = params.supervision;
   if (sensed && supervision.force_sensor.residual_limit_N == defaults.supervision.force_sensor.residual_limit_N) {
     found.push_back(
         {"supervision.force_sensor.residual_limit_N", format_number(supervision.force_sensor.residual_limit_N) + " N"});
   }
   if (supervision.probe.force_N == 0.0) found.push_back({"supervision.probe.force_N", "0 N"});
-  if (found.empty()) return {};
-
-  std::string message = found.front().value + " is the default, which protects no real device";
-  if (found.size() > 1) message += "; so are ";
-  for (std::size_t i = 1; i < found.size(); ++i) {
-    message += (i == 1 ? "" : i + 1 < found.size() ? ", " : " and ") + found[i].key + " = " + found[i].value;
-  }
-  message += ": set each to what the device, and whoever touches it, can stand";
-  return Error{.code = ErrorCode::inconsistent, .parameter = found.front().key, .message = message, .place = {}};
+  return refuse(found);
 }
 
 }  // namespace tactus::control

@@ -2,6 +2,8 @@
 
 #include <tactus/control/architecture.hpp>
 
+#include <string>
+
 namespace tactus::control {
 
 /// Refuses to drive a device that is not simulated within limits that nobody chose. The defaults of a gate are wide,
@@ -14,5 +16,8 @@ namespace tactus::control {
 ///
 /// Errors: `inconsistent`, naming all such keys below `[control]` and their values. Cold: allocates.
 Check refuse_default_limits(const ControlParams& params, SiteRole role);
+
+/// The same of a gate alone, called `name`, before a motor whose site has no force sensor. Its keys stand below `name`.
+Check refuse_default_limits(const SafetyGate::Params& gate, const std::string& name);
 
 }  // namespace tactus::control

@@ -176,13 +176,15 @@ class Site {
       : controller_(other.controller_->clone()),
         gates_(other.gates_),
         believed_(other.believed_),
-        pushes_(other.pushes_) {}
+        pushes_(other.pushes_),
+        carried_(other.carried_) {}
   Site(Site&&) noexcept = default;
   Site& operator=(Site other) noexcept {
     std::swap(controller_, other.controller_);
     gates_ = other.gates_;
     believed_ = other.believed_;
     pushes_ = other.pushes_;
+    carried_ = other.carried_;
     return *this;
   }
   ~Site() = default;
@@ -209,11 +211,12 @@ class Site {
     believed_ = read;
     Output output = controller_->respond(believed_);
     Forces passed = added_N;
-    pushes_ = false;
+    pushes_ = carried_ = false;
     for_each_joint(
         [this, &shares](JointGates& gates, JointOf<Out>& joint, const JointOf<In>& believed, double added,
                         double& force) noexcept {
           const double wanted_support_N = joint.support_N;
+          carried_ = carried_ || wanted_support_N != 0.0;
           scale(joint, shares);
           if (added != 0.0) joint.motor_force_N += added;
           gates.pass(joint, believed);
@@ -233,7 +236,7 @@ class Site {
     controller_->reset();
     for_each_joint([](JointGates& gates) noexcept { gates.reset(); }, gates_);
     believed_ = nothing();
-    pushes_ = false;
+    pushes_ = carried_ = false;
   }
   /// The controller as made and no fault any more; the forces go on from where they are, within the rate limit.
   void rearm() noexcept {
@@ -279,6 +282,8 @@ class Site {
   }
   /// Whether a force passes, or a drive has a law, beyond what carries the device.
   [[nodiscard]] bool works() const noexcept { return pushes_; }
+  /// Whether the controller carries the device (`support_N`), at the latest tick.
+  [[nodiscard]] bool is_carried() const noexcept { return carried_; }
   /// To look at.
   [[nodiscard]] const Gates& gates() const noexcept { return gates_; }
 
@@ -319,7 +324,8 @@ class Site {
   std::unique_ptr<Controller> controller_;
   Gates gates_;
   Sensors believed_;
-  bool pushes_ = false;  ///< beyond the support, at the latest tick
+  bool pushes_ = false;   ///< beyond the support, at the latest tick
+  bool carried_ = false;  ///< by the controller's support, at the latest tick
 };
 
 using MasterSite = Site<MasterInput, MasterOutput, MasterGates>;

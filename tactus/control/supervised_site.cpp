@@ -95,7 +95,9 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
   const bool follows = state == SiteState::active && !input.requests.clutch;
 
   const Sensors sensors = with(input.sensors, supervision_.arrival(offset_m_));
-  const auto probe_N = supervision_.probe(member_of_each(sensors, &MasterInput::motor_position_m), site_.works());
+  const bool sinks = site_.is_carried() && !supervision_.carries();
+  const auto probe_N =
+      supervision_.probe(member_of_each(sensors, &MasterInput::motor_position_m), site_.works(), sinks);
   const Shares shares{.force = supervision_.blend(follows), .support = supervision_.carry()};
   Output output{
       .site = site_.step(sensors, shares, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
@@ -141,7 +143,8 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
   }
   if (supervision_.probes()) supervision_.stand(here_m);
   const Sensors sensors = with(input.sensors, supervision_.arrival(same_for_each(here_m, 0.0)));
-  const auto probe_N = supervision_.probe(here_m, site_.works());
+  const bool sinks = site_.is_carried() && !supervision_.carries();
+  const auto probe_N = supervision_.probe(here_m, site_.works(), sinks);
   const bool stands = state == SiteState::align || state == SiteState::armed;
   const Shares shares{.force = supervision_.blend((stands || state == SiteState::active) && !supervision_.probes()),
                       .support = supervision_.carry()};

@@ -180,9 +180,10 @@ class SupervisionOf {
   SiteState decide(const Sight& sight) noexcept;
   /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
   Each<Payload, Arrival> arrival(const Lengths& offset_m) noexcept;
-  /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone and none
-  /// passes to the motor any more, `position_m` being measured. Once, after `decide` and before `blend`.
-  Forces probe(const Lengths& position_m, bool force_passes) noexcept;
+  /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone, none
+  /// passes to the motor any more (`force_passes`), `position_m` being measured. `sinks` where something carries the
+  /// device and has not come in yet: then the trial waits for that. Once, after `decide` and before `blend` and `carry`.
+  Forces probe(const Lengths& position_m, bool force_passes, bool sinks = false) noexcept;
   /// Whether the site is armed and its motor not yet tried: the controller's force must go.
   [[nodiscard]] bool probes() const noexcept { return state() == SiteState::armed && !proved_; }
   /// The share of the controller's force, on its way to 1 or 0; in `fault`, and at a master whose dead-man switch was
@@ -191,6 +192,8 @@ class SupervisionOf {
   /// The share of what carries the device: on its way to 1 wherever the site has power and does not let go, to 0 in
   /// `configure`; where it lets go 0 at once, for the gate to ramp. Once, after `decide`.
   double carry() noexcept;
+  /// Whether all of it has come in, at the latest tick.
+  [[nodiscard]] bool carries() const noexcept { return carried_ == 1.0; }
   /// The packet that says `message`. Once a tick.
   Packet packet(const Payload& message) noexcept;
   /// A slave's command is `position_m` until it follows.

@@ -47,10 +47,27 @@ struct MotorReading {
   std::int64_t answers = 0;    ///< good ones, since the start
 };
 
+/// The law that a motor runs by itself beside the torque that it is told, at the rate of its current loop and without
+/// the bus's delay, in its own sense of turning, at the output of its gear:
+///
+///     stiffness·(position − its own) + damping·(velocity − its own)
+///
+/// Positions as those of `MotorReading`: they go on where the wire's number wraps. It goes on by its last law until the
+/// next command, or until it loses its power.
+struct MotorLaw {
+  double position_rad = 0.0;
+  double velocity_rad_per_s = 0.0;
+  double stiffness_Nm_per_rad = 0.0;
+  double damping_Nms_per_rad = 0.0;
+
+  [[nodiscard]] bool acts() const noexcept { return stiffness_Nm_per_rad != 0.0 || damping_Nms_per_rad != 0.0; }
+};
+
 /// What a motor is asked for.
 struct MotorCommand {
   double torque_Nm = 0.0;    ///< at the output of the gear
   std::int64_t enabled = 0;  ///< 0: no power
+  MotorLaw law = {};         ///< comes to the torque
 };
 
 /// What a motor said of itself when it was asked, for a person. Empty: not told.
@@ -90,7 +107,8 @@ class MotorBus : public wire::WireEnd {
   /// Of a motor below `motors()`.
   [[nodiscard]] virtual const MotorReading& reading(std::size_t motor) const noexcept = 0;
   /// From the next cycle on. A torque that is no number, or beyond what the motor takes, is never sent: it counts as no
-  /// power, respectively as the limit.
+  /// power, respectively as the limit. So do the numbers of a law; beyond a limit torque and gains keep one share, so
+  /// nothing grows. A motor that runs no law has no power while it is asked for one.
   virtual void command(std::size_t motor, const MotorCommand& wanted) noexcept = 0;
   /// Cycles that ended, whether or not all motors answered.
   [[nodiscard]] virtual std::int64_t cycles() const noexcept = 0;

@@ -53,6 +53,8 @@ Joints<station::DeviceReading> MotorBusDevice::read(const station::Tick& tick) n
       turns_rad_[joint] = own.first_position_rad(motor.position_rad) - told_rad;
     }
     reading_[joint].position_m = told_rad + turns_rad_[joint];
+    reading_[joint].motor_tells = {.velocity_m_per_s = own.velocity_rad_per_s(motor.velocity_rad_per_s),
+                                   .force_N = own.torque_Nm(motor.torque_Nm)};
     reading_[joint].age_s = 1e-9 * static_cast<double>(tick.deadline_ns - motor.heard_ns);
   }
   const DeviceTrouble now = found();
@@ -137,7 +139,8 @@ void MotorBusDevice::write(const Joints<station::DeviceCommand>& command) noexce
       wanted_since_ns_[joint] = now_ns_;
       had_power_[joint] = false;
     }
-    motor = {.torque_Nm = own.motor_torque_Nm(command[joint].force_N), .enabled = wanted ? 1 : 0};
+    motor = own.motor_command(command[joint], reading_[joint], turns_rad_[joint]);
+    motor.enabled = wanted ? 1 : 0;
     any = any || wanted;
   }
   if (!any && health_ >= DeviceHealth::silent) judge(found());

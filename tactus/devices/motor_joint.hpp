@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/control/drive_law.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/devices/motor_bus.hpp>
 #include <tactus/station/device.hpp>
@@ -15,12 +16,15 @@ inline constexpr Unit radian{"rad", "_rad"};
 inline constexpr Unit radian_per_second{"rad/s", "_rad_per_s"};
 inline constexpr Unit newton_metre{"N m", "_Nm"};
 inline constexpr Unit newton_metre_per_second{"N m/s", "_Nm_per_s"};
+inline constexpr Unit newton_metre_per_radian{"N m/rad", "_Nm_per_rad"};
+inline constexpr Unit newton_metre_second_per_radian{"N m s/rad", "_Nms_per_rad"};
 inline constexpr Unit degree_celsius{"degC", "_C"};
 }  // namespace joint_units
 
 /// A joint, the motor that moves it, and what it may do:
 ///
-///     joint = sign · motor / gear + offset,   torque of the motor = sign · torque of the joint / gear
+///     joint = sign · motor / gear + offset,   torque of the motor = sign · torque of the joint / gear,
+///     gains of the motor's law = gains of the joint's / gear²
 ///
 /// The motor's numbers are those at the output of its own gear. Where the joint slides, read m for rad and N for N m.
 struct MotorJoint {
@@ -32,6 +36,8 @@ struct MotorJoint {
   double velocity_limit_rad_per_s = 0.0;
   double torque_limit_Nm = 0.0;
   double torque_rate_limit_Nm_per_s = 0.0;
+  double stiffness_limit_Nm_per_rad = 0.0;  ///< of the law that its motor runs; both 0: none
+  double damping_limit_Nms_per_rad = 0.0;
   double temperature_limit_C = 70.0;
   bool gives_force = true;  ///< false: it tells where it is and takes no command
   double turn_rad = 0.0;    ///< of the motor, after which its number begins anew at each start; 0: it does not
@@ -54,6 +60,12 @@ struct MotorJoint {
               "The largest torque at the joint, either way."),
         field("torque_rate_limit_Nm_per_s", &MotorJoint::torque_rate_limit_Nm_per_s, newton_metre_per_second,
               positive_up_to(1e6), "The fastest change of that torque."),
+        field("stiffness_limit_Nm_per_rad", &MotorJoint::stiffness_limit_Nm_per_rad, newton_metre_per_radian,
+              between(0.0, 5e6),
+              "The stiffest that its motor may hold it by itself, about the joint; until the next command the torque may "
+              "leave its limit by that times the way."),
+        field("damping_limit_Nms_per_rad", &MotorJoint::damping_limit_Nms_per_rad, newton_metre_second_per_radian,
+              between(0.0, 5e4), "The most damping that its motor may give it by itself; both 0: it runs no law."),
         field("temperature_limit_C", &MotorJoint::temperature_limit_C, degree_celsius, between(20.0, 150.0),
               "A motor that is hotter loses its power.")};
   }
@@ -78,6 +90,31 @@ struct MotorJoint {
         std::isnan(of_joint_Nm) ? of_joint_Nm : std::clamp(of_joint_Nm, -torque_limit_Nm, torque_limit_Nm);
     return static_cast<double>(sign) * held_Nm / gear;
   }
+  [[nodiscard]] double torque_Nm(double of_motor_Nm) const noexcept {
+    return static_cast<double>(sign) * gear * of_motor_Nm;
+  }
+  /// The law of the motor that is that law of the joint, `turns_rad` of the joint being what its motor's number does not
+  /// count (`first_position_rad`).
+  [[nodiscard]] MotorLaw motor_law(const control::DriveLaw& of_joint, double turns_rad) const noexcept {
+    const double way = static_cast<double>(sign) * gear;
+    return {.position_rad = way * (of_joint.position_m - offset_rad - turns_rad),
+            .velocity_rad_per_s = way * of_joint.velocity_m_per_s,
+            .stiffness_Nm_per_rad = of_joint.stiffness_N_per_m / (gear * gear),
+            .damping_Nms_per_rad = of_joint.damping_N_s_per_m / (gear * gear)};
+  }
+  /// What its motor is told so that the joint gets that force and law, at this reading within the torque limit. It says
+  /// nothing of power. Real-time safe.
+  [[nodiscard]] MotorCommand motor_command(const station::DeviceCommand& of_joint, const station::DeviceReading& at,
+                                           double turns_rad) const noexcept {
+    if (!of_joint.law.acts()) return {.torque_Nm = motor_torque_Nm(of_joint.force_N)};
+    double force_N = of_joint.force_N;
+    control::DriveLaw law = of_joint.law;
+    const double whole_N = force_N + law.force_N(at.position_m, at.motor_tells.velocity_m_per_s);
+    if (std::fabs(whole_N) > torque_limit_Nm) {
+      control::keep_part(force_N, law, whole_N, std::copysign(torque_limit_Nm, whole_N));
+    }
+    return {.torque_Nm = static_cast<double>(sign) * force_N / gear, .law = motor_law(law, turns_rad)};
+  }
   [[nodiscard]] bool contains(double position_rad) const noexcept {
     return position_rad >= lower_rad && position_rad <= upper_rad;
   }
@@ -96,7 +133,9 @@ struct MotorJoint {
             .handle_force_N = 0.0,
             .rate_N_per_s = gives_force ? torque_rate_limit_Nm_per_s : no_rate_N_per_s,
             .velocity_m_per_s = velocity_limit_rad_per_s,
-            .position_m = std::max(std::fabs(lower_rad), std::fabs(upper_rad))};
+            .position_m = std::max(std::fabs(lower_rad), std::fabs(upper_rad)),
+            .stiffness_N_per_m = stiffness_limit_Nm_per_rad,
+            .damping_N_s_per_m = damping_limit_Nms_per_rad};
   }
 };
 

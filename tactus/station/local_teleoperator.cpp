@@ -3,6 +3,21 @@
 
 namespace tactus::station {
 
+namespace {
+
+/// That nobody drives a real device without supervision. Errors name the site.
+Check refuse_unsupervised(bool supervised, bool master_is_real, bool slave_is_real) {
+  if (supervised || (!master_is_real && !slave_is_real)) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = master_is_real ? "master" : "slave",
+               .message =
+                   "a device that is not simulated needs supervised sites, which a person arms and can stop: "
+                   "drive it by a LocalTeleoperator",
+               .place = {}};
+}
+
+}  // namespace
+
 template <class Pair>
 Result<DevicePair<Pair>> DevicePair<Pair>::make(const Params& control, const LinkParams& channel, Seconds tick,
                                                 const Lengths& slave_start_m, Device& master, Device& slave) {
@@ -10,19 +25,29 @@ Result<DevicePair<Pair>> DevicePair<Pair>::make(const Params& control, const Lin
   if (!master_wall) return master_wall.error();
   auto slave_wall = wall_before(slave, control, control::SiteRole::slave);
   if (!slave_wall) return slave_wall.error();
-  if (!std::is_same_v<Wish, control::SiteRequests> && (*master_wall || *slave_wall)) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = *master_wall ? "master" : "slave",
-                 .message =
-                     "a device that is not simulated needs supervised sites, which a person arms and can stop: "
-                     "drive it by a LocalTeleoperator",
-                 .place = {}};
-  }
+  if (Check error = refuse_unsupervised(supervised, *master_wall != nullptr, *slave_wall != nullptr)) return *error;
   const Params own = tightened(tightened(control, control::SiteRole::master, master.limits()), control::SiteRole::slave,
                                slave.limits());
   auto sites = Pair::make(own, channel, tick, slave_start_m);
   if (!sites) return sites.error();
   return DevicePair(*std::move(sites), {*std::move(master_wall), *std::move(slave_wall)}, slave_start_m, master, slave);
+}
+
+template <class Pair>
+Result<DevicePair<Pair>> DevicePair<Pair>::around(Pair sites, Device& master, Device& slave) {
+  const auto joints = [&sites] {
+    if constexpr (supervised) {
+      return same_for_each(sites.slave().site().gates(), 0.0);
+    } else {
+      return same_for_each(sites.slave().gates(), 0.0);
+    }
+  }();
+  auto master_wall = wall_before(master, joints_of(joints), control::SiteRole::master);
+  if (!master_wall) return master_wall.error();
+  auto slave_wall = wall_before(slave, joints_of(joints), control::SiteRole::slave);
+  if (!slave_wall) return slave_wall.error();
+  if (Check error = refuse_unsupervised(supervised, *master_wall != nullptr, *slave_wall != nullptr)) return *error;
+  return DevicePair(std::move(sites), {*std::move(master_wall), *std::move(slave_wall)}, joints, master, slave);
 }
 
 template class DevicePair<SupervisedPair>;

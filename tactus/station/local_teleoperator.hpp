@@ -29,6 +29,10 @@ class DevicePair {
   static Result<DevicePair> make(const Params& control, const LinkParams& channel, Seconds tick,
                                  const Lengths& slave_start_m, Device& master, Device& slave);
 
+  /// Of sites that were made elsewhere, as those of arms, with gates that somebody has chosen and that are within what the
+  /// devices allow (`tightened`). Errors name `master` and `slave`: of other numbers of joints, too.
+  static Result<DevicePair> around(Pair sites, Device& master, Device& slave);
+
   /// One tick. `wish` is what the person presses, at both sites, or, without supervision, the share of the force that
   /// is let in. Real-time safe as far as the devices are.
   Output step(const Tick& tick, const Wish& wish) noexcept { return sites_.step(*master_, *slave_, tick, wish); }
@@ -49,6 +53,7 @@ class DevicePair {
   [[nodiscard]] const Pair& sites() const noexcept { return sites_; }
 
  private:
+  static constexpr bool supervised = std::is_same_v<Wish, control::SiteRequests>;
   using Walls = std::array<std::unique_ptr<GuardedDeviceOf<Reading>>, 2>;
   DevicePair(Pair sites, Walls walls, const Lengths& joints, Device& master, Device& slave)
       : sites_(std::move(sites)),
@@ -57,7 +62,7 @@ class DevicePair {
         master_(walls_[0] ? walls_[0].get() : &master),
         slave_(walls_[1] ? walls_[1].get() : &slave) {}
   static Wish leaving() noexcept {
-    if constexpr (std::is_same_v<Wish, control::SiteRequests>) {
+    if constexpr (supervised) {
       return {.leave = true};
     } else {
       return 0.0;

@@ -22,30 +22,46 @@ void tighten(control::SafetyGate::Params& gate, const DeviceLimits& device) {
 }  // namespace
 
 template <class Reading>
-Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>& device,
-                                                              const Each<Reading, control::ControlParams>& control,
+Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>& device, std::size_t joints,
                                                               control::SiteRole role) {
   const char* site = role == control::SiteRole::master ? "master" : "slave";
   if (auto error = check_limits(device)) return under(site, *std::move(error));
-  if (const std::size_t joints = joints_of(device.limits()); joints != joints_of(control)) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = site,
-                 .message = "has " + std::to_string(joints) + " joints, and the parameters are of " +
-                            std::to_string(joints_of(control)),
-                 .place = {}};
+  if (const std::size_t own = joints_of(device.limits()); own != joints) {
+    return Error{
+        .code = ErrorCode::inconsistent,
+        .parameter = site,
+        .message = "has " + std::to_string(own) + " joints, and the parameters are of " + std::to_string(joints),
+        .place = {}};
   }
   if (device.simulated()) return std::unique_ptr<GuardedDeviceOf<Reading>>();
+  return std::make_unique<GuardedDeviceOf<Reading>>(device);
+}
+
+template <class Reading>
+Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>& device,
+                                                              const Each<Reading, control::ControlParams>& control,
+                                                              control::SiteRole role) {
+  auto wall = wall_before(device, joints_of(control), role);
+  if (!wall || !*wall) return wall;
   for (std::size_t joint = 0; joint < joints_of(control); ++joint) {
     if (auto error = control::refuse_default_limits(joint_of(control, joint), role)) {
       return under("control", under_joint<Reading>(joint, *std::move(error)));
     }
   }
-  return std::make_unique<GuardedDeviceOf<Reading>>(device);
+  return wall;
 }
 
+template Result<std::unique_ptr<GuardedDevice>> wall_before(Device&, std::size_t, control::SiteRole);
+template Result<std::unique_ptr<GuardedJointDevice>> wall_before(JointDevice&, std::size_t, control::SiteRole);
 template Result<std::unique_ptr<GuardedDevice>> wall_before(Device&, const control::ControlParams&, control::SiteRole);
 template Result<std::unique_ptr<GuardedJointDevice>> wall_before(JointDevice&, const Joints<control::ControlParams>&,
                                                                  control::SiteRole);
+
+control::SafetyGate::Params tightened(const control::SafetyGate::Params& gate, const DeviceLimits& device) {
+  control::SafetyGate::Params own = gate;
+  tighten(own, device);
+  return own;
+}
 
 control::ControlParams tightened(const control::ControlParams& control, control::SiteRole role,
                                  const DeviceLimits& device) {

@@ -3,6 +3,7 @@
 #include <tactus/control/architecture.hpp>
 #include <tactus/station/device_guard.hpp>
 
+#include <cstddef>
 #include <memory>
 
 /// What must be so before a site drives a device.
@@ -16,6 +17,14 @@ Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>&
                                                               const Each<Reading, control::ControlParams>& control,
                                                               control::SiteRole role);
 
+/// The same before sites that were made elsewhere, of so many joints: whoever made them answers for their gates
+/// (`refuse_default_limits` of a gate).
+template <class Reading>
+Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>& device, std::size_t joints,
+                                                              control::SiteRole role);
+
+/// The gate within what its device allows.
+control::SafetyGate::Params tightened(const control::SafetyGate::Params& gate, const DeviceLimits& device);
 /// The parameters with the gates of a site within what its device allows, so that they act before the wall does and
 /// what the site believes to be applied is.
 control::ControlParams tightened(const control::ControlParams& control, control::SiteRole role,

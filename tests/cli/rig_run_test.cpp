@@ -182,6 +182,69 @@ TEST_F(RigRun, AGuardTakesThePowerFromServosWithoutAWatchdogWhenTheProgramIsKill
   EXPECT_NE(said.find("guarded no ffff01030001fa ffff01030001fa\n"), std::string::npos) << said;
 }
 
+/// Arms with their weight behind the motors, held at first 0.15 rad apart.
+class ArmRun : public RigRun {
+ protected:
+  /// In the rest of the script `$ARMS` drives them.
+  std::string arms(const std::string& rest) {
+    const std::string arm =
+        "damiao --motors 8 --arm $EXPERIMENTS/arms/openarm-class.urdf --armature 0.0167,0.0167,0.029,0.029,0.0018 "
+        "--model DM8009,DM8009,DM4340,DM4340,DM4310 --held 0.2,-1.77,0.15,";
+    const std::filesystem::path rigs = std::filesystem::path(TACTUS_JOINTS_FILE).parent_path();
+    setenv("EXPERIMENTS", TACTUS_EXPERIMENT_FOLDER, 1);
+    setenv("RIGS", rigs.c_str(), 1);
+    return shell(arm + "1.55,0.2,0.1,0.2", arm + "1.4,0.2,0.1,0.2", "", R"sh(
+      sed "s|/dev/serial/by-id/LEADER|$leader|; s|/dev/serial/by-id/FOLLOWER|$follower|
+           s|^framing.*|patience_s = 0.05\nwatchdog_s = 1.0|" $RIGS/openarm-arms.toml >rig.toml
+      ARMS="$TACTUS run $RIGS/arms.toml --realtime --device rig.toml"
+      )sh" + rest);
+  }
+};
+
+TEST_F(ArmRun, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
+  // On a machine that does other things too, a motor may be unheard for longer than it may be.
+  const std::string whole = ", silent in 0, lost in 0 ticks; ";
+  std::string said;
+  for (int tries = 0; tries < 3 && said.find(whole) == std::string::npos; ++tries) {
+    said = arms("$ARMS --arm --duration-s 12 --out run --overwrite <&9; echo status $?");
+  }
+  EXPECT_NE(said.find(whole), std::string::npos) << said;
+  EXPECT_NE(said.find("11 s: leader active, follower active (none), "), std::string::npos) << said;
+  EXPECT_NE(said.find("; armed 1 times, held 0 times, "), std::string::npos) << said;
+  EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
+  EXPECT_LT(apart(said, "11"), 0.06) << said;
+}
+
+TEST_F(ArmRun, AFollowerWhoseMotorsAreGoneIsAFaultAndTheLeaderHoldsItself) {
+  const std::string said = arms(R"sh(
+      $ARMS --arm --duration-s 14 <&9 >run.out 2>&1 & run=$!
+      for try in $(seq 120); do grep -q 'follower active' run.out && break; sleep 0.1; done
+      kill -KILL ${peers##* }
+      wait $run; echo status $?
+      cat run.out)sh");
+  EXPECT_NE(said.find("leader active, follower active (none)"), std::string::npos) << said;
+  EXPECT_NE(said.find("leader hold, follower fault (gate), "), std::string::npos) << said;
+  EXPECT_NE(said.find("; follower: its port was closed"), std::string::npos) << said;
+  EXPECT_EQ(said.find("leader fault"), std::string::npos) << said;
+  EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
+}
+
+TEST_F(RigRun, AnArmThatTheRigDoesNotFitIsRefusedBeforeAnythingIsOpened) {
+  const auto file = std::filesystem::path(TACTUS_JOINTS_FILE).parent_path() / "arms.toml";
+  write("rig.toml", pair("damiao", "DM4310", 7, ""));
+  const auto said = tactus({"run", file.string(), "--realtime", "--device", "rig.toml"});
+  EXPECT_EQ(said.status, 2);
+  EXPECT_NE(said.err.find("arm.leader.joint_1.damping_limit_Nms_per_rad: 0 N m s/rad is less than the 5 N m s/rad that "
+                          "the experiment asks of its motor's own law"),
+            std::string::npos)
+      << said.err;
+  const auto other = tactus({"run", TACTUS_EXPERIMENT_FOLDER "/contest.toml", "--realtime", "--device", "rig.toml"});
+  EXPECT_NE(other.err.find("only an experiment of the kind tapping or arm-tapping drives a rig"), std::string::npos)
+      << other.err;
+}
+
 TEST_F(RigRun, WhatMakesNoSenseIsRefusedWithTheRemedy) {
   const auto refusal = [this](const std::string& rig, const std::vector<std::string>& more) {
     write("rig.toml", rig);

@@ -16,6 +16,8 @@ constexpr int most_tries = 50;
 constexpr int missed_is_absent = 3;
 constexpr std::int64_t absent_asked_every_ns = 10'000'000;
 constexpr double timeout_unit_s = 50e-6;
+/// So far from where its number begins anew, a motor may still hold a position: it can't come there in a cycle or two.
+constexpr double near_the_end_rad = 0.5;
 
 std::int64_t ns_of(double seconds) { return std::llround(seconds * 1e9); }
 
@@ -107,9 +109,28 @@ const MotorReading& DamiaoBus::reading(std::size_t motor) const noexcept { retur
 void DamiaoBus::command(std::size_t motor, const MotorCommand& wanted) noexcept {
   MotorCommand& command = motors_[motor].command;
   const double most_Nm = motors_[motor].scale.torque_Nm;
-  const bool number = std::isfinite(wanted.torque_Nm);
-  command.enabled = number ? wanted.enabled : 0;
-  command.torque_Nm = number ? std::clamp(wanted.torque_Nm, -most_Nm, most_Nm) : 0.0;
+  command = {};
+  const MotorLaw& law = wanted.law;
+  const bool numbers = std::isfinite(wanted.torque_Nm) && std::isfinite(law.position_rad) &&
+                       std::isfinite(law.velocity_rad_per_s) && std::isfinite(law.stiffness_Nm_per_rad) &&
+                       std::isfinite(law.damping_Nms_per_rad);
+  // A negative gain would drive away what it is to hold.
+  if (!numbers || law.stiffness_Nm_per_rad < 0.0 || law.damping_Nms_per_rad < 0.0) return;
+  command.enabled = wanted.enabled;
+  command.torque_Nm = std::clamp(wanted.torque_Nm, -most_Nm, most_Nm);
+  if (!law.acts()) return;
+  // Torque and law may stand against each other, so what is cut of one is cut of the other.
+  double share = 1.0;
+  const auto keep_within = [&share](double value, double most) {
+    if (std::fabs(value) > most) share = std::min(share, most / std::fabs(value));
+  };
+  keep_within(wanted.torque_Nm, most_Nm);
+  keep_within(law.stiffness_Nm_per_rad, largest_stiffness_Nm_per_rad);
+  keep_within(law.damping_Nms_per_rad, largest_damping_Nms_per_rad);
+  command.torque_Nm = share * wanted.torque_Nm;
+  command.law = law;
+  command.law.stiffness_Nm_per_rad *= share;
+  command.law.damping_Nms_per_rad *= share;
 }
 
 void DamiaoBus::send(const CanFrame& frame, std::int64_t now_ns) noexcept {
@@ -275,10 +296,23 @@ CanFrame DamiaoBus::frame_for(Motor& motor, std::int64_t now_ns) noexcept {
     motor.tries = 0;
   }
   motor.was_wanted = wanted;
+  const bool holds = wanted && motor.command.law.stiffness_Nm_per_rad > 0.0;
+  if (holds && std::fabs(motor.wrapped_rad) > motor.scale.position_rad - near_the_end_rad) {
+    motor.latched = motor.reading.fault = MotorFault::encoder;
+  }
   if (!wanted || motor.latched != MotorFault::none || is_silent(motor, now_ns)) {
     return motor.status == status_enabled ? order_frame(id, Order::disable) : refresh_frame(id);
   }
-  if (motor.status == status_enabled) return mit_frame(id, motor.scale, {.torque_Nm = motor.command.torque_Nm});
+  if (motor.status == status_enabled) {
+    const MotorLaw& law = motor.command.law;
+    const double unseen_rad = law.acts() ? motor.turns * 2.0 * motor.scale.position_rad : 0.0;
+    return mit_frame(id, motor.scale,
+                     {.position_rad = law.position_rad - unseen_rad,
+                      .velocity_rad_per_s = law.velocity_rad_per_s,
+                      .stiffness_Nm_per_rad = law.stiffness_Nm_per_rad,
+                      .damping_Nms_per_rad = law.damping_Nms_per_rad,
+                      .torque_Nm = motor.command.torque_Nm});
+  }
   ++motor.tries;
   return order_frame(id, motor.status == status_disabled ? Order::enable : Order::clear_fault);
 }

@@ -6,7 +6,6 @@ namespace tactus::devices::damiao {
 
 namespace {
 
-constexpr double largest_stiffness_Nm_per_rad = 500.0, largest_damping_Nms_per_rad = 5.0;
 constexpr std::uint16_t everybody = 0x7ff;
 constexpr std::uint8_t ask_feedback = 0xcc, read_code = 0x33, write_code = 0x55;
 

@@ -164,7 +164,7 @@ class Inverse3Link::Worker {
     Vector force_N{};
     bool any = false;
     for (std::size_t i = 0; i < params_.axes.size(); ++i) {
-      gives_[i] = wanted_.motors[i].enabled != 0;
+      gives_[i] = wanted_.motors[i].enabled != 0 && !wanted_.motors[i].law.acts();
       if (gives_[i]) force_N[static_cast<std::size_t>(params_.axes[i] - 1)] = wanted_.motors[i].torque_Nm;
       any = any || gives_[i];
     }

@@ -138,7 +138,10 @@ MotorAbility ability_of(BusKind kind, const StatedMotor& motor) {
     case BusKind::damiao: {
       const auto model = value_of<damiao::Model>("model", motor.model);
       const damiao::Scale scale = damiao::scale_of(model ? *model : damiao::Model{});
-      return {.torque_Nm = scale.torque_Nm, .velocity_rad_per_s = scale.velocity_rad_per_s};
+      return {.torque_Nm = scale.torque_Nm,
+              .velocity_rad_per_s = scale.velocity_rad_per_s,
+              .stiffness_Nm_per_rad = damiao::largest_stiffness_Nm_per_rad,
+              .damping_Nms_per_rad = damiao::largest_damping_Nms_per_rad};
     }
     case BusKind::dynamixel: {
       const auto model = value_of<dynamixel::DynamixelModel>("model", motor.model);

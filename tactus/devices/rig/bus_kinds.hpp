@@ -49,6 +49,8 @@ constexpr bool has_watchdog(BusKind kind) { return kind != BusKind::feetech; }
 struct MotorAbility {
   double torque_Nm = 0.0;           ///< 0: it takes no command; infinite: not known
   double velocity_rad_per_s = 0.0;  ///< that its numbers end at; 0: not known
+  /// The largest gains of the law that it runs by itself; both 0: it runs none.
+  double stiffness_Nm_per_rad = 0.0, damping_Nms_per_rad = 0.0;
 };
 /// Of a motor that `check` passed.
 MotorAbility ability_of(BusKind kind, const StatedMotor& motor);

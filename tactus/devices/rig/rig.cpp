@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 namespace tactus::devices {
@@ -153,6 +154,17 @@ Check Rig::check_side(const RigSide& side) const {
     const double fastest = ability.velocity_rad_per_s / joint.gear;
     if (ability.velocity_rad_per_s > 0.0 && joint.velocity_limit_rad_per_s > fastest) {
       return beyond(words.velocity_limit, joint.velocity_limit_rad_per_s, fastest, " rad/s");
+    }
+    const double squared = joint.gear * joint.gear;
+    for (const auto& [key, limit, most, unit] :
+         {std::tuple{"stiffness_limit_Nm_per_rad", joint.stiffness_limit_Nm_per_rad,
+                     ability.stiffness_Nm_per_rad * squared, " N m/rad"},
+          std::tuple{"damping_limit_Nms_per_rad", joint.damping_limit_Nms_per_rad,
+                     ability.damping_Nms_per_rad * squared, " N m s/rad"}}) {
+      if (limit <= most) continue;
+      if (most > 0.0) return beyond(key, limit, most, unit);
+      return at(join(one.path, key), ErrorCode::inconsistent,
+                "a " + one.motor.model + " runs no law by itself: remove this key");
     }
   }
   return std::nullopt;

@@ -17,17 +17,24 @@ Result<RigLoop> RigLoop::make(const Joints<control::ControlParams>& control, con
   if (!pair) return pair.error();
   Joints<double> scales(control.size());
   for (std::size_t joint = 0; joint < scales.size(); ++joint) scales[joint] = control[joint].position_scale;
-  const runtime::SiteConsole console({.duration_s = params.duration_s,
-                                      .arm_at_once = params.arm_at_once,
-                                      .listen_before_arming_s = control[0].supervision.watchdog.timeout_s,
-                                      .tick_s = tick.value},
-                                     exchange);
-  return RigLoop(console, params, leader, follower, scales, *std::move(pair));
+  return RigLoop(tick, params, exchange, leader, follower, scales, *std::move(pair));
 }
 
-RigLoop::RigLoop(const runtime::SiteConsole& console, const Params& params, MotorBusDevice& leader,
+Result<RigLoop> RigLoop::around(station::JointSupervisedPair sites, Seconds tick, const Params& params,
+                                runtime::SiteExchange& exchange, MotorBusDevice& leader, MotorBusDevice& follower) {
+  auto pair = station::JointLocalTeleoperator::around(std::move(sites), leader, follower);
+  if (!pair) return pair.error();
+  const Joints<double> scales(leader.limits().size(), 1.0);
+  return RigLoop(tick, params, exchange, leader, follower, scales, *std::move(pair));
+}
+
+RigLoop::RigLoop(Seconds tick, const Params& params, runtime::SiteExchange& exchange, MotorBusDevice& leader,
                  MotorBusDevice& follower, const Joints<double>& scales, station::JointLocalTeleoperator pair)
-    : console_(console),
+    : console_({.duration_s = params.duration_s,
+                .arm_at_once = params.arm_at_once,
+                .listen_before_arming_s = params.listen_before_arming_s,
+                .tick_s = tick.value},
+               exchange),
       params_(params),
       leader_(&leader),
       follower_(&follower),

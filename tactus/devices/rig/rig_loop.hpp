@@ -46,6 +46,7 @@ class RigLoop {
  public:
   struct Params {
     double farthest = 0.3;  ///< rad or m, of each joint: beyond it nobody can arm
+    double listen_before_arming_s = 0.0;  ///< as `SiteConsole`: as long as the watchdog waits
     double duration_s = 0.0;
     bool arm_at_once = false;
   };
@@ -53,6 +54,10 @@ class RigLoop {
   static Result<RigLoop> make(const Joints<control::ControlParams>& control, const station::LinkParams& channel,
                               Seconds tick, const Params& params, runtime::SiteExchange& exchange,
                               MotorBusDevice& leader, MotorBusDevice& follower);
+
+  /// The same with sites that were made elsewhere, as those of arms (`arm_sites`): their joints are scaled by none.
+  static Result<RigLoop> around(station::JointSupervisedPair sites, Seconds tick, const Params& params,
+                                runtime::SiteExchange& exchange, MotorBusDevice& leader, MotorBusDevice& follower);
 
   /// Every tick from now on goes there too. Before the first tick.
   void leave_in(runtime::JointStreams& streams) { streams_ = &streams; }
@@ -67,7 +72,7 @@ class RigLoop {
   struct Shared {
     telemetry::Ring<RigSecond, 64> seconds;
   };
-  RigLoop(const runtime::SiteConsole& console, const Params& params, MotorBusDevice& leader, MotorBusDevice& follower,
+  RigLoop(Seconds tick, const Params& params, runtime::SiteExchange& exchange, MotorBusDevice& leader, MotorBusDevice& follower,
           const Joints<double>& scales, station::JointLocalTeleoperator pair);
   [[nodiscard]] control::SiteRequests asked(const control::SiteRequests& pressed) noexcept;
   void judge_distance() noexcept;

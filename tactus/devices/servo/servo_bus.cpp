@@ -37,6 +37,7 @@ bool ServoBus::wants_power(const Servo& servo) noexcept {
 void ServoBus::command(std::size_t motor, const MotorCommand& wanted) noexcept {
   Servo& servo = servos_[motor];
   servo.wanted = wanted;
+  if (wanted.law.acts()) servo.wanted.enabled = 0;
   const double amperes = std::fabs(wanted.torque_Nm) / servo.model.torque_Nm_per_A;
   if (amperes > (static_cast<double>(servo.limit) + 0.5) * servo.model.current_unit_A) ++limited_;
 }

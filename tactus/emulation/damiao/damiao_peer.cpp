@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
 
 namespace tactus::emulation::damiao {
 
@@ -55,15 +57,28 @@ std::int64_t frame_ns(const Frame& frame, bool flexible) noexcept {
   return bit_ns * (static_cast<std::int64_t>(bits.size()) + stuffed + after_the_checksum);
 }
 
-Result<std::unique_ptr<DamiaoPeer>> DamiaoPeer::make(const PeerSettings& settings) {
+Result<std::unique_ptr<DamiaoPeer>> DamiaoPeer::make(const PeerSettings& settings,
+                                                     std::unique_ptr<Mechanism> mechanism) {
   constexpr Bounds counts = between(1.0, 15.0);
   const auto count = static_cast<double>(settings.motors.size());
   if (!counts.contain(count)) return out_of_bounds("motors", count, counts, units::none);
-  return std::unique_ptr<DamiaoPeer>(new DamiaoPeer(settings));
+  if (mechanism && mechanism->motors() > settings.motors.size()) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "motors",
+                 .message = std::to_string(settings.motors.size()) + " motors for an arm of " +
+                            std::to_string(mechanism->motors()) + " joints: each joint has one",
+                 .place = {}};
+  }
+  return std::unique_ptr<DamiaoPeer>(new DamiaoPeer(settings, std::move(mechanism)));
 }
 
-DamiaoPeer::DamiaoPeer(const PeerSettings& settings)
-    : settings_(settings), adapter_(settings.adapter), random_(settings.seed), outbox_(1 << 14) {
+DamiaoPeer::DamiaoPeer(const PeerSettings& settings, std::unique_ptr<Mechanism> mechanism)
+    : settings_(settings),
+      adapter_(settings.adapter),
+      random_(settings.seed),
+      mechanism_(std::move(mechanism)),
+      given_Nm_(mechanism_ ? mechanism_->motors() : 0),
+      outbox_(1 << 14) {
   waiting_.reserve(most_waiting);
   for (MotorSettings motor : settings.motors) {
     const bool wraps = std::any_of(settings.faults.begin(), settings.faults.end(), [&motor](const Fault& fault) {
@@ -79,6 +94,10 @@ DamiaoPeer::DamiaoPeer(const PeerSettings& settings)
     for (const Fault& fault : settings.faults) {
       if (fault.kind == FaultKind::wrong_scale && fault.concerns(motor.id)) motors_.back().scale_velocity(1.5);
     }
+  }
+  for (std::size_t i = 0; i < given_Nm_.size(); ++i) {
+    motors_[i].turn_with_others();
+    motors_[i].turn_to(mechanism_->position_rad(i), mechanism_->velocity_rad_per_s(i));
   }
 }
 
@@ -105,8 +124,10 @@ std::span<const std::uint8_t> DamiaoPeer::say(std::int64_t now_ns) noexcept {
 }
 
 std::int64_t DamiaoPeer::wakes_ns() const noexcept {
-  // Before its first call it knows no time.
-  return start_ns_ < 0 ? 0 : std::min(outbox_.due_ns(), next_ns());
+  // Before its first call it knows no time. A mechanism moves by itself, spoken to or not.
+  constexpr std::int64_t look_every_ns = 10'000'000;
+  const std::int64_t moves_ns = mechanism_ ? turned_until_ns_ + look_every_ns : wire::never_ns;
+  return start_ns_ < 0 ? 0 : std::min({outbox_.due_ns(), next_ns(), moves_ns});
 }
 
 void DamiaoPeer::wait(const Frame& frame, int sender, std::int64_t ready_ns) noexcept {
@@ -148,7 +169,24 @@ void DamiaoPeer::live_until(std::int64_t now_ns) noexcept {
     }
   }
   inject(now_ns);
+  turn_together_until(now_ns);
   for (Motor& motor : motors_) motor.live_until(now_ns);
+}
+
+/// What the motors of the mechanism do up to this time.
+void DamiaoPeer::turn_together_until(std::int64_t now_ns) noexcept {
+  if (!mechanism_) return;
+  // As a motor that turns alone.
+  constexpr std::int64_t step_ns = 100'000, most_ns = 10'000'000'000;
+  turned_until_ns_ = turned_until_ns_ < 0 ? now_ns : std::max(turned_until_ns_, now_ns - most_ns);
+  while (turned_until_ns_ + step_ns <= now_ns) {
+    turned_until_ns_ += step_ns;
+    for (std::size_t i = 0; i < given_Nm_.size(); ++i) given_Nm_[i] = motors_[i].give(turned_until_ns_);
+    mechanism_->step(given_Nm_);
+    for (std::size_t i = 0; i < given_Nm_.size(); ++i) {
+      motors_[i].turn_to(mechanism_->position_rad(i), mechanism_->velocity_rad_per_s(i));
+    }
+  }
 }
 
 /// What happens to motors by itself, up to this time.
@@ -158,7 +196,9 @@ void DamiaoPeer::inject(std::int64_t at_ns) noexcept {
     if (status == 0 || at_ns - start_ns_ < fault.from_ns) continue;
     for (Motor& motor : motors_) {
       if (!fault.concerns(motor.settings().id)) continue;
-      motor.live_until(std::min(at_ns, start_ns_ + fault.from_ns));
+      const std::int64_t begins_ns = std::min(at_ns, start_ns_ + fault.from_ns);
+      turn_together_until(begins_ns);
+      motor.live_until(begins_ns);
       if (fault.lasts_at(at_ns - start_ns_)) {
         motor.fail(status, true);
       } else {
@@ -186,6 +226,7 @@ void DamiaoPeer::finish_frame() noexcept {
   bus_taken_ = false;
   const std::int64_t at_ns = bus_free_ns_;
   if (on_bus_.sender != adapter_sender) return tell(on_bus_.frame, at_ns);
+  turn_together_until(at_ns);
   for (std::size_t i = 0; i < motors_.size(); ++i) {
     const std::uint32_t id = motors_[i].settings().id;
     if (suffers(FaultKind::silence, id, at_ns)) continue;

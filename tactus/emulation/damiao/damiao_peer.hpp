@@ -33,8 +33,10 @@ std::int64_t frame_ns(const Frame& frame, bool flexible) noexcept;
 /// same answers.
 class DamiaoPeer final : public wire::WireEnd {
  public:
-  /// Errors: `out_of_bounds` for the number of motors.
-  static Result<std::unique_ptr<DamiaoPeer>> make(const PeerSettings& settings);
+  /// With a mechanism, its motors are the first ones and turn together; the others each turn a joint of their own.
+  /// Errors: `out_of_bounds` for the number of motors; `inconsistent` for fewer than the mechanism has.
+  static Result<std::unique_ptr<DamiaoPeer>> make(const PeerSettings& settings,
+                                                  std::unique_ptr<Mechanism> mechanism = nullptr);
 
   void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept override;
   std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept override;
@@ -51,9 +53,10 @@ class DamiaoPeer final : public wire::WireEnd {
     std::int64_t ready_ns;
   };
 
-  explicit DamiaoPeer(const PeerSettings& settings);
+  DamiaoPeer(const PeerSettings& settings, std::unique_ptr<Mechanism> mechanism);
   [[nodiscard]] bool suffers(FaultKind kind, std::uint32_t motor, std::int64_t at_ns) const noexcept;
   void live_until(std::int64_t now_ns) noexcept;
+  void turn_together_until(std::int64_t now_ns) noexcept;
   [[nodiscard]] std::int64_t next_ns() const noexcept;
   [[nodiscard]] std::int64_t earliest_start_ns() const noexcept;
   void inject(std::int64_t at_ns) noexcept;
@@ -67,6 +70,9 @@ class DamiaoPeer final : public wire::WireEnd {
   Adapter adapter_;
   signal::Random random_;
   std::vector<Motor> motors_;
+  std::unique_ptr<Mechanism> mechanism_;
+  std::vector<double> given_Nm_;        ///< by its motors
+  std::int64_t turned_until_ns_ = -1;  ///< negative: not yet
   std::vector<Waiting> waiting_;  ///< in the order in which they were handed over
   wire::Outbox outbox_;
   bool bus_taken_ = false;

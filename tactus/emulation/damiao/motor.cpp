@@ -150,6 +150,7 @@ void Motor::obey(const Frame& heard) noexcept {
       if (!faulty) status_ = disabled;
       break;
     case 0xfe:
+      zero_rad_ += position_rad_;
       position_rad_ = 0.0;
       break;
     default:
@@ -183,6 +184,7 @@ void Motor::live_until(std::int64_t now_ns) noexcept {
   // What a process that was stopped for longer has missed is not made up for.
   constexpr std::int64_t most_ns = 10'000'000'000;
   if (now_ns_ < 0) now_ns_ = spoken_to_ns_ = now_ns;
+  if (!alone_) return;
   now_ns_ = std::max(now_ns_, now_ns - most_ns);
   while (now_ns_ + step_ns <= now_ns) {
     now_ns_ += step_ns;
@@ -190,7 +192,8 @@ void Motor::live_until(std::int64_t now_ns) noexcept {
   }
 }
 
-void Motor::step() noexcept {
+double Motor::give(std::int64_t now_ns) noexcept {
+  now_ns_ = now_ns;
   const std::int64_t patience_ns = static_cast<std::int64_t>(slot(timeout)) * timeout_unit_ns;
   if (enabled() && patience_ns > 0 && now_ns_ - spoken_to_ns_ > patience_ns) status_ = lost;
   torque_Nm_ = 0.0;
@@ -202,6 +205,11 @@ void Motor::step() noexcept {
   }
   least_torque_Nm_ = std::min(least_torque_Nm_, torque_Nm_);
   most_torque_Nm_ = std::max(most_torque_Nm_, torque_Nm_);
+  return torque_Nm_;
+}
+
+void Motor::step() noexcept {
+  give(now_ns_);
   // Implicit in both frictions: stable for every step, and a joint that should stick does.
   const JointParams& joint = settings_.joint;
   const double kick = torque_Nm_ / joint.inertia_kgm2 * step_s, hold = joint.friction_Nm / joint.inertia_kgm2 * step_s;

@@ -3,8 +3,10 @@
 #include <tactus/core/parameters.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 /// Damiao's motors and adapters as they answer, written from the protocol alone: no line of the driver is in here.
 namespace tactus::emulation::damiao {
@@ -53,6 +55,19 @@ struct MotorSettings {
   JointParams joint{};
 };
 
+/// What several motors turn together, in place of a joint for each: an arm.
+class Mechanism {
+ public:
+  virtual ~Mechanism() = default;
+  /// How many motors it has, from the first on.
+  [[nodiscard]] virtual std::size_t motors() const noexcept = 0;
+  /// At the output of a motor's gear, as all here.
+  [[nodiscard]] virtual double position_rad(std::size_t motor) const noexcept = 0;
+  [[nodiscard]] virtual double velocity_rad_per_s(std::size_t motor) const noexcept = 0;
+  /// 100 µs under these torques of its motors, in N m.
+  virtual void step(std::span<const double> torque_Nm) noexcept = 0;
+};
+
 /// A motor and what it turns. It lives in steps of 100 µs, whenever somebody asks. Deterministic; does not allocate.
 class Motor {
  public:
@@ -63,6 +78,15 @@ class Motor {
   /// A register answer nobody asked for.
   [[nodiscard]] Frame stray_answer() const noexcept;
   void live_until(std::int64_t now_ns) noexcept;
+
+  /// Turns with others from now on, which the peer steps: at each step it gives a torque, in N m, and is turned to
+  /// where that led. Where it was zeroed meanwhile, that stays its zero.
+  void turn_with_others() noexcept { alone_ = false; }
+  double give(std::int64_t now_ns) noexcept;
+  void turn_to(double position_rad, double velocity_rad_per_s) noexcept {
+    position_rad_ = position_rad - zero_rad_;
+    velocity_rad_per_s_ = velocity_rad_per_s;
+  }
 
   /// A fault, as a status of the protocol, which an order to clear takes away unless it `stays`.
   void fail(std::uint8_t status, bool stays) noexcept;
@@ -93,6 +117,8 @@ class Motor {
   MotorSettings settings_;
   std::array<std::uint32_t, 128> registers_{};
   std::uint8_t status_ = 0;
+  bool alone_ = true;
+  double zero_rad_ = 0.0;  ///< of one that turns with others
   bool stays_ = false;                            ///< its fault, whatever it is told
   std::int64_t now_ns_ = -1, spoken_to_ns_ = -1;  ///< negative: not yet
   double aim_rad_ = 0.0, aim_rad_per_s_ = 0.0, stiffness_ = 0.0, damping_ = 0.0, feedforward_Nm_ = 0.0;

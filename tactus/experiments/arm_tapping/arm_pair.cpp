@@ -74,7 +74,8 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::
   const auto described = describe_arm(params.arm, folder);
   if (!described) return described.error();
   const std::size_t joints = described->arm.motors.size();
-  ArmPairSetup setup{.params = params, .arm = described->arm, .induced = {}, .start = described->start};
+  ArmPairSetup setup{
+      .params = params, .joints = described->joints, .arm = described->arm, .induced = {}, .start = described->start};
   JointVector stiffness = setup.start;
   JointVector damping = setup.start;
   for (std::size_t i = 0; i < joints; ++i) {

@@ -6,12 +6,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace tactus::experiments {
 
 /// All that a pair is made of, read and checked.
 struct ArmPairSetup {
   ArmTappingParams params;
+  std::vector<std::string> joints;  ///< their names, from the base on
   arm_plants::ArmPlant::Params arm;
   arm_control::InducedMotion::Arm induced;  ///< the same arm, without error
   arm::JointVector start;

@@ -16,7 +16,8 @@ Result<DescribedArm> describe_arm(const ArmPairParams& params, const std::filesy
   if (!read) return Error{read.error().code, "arm.urdf", describe(read.error()), {}};
   const std::size_t joints = read->joints.size();
   const Joints<ArmJoint> described = params.joints.of(joints);
-  DescribedArm found{.arm = {.chain = read->params, .motors = Joints<arm_plants::MotorParams>(joints)},
+  DescribedArm found{.joints = read->joints,
+                     .arm = {.chain = read->params, .motors = Joints<arm_plants::MotorParams>(joints)},
                      .start = arm::JointVector::Zero(static_cast<Eigen::Index>(joints))};
   for (std::size_t i = 0; i < joints; ++i) {
     const ArmJoint& from = described[i];

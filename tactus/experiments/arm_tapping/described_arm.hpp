@@ -3,11 +3,14 @@
 #include <tactus/experiments/arm_tapping/params.hpp>
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace tactus::experiments {
 
 /// An arm as a file describes it, and where its joints begin.
 struct DescribedArm {
+  std::vector<std::string> joints;  ///< their names, from the base on
   arm_plants::ArmPlant::Params arm;
   arm::JointVector start;
 };

@@ -3,6 +3,8 @@
 #include <tactus/arm_control/arm_follower.hpp>
 #include <tactus/arm_control/arm_leader.hpp>
 #include <tactus/arm_plants/person.hpp>
+#include <tactus/control/safety_gate.hpp>
+#include <tactus/control/supervision.hpp>
 #include <tactus/core/parameters.hpp>
 
 #include <array>
@@ -100,6 +102,45 @@ struct ArmWallParams {
   }
 };
 
+struct ProbeTorque {
+  double torque_N_m = 0.0;
+  static constexpr auto fields() {
+    return List{field("torque_N_m", &ProbeTorque::torque_N_m, arm::units::newton_metre, between(0.0, 100.0),
+                      "Peak of the torque with which its motor is tried, above its friction; 0: that of "
+                      "supervision.probe.")};
+  }
+};
+
+/// A gripper, or any joint beside an arm: both drives pull it to where the other side's is.
+struct GripperParams : arm_control::DriveGains {
+  double leader_share = 0.0;
+  static constexpr auto fields() {
+    return joined(arm_control::DriveGains::fields(),
+                  List{field("leader_share", &GripperParams::leader_share, units::none, between(0.0, 1.0),
+                             "The leader's gains over these, which are the follower's.")});
+  }
+};
+
+/// What stands between the sites and the motors of a rig. Virtual time has none of it.
+struct ArmRigParams {
+  control::SafetyGate::Params leader_gate;
+  control::SafetyGate::Params follower_gate;
+  control::SupervisionParams supervision;
+  arm_control::EachJoint<ProbeTorque> probe_torque;
+  GripperParams gripper{{.stiffness_N_m_per_rad = 0.0, .damping_N_m_s_per_rad = 0.0}};
+  static constexpr auto fields() {
+    using P = ArmRigParams;
+    return List{
+        field("leader_gate", &P::leader_gate,
+              "The safety gate of each of the leader's joints; what the rig file allows a joint holds beside it."),
+        field("follower_gate", &P::follower_gate, "The same of the follower's."),
+        field("supervision", &P::supervision, "What the sites make of one another and of their own state."),
+        field("probe_torque", &P::probe_torque, "With which torque each motor's sign is tried on arming."),
+        field("gripper", &P::gripper,
+              "How joints of the rig are driven that the arm does not have; with no gains such a joint is refused.")};
+  }
+};
+
 enum class ArmTappingKind { arm_tapping };
 constexpr auto enumerators(ArmTappingKind) {
   return std::array{Enumerator{ArmTappingKind::arm_tapping, "arm-tapping"}};
@@ -159,14 +200,19 @@ struct ArmTappingParams {
   ArmControlParams control;
   ArmWallParams wall;
   ArmClockParams servo;
+  ArmRigParams rig;
   static constexpr auto fields() {
     using P = ArmTappingParams;
-    return List{field("task", &P::task, "The taps."),
-                field("arm", &P::arm, "Leader and follower, which are alike."),
-                field("operator", &P::person, "The person who holds the leader's tool."),
-                field("control", &P::control, "The sites of both arms."),
-                field("wall", &P::wall, "What the follower's tool meets."),
-                field("servo", &P::servo, "The clocks.")};
+    return List{
+        field("task", &P::task, "The taps."),
+        field("arm", &P::arm, "Leader and follower, which are alike."),
+        field("operator", &P::person, "The person who holds the leader's tool."),
+        field("control", &P::control, "The sites of both arms."),
+        field("wall", &P::wall, "What the follower's tool meets."),
+        field("servo", &P::servo, "The clocks."),
+        field("rig", &P::rig,
+              "With --device alone: what stands between the sites and the motors of a rig. Where a key says N, m "
+              "or m/s, N m, rad or rad/s are meant.")};
   }
 };
 

@@ -129,6 +129,28 @@ TEST(Rig, ALimitBeyondTheMotorsIsRefused) {
             "rig.toml:8:13: arm.leader.elbow.upper_rad: -1.5 rad must be above lower_rad, -1.5 rad");
 }
 
+TEST(Rig, AStiffnessThatItsMotorCannotRunIsRefused) {
+  const std::string damiao = damiao_side("arm.leader", "/dev/a");
+  const auto with = [&damiao](const std::string& more) {
+    return problem_of(damiao + joint("arm.leader.elbow", 1, "DM4310", more));
+  };
+  // The page: 500 N m/rad and 5 N m s/rad at the motor; about a joint the square of the gear as much.
+  EXPECT_EQ(with("stiffness_limit_Nm_per_rad = 500.0\ndamping_limit_Nms_per_rad = 5.0\n"), "");
+  EXPECT_EQ(with("stiffness_limit_Nm_per_rad = 2000.0\ngear = 2.0\n"), "");
+  EXPECT_EQ(with("stiffness_limit_Nm_per_rad = 501.0\n"),
+            "rig.toml:12:30: arm.leader.elbow.stiffness_limit_Nm_per_rad: 501 N m/rad is beyond what a DM4310 can do, "
+            "500 N m/rad: lower it, or state the model that is there");
+  EXPECT_EQ(with("damping_limit_Nms_per_rad = 21.0\ngear = 2.0\n"),
+            "rig.toml:12:29: arm.leader.elbow.damping_limit_Nms_per_rad: 21 N m s/rad is beyond what a DM4310 behind a "
+            "gear of 2 can do, 20 N m s/rad: lower it, or state the model that is there");
+  const std::string servos = "[arm.leader]\nbus = \"dynamixel\"\nport = \"/dev/a\"\n" +
+                             joint("arm.leader.elbow", 1, "xm430-w210", "damping_limit_Nms_per_rad = 0.1\n");
+  EXPECT_EQ(
+      problem_of(servos),
+      "rig.toml:12:29: arm.leader.elbow.damping_limit_Nms_per_rad: a xm430-w210 runs no law by itself: remove this "
+      "key");
+}
+
 TEST(Rig, APortOfTwoSidesIsRefusedByWhateverNameItGoes) {
   const auto folder = scratch_path();
   std::filesystem::create_directories(folder);

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <tactus/arm/chain.hpp>
+#include <tactus/arm_plants/arm_plant.hpp>
+#include <tactus/core/result.hpp>
+#include <tactus/emulation/damiao/motor.hpp>
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace tactus::emulation {
+
+/// An arm with its weight behind emulated motors, motor 1 at the joint of its base: links, rotors and friction in
+/// MuJoCo (`arm_plants::ArmPlant`), which is other code than the controller's model of an arm. Without torque it falls.
+///
+/// It begins at rest where it hangs; or where a hand holds it, which lets go, once and for good, when the motors carry
+/// the arm: when no joint would move by more than its friction allows. A hand that waits for ever says that whoever drives
+/// the motors believes in another arm.
+class EmulatedArm final : public damiao::Mechanism {
+ public:
+  struct Settings {
+    /// Links, armature, Coulomb and viscous friction, gravity.
+    arm::Chain::Params chain;
+    std::optional<arm::JointVector> held_at = {};  ///< in rad; none: it hangs
+    arm::Vector3 tool_m = arm::Vector3::Zero();    ///< on the last link
+    /// What acts on the tool from outside while nobody holds the arm; none: nothing. Called each 100 µs.
+    std::function<arm_plants::ToolForce(const arm_plants::ToolState&)> touched = {};
+  };
+  /// Errors: those of `arm_plants::ArmPlant::make`.
+  static Result<std::unique_ptr<EmulatedArm>> make(const Settings& settings);
+  ~EmulatedArm() override;
+
+  [[nodiscard]] std::size_t motors() const noexcept override;
+  [[nodiscard]] double position_rad(std::size_t motor) const noexcept override;
+  [[nodiscard]] double velocity_rad_per_s(std::size_t motor) const noexcept override;
+  void step(std::span<const double> torque_Nm) noexcept override;
+  [[nodiscard]] arm_plants::ToolState tool() const;
+  /// Whether a hand still holds it.
+  [[nodiscard]] bool held() const noexcept;
+
+ private:
+  struct Body;
+  explicit EmulatedArm(std::unique_ptr<Body> body);
+  std::unique_ptr<Body> body_;
+};
+
+}  // namespace tactus::emulation
