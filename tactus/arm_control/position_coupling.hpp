@@ -37,7 +37,8 @@ struct CoupledArm {
 /// nothing holds, where all dies out. `scale` is of one joint each, positive. Not real-time safe.
 ///
 /// Two alike joints that move together are damped by Kd·(2 − σ (scale + 1/scale)) between them, which no stiffness
-/// changes: with σ = 1 every scale but 1 drives them, and more damping of the drives drives them more.
+/// changes: with σ = 1 every scale but 1 drives them, and more damping of the drives drives them more. (What is T old
+/// adds 2 Kp T to that, while it is slow.)
 double growth_per_s(const CoupledArm& leader, const CoupledArm& follower, const PositionCoupling& coupling,
                     const JointVector& scale);
 

@@ -55,11 +55,13 @@ class LoopClock {
 struct HostedArm {
   PolledArm arm;
   LoopClock clock;
+  KnownReading response;  ///< that the loop took over at its latest tick, for the exchange
   KnownReading other;
   JointVector told_at_s;  ///< when the other's drives read what this arm's drives go by
 
   void tick(const ReleasedLaw& law, double now_s) {
-    arm.tick(law.command(arm.known().reading, other.reading.position, other.reading.velocity), now_s);
+    response = arm.known();
+    arm.tick(law.command(response.reading, other.reading.position, other.reading.velocity), now_s);
     for (Eigen::Index i = 0; i < told_at_s.size(); ++i) {
       if (arm.heard(static_cast<int>(i))) told_at_s[i] = other.at_s[i];
     }
@@ -91,6 +93,7 @@ Result<HostedArm> hosted(const CoupledArmsSetup& setup, const ArmPlant::Params& 
   const KnownReading known = polled->known();
   return HostedArm{.arm = *std::move(polled),
                    .clock = LoopClock(setup.params.host, phase, random),
+                   .response = known,
                    .other = known,
                    .told_at_s = known.at_s};
 }
@@ -202,8 +205,8 @@ Result<CoupledArmsResult> run_coupled_arms(const CoupledArmsSetup& setup) {
   for (std::int64_t k = 0; k < steps; ++k) {
     const double now_s = static_cast<double>(k) * step_s;
     if (exchange.ticks(now_s)) {
-      leader->other = follower->arm.known();
-      follower->other = leader->arm.known();
+      leader->other = follower->response;
+      follower->other = leader->response;
     }
     if (leader->clock.ticks(now_s)) leader->tick(*law, now_s);
     if (follower->clock.ticks(now_s)) follower->tick(*law, now_s);

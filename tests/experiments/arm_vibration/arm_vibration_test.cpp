@@ -64,10 +64,10 @@ TEST(ArmVibration, ThePairAsReleasedDoesNotVibrateAtEitherRateHeldOrNot) {
       params.task.held_by = held_by;
       const CoupledArmsResult found = run(params);
       EXPECT_FALSE(found.vibrates()) << rate_Hz;
-      // Two ticks until the host works on a reading, 0.7 and 0.3 to the exchange, 0.7 and 0.3 from it (half on the
-      // way of each), half a tick of hold.
-      EXPECT_NEAR(found.delay_s * rate_Hz, 2.45, 0.1);
-      EXPECT_GT(theory_of(*set_up_coupled_arms(params, folder))->arms->delay_s, 2.0 * found.delay_s);
+      // The leader's reading is taken over after 2 ticks, exchanged after 2.7, and acts on the follower from 3.4
+      // to 4.4; the follower's, of 0.4, is taken over at 2.4, exchanged at 2.7, and acts on the leader from 3 to 4.
+      EXPECT_NEAR(found.delay_s * rate_Hz, 0.5 * ((3.4 + 4.4) + (3.0 + 4.0 - 2.0 * 0.4)) / 2.0, 0.1);
+      EXPECT_GT(theory_of(*set_up_coupled_arms(params, folder))->arms->delay_s, 1.5 * found.delay_s);
     }
   }
 }
@@ -103,6 +103,7 @@ TEST(ArmVibration, ASmallerShareOfTheOthersVelocityCuresAWrongScale) {
 TEST(ArmVibration, AWrongScaleShakesABentArmAndNotAStretchedOne) {
   ArmVibrationParams params = shipped();
   params.cause.velocity_scale = 2.5;
+  params.arm.joints.joint_4.start_rad = 2.0;
   EXPECT_TRUE(run(params).vibrates());
   params.arm.joints.joint_4.start_rad = 0.5;
   EXPECT_FALSE(run(params).vibrates());
