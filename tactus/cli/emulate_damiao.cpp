@@ -115,8 +115,9 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
       ->delimiter(',')
       ->check(CLI::Range(1e-6, 10.0))
       ->needs(arm);
-  verb.add_option("--held", options->held_rad,
-                  "Where a hand holds it at first, in rad, with commas between; it lets go once the motors carry the arm")
+  verb.add_option(
+          "--held", options->held_rad,
+          "Where a hand holds it at first, in rad, with commas between; it lets go once the motors carry the arm")
       ->type_name("Q,Q,...")
       ->delimiter(',')
       ->check(CLI::Range(-12.0, 12.0))

@@ -197,8 +197,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
   const RigLoop::Params settings{.duration_s = options.duration_s, .arm_at_once = options.arm};
   const auto kind = request.document.text_at("task.kind");
   const bool arms = kind && *kind == name_of(experiments::ArmTappingKind::arm_tapping);
-  const auto found =
-      arms ? as_two_arms(request, *rig, **named, settings) : joint_by_joint(request, **named, settings);
+  const auto found = arms ? as_two_arms(request, *rig, **named, settings) : joint_by_joint(request, **named, settings);
   if (!found) return found.error();
   const RigPair& pair = found->pair;
 

@@ -19,9 +19,9 @@ bool names_a_rig(const std::string& device);
 /// Whether an experiment of that kind says how a rig is driven.
 bool drives_a_rig(std::string_view kind);
 
-/// Drives a pair of a rig under supervision until it is over: what `tactus run EXPERIMENT --realtime --device FILE.toml`
-/// is. Each joint by the controller of an experiment of the kind `tapping`; two arms by the sites of one of the kind
-/// `arm-tapping`, which carry them. Nothing gets power before the rig is clean.
+/// Drives a pair of a rig under supervision until it is over: what `tactus run EXPERIMENT --realtime --device
+/// FILE.toml` is. Each joint by the controller of an experiment of the kind `tapping`; two arms by the sites of one of
+/// the kind `arm-tapping`, which carry them. Nothing gets power before the rig is clean.
 Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_on, runtime::ServoThreadParams servo,
               const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes);
 

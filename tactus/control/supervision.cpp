@@ -203,8 +203,8 @@ Each<Payload, Arrival> SupervisionOf<Payload>::arrival(const Lengths& offset_m) 
 }
 
 template <class Payload>
-typename SupervisionOf<Payload>::Forces SupervisionOf<Payload>::probe(const Lengths& position_m,
-                                                                      bool force_passes, bool sinks) noexcept {
+typename SupervisionOf<Payload>::Forces SupervisionOf<Payload>::probe(const Lengths& position_m, bool force_passes,
+                                                                      bool sinks) noexcept {
   probing_ = probes() && (probing_ || (share_ == 0.0 && !force_passes && !sinks));
   Forces forces = same_for_each(position_m, 0.0);
   bool turn = probing_;

@@ -182,7 +182,8 @@ class SupervisionOf {
   Each<Payload, Arrival> arrival(const Lengths& offset_m) noexcept;
   /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone, none
   /// passes to the motor any more (`force_passes`), `position_m` being measured. `sinks` where something carries the
-  /// device and has not come in yet: then the trial waits for that. Once, after `decide` and before `blend` and `carry`.
+  /// device and has not come in yet: then the trial waits for that. Once, after `decide` and before `blend` and
+  /// `carry`.
   Forces probe(const Lengths& position_m, bool force_passes, bool sinks = false) noexcept;
   /// Whether the site is armed and its motor not yet tried: the controller's force must go.
   [[nodiscard]] bool probes() const noexcept { return state() == SiteState::armed && !proved_; }

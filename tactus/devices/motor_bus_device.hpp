@@ -50,10 +50,10 @@ struct DeviceTrouble {
 /// positions rad, both of the joint. A motor's torque is told from its current, so it is no reading of a hand: the
 /// force that is read is 0, and torque and velocity are what the motor tells (`motor_tells`).
 ///
-/// Where a joint has limits for it, its motor runs the law of the command by itself. Torque and law together are held to
-/// the joint's torque limit at the newest reading, in one share; until the next command the motor goes on by that law,
-/// so what it gives may leave the limit by the stiffness times the way. When commands stop, it does so until the bus's
-/// silence or its own watchdog takes its power.
+/// Where a joint has limits for it, its motor runs the law of the command by itself. Torque and law together are held
+/// to the joint's torque limit at the newest reading, in one share; until the next command the motor goes on by that
+/// law, so what it gives may leave the limit by the stiffness times the way. When commands stop, it does so until the
+/// bus's silence or its own watchdog takes its power.
 ///
 /// `good` while every motor has answered within `late`, `degraded` when the oldest answer is older, `silent` when it is
 /// older than `silence`, `lost` when the bus ended or refused its motors, or when a joint that is to have power is

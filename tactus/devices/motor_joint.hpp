@@ -60,10 +60,11 @@ struct MotorJoint {
               "The largest torque at the joint, either way."),
         field("torque_rate_limit_Nm_per_s", &MotorJoint::torque_rate_limit_Nm_per_s, newton_metre_per_second,
               positive_up_to(1e6), "The fastest change of that torque."),
-        field("stiffness_limit_Nm_per_rad", &MotorJoint::stiffness_limit_Nm_per_rad, newton_metre_per_radian,
-              between(0.0, 5e6),
-              "The stiffest that its motor may hold it by itself, about the joint; until the next command the torque may "
-              "leave its limit by that times the way."),
+        field(
+            "stiffness_limit_Nm_per_rad", &MotorJoint::stiffness_limit_Nm_per_rad, newton_metre_per_radian,
+            between(0.0, 5e6),
+            "The stiffest that its motor may hold it by itself, about the joint; until the next command the torque may "
+            "leave its limit by that times the way."),
         field("damping_limit_Nms_per_rad", &MotorJoint::damping_limit_Nms_per_rad, newton_metre_second_per_radian,
               between(0.0, 5e4), "The most damping that its motor may give it by itself; both 0: it runs no law."),
         field("temperature_limit_C", &MotorJoint::temperature_limit_C, degree_celsius, between(20.0, 150.0),
@@ -93,8 +94,8 @@ struct MotorJoint {
   [[nodiscard]] double torque_Nm(double of_motor_Nm) const noexcept {
     return static_cast<double>(sign) * gear * of_motor_Nm;
   }
-  /// The law of the motor that is that law of the joint, `turns_rad` of the joint being what its motor's number does not
-  /// count (`first_position_rad`).
+  /// The law of the motor that is that law of the joint, `turns_rad` of the joint being what its motor's number does
+  /// not count (`first_position_rad`).
   [[nodiscard]] MotorLaw motor_law(const control::DriveLaw& of_joint, double turns_rad) const noexcept {
     const double way = static_cast<double>(sign) * gear;
     return {.position_rad = way * (of_joint.position_m - offset_rad - turns_rad),

@@ -29,8 +29,8 @@ class DevicePair {
   static Result<DevicePair> make(const Params& control, const LinkParams& channel, Seconds tick,
                                  const Lengths& slave_start_m, Device& master, Device& slave);
 
-  /// Of sites that were made elsewhere, as those of arms, with gates that somebody has chosen and that are within what the
-  /// devices allow (`tightened`). Errors name `master` and `slave`: of other numbers of joints, too.
+  /// Of sites that were made elsewhere, as those of arms, with gates that somebody has chosen and that are within what
+  /// the devices allow (`tightened`). Errors name `master` and `slave`: of other numbers of joints, too.
   static Result<DevicePair> around(Pair sites, Device& master, Device& slave);
 
   /// One tick. `wish` is what the person presses, at both sites, or, without supervision, the share of the force that

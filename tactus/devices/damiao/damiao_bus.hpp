@@ -45,10 +45,10 @@ struct DamiaoBusParams {
 /// range of its number has the fault `encoder` for good. A motor that missed three cycles is asked rarely, with the
 /// same command, so that it costs the others nothing; a stall of the machine ends as it began.
 ///
-/// Law: position, velocity and gains go with the torque, each cut to the next code of the frame below, which takes up to
-/// a step of position times the stiffness from the torque. A motor knows nothing of the turns that its number does not
-/// show: one that is to hold a position and comes near to where its number begins anew would take the whole range for
-/// its way, so it loses its power before, with the fault `encoder` for good.
+/// Law: position, velocity and gains go with the torque, each cut to the next code of the frame below, which takes up
+/// to a step of position times the stiffness from the torque. A motor knows nothing of the turns that its number does
+/// not show: one that is to hold a position and comes near to where its number begins anew would take the whole range
+/// for its way, so it loses its power before, with the fault `encoder` for good.
 class DamiaoBus final : public MotorBus {
  public:
   /// Errors: parameters outside their bounds; motors with the same identifier, or with one that commands have.

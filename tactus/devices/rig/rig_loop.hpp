@@ -45,7 +45,7 @@ struct RigTotals {
 class RigLoop {
  public:
   struct Params {
-    double farthest = 0.3;  ///< rad or m, of each joint: beyond it nobody can arm
+    double farthest = 0.3;                ///< rad or m, of each joint: beyond it nobody can arm
     double listen_before_arming_s = 0.0;  ///< as `SiteConsole`: as long as the watchdog waits
     double duration_s = 0.0;
     bool arm_at_once = false;
@@ -72,8 +72,8 @@ class RigLoop {
   struct Shared {
     telemetry::Ring<RigSecond, 64> seconds;
   };
-  RigLoop(Seconds tick, const Params& params, runtime::SiteExchange& exchange, MotorBusDevice& leader, MotorBusDevice& follower,
-          const Joints<double>& scales, station::JointLocalTeleoperator pair);
+  RigLoop(Seconds tick, const Params& params, runtime::SiteExchange& exchange, MotorBusDevice& leader,
+          MotorBusDevice& follower, const Joints<double>& scales, station::JointLocalTeleoperator pair);
   [[nodiscard]] control::SiteRequests asked(const control::SiteRequests& pressed) noexcept;
   void judge_distance() noexcept;
   void note_troubles() noexcept;

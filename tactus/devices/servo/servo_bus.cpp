@@ -264,7 +264,8 @@ void ServoBus::cycle_ended() noexcept {
   read_ended(missing_ == 0);
   if (cycles_ % servo::cycles_per_look != 0) return;
   const std::size_t looks = table_.looks.size() - table_.announced;
-  servos_[look_turn_ / looks % count_].looks |= static_cast<std::uint8_t>(1U << (table_.announced + look_turn_ % looks));
+  servos_[look_turn_ / looks % count_].looks |=
+      static_cast<std::uint8_t>(1U << (table_.announced + look_turn_ % looks));
   ++look_turn_;
 }
 

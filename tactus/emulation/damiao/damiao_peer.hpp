@@ -71,9 +71,9 @@ class DamiaoPeer final : public wire::WireEnd {
   signal::Random random_;
   std::vector<Motor> motors_;
   std::unique_ptr<Mechanism> mechanism_;
-  std::vector<double> given_Nm_;        ///< by its motors
+  std::vector<double> given_Nm_;       ///< by its motors
   std::int64_t turned_until_ns_ = -1;  ///< negative: not yet
-  std::vector<Waiting> waiting_;  ///< in the order in which they were handed over
+  std::vector<Waiting> waiting_;       ///< in the order in which they were handed over
   wire::Outbox outbox_;
   bool bus_taken_ = false;
   Waiting on_bus_{};

@@ -118,7 +118,7 @@ class Motor {
   std::array<std::uint32_t, 128> registers_{};
   std::uint8_t status_ = 0;
   bool alone_ = true;
-  double zero_rad_ = 0.0;  ///< of one that turns with others
+  double zero_rad_ = 0.0;                         ///< of one that turns with others
   bool stays_ = false;                            ///< its fault, whatever it is told
   std::int64_t now_ns_ = -1, spoken_to_ns_ = -1;  ///< negative: not yet
   double aim_rad_ = 0.0, aim_rad_per_s_ = 0.0, stiffness_ = 0.0, damping_ = 0.0, feedforward_Nm_ = 0.0;

@@ -76,9 +76,11 @@ struct Bus {
   void hold(std::uint32_t motor) {
     const double at_rad = peer->motor(motor - 1).position_rad();
     const auto p = static_cast<std::uint32_t>((at_rad + 12.5) / 25.0 * 65535.0);
-    const auto kp = static_cast<std::uint32_t>(60.0 / 500.0 * 4095.0), kd = static_cast<std::uint32_t>(2.0 / 5.0 * 4095.0);
+    const auto kp = static_cast<std::uint32_t>(60.0 / 500.0 * 4095.0),
+               kd = static_cast<std::uint32_t>(2.0 / 5.0 * 4095.0);
     const auto byte = [](std::uint32_t value) { return static_cast<std::uint8_t>(value & 0xff); };
-    send(motor, {byte(p >> 8), byte(p), 0x7f, byte(0xf0 | kp >> 8), byte(kp), byte(kd >> 4), byte(kd << 4 | 0x7), 0xff});
+    send(motor,
+         {byte(p >> 8), byte(p), 0x7f, byte(0xf0 | kp >> 8), byte(kp), byte(kd >> 4), byte(kd << 4 | 0x7), 0xff});
   }
   [[nodiscard]] double moved_rad(const arm::JointVector& from) const {
     double most = 0.0;
@@ -139,7 +141,8 @@ TEST(EmulatedArm, MovesAsItsPlantDoesUnderTheTorquesOfTheMotors) {
   Bus bus({});
   bus.order_all(0xfc);
   const arm::JointVector began = bus.positions();
-  auto plant = *arm_plants::ArmPlant::make({.chain = chain(), .motors = Joints<arm_plants::MotorParams>(joints)}, began);
+  auto plant =
+      *arm_plants::ArmPlant::make({.chain = chain(), .motors = Joints<arm_plants::MotorParams>(joints)}, began);
   const double before_rad = bus.peer->motor(1).position_rad();
   bus.torque(2, 3.0);
   bus.run(200 * ms);
