@@ -10,9 +10,9 @@
 namespace tactus::diagnosis {
 
 std::string find_velocity(bool of_master, const std::vector<recording::Entry>& entries) {
-  using Words = std::array<std::string_view, 2>;
-  const Words who = of_master ? Words{"master", "leader"} : Words{"slave", "follower"};
-  const auto mentions = [](const std::string& text, const Words& words) {
+  using TwoWords = std::array<std::string_view, 2>;
+  const TwoWords who = of_master ? TwoWords{"master", "leader"} : TwoWords{"slave", "follower"};
+  const auto mentions = [](const std::string& text, const TwoWords& words) {
     return text.find(words[0]) != std::string::npos || text.find(words[1]) != std::string::npos;
   };
   std::string found;
