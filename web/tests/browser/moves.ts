@@ -51,8 +51,18 @@ export class Pointer {
   async drag({ length_mm, duration_ms }: Drag): Promise<void> {
     const handle = this.page.locator('#handle-left');
     await handle.scrollIntoViewIfNeeded();
-    const box = (await handle.boundingBox())!;
-    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const place = async (): Promise<[number, number]> => {
+      const box = (await handle.boundingBox())!;
+      return [box.x + box.width / 2, box.y + box.height / 2];
+    };
+    // It may still be on its way back from the move before: a pointer that is pressed beside it drags nothing.
+    let [x, y] = await place();
+    for (let moved = true; moved; ) {
+      await this.page.waitForTimeout(50);
+      const before = x;
+      [x, y] = await place();
+      moved = Math.abs(x - before) > 0.5;
+    }
     const width = (await this.page.locator('.loop[data-side=left] canvas').boundingBox())!.width;
     const length = (length_mm * width) / 25;
     await this.put('down', x, y);
