@@ -121,11 +121,12 @@ ShakingArms shaking_arms(const std::array<ToldByJoint, 2>& told, std::size_t joi
   return found;
 }
 
-void note(const ArmPlant& plant, ToldByJoint& told) {
+/// As the drives have it, by their own ranges: what the host makes of a velocity is not how the arm moves.
+void note(const ArmPlant& plant, const Joints<arm_plants::MotorParams>& motors, ToldByJoint& told) {
   const arm::ArmReading reading = plant.read();
   for (std::size_t i = 0; i < told.size(); ++i) {
     told[i].position.push_back(reading.position[static_cast<Eigen::Index>(i)]);
-    told[i].velocity.push_back(reading.velocity[static_cast<Eigen::Index>(i)]);
+    told[i].velocity.push_back(reading.velocity[static_cast<Eigen::Index>(i)] / motors[i].velocity_scale);
   }
 }
 
@@ -212,8 +213,8 @@ Result<CoupledArmsResult> run_coupled_arms(const CoupledArmsSetup& setup) {
     if (follower->clock.ticks(now_s)) follower->tick(*law, now_s);
     if (k % steps_a_record == 0) {
       if (held) person->begin_tick(path(now_s), path(now_s + record_s), leader->arm.plant().tool());
-      note(leader->arm.plant(), told[0]);
-      note(follower->arm.plant(), told[1]);
+      note(leader->arm.plant(), leader_arm.motors, told[0]);
+      note(follower->arm.plant(), setup.arm.motors, told[1]);
       const arm::ArmReading l = leader->arm.plant().read(), f = follower->arm.plant().read();
       result.records.push_back({.leader_rad = l.position[at],
                                 .follower_rad = f.position[at],

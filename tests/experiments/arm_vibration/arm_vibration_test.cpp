@@ -109,6 +109,15 @@ TEST(ArmVibration, AWrongScaleShakesABentArmAndNotAStretchedOne) {
   EXPECT_FALSE(run(params).vibrates());
 }
 
+TEST(ArmVibration, AHostThatReadsAVelocityTooLargeDoesNotMakeAnArmShakeMore) {
+  ArmVibrationParams params = shipped();
+  params.control.velocity_share = params.control.friction_share = 0.0;  // so the host makes no use of it
+  const double right = run(params).moving.joint.rms_rad_per_s;
+  params.cause.velocity_scale = 3.0;
+  EXPECT_GT(right, 1e-4);
+  EXPECT_NEAR(run(params).moving.joint.rms_rad_per_s, right, 1e-9);
+}
+
 TEST(ArmVibration, OldReadingsShakeTheWristAndNotTheShoulder) {
   ArmVibrationParams params = shipped();
   params.host.answer_ticks = 30;
