@@ -1,4 +1,5 @@
 #include <tactus/core/parameters.hpp>
+#include <tactus/diagnosis/columns.hpp>
 #include <tactus/diagnosis/signals.hpp>
 #include <tactus/identification/axis_recording.hpp>
 #include <tactus/identification/axis_units.hpp>
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
@@ -22,86 +22,6 @@ namespace {
 
 using identification::KnownUnit;
 using recording::Entry;
-using Words = std::vector<std::string_view>;
-
-constexpr std::size_t index_of(Role role) { return static_cast<std::size_t>(role); }
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
-/// How the column of a role is recognised: first by a name of its own, then by words of which each group has one in it.
-struct Recognised {
-  Words names;
-  std::vector<Words> groups;
-  Words unlike;
-};
-
-const Recognised& recognised(Role role) {
-  static const Words masters{"master", "leader"}, slaves{"slave", "follower"};
-  static const Words places{"position", "pos", "angle", "theta", "displacement", "_x", "_q", "x_", "q_"};
-  static const Words forces{"force", "torque", "effort", "tau", "current", "_f", "f_"};
-  static const std::array<Recognised, role_count> all{{
-      {{"master_position", "leader_position", "x_m", "xm", "q_m", "theta_m"},
-       {masters, places},
-       {"command", "induced", "intended", "target", "goal", "desired"}},
-      {{"slave_position", "follower_position", "x_s", "xs", "q_s", "theta_s"},
-       {slaves, places},
-       {"command", "target", "goal", "desired"}},
-      {{"displayed_force", "displayed_torque", "feedback_force", "reflected_force", "master_force", "leader_effort"},
-       {{"displayed", "feedback", "reflected", "master", "leader"}, forces},
-       {"hand", "operator", "handle", "position", "tip", "contact", "env"}},
-      {{"tip_force", "told_force", "contact_force", "environment_force", "f_e", "fe", "tip_torque"},
-       {{"tip", "contact", "env", "external", "interaction", "wrench"}, forces},
-       {"hand", "operator", "peak", "master", "leader"}},
-      {{"hand_force", "operator_force", "human_force", "f_h", "fh", "hand_torque"},
-       {{"hand", "operator", "human", "user"}, forces},
-       {"handle", "position"}},
-      {{"slave_force", "slave_motor_force", "slave_torque", "follower_effort", "slave_drive"},
-       {slaves, {"force", "torque", "effort", "tau", "drive", "motor", "actuator", "current"}},
-       {"position", "contact", "env", "tip", "external", "measured", "told"}},
-  }};
-  return all[index_of(role)];
-}
-
-bool mentions(const std::string& text, const Words& words) {
-  return std::any_of(words.begin(), words.end(),
-                     [&](std::string_view word) { return text.find(word) != std::string::npos; });
-}
-
-std::span<const KnownUnit> units_of(Role role) {
-  return is_position(role) ? std::span<const KnownUnit>(identification::position_units)
-                           : std::span<const KnownUnit>(identification::force_units);
-}
-
-bool unit_fits(Role role, const std::string& unit) {
-  return unit.empty() || identification::find_unit(units_of(role), unit) != nullptr;
-}
-
-/// The name of the one column that is this; empty for none and for several alike.
-std::string find_column(Role role, const std::vector<Entry>& entries) {
-  const Recognised& how = recognised(role);
-  for (const std::string_view name : how.names) {
-    for (const Entry& entry : entries) {
-      if (entry.readable && lower(entry.name) == name && unit_fits(role, entry.unit)) return entry.name;
-    }
-  }
-  std::string found;
-  for (const Entry& entry : entries) {
-    const std::string name = lower(entry.name);
-    const bool fits =
-        entry.readable && unit_fits(role, entry.unit) && !mentions(name, how.unlike) &&
-        (entry.columns == 1 || entry.rows == 1) &&
-        std::all_of(how.groups.begin(), how.groups.end(), [&](const Words& words) { return mentions(name, words); });
-    if (!fits) continue;
-    if (!found.empty()) return {};
-    found = entry.name;
-  }
-  return found;
-}
 
 /// Columns that are not named are looked for; a column plays one role.
 void fill_in(SignalRoles& roles, const std::vector<Entry>& entries) {
@@ -226,7 +146,7 @@ Result<Found> read_columns(SignalRoles roles) {
   if (identification::is_teleoperator_scope(*entries)) found.rotary = true;
   for (const Role role : {Role::master_position, Role::slave_position}) {
     const Channel* position = found.signals.find(role);
-    const std::string name = find_velocity(role == Role::master_position, *entries);
+    const std::string name = find_velocity(role, *entries);
     if (position == nullptr || name.empty() || !found.sample_time_s) continue;
     const auto velocity = recording::read(source_of(roles, name));
     if (!velocity) return velocity.error();

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <tactus/core/units.hpp>
-#include <tactus/recording/recording.hpp>
 
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace tactus::diagnosis {
 
@@ -17,10 +15,6 @@ struct ToldVelocity {
   /// The told one is another by a tenth or more: whoever reads or commands it has a wrong range for it.
   [[nodiscard]] bool wrong() const { return scale > 1.1 || scale < 1.0 / 1.1; }
 };
-
-/// The one column that is the velocity of master or leader (`of_master`), or of slave or follower, by its name and a
-/// unit of rad/s, m/s or none; empty for none and for several alike.
-std::string find_velocity(bool of_master, const std::vector<recording::Entry>& entries);
 
 /// What the integral of the velocity over stretches of 50 ms is over the way that the position went in them, by least
 /// squares, whatever the signal's frequency. None where the position hardly moves or the two do not go together (a

@@ -46,17 +46,5 @@ TEST(ToldVelocity, NothingIsToldOfAnArmThatRestsOrOfWhatDoesNotGoTogether) {
   EXPECT_FALSE(told_scale(motion(1.0).position, noise, Seconds{1e-3}));
 }
 
-TEST(ToldVelocity, IsFoundByNameAndUnitAndNotWhereSeveralAreAlike) {
-  const auto column = [](const std::string& name, const std::string& unit) {
-    return recording::Entry{.name = name, .unit = unit, .kind = "column", .rows = 10, .columns = 1, .readable = true};
-  };
-  const std::vector<recording::Entry> entries{column("leader_velocity", "rad/s"), column("leader_position", "rad"),
-                                              column("Slave speed", ""), column("slave speed command", "")};
-  EXPECT_EQ(find_velocity(true, entries), "leader_velocity");
-  EXPECT_EQ(find_velocity(false, entries), "Slave speed");
-  EXPECT_EQ(find_velocity(true, {column("master_vel", "deg/s")}), "") << "not in that unit";
-  EXPECT_EQ(find_velocity(true, {column("master_vel", "m/s"), column("master_vel_2", "m/s")}), "");
-}
-
 }  // namespace told_velocity_test
 }  // namespace tactus::diagnosis
