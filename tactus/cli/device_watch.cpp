@@ -1,5 +1,6 @@
 #include <tactus/cli/device.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/real_between.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/devices/rig/rig.hpp>
 #include <tactus/report/table.hpp>
@@ -168,7 +169,7 @@ void add_device_watch(CLI::App& device, const CLI::App& app, int& status) {
   verb->add_option("NAME", options->name, "A pair, a side or a joint of it, as arm.leader");
   verb->add_option("--for", options->duration_s, "So many seconds; 0: until Ctrl-C")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(real_between(0.0, 1e6));
   verb->callback([options, &app, &status] { end_verb(app, watch(*options), status); });
 }
 

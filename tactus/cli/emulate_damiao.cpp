@@ -1,4 +1,5 @@
 #include <tactus/cli/emulate.hpp>
+#include <tactus/cli/real_between.hpp>
 #include <tactus/emulation/damiao/damiao_peer.hpp>
 #include <tactus/emulation/emulated_arm.hpp>
 #include <tactus/urdf/urdf.hpp>
@@ -73,7 +74,13 @@ Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
         {.id = id, .feedback_id = id + 0x10, .type = value_of<MotorType>(of_motor(options.models, id))});
   }
   for (const std::string& word : options.faults) {
-    const auto fault = emulation::damiao::parse_fault(word);
+    auto fault = emulation::damiao::parse_fault(word);
+    if (fault && fault->motor > settings.motors.size()) {
+      fault = Error{ErrorCode::out_of_bounds,
+                    {},
+                    "'" + word + "': the motors go from 1 to " + std::to_string(settings.motors.size()),
+                    {}};
+    }
     if (!fault) {
       Error error = fault.error();
       error.place = "--fault";
@@ -113,14 +120,14 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
   verb.add_option("--armature", options->armature_kg_m2,
                   "Inertia of each motor's rotor at its joint, in kg m², with commas between; the last one goes on")
       ->delimiter(',')
-      ->check(CLI::Range(1e-6, 10.0))
+      ->check(real_between(1e-6, 10.0))
       ->needs(arm);
   verb.add_option(
           "--held", options->held_rad,
           "Where a hand holds it at first, in rad, with commas between; it lets go once the motors carry the arm")
       ->type_name("Q,Q,...")
       ->delimiter(',')
-      ->check(CLI::Range(-12.0, 12.0))
+      ->check(real_between(-12.0, 12.0))
       ->needs(arm);
   return [options] { return make_peer(*options); };
 }

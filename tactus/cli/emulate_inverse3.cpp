@@ -1,4 +1,5 @@
 #include <tactus/cli/emulate.hpp>
+#include <tactus/cli/real_between.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -27,9 +28,9 @@ std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_option
   verb.add_option("--port", options->port, "To listen at; 0 takes any that is free");
   verb.add_flag("--uncalibrated", options->uncalibrated, "Gives no force and says so");
   verb.add_flag("--partial", options->service.partial, "Leaves out of a state what equals the identity");
-  verb.add_option("--late-s", options->late_s, "Answers so much later")->check(CLI::Range(0.0, 10.0));
+  verb.add_option("--late-s", options->late_s, "Answers so much later")->check(real_between(0.0, 10.0));
   verb.add_option("--garbage", options->service.garbage, "Share of answers that are cut off")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(real_between(0.0, 1.0));
   verb.add_option("--closes-after", options->service.closes_after, "Closes in place of this answer; 0: never");
   verb.add_option("--seed", options->service.seed, "Of what is cut off");
   return [options] {

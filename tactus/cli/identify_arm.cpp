@@ -3,6 +3,7 @@
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/real_between.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
@@ -192,7 +193,7 @@ void add_identify_arm(CLI::App& identify, const std::string& name, const std::st
   add_arm_options(*verb, options->arm, command, "Folder for model.toml, report.html and results.json");
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")
       ->type_name("HZ")
-      ->check(CLI::Range(0.1, 500.0));
+      ->check(real_between(0.1, 500.0));
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify_arm(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

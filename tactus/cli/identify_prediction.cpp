@@ -2,6 +2,7 @@
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/real_between.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/inverse_model_chirp/inverse_model_chirp.hpp>
 #include <tactus/experiments/presentation.hpp>
@@ -155,7 +156,8 @@ void add_identify_prediction(CLI::App& identify_verb, const std::string& name, c
   verb->add_option("EXPERIMENT", options->experiment, "inverse-model-chirp file: slave and estimator")->required();
   add_set_option(*verb, options->set);
   verb->add_option("--blocks", options->blocks, "Blocks in series, 1 to 4");
-  verb->add_option("--band", options->band_Hz, "Where the simulated chirp ends, in Hz")->check(CLI::Range(0.1, 100.0));
+  verb->add_option("--band", options->band_Hz, "Where the simulated chirp ends, in Hz")
+      ->check(real_between(0.1, 100.0));
   auto* recording =
       verb->add_option("--recording", options->recording, "Free motion as recorded, in place of the simulated chirp");
   verb->add_option("--command", options->command, "Its variable of the command")->needs(recording);

@@ -3,6 +3,7 @@
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/passages.hpp>
+#include <tactus/cli/real_between.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
@@ -198,10 +199,12 @@ void add_relay(CLI::App& app, const std::string& command, int& status) {
   address("--for-slave", options->for_slave, "Where the relay listens for it: the slave's --peer");
   verb->add_option("--mean-burst", options->mean_burst,
                    "Mean number of packets lost one after the other; up to 1 each is lost on its own")
-      ->check(CLI::Range(0.0, 10000.0));
+      ->check(real_between(0.0, 10000.0));
   verb->add_option("--duplicate-fraction", options->duplicate_fraction, "Share of the packets that are sent twice")
-      ->check(CLI::Range(0.0, 1.0));
-  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")->type_name("S");
+      ->check(real_between(0.0, 1.0));
+  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")
+      ->type_name("S")
+      ->check(real_between(0.0, 1e6));
   add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
     if (const auto error = run(*options)) {

@@ -1,6 +1,7 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/real_between.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/cli/serve_report.hpp>
 #include <tactus/cli/verbs.hpp>
@@ -154,7 +155,7 @@ void add_serve(CLI::App& app, const std::string& command, int& status) {
   verb->remove_option(verb->get_option("--json"));  // what is printed is where to look, not results
   add_log_limit_option(*verb, options->log_limit);
   verb->add_option("--duration", options->duration_s, "Seconds to serve; 0 is until interrupted")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(real_between(0.0, 1e6));
   verb->callback([options, &app, &command, &status] {
     if (const auto error = serve(*options, command)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

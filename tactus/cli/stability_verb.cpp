@@ -1,6 +1,7 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/real_between.hpp>
 #include <tactus/cli/stability_verb.hpp>
 #include <tactus/configuration/document.hpp>
 
@@ -50,19 +51,19 @@ void add_stability_verb(CLI::App& stability, const std::string& verb, const std:
   added
       ->add_option("--friction-speed", options->report.linearisation.friction_speed_m_per_s,
                    "Velocity amplitude of friction's describing function, in m/s; 0 leaves friction out")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(real_between(0.0, 1e6));
   added
       ->add_option("--linkage-amplitude", options->report.linearisation.linkage_amplitude_m,
                    "Deflection amplitude whose chord is the linkage's stiffness, in m; 0 is the average stiffness")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(real_between(0.0, 1e6));
   added
       ->add_option("--preload", options->report.linearisation.preload_N,
                    "Contact force about which the wall is linear, in N")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(real_between(1e-6, 1e6));
   added
       ->add_option("--uncertainty", options->report.uncertainty,
                    "Share by which the controller's model may be wrong, 0 to 0.9")
-      ->check(CLI::Range(0.0, 0.9));
+      ->check(real_between(0.0, 0.9));
   add_output_options(*added, options->output, command, "Folder for report.html, results.json and the figures");
   added->callback([options, report, name, &command, &status] {
     if (const auto error = run(*options, report, command)) {

@@ -246,9 +246,13 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
   const SitesHere here{.one = role_of(options.site)};
   const bool rig = std::ranges::any_of(options.devices, names_a_rig);
   if (const auto kind = (*experiment)->kind(); rig ? !drives_a_rig(kind) : kind != "tapping") {
-    return refused(ErrorCode::inconsistent, here.one ? "--site" : "--device",
-                   rig ? "only an experiment of the kind tapping or arm-tapping drives a rig"
-                       : "only an experiment of the kind tapping runs as two sites");
+    std::string why = "only an experiment of the kind tapping runs as two sites";
+    if (rig) {
+      why = "only an experiment of the kind tapping or arm-tapping drives a rig";
+    } else if (drives_a_rig(kind) && !here.one) {
+      why = "arms are those of a rig file, whose name ends in .toml";
+    }
+    return refused(ErrorCode::inconsistent, here.one ? "--site" : "--device", std::move(why));
   }
   if (rig) {
     if (here.one) {

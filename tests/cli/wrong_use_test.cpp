@@ -49,6 +49,20 @@ class WrongUse : public Command {
   }
 };
 
+TEST_F(WrongUse, WhatIsNoNumberOrNotInRange) {
+  const std::string file = quick_experiment();
+  for (const std::string value : {"nan", "-1", "inf", "1x", ""}) {
+    const Words named{"'" + value + "' is no number in [0 - "};
+    expect({{"serve", "--port", "0", "--duration", value}, 2, {"--duration", named[0] + "1e+06]"}});
+    expect({{"stability", "margins", file, "--uncertainty", value}, 2, {"--uncertainty", named[0] + "0.9]"}});
+    expect({{"emulate", "inverse3", "--late-s", value}, 2, {"--late-s", named[0] + "10]"}});
+  }
+  expect({{"emulate", "damiao", "--fault", "silence:3@1"}, 2, {"--fault", "'silence:3@1': the motors go from 1 to 2"}});
+  expect({{"run", TACTUS_EXPERIMENT_FOLDER "/arm-tapping.toml", "--realtime", "--device", "mine"},
+          2,
+          {"--device", "arms are those of a rig file, whose name ends in .toml"}});
+}
+
 TEST_F(WrongUse, NoCommandAnUnknownOneAndAnUnknownOption) {
   expect({{}, 2, {"command is required", "tactus --help"}});
   expect({{"rum"}, 2, {"rum", "tactus --help"}});
