@@ -258,6 +258,13 @@ void ArmPlant::step(const ToolForce& on_tool) {
 JointVector ArmPlant::link_position() const { return engine_->link_side(engine_->data->qpos); }
 JointVector ArmPlant::link_velocity() const { return engine_->link_side(engine_->data->qvel); }
 
+JointVector ArmPlant::bearing_torque() const {
+  const Engine& e = *engine_;
+  const Eigen::Map<const Eigen::VectorXd> all(e.data->qfrc_bias, e.model->nv);
+  const Eigen::VectorXd left = all - e.jacobian().moving.transpose() * e.carry_N;
+  return e.motor_side(left.data());
+}
+
 JointVector ArmPlant::torque_of(const ToolForce& on_tool) const {
   const Engine& e = *engine_;
   const auto jacobian = e.jacobian();

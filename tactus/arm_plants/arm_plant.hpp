@@ -85,6 +85,8 @@ class ArmPlant {
   /// What no motor tells: of links, in rad and rad/s.
   [[nodiscard]] JointVector link_position() const;
   [[nodiscard]] JointVector link_velocity() const;
+  /// Torque on each link that bears what it weighs where it is, in N m, of an arm that rests.
+  [[nodiscard]] JointVector bearing_torque() const;
   /// Torque of a force at the tool on each link, in N m.
   [[nodiscard]] JointVector torque_of(const ToolForce& on_tool) const;
   /// Kinetic and potential energy in J, elastic joints' included, the latter less an unknown constant.

@@ -51,10 +51,8 @@ Result<std::unique_ptr<EmulatedArm>> EmulatedArm::make(const Settings& settings)
                                .step_s = step_s},
                               settings.held_at.value_or(none));
   if (!plant) return plant.error();
-  const auto chain = arm::Chain::make(settings.chain);
-  if (!chain) return chain.error();
   if (!settings.held_at) come_to_rest(*plant);
-  const JointVector at = plant->link_position();
+  const JointVector at = plant->link_position(), weight_Nm = plant->bearing_torque();
   JointVector friction = none;
   constexpr double untold_Nm = 0.1;  // of a step of torque
   for (Eigen::Index i = 0; i < joints; ++i) {
@@ -65,7 +63,7 @@ Result<std::unique_ptr<EmulatedArm>> EmulatedArm::make(const Settings& settings)
                                           .velocity_rad_per_s = none,
                                           .torque = ArmCommand::of_torque(none),
                                           .held = settings.held_at.has_value(),
-                                          .weight_Nm = chain->gravity_torque(at),
+                                          .weight_Nm = weight_Nm,
                                           .friction_Nm = friction,
                                           .touched = settings.touched});
   return std::unique_ptr<EmulatedArm>(new EmulatedArm(std::move(body)));

@@ -56,6 +56,18 @@ TEST(ArmPlant, TorqueOfTheChainsGravityHoldsItStill) {
   EXPECT_LT((arm.link_position() - bent()).norm(), 1e-9);
 }
 
+TEST(ArmPlant, WhatBearsItIsWhatTheChainSays) {
+  for (const double stiffness : {0.0, 3000.0}) {
+    ArmPlant::Params params = openarm_class();
+    params.carried_kg = 0.4;
+    if (stiffness > 0.0) set_elastic(params, stiffness);
+    const ArmPlant arm = *ArmPlant::make(params, bent());
+    const JointVector weight = arm::Chain::make(params.chain)->gravity_torque(bent());
+    EXPECT_GT(weight.norm(), 1.0);
+    EXPECT_LT((arm.bearing_torque() - weight).norm(), 1e-9 * weight.norm()) << stiffness;
+  }
+}
+
 TEST(ArmPlant, ElasticJointsStartBentByWhatTheLinksWeigh) {
   ArmPlant::Params params = openarm_class();
   set_elastic(params, 3000.0);
