@@ -66,7 +66,8 @@ class ArmLog : public ::testing::Test {
         record.tick = tick;
         record.position_m = sign * place(heard_s);
         record.drive_velocity_m_per_s = sign * speed(heard_s);
-        record.drive_force_N = 2.0 * record.drive_velocity_m_per_s;
+        record.drive_stiffness_N_per_m = i == 0 ? 0.0 : 100.0;
+        record.drive_force_N = (2.0 - 0.5 * record.drive_stiffness_N_per_m * cycle_s) * record.drive_velocity_m_per_s;
         record.position_age_s = now_s - heard_s;
         log->write(joint[i], tick, time_ns, telemetry::to_cdr(record));
       }
@@ -97,6 +98,7 @@ TEST_F(ArmLog, TellsTheFollowerAsItsDrivesDidWhileItFollowedInTheOrderThatIsAske
     ASSERT_NEAR(recording.position[1][i], place(t_s), 1e-4) << t_s;
     ASSERT_NEAR(recording.velocity[1][i], speed(t_s), 1e-3) << t_s;
     ASSERT_NEAR(recording.effort[0][i], -2.0 * speed(t_s), 2e-3) << t_s;
+    ASSERT_NEAR(recording.effort[1][i], 2.0 * speed(t_s), 2e-3) << t_s;
   }
 }
 
