@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string_view>
 
@@ -81,13 +82,19 @@ Check check_times(const std::vector<double>& time_s) {
                                   " s that are bridged; cut the file there and name both parts");
 }
 
-/// The values at equal steps, on straight lines between samples.
+/// Equal steps.
+struct Steps {
+  double first_s = 0.0, step_s = 0.0;
+  std::size_t count = 0;
+};
+
+/// The values at these, on straight lines between samples.
 std::vector<double> at_equal_steps(const std::vector<double>& time_s, const std::vector<double>& values,
-                                   double step_s) {
-  std::vector<double> result(values.size());
+                                   const Steps& steps) {
+  std::vector<double> result(steps.count);
   std::size_t before = 0;
   for (std::size_t i = 0; i < result.size(); ++i) {
-    const double t = time_s.front() + static_cast<double>(i) * step_s;
+    const double t = steps.first_s + static_cast<double>(i) * steps.step_s;
     while (before + 2 < time_s.size() && time_s[before + 1] < t) ++before;
     const double share = std::clamp((t - time_s[before]) / (time_s[before + 1] - time_s[before]), 0.0, 1.0);
     result[i] = values[before] + share * (values[before + 1] - values[before]);
@@ -143,10 +150,41 @@ Result<ArmRecording> read_arm(const std::filesystem::path& file, const ArmColumn
                       .effort_unit = efforts.front().unit,
                       .start_s = first * *second,
                       .sample_time = Seconds{step_s}};
-  for (const Column& c : positions) result.position.push_back(at_equal_steps(time_s, c.values, step_s));
-  for (const Column& c : efforts) result.effort.push_back(at_equal_steps(time_s, c.values, step_s));
+  const Steps steps{.first_s = time_s.front(), .step_s = step_s, .count = time_s.size()};
+  for (const Column& c : positions) result.position.push_back(at_equal_steps(time_s, c.values, steps));
+  for (const Column& c : efforts) result.effort.push_back(at_equal_steps(time_s, c.values, steps));
   if (!columns.velocity.empty()) {
-    for (const Column& c : (*lists)[3]) result.velocity.push_back(at_equal_steps(time_s, c.values, step_s));
+    for (const Column& c : (*lists)[3]) result.velocity.push_back(at_equal_steps(time_s, c.values, steps));
+  }
+  return result;
+}
+
+Result<ArmRecording> recording_of(const std::filesystem::path& file, const std::vector<ToldJoint>& joints,
+                                  const std::vector<std::string>& names, Seconds sample_time) {
+  double first_s = -std::numeric_limits<double>::infinity(), last_s = std::numeric_limits<double>::infinity();
+  for (const ToldJoint& joint : joints) {
+    if (joint.time_s.size() < 2) {
+      return at_file(inconsistent("joint '" + names[static_cast<std::size_t>(&joint - joints.data())] +
+                                  "' told less than two positions"),
+                     file);
+    }
+    if (Check wrong = check_times(joint.time_s)) return at_file(*std::move(wrong), file);
+    first_s = std::max(first_s, joint.time_s.front());
+    last_s = std::min(last_s, joint.time_s.back());
+  }
+  Steps steps{.first_s = first_s, .step_s = sample_time.value, .count = 0};
+  if (last_s > first_s) steps.count = 1 + static_cast<std::size_t>((last_s - first_s) / steps.step_s);
+  if (steps.count < 2) return at_file(inconsistent("the joints told nothing at the same time"), file);
+  ArmRecording result{.file = file,
+                      .position_names = names,
+                      .effort_names = names,
+                      .effort_unit = "N m",
+                      .start_s = first_s,
+                      .sample_time = sample_time};
+  for (const ToldJoint& joint : joints) {
+    result.position.push_back(at_equal_steps(joint.time_s, joint.position, steps));
+    result.velocity.push_back(at_equal_steps(joint.time_s, joint.velocity, steps));
+    result.effort.push_back(at_equal_steps(joint.time_s, joint.effort, steps));
   }
   return result;
 }

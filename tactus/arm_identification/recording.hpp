@@ -45,4 +45,18 @@ struct ArmRecording {
 Result<ArmRecording> read_arm(const std::filesystem::path& file, const ArmColumns& columns,
                               const std::vector<std::string>& joints);
 
+/// A joint as its drive told it, each value at a time of its own; times rise.
+struct ToldJoint {
+  std::vector<double> time_s = {};
+  std::vector<double> position = {};  ///< rad, m of one that slides
+  std::vector<double> velocity = {};  ///< the same a second
+  std::vector<double> effort = {};    ///< N m, N of one that slides
+};
+
+/// Drives that did not tell at the same time, as a recording at equal steps: what all of them told, on straight lines
+/// between samples. `names` and `joints` go together. Errors: `inconsistent` for joints that have less than two samples
+/// in common, or that tell nothing for longer than ten steps and 30 ms. Not real-time safe.
+Result<ArmRecording> recording_of(const std::filesystem::path& file, const std::vector<ToldJoint>& joints,
+                                  const std::vector<std::string>& names, Seconds sample_time);
+
 }  // namespace tactus::arm_identification

@@ -1,4 +1,8 @@
+#include <tactus/cli/arm_log.hpp>
 #include <tactus/cli/arm_options.hpp>
+
+#include <tuple>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -20,14 +24,40 @@ arm_identification::ArmColumns ArmOptions::columns() const {
           .effort = joined_by_commas(effort)};
 }
 
+Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std::string& file,
+                                                                      const ArmOptions& options,
+                                                                      const std::vector<std::string>& joints) {
+  const bool log = is_arm_log(file);
+  for (const auto& [name, given, needed] :
+       {std::tuple{"--time", &options.time, true}, std::tuple{"--position", &options.position, true},
+        std::tuple{"--velocity", &options.velocity, false}, std::tuple{"--effort", &options.effort, true}}) {
+    if (!log && needed && given->empty()) {
+      return Error{.code = ErrorCode::missing,
+                   .parameter = {},
+                   .message = "it is required for a table, as " + file + " is: name its columns",
+                   .place = name};
+    }
+    if (log && !given->empty()) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = {},
+                   .message = "the log " + file + " tells by itself what is what: leave it out",
+                   .place = name};
+    }
+  }
+  if (log) return read_arm_log(file, joints);
+  auto recording = arm_identification::read_arm(file, options.columns(), joints);
+  if (!recording) return recording.error();
+  return std::vector{*std::move(recording)};
+}
+
 void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& command, const std::string& out_help) {
   const auto add = [&](const char* name, std::vector<std::string>& into, const char* help) {
     return verb.add_option(name, into, help)->type_name("COLUMNS")->allow_extra_args(false);
   };
-  add("--time", options.time, "Column of the times: its name, or its number from 1")->required();
-  add("--position", options.position, "Columns of the positions: q1,q2,... or a range as q1:q6 or 2:7")->required();
+  add("--time", options.time, "Column of the times of a table: its name, or its number from 1");
+  add("--position", options.position, "Columns of the positions: q1,q2,... or a range as q1:q6 or 2:7");
   add("--velocity", options.velocity, "Columns of the velocities; without it, from the positions");
-  add("--effort", options.effort, "Columns of the motors' torques or currents")->required();
+  add("--effort", options.effort, "Columns of the motors' torques or currents");
   add_output_options(verb, options.output, command, out_help);
 }
 

@@ -2,6 +2,7 @@
 
 #include <tactus/arm_identification/recording.hpp>
 #include <tactus/cli/output_folder.hpp>
+#include <tactus/core/result.hpp>
 
 #include <string>
 #include <vector>
@@ -20,6 +21,13 @@ struct ArmOptions {
   /// An option that is given more than once names more columns.
   [[nodiscard]] arm_identification::ArmColumns columns() const;
 };
+
+/// A recording with these columns, or the stretches of a log (`read_arm_log`), which tells by itself what is what.
+/// Errors: those of `arm_identification::read_arm` and `read_arm_log`; `missing` for a table without a role,
+/// `inconsistent` for a log with one.
+Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std::string& file,
+                                                                      const ArmOptions& options,
+                                                                      const std::vector<std::string>& joints);
 
 /// Adds the roles of columns, `--out` and `--json` to a verb.
 void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& command, const std::string& out_help);

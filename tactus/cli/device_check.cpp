@@ -153,7 +153,8 @@ nlohmann::ordered_json json_of(const Checked& checked) {
                 {"model", stated.model},
                 {"scales", motor.sheet.scales},
                 {"firmware", motor.sheet.firmware},
-                {slides(checked) ? "force_limit_N" : "torque_limit_Nm", number(motor.sheet.torque_limit_Nm)}});
+                {checked.bus->kind == devices::BusKind::inverse3 ? "force_limit_N" : "torque_limit_Nm",
+                 number(motor.sheet.torque_limit_Nm)}});
     if (checked.found.heard) {
       one.update({{slides(checked) ? "position_m" : "position_rad", number(position_of(checked, i))},
                   {"temperature_C", number(motor.reading.temperature_C)},

@@ -30,6 +30,7 @@ struct DamiaoOptions {
   std::string arm;
   std::vector<double> armature_kg_m2{0.01};
   std::vector<double> held_rad;
+  std::vector<double> led;
 };
 
 Error wrong(const char* option, std::string message) {
@@ -58,6 +59,12 @@ Result<std::unique_ptr<emulation::EmulatedArm>> make_arm(const DamiaoOptions& op
     }
     settings.held_at = arm::JointVector::Map(options.held_rad.data(), static_cast<Eigen::Index>(joints));
   }
+  constexpr double farthest_rad = 3.0;
+  if (!options.led.empty() && options.led[0] > farthest_rad) {
+    return wrong("--led", format_number(options.led[0]) + " rad is more than an arm can be led, " +
+                              format_number(farthest_rad) + " rad: name less");
+  }
+  if (!options.led.empty()) settings.led = {.reach_rad = options.led[0], .after_s = options.led[1]};
   return emulation::EmulatedArm::make(settings);
 }
 
@@ -128,6 +135,14 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
       ->type_name("Q,Q,...")
       ->delimiter(',')
       ->check(real_between(-12.0, 12.0))
+      ->needs(arm);
+  verb.add_option("--led", options->led,
+                  "Then a hand leads each joint by so much, in rad, back and forth about there, from so many seconds "
+                  "after it was let go")
+      ->type_name("REACH,SECONDS")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(real_between(0.0, 1000.0))
       ->needs(arm);
   return [options] { return make_peer(*options); };
 }

@@ -91,8 +91,16 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
   if (!model) return model.error();
   std::vector<std::string> names;
   for (const auto& joint : model->joints) names.push_back(joint.name);
-  const auto recording = arm_identification::read_arm(options.file, options.arm.columns(), names);
-  if (!recording) return recording.error();
+  const auto recordings = read_recordings(options.file, options.arm, names);
+  if (!recordings) return recordings.error();
+  if (recordings->size() > 1) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = "the follower followed in " + std::to_string(recordings->size()) +
+                            " stretches, and one is taken: arm once, and record it anew",
+                 .place = options.file};
+  }
+  const arm_identification::ArmRecording* const recording = &recordings->front();
   const auto found = arm_identification::estimate_external_torque(*model, *recording);
   if (!found) return found.error();
 
@@ -143,7 +151,9 @@ void add_estimate_torque(CLI::App& estimate, const std::string& name, const std:
   auto options = std::make_shared<EstimateTorqueOptions>();
   CLI::App* verb = estimate.add_subcommand("torque", "What pushes on the joints of an arm, and when");
   options->arm.output.own_files = {"external_torque.csv"};
-  verb->add_option("RECORDING", options->file, "Recording: .csv, .tsv, .txt, with or without header, or .mat")
+  verb->add_option("RECORDING", options->file,
+                   "Recording: .csv, .tsv, .txt, with or without header, or .mat; "
+                   "or the log of a rig, whose follower is taken while it follows")
       ->required();
   verb->add_option("--model", options->model, "Model file, as `identify arm --out` leaves it")
       ->required()

@@ -154,9 +154,9 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
   urdf->params.gravity = *gravity;
   std::vector<ArmRecording> recordings;
   for (const std::string& file : options.files) {
-    auto recording = arm_identification::read_arm(file, options.arm.columns(), urdf->joints);
-    if (!recording) return recording.error();
-    recordings.push_back(*std::move(recording));
+    auto read = read_recordings(file, options.arm, urdf->joints);
+    if (!read) return read.error();
+    for (ArmRecording& recording : *read) recordings.push_back(std::move(recording));
   }
   const auto found = arm_identification::identify_arm(recordings, urdf->joints, urdf->params, options.cutoff_Hz);
   if (!found) return found.error();
@@ -181,7 +181,9 @@ void add_identify_arm(CLI::App& identify, const std::string& name, const std::st
   auto options = std::make_shared<IdentifyArmOptions>();
   CLI::App* verb = identify.add_subcommand("arm", "Dynamics of an arm from recordings of free motion of all joints");
   options->arm.output.own_files = {"model.toml"};
-  verb->add_option("RECORDING", options->files, "Recordings: .csv, .tsv, .txt, with or without header, or .mat")
+  verb->add_option("RECORDING", options->files,
+                   "Recordings: .csv, .tsv, .txt, with or without header, or .mat; "
+                   "or the log of a rig, whose follower is taken while it follows")
       ->required();
   verb->add_option("--urdf", options->urdf, "URDF of the arm")->required()->type_name("FILE");
   verb->add_option("--tip", options->tip, "Link at which the arm ends, where the URDF goes on or branches")

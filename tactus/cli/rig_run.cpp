@@ -233,6 +233,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
     about["tactus"]["experiment"] = request.name;
     about["tactus"]["configuration"] = found->configuration;
     about["tactus"]["rig"] = pair.name;
+    for (const std::string& joint : names) about["tactus"]["joints"] += (joint == names.front() ? "" : ",") + joint;
     auto created = runtime::SiteLog::create(folder.log_folder(), streams, about, log_limit_bytes);
     if (!created) return created.error();
     log.emplace(*std::move(created));

@@ -133,6 +133,9 @@ JointLogRecord recorded(const station::Tick& tick, std::size_t joint, const Site
   record.fault = static_cast<std::int64_t>(gate.fault());
   record.given_J = gate.given_J();
   record.position_age_s = done.reading[joint].age_s;
+  record.drive_velocity_m_per_s = done.reading[joint].motor_tells.velocity_m_per_s;
+  record.drive_force_N = done.reading[joint].motor_tells.force_N;
+  record.drive_stiffness_N_per_m = done.output.site[joint].law.stiffness_N_per_m;
   fill(record, done.reading[joint], done.output.site[joint], site.heard().message[joint],
        done.output.packet.message[joint]);
   return record;

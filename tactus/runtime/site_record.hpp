@@ -97,6 +97,9 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
   std::int64_t fault = 0;
   double given_J = 0.0;
   double position_age_s = 0.0;
+  double drive_velocity_m_per_s = 0.0;
+  double drive_force_N = 0.0;
+  double drive_stiffness_N_per_m = 0.0;
   static constexpr auto signals() {
     using R = JointLogRecord;
     return joined(
@@ -106,7 +109,13 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
              observed("given_J", &R::given_J, units::joule, "", "", "the motor gave it",
                       "Account of the passivity monitor."),
              observed("position_age_s", &R::position_age_s, units::second, "", "", "",
-                      "Of the position at the deadline; negative where it was measured after that.")},
+                      "Of the position at the deadline; negative where it was measured after that."),
+             observed("drive_velocity_m_per_s", &R::drive_velocity_m_per_s, units::metre_per_second, "", "",
+                      "toward the environment", "As the drive tells it, measured with the position."),
+             observed("drive_force_N", &R::drive_force_N, units::newton, "", "", "toward the environment",
+                      "Of the motor, as the drive tells it, measured with the position; 0 of one that tells none."),
+             observed("drive_stiffness_N_per_m", &R::drive_stiffness_N_per_m, units::newton_per_metre, "", "", "",
+                      "Commanded: of the law that the drive runs by itself.")},
         AxisRecord::signals(), Heard::signals(), Told::signals());
   }
 };

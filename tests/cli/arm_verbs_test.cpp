@@ -80,6 +80,17 @@ TEST_F(ArmVerbs, an_arm_identified_in_free_motion_tells_when_it_is_pushed) {
   EXPECT_TRUE(ArmJson::parse(free.out)["contacts"].empty());
 }
 
+TEST_F(ArmVerbs, a_table_wants_its_columns_named_and_a_log_does_not) {
+  const Outcome nameless = identify({example("arm-free-motion.csv")}, {"--time", "1", "--position", "2:4"});
+  EXPECT_EQ(nameless.status, 2);
+  EXPECT_NE(nameless.err.find("--effort: it is required for a table, as "), std::string::npos) << nameless.err;
+  make_folder("log");
+  const Outcome named = identify({"log"}, {"--time", "1"});
+  EXPECT_EQ(named.status, 2);
+  EXPECT_NE(named.err.find("--time: the log log tells by itself what is what: leave it out"), std::string::npos)
+      << named.err;
+}
+
 TEST_F(ArmVerbs, a_file_without_a_header_and_several_files_are_read_as_one_with_it) {
   const Outcome named = identify({example("arm-free-motion.csv")}, with(names, {"--json"}));
   const std::string text = headless();

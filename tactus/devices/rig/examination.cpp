@@ -185,9 +185,9 @@ std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const s
   }
   const double most_Nm = found.sheet.torque_limit_Nm * joint.gear;
   if (joint.gives_force && joint.torque_limit_Nm > most_Nm * (1.0 + 1e-9)) {
-    add(words.force_limit, format_number(joint.torque_limit_Nm) + " N m is more than its motor is set to give, " +
-                               rounded(most_Nm) +
-                               " N m: lower it, or raise the limit in the motor with its maker's tool");
+    add(words.force_limit, format_number(joint.torque_limit_Nm) + " " + words.force_unit +
+                               " is more than its motor is set to give, " + rounded(most_Nm) + " " + words.force_unit +
+                               ": lower it, or raise the limit in the motor with its maker's tool");
   }
   return problems;
 }

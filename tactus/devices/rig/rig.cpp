@@ -132,28 +132,37 @@ Check Rig::check_side(const RigSide& side) const {
     const MotorJoint& joint = one.joint;
     const MotorAbility ability = ability_of(side.bus.kind, one.motor);
     const JointWords& words = one.words();
+    if (one.slides != side.joints.front().slides) {
+      return at(one.path, ErrorCode::inconsistent,
+                "it is in " + std::string(words.position_unit) + ", and " + side.joints.front().path + " in " +
+                    side.joints.front().words().position_unit + ": state lever_m of all joints of a side, or of none");
+    }
     if (joint.sign == 0) {
       return at(join(one.path, "sign"), ErrorCode::out_of_bounds,
                 "0 must be 1, or -1 where the motor turns against the joint");
     }
     if (!(joint.lower_rad < joint.upper_rad)) {
-      return at(join(one.path, "upper_rad"), ErrorCode::inconsistent,
+      return at(join(one.path, words.upper), ErrorCode::inconsistent,
                 format_number(joint.upper_rad) + " " + words.position_unit + " must be above " + words.lower + ", " +
                     format_number(joint.lower_rad) + " " + words.position_unit);
     }
     const auto beyond = [&](const char* key, double limit, double most, const char* unit) {
       return at(join(one.path, key), ErrorCode::inconsistent,
                 format_number(limit) + unit + " is beyond what a " + one.motor.model +
-                    (joint.gear == 1.0 ? std::string() : " behind a gear of " + format_number(joint.gear)) +
+                    (joint.gear == 1.0 ? std::string()
+                     : one.slides      ? " with a lever of " + format_number(1.0 / joint.gear) + " m"
+                                       : " behind a gear of " + format_number(joint.gear)) +
                     " can do, " + format_number(most) + unit + ": lower it, or state the model that is there");
     };
+    const std::string force_unit = std::string(" ") + words.force_unit,
+                      velocity_unit = std::string(" ") + words.velocity_unit;
     const double most_Nm = ability.torque_Nm * joint.gear;
     if (ability.torque_Nm > 0.0 && joint.torque_limit_Nm > most_Nm) {
-      return beyond(words.force_limit, joint.torque_limit_Nm, most_Nm, " N m");
+      return beyond(words.force_limit, joint.torque_limit_Nm, most_Nm, force_unit.c_str());
     }
     const double fastest = ability.velocity_rad_per_s / joint.gear;
     if (ability.velocity_rad_per_s > 0.0 && joint.velocity_limit_rad_per_s > fastest) {
-      return beyond(words.velocity_limit, joint.velocity_limit_rad_per_s, fastest, " rad/s");
+      return beyond(words.velocity_limit, joint.velocity_limit_rad_per_s, fastest, velocity_unit.c_str());
     }
     const double squared = joint.gear * joint.gear;
     for (const auto& [key, limit, most, unit] :
@@ -200,6 +209,15 @@ Check Rig::match_joints(RigPair& pair) {
   };
   if (Check error = lone(*pair.leader, *pair.follower)) return error;
   if (Check error = lone(*pair.follower, *pair.leader)) return error;
+  for (const RigJoint& joint : pair.follower->joints) {
+    const auto& leads = *std::ranges::find(pair.leader->joints, joint.name(), &RigJoint::name);
+    if (leads.slides == joint.slides) continue;
+    return at(joint.path, ErrorCode::inconsistent,
+              std::string("it is in ") + joint.words().position_unit + ", and " + leads.path + " in " +
+                  leads.words().position_unit +
+                  ": state lever_m, the way in m for each radian of the motor, of the one "
+                  "that turns, and its limits in m and N");
+  }
   const auto place = [&pair](const RigJoint& joint) {
     return std::ranges::find(pair.leader->joints, joint.name(), &RigJoint::name) - pair.leader->joints.begin();
   };

@@ -23,7 +23,7 @@ struct JointWords {
 /// A joint of a rig and its motor.
 struct RigJoint {
   std::string path;     ///< its section: `arm.leader.elbow`
-  bool slides = false;  ///< in m and N; else it turns, in rad and N m
+  bool slides = false;  ///< in m and N, itself or at the end of a lever; else it turns, in rad and N m
   StatedMotor motor;
   MotorJoint joint;
 

@@ -110,20 +110,16 @@ struct FeetechMotor {
 enum class Inverse3Model : std::int64_t { inverse3 };
 constexpr auto enumerators(Inverse3Model) { return std::array{Enumerator{Inverse3Model::inverse3, "inverse3"}}; }
 
-/// An axis in m and N.
-struct Inverse3Axis {
-  std::int64_t motor = 0;
-  Inverse3Model model = Inverse3Model::inverse3;
+/// What all joints in m and N have.
+struct Sliding {
   std::int64_t sign = 1;
   double offset_m = 0.0, lower_m = 0.0, upper_m = 0.0, velocity_limit_m_per_s = 0.0, force_limit_N = 0.0,
          force_rate_limit_N_per_s = 0.0;
-  static constexpr auto fields() {
+  template <class P>
+  static constexpr auto fields_of() {
     constexpr Bounds places = between(-10.0, 10.0);
-    using P = Inverse3Axis;
-    return List{field("motor", &P::motor, between(1.0, 3.0), "1 is x, 2 is y, 3 is z."),
-                field("model", &P::model, model_doc),
-                field("sign", &P::sign, between(-1.0, 1.0), "1, or -1 where the axis points against the joint."),
-                field("offset_m", &P::offset_m, units::metre, places, "Where the joint is at zero of the axis."),
+    return List{field("sign", &P::sign, between(-1.0, 1.0), "1, or -1 where the motor goes against the joint."),
+                field("offset_m", &P::offset_m, units::metre, places, "Where the joint is at zero of the motor."),
                 field("lower_m", &P::lower_m, units::metre, places, "The joint has no force below that."),
                 field("upper_m", &P::upper_m, units::metre, places, "The joint has no force above that."),
                 field("velocity_limit_m_per_s", &P::velocity_limit_m_per_s, units::metre_per_second,
@@ -134,7 +130,6 @@ struct Inverse3Axis {
                       positive_up_to(1e6), "The fastest change of that force.")};
   }
   void put_into(RigJoint& one) const {
-    one.motor = {.id = motor, .model = name_of(model)};
     one.joint.sign = sign;
     one.joint.offset_rad = offset_m;
     one.joint.lower_rad = lower_m;
@@ -142,6 +137,39 @@ struct Inverse3Axis {
     one.joint.velocity_limit_rad_per_s = velocity_limit_m_per_s;
     one.joint.torque_limit_Nm = force_limit_N;
     one.joint.torque_rate_limit_Nm_per_s = force_rate_limit_N_per_s;
+  }
+};
+
+/// An axis of an Inverse3.
+struct Inverse3Axis : Sliding {
+  std::int64_t motor = 0;
+  Inverse3Model model = Inverse3Model::inverse3;
+  static constexpr auto fields() {
+    return joined(List{field("motor", &Inverse3Axis::motor, between(1.0, 3.0), "1 is x, 2 is y, 3 is z."),
+                       field("model", &Inverse3Axis::model, model_doc)},
+                  fields_of<Inverse3Axis>());
+  }
+  void put_into(RigJoint& one) const {
+    Sliding::put_into(one);
+    one.motor = {.id = motor, .model = name_of(model)};
+  }
+};
+
+/// A motor that turns, as the place of the end of a lever.
+struct Lever : Sliding {
+  double lever_m = 0.0;
+  double temperature_limit_C = MotorJoint{}.temperature_limit_C;
+  static constexpr auto fields() {
+    return joined(List{field("lever_m", &Lever::lever_m, units::metre, between(0.01, 10.0),
+                             "The joint moves by that for each radian of its motor."),
+                       field("temperature_limit_C", &Lever::temperature_limit_C, joint_units::degree_celsius,
+                             between(20.0, 150.0), "A motor that is hotter loses its power.")},
+                  fields_of<Lever>());
+  }
+  void put_into(RigJoint& one) const {
+    Sliding::put_into(one);
+    one.joint.gear = 1.0 / lever_m;
+    one.joint.temperature_limit_C = temperature_limit_C;
   }
 };
 
@@ -213,10 +241,10 @@ Check Rig::read() {
         return error;
       }
       const bool damiao = *kind == name_of(BusKind::damiao), feetech = *kind == name_of(BusKind::feetech);
-      const bool slides = *kind == name_of(BusKind::inverse3);
+      const bool inverse3 = *kind == name_of(BusKind::inverse3);
       if (damiao) {
         fill(DamiaoSide{}, here.bus, here.path);
-      } else if (slides) {
+      } else if (inverse3) {
         fill(Inverse3Side{}, here.bus, here.path);
       } else {
         fill(ServoSide{}, here.bus, here.path);
@@ -226,13 +254,15 @@ Check Rig::read() {
           fill(DamiaoMotor{}, joint.motor, joint.path);
         } else if (feetech) {
           fill(FeetechMotor{}, joint.motor, joint.path);
-        } else if (slides) {
-          joint.slides = true;
+        } else if (inverse3) {
           fill(Inverse3Axis{}, joint, joint.path);
         } else {
           fill(DynamixelMotor{}, joint.motor, joint.path);
         }
-        if (!slides) append_bindings(joint.joint, joint.path, bindings);
+        const bool lever = !inverse3 && has(join(joint.path, "lever_m"));
+        joint.slides = inverse3 || lever;
+        if (lever) fill(Lever{}, joint, joint.path);
+        if (!joint.slides) append_bindings(joint.joint, joint.path, bindings);
       }
     }
   }

@@ -231,6 +231,50 @@ TEST(Rig, AxesOfAnInverse3SlideAndHaveKeysInMetres) {
       problem_of(side + axis("z", 4, "force_limit_N = 2.0\n")).find("rig.toml:6:9: desk.leader.z.motor: 4 is out"), 0U);
 }
 
+/// An axis in metres has a follower in metres: a motor that turns, at the end of a lever.
+TEST(Rig, AJointAtTheEndOfALeverFollowsAnAxisThatSlides) {
+  const std::string limits =
+      "lower_m = -0.1\nupper_m = 0.1\nvelocity_limit_m_per_s = 1.0\nforce_limit_N = 2.0\n"
+      "force_rate_limit_N_per_s = 50.0\n";
+  const std::string leader =
+      "[desk.leader]\nbus = \"inverse3\"\nport = \"127.0.0.1:10001\"\n[desk.leader.x]\nmotor = 1\n"
+      "model = \"inverse3\"\n" +
+      limits;
+  const auto follower = [](const std::string& keys) {
+    return damiao_side("desk.follower", "/dev/b") + "[desk.follower.x]\nmotor = 1\nmodel = \"DM4310\"\n" + keys;
+  };
+  const auto rig = Rig::parse(leader + follower("lever_m = 0.2\nsign = -1\noffset_m = 0.03\n" + limits), "rig.toml");
+  ASSERT_TRUE(rig) << describe(rig.error());
+  const RigJoint& one = rig->pairs()[0].follower->joints[0];
+  EXPECT_TRUE(one.slides);
+  EXPECT_DOUBLE_EQ(one.joint.position_rad(0.5), -0.07);
+  EXPECT_DOUBLE_EQ(one.joint.velocity_rad_per_s(0.5), -0.1);
+  // No power is made: force times way is torque times angle.
+  EXPECT_DOUBLE_EQ(one.joint.motor_torque_Nm(1.5), -0.3);
+  EXPECT_DOUBLE_EQ(one.joint.torque_Nm(-0.3), 1.5);
+  // Without it radians would be taken for metres.
+  const std::string turning =
+      "lower_rad = -1.5\nupper_rad = 1.5\nvelocity_limit_rad_per_s = 3.0\ntorque_limit_Nm = 2.0\n"
+      "torque_rate_limit_Nm_per_s = 50.0\n";
+  EXPECT_EQ(
+      problem_of(leader + follower(turning)),
+      "rig.toml:15:1: desk.follower.x: it is in rad, and desk.leader.x in m: state lever_m, the way in m for each "
+      "radian of the motor, of the one that turns, and its limits in m and N");
+  EXPECT_NE(problem_of(leader + follower("lever_m = 20.0\n" + limits)).find("desk.follower.x.lever_m: 20"),
+            std::string::npos);
+  EXPECT_NE(problem_of(leader + follower("lever_m = 0.2\n" + turning)).find("lower_rad: unknown key"),
+            std::string::npos);
+  const std::string strong = "lever_m = 9.0\n" + limits;
+  EXPECT_NE(problem_of(leader + follower(strong)).find("2 N is beyond what a DM4310 with a lever of 9 m can do, "),
+            std::string::npos)
+      << problem_of(leader + follower(strong));
+  EXPECT_NE(problem_of(damiao_side("desk.follower", "/dev/b") +
+                       "[desk.follower.x]\nmotor = 1\nmodel = \"DM4310\"\nlever_m = 0.2\n" + limits +
+                       joint("desk.follower.y", 2, "DM4310"))
+                .find("desk.follower.y: it is in rad, and desk.follower.x in m: state lever_m of all joints of a side"),
+            std::string::npos);
+}
+
 TEST(Rig, APartIsFoundByItsName) {
   const auto rig = Rig::parse(pair_of_two, "rig.toml");
   ASSERT_TRUE(rig);

@@ -35,12 +35,13 @@ arm::JointVector bent() {
 
 /// The motors of an arm on a bus of Linux, spoken to in frames of it.
 struct Bus {
-  explicit Bus(std::optional<arm::JointVector> held_at, std::uint32_t motors = joints) {
+  explicit Bus(std::optional<arm::JointVector> held_at, std::uint32_t motors = joints,
+               std::optional<EmulatedArm::Led> led = {}) {
     PeerSettings settings{.adapter = AdapterType::socketcan, .motors = {}, .faults = {}};
     for (std::uint32_t id = 1; id <= motors; ++id) {
       settings.motors.push_back({.id = id, .feedback_id = id + 0x10, .type = MotorType::dm8009});
     }
-    auto made = EmulatedArm::make({.chain = chain(), .held_at = std::move(held_at)});
+    auto made = EmulatedArm::make({.chain = chain(), .held_at = std::move(held_at), .led = led});
     EXPECT_TRUE(made) << describe(made.error());
     arm = made->get();
     peer = *DamiaoPeer::make(settings, *std::move(made));
@@ -134,6 +135,31 @@ TEST(EmulatedArm, IsHeldUntilItsMotorsCarryItAndThenFallsWithoutPower) {
   bus.order_all(0xfd);
   bus.run(400 * ms);
   EXPECT_GT(bus.moved_rad(bent()), 0.2) << "nobody holds it any more";
+}
+
+TEST(EmulatedArm, AHandLeadsEveryJointBackAndForthOnceItsMotorsCarryItAndItsTimeHasCome) {
+  constexpr double reach_rad = 0.2;
+  Bus bus(bent(), joints, EmulatedArm::Led{.reach_rad = reach_rad, .after_s = 0.5});
+  bus.run(1000 * ms);
+  EXPECT_TRUE(bus.arm->held()) << "who is not carried is not led";
+  bus.order_all(0xfc);
+  const arm::JointVector weight = arm::Chain::make(chain())->gravity_torque(bent());
+  for (std::uint32_t id = 1; id <= joints; ++id) bus.torque(id, weight[id - 1]);
+  bus.run(400 * ms);
+  EXPECT_FALSE(bus.arm->held());
+  EXPECT_LT(bus.moved_rad(bent()), 1e-3) << "not yet";
+  arm::JointVector least = bent(), most = bent();
+  for (int i = 0; i < 700; ++i) {
+    bus.run(10 * ms);
+    const arm::JointVector at = bus.positions();
+    least = least.cwiseMin(at);
+    most = most.cwiseMax(at);
+  }
+  // The motors do not follow the weight and friction is in the way, so it comes less far, or farther, than it wants.
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    EXPECT_GT(most[i] - least[i], reach_rad) << i;
+    EXPECT_LT(most[i] - least[i], 4.0 * reach_rad) << i;
+  }
 }
 
 /// The same torques make another instance of the plant move as the motors tell.
