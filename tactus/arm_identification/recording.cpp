@@ -18,7 +18,6 @@ using identification::inconsistent;
 using recording::Column;
 
 constexpr double longest_pause_steps = 10.0;
-constexpr double longest_pause_s = 0.03;
 
 struct ArmUnit {
   std::string_view symbol;

@@ -45,6 +45,9 @@ struct ArmRecording {
 Result<ArmRecording> read_arm(const std::filesystem::path& file, const ArmColumns& columns,
                               const std::vector<std::string>& joints);
 
+/// A pause of so long is bridged, whatever the sampling.
+inline constexpr double longest_pause_s = 0.03;
+
 /// A joint as its drive told it, each value at a time of its own; times rise.
 struct ToldJoint {
   std::vector<double> time_s = {};

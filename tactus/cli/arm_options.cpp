@@ -1,4 +1,4 @@
-#include <tactus/cli/arm_log.hpp>
+#include <tactus/arm_identification/rig_log.hpp>
 #include <tactus/cli/arm_options.hpp>
 
 #include <tuple>
@@ -27,7 +27,7 @@ arm_identification::ArmColumns ArmOptions::columns() const {
 Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std::string& file,
                                                                       const ArmOptions& options,
                                                                       const std::vector<std::string>& joints) {
-  const bool log = is_arm_log(file);
+  const bool log = arm_identification::is_log(file);
   for (const auto& [name, given, needed] :
        {std::tuple{"--time", &options.time, true}, std::tuple{"--position", &options.position, true},
         std::tuple{"--velocity", &options.velocity, false}, std::tuple{"--effort", &options.effort, true}}) {
@@ -44,7 +44,7 @@ Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std:
                    .place = name};
     }
   }
-  if (log) return read_arm_log(file, joints);
+  if (log) return arm_identification::read_rig_log(file, joints);
   auto recording = arm_identification::read_arm(file, options.columns(), joints);
   if (!recording) return recording.error();
   return std::vector{*std::move(recording)};

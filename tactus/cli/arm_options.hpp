@@ -22,8 +22,8 @@ struct ArmOptions {
   [[nodiscard]] arm_identification::ArmColumns columns() const;
 };
 
-/// A recording with these columns, or the stretches of a log (`read_arm_log`), which tells by itself what is what.
-/// Errors: those of `arm_identification::read_arm` and `read_arm_log`; `missing` for a table without a role,
+/// A recording with these columns, or the stretches of a log (`read_rig_log`), which tells by itself what is what.
+/// Errors: those of `arm_identification::read_arm` and `read_rig_log`; `missing` for a table without a role,
 /// `inconsistent` for a log with one.
 Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std::string& file,
                                                                       const ArmOptions& options,

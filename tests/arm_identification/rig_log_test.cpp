@@ -1,4 +1,4 @@
-#include <tactus/cli/arm_log.hpp>
+#include <tactus/arm_identification/rig_log.hpp>
 #include <tactus/runtime/site_record.hpp>
 #include <tactus/telemetry/log_writer.hpp>
 
@@ -14,8 +14,8 @@
 #include "tests/scratch_path.hpp"
 #include <gtest/gtest.h>
 
-namespace tactus::cli {
-namespace arm_log_test {
+namespace tactus::arm_identification {
+namespace rig_log_test {
 
 using control::SiteState;
 using runtime::JointLogRecord;
@@ -35,7 +35,7 @@ struct Content {
 };
 
 /// The log of a rig of two joints whose bus answers each 3.2 ms, the second joint 1 ms behind the first.
-class ArmLog : public ::testing::Test {
+class RigLog : public ::testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -76,15 +76,15 @@ class ArmLog : public ::testing::Test {
     return folder_.string();
   }
   [[nodiscard]] std::string complaint(const Content& run, const std::vector<std::string>& joints) const {
-    const auto read = read_arm_log(leave(run), joints);
+    const auto read = read_rig_log(leave(run), joints);
     return read ? "nothing" : describe(read.error());
   }
 
   std::filesystem::path folder_ = scratch_path();
 };
 
-TEST_F(ArmLog, TellsTheFollowerAsItsDrivesDidWhileItFollowedInTheOrderThatIsAsked) {
-  const auto read = read_arm_log(leave({}), {"turn", "lift"});
+TEST_F(RigLog, TellsTheFollowerAsItsDrivesDidWhileItFollowedInTheOrderThatIsAsked) {
+  const auto read = read_rig_log(leave({}), {"turn", "lift"});
   ASSERT_TRUE(read) << describe(read.error());
   ASSERT_EQ(read->size(), 1U);
   const auto& recording = read->front();
@@ -102,18 +102,18 @@ TEST_F(ArmLog, TellsTheFollowerAsItsDrivesDidWhileItFollowedInTheOrderThatIsAske
   }
 }
 
-TEST_F(ArmLog, IsCutWhereADriveWasSilent) {
-  const auto read = read_arm_log(leave({.silent_at_s = 2.5}), {"lift", "turn"});
+TEST_F(RigLog, IsCutWhereADriveWasSilent) {
+  const auto read = read_rig_log(leave({.silent_at_s = 2.5}), {"lift", "turn"});
   ASSERT_TRUE(read) << describe(read.error());
   ASSERT_EQ(read->size(), 2U);
   EXPECT_LT(read->at(0).start_s + tick_s * static_cast<double>(read->at(0).samples()), 2.51);
   EXPECT_GT(read->at(1).start_s, 2.59);
-  const auto short_before = read_arm_log(leave({.silent_at_s = 1.5}), {"lift", "turn"});
+  const auto short_before = read_rig_log(leave({.silent_at_s = 1.5}), {"lift", "turn"});
   ASSERT_TRUE(short_before);
   EXPECT_EQ(short_before->size(), 1U) << "half a second tells nothing";
 }
 
-TEST_F(ArmLog, WhatCannotBeReadIsRefusedWithTheRemedy) {
+TEST_F(RigLog, WhatCannotBeReadIsRefusedWithTheRemedy) {
   const auto expect = [](const std::string& said, const std::string& words) {
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
@@ -122,5 +122,5 @@ TEST_F(ArmLog, WhatCannotBeReadIsRefusedWithTheRemedy) {
   expect(complaint({.active_to_s = 1.5}, {"lift"}), "the follower did not follow for 1 s");
 }
 
-}  // namespace arm_log_test
-}  // namespace tactus::cli
+}  // namespace rig_log_test
+}  // namespace tactus::arm_identification

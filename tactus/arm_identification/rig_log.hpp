@@ -7,10 +7,10 @@
 #include <vector>
 
 /// What a log of two coupled arms tells of one that moves freely.
-namespace tactus::cli {
+namespace tactus::arm_identification {
 
 /// Whether it is read as a log: a folder, or a file that ends in `.mcap`.
-bool is_arm_log(const std::string& file);
+bool is_log(const std::string& file);
 
 /// The follower of a log that `tactus run --realtime --device RIG --out` left, while it followed: for each stretch of
 /// 1 s or more in which the site was active and every drive was heard at least each 30 ms, where its drives were, how
@@ -20,7 +20,6 @@ bool is_arm_log(const std::string& file);
 /// `joints` are names of joints of the rig, in the order of the arm; the rig may have more. Errors: those of
 /// `telemetry::read_log`; `missing` for a log of something else, for one from before the drives' words were logged, and
 /// for one without such a stretch; `inconsistent` for a joint that the rig has not. Not real-time safe.
-Result<std::vector<arm_identification::ArmRecording>> read_arm_log(const std::string& file,
-                                                                   const std::vector<std::string>& joints);
+Result<std::vector<ArmRecording>> read_rig_log(const std::string& file, const std::vector<std::string>& joints);
 
-}  // namespace tactus::cli
+}  // namespace tactus::arm_identification

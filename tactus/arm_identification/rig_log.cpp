@@ -1,4 +1,4 @@
-#include <tactus/cli/arm_log.hpp>
+#include <tactus/arm_identification/rig_log.hpp>
 #include <tactus/control/packet.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/telemetry/log_reader.hpp>
@@ -14,21 +14,19 @@
 #include <string_view>
 #include <utility>
 
-namespace tactus::cli {
+namespace tactus::arm_identification {
 
 namespace {
 
-using arm_identification::ArmRecording;
-using arm_identification::ToldJoint;
 using telemetry::LogTable;
 
-constexpr double longest_pause_s = 0.03, shortest_stretch_s = 1.0;
+constexpr double shortest_stretch_s = 1.0;
 
 Error wrong(ErrorCode code, std::string message, const std::string& file) {
   return {.code = code, .parameter = {}, .message = std::move(message), .place = file};
 }
 
-struct Stretch {
+struct Interval {
   double from_s, to_s;
 };
 
@@ -43,8 +41,8 @@ double seconds(std::uint64_t time_ns) { return 1e-9 * static_cast<double>(time_n
 
 /// Of times that rise, those stretches in which none is long after the one before and `counts` says so of each.
 template <class Counts>
-std::vector<Stretch> stretches_of(const std::vector<double>& time_s, const Counts& counts) {
-  std::vector<Stretch> found;
+std::vector<Interval> stretches_of(const std::vector<double>& time_s, const Counts& counts) {
+  std::vector<Interval> found;
   bool open = false;
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     open = open && time_s[i] - found.back().to_s <= longest_pause_s;
@@ -60,11 +58,11 @@ std::vector<Stretch> stretches_of(const std::vector<double>& time_s, const Count
 }
 
 /// Where both were.
-std::vector<Stretch> common(const std::vector<Stretch>& one, const std::vector<Stretch>& other) {
-  std::vector<Stretch> both;
-  for (const Stretch& a : one) {
-    for (const Stretch& b : other) {
-      const Stretch here{std::max(a.from_s, b.from_s), std::min(a.to_s, b.to_s)};
+std::vector<Interval> common(const std::vector<Interval>& one, const std::vector<Interval>& other) {
+  std::vector<Interval> both;
+  for (const Interval& a : one) {
+    for (const Interval& b : other) {
+      const Interval here{std::max(a.from_s, b.from_s), std::min(a.to_s, b.to_s)};
       if (here.to_s - here.from_s >= shortest_stretch_s) both.push_back(here);
     }
   }
@@ -105,7 +103,7 @@ Result<ToldJoint> told_in(const LogTable& table, const std::string& file) {
   return told;
 }
 
-ToldJoint within(const ToldJoint& all, const Stretch& stretch) {
+ToldJoint within(const ToldJoint& all, const Interval& stretch) {
   const auto from = std::ranges::lower_bound(all.time_s, stretch.from_s) - all.time_s.begin();
   const auto to = std::ranges::upper_bound(all.time_s, stretch.to_s) - all.time_s.begin();
   const auto part = [from, to](const std::vector<double>& values) {
@@ -126,12 +124,12 @@ std::vector<std::string> rig_joints(const telemetry::LogSummary& summary) {
 
 }  // namespace
 
-bool is_arm_log(const std::string& file) {
+bool is_log(const std::string& file) {
   std::error_code ignored;
   return file.ends_with(".mcap") || std::filesystem::is_directory(file, ignored);
 }
 
-Result<std::vector<ArmRecording>> read_arm_log(const std::string& file, const std::vector<std::string>& joints) {
+Result<std::vector<ArmRecording>> read_rig_log(const std::string& file, const std::vector<std::string>& joints) {
   const auto site = telemetry::read_log(file, "/slave/site");
   if (!site) return site.error();
   const std::vector<std::string> of_rig = rig_joints(site->summary);
@@ -178,14 +176,14 @@ Result<std::vector<ArmRecording>> read_arm_log(const std::string& file, const st
   }
   const Seconds tick{(tick_s.back() - tick_s.front()) / static_cast<double>(tick_s.size() - 1)};
   std::vector<ArmRecording> recordings;
-  for (const Stretch& stretch : stretches) {
+  for (const Interval& stretch : stretches) {
     std::vector<ToldJoint> here;
     for (const ToldJoint& joint : told) here.push_back(within(joint, stretch));
-    auto recording = arm_identification::recording_of(file, here, joints, tick);
+    auto recording = recording_of(file, here, joints, tick);
     if (!recording) return recording.error();
     recordings.push_back(*std::move(recording));
   }
   return recordings;
 }
 
-}  // namespace tactus::cli
+}  // namespace tactus::arm_identification
