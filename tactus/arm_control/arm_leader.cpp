@@ -24,6 +24,8 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
       damping_(params.method == ArmMethod::position_position ? stiffness_ : drive_damping(params, chain.joints())),
       damping_limit_(damping_, params.drive_damping_limit_N_s_per_m),
       model_(model),
+      factr_(params.factr, arm.carried, chain),
+      avoidance_(params.avoidance, chain.joints()),
       force_(force),
       command_position_(command),
       command_velocity_(command),
@@ -56,6 +58,21 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
                    *command);
 }
 
+/// All of the bus's torque but what comes from the follower.
+JointVector ArmLeader::beside_display(const ArmReading& reading, const JointVector& support) noexcept {
+  JointVector torque = support;
+  const bool gives_back = params_.method != ArmMethod::position_position && damping_limit_.limits();
+  if (params_.damping_N_s_per_m > 0.0 || gives_back) {
+    const ToolJacobian tool = chain_.jacobian(reading.position, chain_.joints() - 1, tool_m_).topRows<3>();
+    const arm::Vector3 velocity = tool * reading.velocity;
+    arm::Vector3 force_N = -params_.damping_N_s_per_m * velocity;
+    if (gives_back) force_N += damping_limit_.excess(tool) * velocity;
+    torque += tool.transpose() * force_N;
+  }
+  if (params_.method == ArmMethod::factr) torque += factr_.step(reading);
+  return torque;
+}
+
 ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& follower) noexcept {
   const int joints = chain_.joints();
   if (!started_) {
@@ -65,17 +82,12 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
   const bool reflects = params_.method != ArmMethod::position_position;
   Output output;
   output.support = feed_forward_.torque(reading);
-  JointVector undisplayed = output.support;
-  const bool gives_back = reflects && damping_limit_.limits();
-  if (params_.damping_N_s_per_m > 0.0 || gives_back) {
-    const ToolJacobian tool = chain_.jacobian(reading.position, joints - 1, tool_m_).topRows<3>();
-    const arm::Vector3 velocity = tool * reading.velocity;
-    arm::Vector3 force_N = -params_.damping_N_s_per_m * velocity;
-    if (gives_back) force_N += damping_limit_.excess(tool) * velocity;
-    undisplayed += tool.transpose() * force_N;
-  }
+  const JointVector undisplayed = beside_display(reading, output.support);
   JointVector displayed = JointVector::Zero(joints);
   if (reflects) displayed = params_.force_gain * force_.step(follower.external_torque);
+  if (params_.method == ArmMethod::feedback_avoidance) {
+    displayed = avoidance_.displayed(displayed, reading.velocity);
+  }
 
   output.command = ArmCommand::of_torque(undisplayed + displayed);
   saturate(output.command.torque, most_);
