@@ -77,6 +77,11 @@ std::span<const ArmContestMethod> arm_contest_methods() {
        false,
        {"control.method=feedback-avoidance"},
        "A torque along the leader's motion fades with speed, as in franka_ros2_teleop; its own gain is 1."},
+      {"four-channel",
+       false,
+       {"control.method=four-channel", "control.feed_forward.friction_share=0"},
+       "Positions and torques both ways with observers of disturbance and reaction, as openarm_bilateral has it; its "
+       "own gain is 1."},
       {"cancellation",
        false,
        {"control.method=cancellation"},
