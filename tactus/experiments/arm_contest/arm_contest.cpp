@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace tactus::experiments {
@@ -162,6 +163,7 @@ ArmContestScore score_of(const ArmTaps& taps, double lowest_gain, double highest
   for (std::size_t tap = 0; tap < taps.size(); ++tap) without_display.push_back(taps.run_without_display(tap));
   const std::size_t may_fail = taps.size() / 20;
   ArmContestScore score;
+  double largest = 0.0;  // that settled so far
   const auto settles = [&](double gain) {
     std::size_t failed = 0;
     std::vector<double> felt;
@@ -170,8 +172,13 @@ ArmContestScore score_of(const ArmTaps& taps, double lowest_gain, double highest
       if (!result.settled()) ++failed;
       felt.push_back(result.contact.felt_share);
     }
-    if (gain == 1.0 && failed <= may_fail) score.felt_share = simulation::quantile(felt, 0.5);
-    return failed <= may_fail;
+    if (failed > may_fail) return false;
+    if (gain == 1.0) score.felt_share = simulation::quantile(felt, 0.5);
+    if (gain >= largest) {
+      largest = gain;
+      score.felt_share_at_limit = simulation::quantile(felt, 0.5);
+    }
+    return true;
   };
   score.limit = find_gain_limit(lowest_gain, highest_gain, settles, step_of_search);
   score.reach = taps.reach();
@@ -181,18 +188,16 @@ ArmContestScore score_of(const ArmTaps& taps, double lowest_gain, double highest
 std::vector<std::size_t> arm_contest_winners(const ArmContest& contest, const std::vector<ArmContestScore>& scores,
                                              std::size_t pair) {
   const std::size_t methods = arm_contest_methods().size();
-  std::vector<double> limit(methods, std::numeric_limits<double>::infinity());
-  std::vector<double> felt = limit;
+  std::vector<double> felt(methods, std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const ArmContestEntry& entry = contest.entries[i];
     if (entry.pair != pair) continue;
-    limit[entry.method] = std::min(limit[entry.method], scores[i].limit.gain);
-    felt[entry.method] = std::min(felt[entry.method], scores[i].felt_share.value_or(0.0));
+    felt[entry.method] = std::min(felt[entry.method], scores[i].felt_share_at_limit.value_or(0.0));
   }
-  const double largest = *std::max_element(limit.begin(), limit.end());
+  const double most = *std::max_element(felt.begin(), felt.end());
   std::vector<std::size_t> winners;
   for (std::size_t method = 0; method < methods; ++method) {
-    if (largest > 0.0 && limit[method] * step_of_search >= largest) winners.push_back(method);
+    if (most > 0.0 && felt[method] * std::numbers::sqrt2 >= most) winners.push_back(method);
   }
   std::stable_sort(winners.begin(), winners.end(), [&](std::size_t a, std::size_t b) { return felt[a] > felt[b]; });
   return winners;

@@ -118,6 +118,7 @@ struct ArmContestScore {
   /// Of the contact force above 15 Hz that the hand feels at gain 1, median over the taps; none where they don't settle
   /// there.
   std::optional<double> felt_share;
+  std::optional<double> felt_share_at_limit;  ///< the same at the limit; none where nothing settles
 };
 
 /// One method, hand and pair, ready to run.
@@ -140,9 +141,8 @@ Result<ArmContest> make_arm_contest(const ArmContestParams& params, const std::f
 /// counts.
 ArmContestScore score_of(const ArmTaps& taps, double lowest_gain, double highest_gain);
 
-/// Which methods to use on a pair: those whose least gain limit over the hands is within a step of the search of the
-/// largest, the one first that lets most be felt at gain 1 in the hand that feels least. Scores are of `contest`'s
-/// entries; indices into the methods.
+/// Which methods to use on a pair: the one that lets the hand that feels least feel most at its limit, and behind it
+/// those that come to within a factor √2 of that. Scores are of `contest`'s entries; indices into the methods.
 std::vector<std::size_t> arm_contest_winners(const ArmContest& contest, const std::vector<ArmContestScore>& scores,
                                              std::size_t pair);
 

@@ -50,12 +50,13 @@ report::Page arm_contest_page(const Request& request, const std::string& verdict
       {{"gain limit",
         "Largest force gain up to which every one that was tried settled: at least 95 % of the taps touch, and neither "
         "ring nor run away, as arm-tapping counts. ≥: the search ended there. <: not even its lowest gain settled."},
-       {"felt", "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS, at gain 1; median."},
+       {"felt",
+        "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS, at gain 1 and at the limit; "
+        "median. What does not grow with the gain does not display the contact, however large its limit."},
        {"lag", "Farthest that the tools are apart in a reach of 200 mm in 0.75 s that meets nothing."},
        {"effort", "Force of the hand's spring and damper along that reach, RMS."},
        {"use",
-        "Of the methods whose limit in the hand that allows least is within a step of the largest, the one of which "
-        "the hand that feels least feels most."}});
+        "The method of which the hand that feels least feels most at its limit; nearly as much: within a factor √2."}});
   page.table(arm_methods_table());
   return page;
 }

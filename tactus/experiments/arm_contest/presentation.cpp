@@ -22,13 +22,20 @@ std::string text_of(const GainLimit& limit, const ArmContestTask& task) {
 
 std::string name_of_method(std::size_t method) { return std::string(arm_contest_methods()[method].name); }
 
-/// The least limit of a method over the hands of a pair.
-GainLimit least_limit(const ArmContest& contest, const std::vector<ArmContestScore>& scores, std::size_t pair,
-                      std::size_t method) {
-  GainLimit least{.gain = std::numeric_limits<double>::infinity()};
+/// The least of what a method comes to in any hand on a pair.
+struct Least {
+  GainLimit limit{.gain = std::numeric_limits<double>::infinity()};
+  double felt_share_at_limit = std::numeric_limits<double>::infinity();
+};
+
+Least least_of(const ArmContest& contest, const std::vector<ArmContestScore>& scores, std::size_t pair,
+               std::size_t method) {
+  Least least;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const ArmContestEntry& entry = contest.entries[i];
-    if (entry.pair == pair && entry.method == method && scores[i].limit.gain < least.gain) least = scores[i].limit;
+    if (entry.pair != pair || entry.method != method) continue;
+    if (scores[i].limit.gain < least.limit.gain) least.limit = scores[i].limit;
+    least.felt_share_at_limit = std::fmin(least.felt_share_at_limit, scores[i].felt_share_at_limit.value_or(0.0));
   }
   return least;
 }
@@ -46,12 +53,12 @@ std::string arm_contest_verdict(const ArmContest& contest, const std::vector<Arm
       text += "none settles in every hand.";
       continue;
     }
-    text += "use " + name_of_method(winners.front()) + ", which settles up to a gain of " +
-            text_of(least_limit(contest, scores, pair, winners.front()), task) +
-            (contest.hands.size() > 1 ? " in every hand" : "");
-    for (std::size_t i = 1; i < winners.size(); ++i) {
-      text += (i == 1 ? "; as far within a step, and less felt: " : ", ") + name_of_method(winners[i]);
-    }
+    const Least least = least_of(contest, scores, pair, winners.front());
+    text += "use " + name_of_method(winners.front()) + ": " + percent(least.felt_share_at_limit) +
+            " % of the contact above 15 Hz reaches the hand at its limit, a gain of " + text_of(least.limit, task) +
+            (contest.hands.size() > 1 ? ", each in the hand that has less" : "");
+    for (std::size_t i = 1; i < winners.size(); ++i)
+      text += (i == 1 ? "; nearly as much: " : ", ") + name_of_method(winners[i]);
     text += ".";
   }
   return text;
@@ -64,7 +71,8 @@ report::Table arm_contest_table(const ArmContest& contest, const std::vector<Arm
                        {"arms", "", Align::left},
                        {"hand", "", Align::left},
                        {"gain limit"},
-                       {"felt", "%"},
+                       {"felt at 1", "%"},
+                       {"felt at limit", "%"},
                        {"lag", "mm"},
                        {"effort", "N RMS"}},
                       "The largest force gain that settles, and what the method costs");
@@ -72,8 +80,8 @@ report::Table arm_contest_table(const ArmContest& contest, const std::vector<Arm
     const ArmContestEntry& entry = contest.entries[i];
     const ArmContestScore& score = scores[i];
     table.add_row({name_of_method(entry.method), contest.pairs[entry.pair], contest.hands[entry.hand],
-                   text_of(score.limit, task), percent(score.felt_share), report::number(1e3 * score.reach.lag_m, 3),
-                   report::number(score.reach.effort_N, 3)});
+                   text_of(score.limit, task), percent(score.felt_share), percent(score.felt_share_at_limit),
+                   report::number(1e3 * score.reach.lag_m, 3), report::number(score.reach.effort_N, 3)});
   }
   return table;
 }
@@ -101,7 +109,7 @@ report::Figure arm_contest_figure(const ArmContest& contest, const std::vector<A
                         .caption = "A good method has long bars in the first two columns and short ones beside them.",
                         .columns = 4,
                         .panels = {},
-                        .column_titles = {"largest gain that settles", "felt at gain 1", "lag", "effort"},
+                        .column_titles = {"largest gain that settles", "felt there", "lag", "effort"},
                         .share_x = report::Sharing::in_line,
                         .share_y = report::Sharing::in_line};
   const auto largest = [&](auto&& length) {
@@ -111,7 +119,7 @@ report::Figure arm_contest_figure(const ArmContest& contest, const std::vector<A
   };
   constexpr double room = 1.35;  // for the labels behind the bars
   const auto felt = [](const ArmContestScore& score) {
-    return score.felt_share ? 100.0 * *score.felt_share : std::numeric_limits<double>::quiet_NaN();
+    return score.felt_share_at_limit ? 100.0 * *score.felt_share_at_limit : std::numeric_limits<double>::quiet_NaN();
   };
   const auto lag = [](const ArmContestScore& score) { return 1e3 * score.reach.lag_m; };
   const auto effort = [](const ArmContestScore& score) { return score.reach.effort_N; };
@@ -136,7 +144,7 @@ report::Figure arm_contest_figure(const ArmContest& contest, const std::vector<A
             [&](const ArmContestScore& score) { return text_of(score.limit, task); }));
     add({.label = "above 15 Hz", .unit = "%", .upper = room * largest(felt)},
         bars(pair, felt, [&](const ArmContestScore& score) {
-          return score.felt_share ? percent(score.felt_share) : std::string("does not settle");
+          return score.felt_share_at_limit ? percent(score.felt_share_at_limit) : std::string("settles nowhere");
         }));
     add({.label = "tools apart", .unit = "mm", .upper = room * largest(lag)}, bars(pair, lag, two_digits(lag)));
     add({.label = "force", .unit = "N RMS", .upper = room * largest(effort)}, bars(pair, effort, two_digits(effort)));
@@ -160,6 +168,7 @@ std::string arm_contest_json(const std::string& experiment, const ArmContest& co
                 {"method", arm_contest_methods()[entry.method].name}};
     result.update(json_of(scores[i].limit));
     result["metrics"] = {{"felt_share", json_of(scores[i].felt_share)},
+                         {"felt_share_at_limit", json_of(scores[i].felt_share_at_limit)},
                          {"reach_lag_m", scores[i].reach.lag_m},
                          {"reach_effort_N", scores[i].reach.effort_N}};
     document["results"].push_back(std::move(result));
