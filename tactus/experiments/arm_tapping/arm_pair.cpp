@@ -136,7 +136,8 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const arm_control::Indu
                                         .tool_m = setup.arm.tool_m,
                                         .joint_stiffness_N_m_per_rad = induced.joint_stiffness_N_m_per_rad};
   if (params.control.method == arm_control::ArmMethod::four_channel) {
-    follows.four_channel = {.params = params.control.four_channel, .gain = params.control.force_gain};
+    follows.four_channel =
+        arm_control::FourChannelCoupling{.params = params.control.four_channel, .gain = params.control.force_gain};
   }
   auto follower_site = arm_control::follower_site(params.control.follower, follows, gates, tick);
   if (!follower_site) return under("control.follower", follower_site.error());
