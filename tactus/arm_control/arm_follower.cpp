@@ -16,7 +16,8 @@ JointVector of_each(const ArmFollower::Params& params, std::size_t joints, doubl
 
 }  // namespace
 
-ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer)
+ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
+                         Seconds dt)
     : chain_(chain),
       tool_m_(arm.tool_m),
       feed_forward_(params.feed_forward, arm.chain, chain),
@@ -28,6 +29,12 @@ ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain&
       damping_(of_each(params, arm.chain.joints.size(), &DriveGains::damping_N_m_s_per_rad)),
       stiffness_limit_(stiffness_, params.tool_stiffness_limit_N_per_m),
       damping_limit_(damping_, params.tool_damping_limit_N_s_per_m) {
+  if (arm.four_channel) {
+    four_channel_ = FourChannel(arm.four_channel->params, FourChannel::Side::follower, arm.four_channel->gain,
+                                arm.chain, chain, dt);
+    stiffness_ = four_channel_->stiffness();
+    damping_ = four_channel_->damping();
+  }
   for (Eigen::Index i = 0; i < dead_band_.size(); ++i) {
     dead_band_[i] =
         params.observer.dead_band_share * arm.chain.joints[static_cast<std::size_t>(i)].friction.coulomb_N_m;
@@ -52,7 +59,7 @@ Result<ArmFollower> ArmFollower::make(const Params& params, const Arm& arm, Seco
   if (!chain) return chain.error();
   const auto observer = make_observer(params.observer, arm, *chain, dt);
   if (!observer) return under("observer", observer.error());
-  return ArmFollower(params, arm, *chain, *observer);
+  return ArmFollower(params, arm, *chain, *observer, dt);
 }
 
 JointVector ArmFollower::excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept {
@@ -83,10 +90,15 @@ ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVect
                     .damping = damping_,
                     .torque = output.support};
   if (stiffness_limit_.limits() || damping_limit_.limits()) output.command.torque -= excess_torque(reading, leader);
+  output.message = {.position = reading.position, .velocity = reading.velocity, .external_torque = sensed};
+  if (four_channel_) {
+    const FourChannel::Output both = four_channel_->step(reading, leader);
+    output.command.torque += both.torque;
+    output.message.external_torque = both.external;
+  } else if (observes_) {
+    output.message.external_torque = observed(reading);
+  }
   saturate(output.command.torque, most_);
-  output.message = {.position = reading.position,
-                    .velocity = reading.velocity,
-                    .external_torque = observes_ ? observed(reading) : sensed};
   return output;
 }
 

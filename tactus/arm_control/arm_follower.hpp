@@ -8,6 +8,7 @@
 #include <tactus/arm_control/tool_limit.hpp>
 
 #include <array>
+#include <optional>
 #include <variant>
 
 namespace tactus::arm_control {
@@ -75,6 +76,8 @@ class ArmFollower {
     arm::Vector3 tool_m = arm::Vector3::Zero();  ///< on its last link
     /// Of the transmissions, for an observer that takes them for elastic.
     JointVector joint_stiffness_N_m_per_rad = {};
+    /// Where the leader couples so: in place of the drives' gains and of `torque`.
+    std::optional<FourChannelCoupling> four_channel = std::nullopt;
   };
   struct Output {
     ArmCommand command;
@@ -93,7 +96,7 @@ class ArmFollower {
   using Observer = std::variant<ExternalTorqueObserver, ElasticTorqueObserver>;
   static Result<Observer> make_observer(const TorqueObserverParams& params, const Arm& arm, const arm::Chain& chain,
                                         Seconds dt);
-  ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer);
+  ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer, Seconds dt);
   [[nodiscard]] JointVector excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept;
   [[nodiscard]] JointVector observed(const ArmReading& reading) noexcept;
 
@@ -101,6 +104,7 @@ class ArmFollower {
   arm::Vector3 tool_m_;
   FeedForward feed_forward_;
   Observer observer_;
+  std::optional<FourChannel> four_channel_;
   JointVector most_;  ///< torque of the bus
   bool observes_;
   JointVector dead_band_;

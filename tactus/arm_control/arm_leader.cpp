@@ -12,24 +12,34 @@ JointVector drive_damping(const ArmLeader::Params& params, int joints) {
   return damping;
 }
 
+/// Whether the drives pull the leader to where the follower is.
+bool pulls(ArmMethod method) { return method == ArmMethod::position_position || method == ArmMethod::four_channel; }
+
 }  // namespace
 
 ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
-                     const InducedMotion& model, const JointLowPass& force, const JointLowPass& command)
+                     const InducedMotion& model, const JointLowPass& force, const JointLowPass& command, Seconds dt)
     : params_(params),
       feed_forward_(feed_forward),
       chain_(chain),
       tool_m_(arm.induced.tool_m),
       stiffness_(JointVector::Zero(chain.joints())),
-      damping_(params.method == ArmMethod::position_position ? stiffness_ : drive_damping(params, chain.joints())),
+      damping_(pulls(params.method) ? stiffness_ : drive_damping(params, chain.joints())),
       damping_limit_(damping_, params.drive_damping_limit_N_s_per_m),
       model_(model),
+      factr_(params.factr, arm.carried, chain),
+      avoidance_(params.avoidance, chain.joints()),
+      four_channel_(params.four_channel, FourChannel::Side::leader, params.force_gain, arm.carried, chain, dt),
       force_(force),
       command_position_(command),
       command_velocity_(command),
       most_(effort_limits(arm.carried)),
       undisplayed_(stiffness_),
       acting_(stiffness_) {
+  if (params.method == ArmMethod::four_channel) {
+    stiffness_ = four_channel_.stiffness();
+    damping_ = four_channel_.damping();
+  }
   if (params.method != ArmMethod::position_position) return;
   for (std::size_t i = 0; i < arm.gains.size(); ++i) {
     stiffness_[static_cast<Eigen::Index>(i)] = params.force_gain * arm.gains[i].stiffness_N_m_per_rad;
@@ -52,8 +62,23 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
   if (!force) return Error{force.error().code, "force_low_pass_Hz", force.error().message, {}};
   const auto command = JointLowPass::make(params.command_low_pass_Hz, dt);
   if (!command) return Error{command.error().code, "command_low_pass_Hz", command.error().message, {}};
-  return ArmLeader(params, arm, FeedForward(params.feed_forward, arm.carried, *chain), *chain, *model, *force,
-                   *command);
+  return ArmLeader(params, arm, FeedForward(params.feed_forward, arm.carried, *chain), *chain, *model, *force, *command,
+                   dt);
+}
+
+/// All of the bus's torque but what comes from the follower.
+JointVector ArmLeader::beside_display(const ArmReading& reading, const JointVector& support) noexcept {
+  JointVector torque = support;
+  const bool gives_back = !pulls(params_.method) && damping_limit_.limits();
+  if (params_.damping_N_s_per_m > 0.0 || gives_back) {
+    const ToolJacobian tool = chain_.jacobian(reading.position, chain_.joints() - 1, tool_m_).topRows<3>();
+    const arm::Vector3 velocity = tool * reading.velocity;
+    arm::Vector3 force_N = -params_.damping_N_s_per_m * velocity;
+    if (gives_back) force_N += damping_limit_.excess(tool) * velocity;
+    torque += tool.transpose() * force_N;
+  }
+  if (params_.method == ArmMethod::factr) torque += factr_.step(reading);
+  return torque;
 }
 
 ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& follower) noexcept {
@@ -62,20 +87,21 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
     command_position_.settle(reading.position);
     started_ = true;
   }
-  const bool reflects = params_.method != ArmMethod::position_position;
+  const bool reflects = !pulls(params_.method);
   Output output;
   output.support = feed_forward_.torque(reading);
-  JointVector undisplayed = output.support;
-  const bool gives_back = reflects && damping_limit_.limits();
-  if (params_.damping_N_s_per_m > 0.0 || gives_back) {
-    const ToolJacobian tool = chain_.jacobian(reading.position, joints - 1, tool_m_).topRows<3>();
-    const arm::Vector3 velocity = tool * reading.velocity;
-    arm::Vector3 force_N = -params_.damping_N_s_per_m * velocity;
-    if (gives_back) force_N += damping_limit_.excess(tool) * velocity;
-    undisplayed += tool.transpose() * force_N;
-  }
+  const JointVector undisplayed = beside_display(reading, output.support);
   JointVector displayed = JointVector::Zero(joints);
   if (reflects) displayed = params_.force_gain * force_.step(follower.external_torque);
+  if (params_.method == ArmMethod::feedback_avoidance) {
+    displayed = avoidance_.displayed(displayed, reading.velocity);
+  }
+  JointVector own_external = JointVector::Zero(joints);
+  if (params_.method == ArmMethod::four_channel) {
+    const FourChannel::Output both = four_channel_.step(reading, follower);
+    displayed = both.torque;
+    own_external = both.external;
+  }
 
   output.command = ArmCommand::of_torque(undisplayed + displayed);
   saturate(output.command.torque, most_);
@@ -86,11 +112,10 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
     output.command.velocity = follower.velocity;
     output.command.stiffness = stiffness_;
   }
-  if (reflects) displayed = output.command.torque - undisplayed;
+  if (params_.method != ArmMethod::position_position) displayed = output.command.torque - undisplayed;
   output.displayed = displayed;
   output.induced = JointVector::Zero(joints);
-  output.message = {
-      .position = reading.position, .velocity = reading.velocity, .external_torque = JointVector::Zero(joints)};
+  output.message = {.position = reading.position, .velocity = reading.velocity, .external_torque = own_external};
   if (params_.method == ArmMethod::cancellation) {
     output.induced = model_.position();
     output.message.position -= output.induced;

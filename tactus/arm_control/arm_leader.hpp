@@ -2,7 +2,10 @@
 
 #include <tactus/arm_control/arm_message.hpp>
 #include <tactus/arm_control/each_joint.hpp>
+#include <tactus/arm_control/factr_law.hpp>
 #include <tactus/arm_control/feed_forward.hpp>
+#include <tactus/arm_control/feedback_avoidance.hpp>
+#include <tactus/arm_control/four_channel.hpp>
 #include <tactus/arm_control/induced_motion.hpp>
 #include <tactus/arm_control/joint_low_pass.hpp>
 #include <tactus/arm_control/tool_limit.hpp>
@@ -13,14 +16,20 @@ namespace tactus::arm_control {
 
 /// How two arms are coupled.
 enum class ArmMethod {
-  position_force,    ///< the follower's external torque comes back, times a gain
-  cancellation,      ///< the same, and what it does to the leader is taken from the command (`InducedMotion`)
-  position_position  ///< each drive pulls its arm to the other's position; a gain on the leader's stiffness
+  position_force,      ///< the follower's external torque comes back, times a gain
+  cancellation,        ///< the same, and what it does to the leader is taken from the command (`InducedMotion`)
+  position_position,   ///< each drive pulls its arm to the other's position; a gain on the leader's stiffness
+  factr,               ///< position-force with what FACTR's leader does beside (`FactrLaw`)
+  feedback_avoidance,  ///< position-force whose torque fades where the leader moves along (`FeedbackAvoidance`)
+  four_channel  ///< positions and torques both ways, disturbances observed (`FourChannel`); the follower takes part
 };
 constexpr auto enumerators(ArmMethod) {
   return std::array{Enumerator{ArmMethod::position_force, "position-force"},
                     Enumerator{ArmMethod::cancellation, "cancellation"},
-                    Enumerator{ArmMethod::position_position, "position-position"}};
+                    Enumerator{ArmMethod::position_position, "position-position"},
+                    Enumerator{ArmMethod::factr, "factr"},
+                    Enumerator{ArmMethod::feedback_avoidance, "feedback-avoidance"},
+                    Enumerator{ArmMethod::four_channel, "four-channel"}};
 }
 
 /// Of a drive's own law (`arm::ArmCommand`), about its joint.
@@ -50,10 +59,12 @@ struct DriveDamping {
 ///
 ///     feed-forward + gain·external torque of the follower − Jᵀ·damping·J·q̇ − drive damping·q̇,
 ///
-/// of which the second part is displayed and the last is the drives' own. What that comes to at the tool beyond a limit
-/// is given back over the bus (`ToolLimit`). With position-position it is feed-forward and
-/// the drives' law, towards the follower. What the bus carries saturates at each joint's effort limit. Gates stand
-/// behind it (`leader_site`); the model of induced motion lives on what `applied` says that they let through. Sources:
+/// of which the second part is displayed and the last is the drives' own. What the last comes to at the tool
+/// beyond a limit is given back over the bus (`ToolLimit`). With `factr` and `feedback_avoidance` it is what their
+/// classes say beside that. With position-position it is feed-forward and the drives' law, towards the follower; with
+/// four-channel what `FourChannel` adds as well. What the bus carries saturates at each joint's effort limit. Gates
+/// stand behind it
+/// (`leader_site`); the model of induced motion lives on what `applied` says that they let through. Sources:
 /// position-position as openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the leader's
 /// stiffness as i2rt's YAM has it (`bilateral_kp`, MIT); the rest as on one axis
 /// (`control::PositionForceMaster`).
@@ -69,6 +80,9 @@ class ArmLeader {
     double command_low_pass_Hz = 0.0;
     FeedForward::Params feed_forward = {};
     InducedMotion::Params model = {};
+    FactrLaw::Params factr = {};
+    FeedbackAvoidance::Params avoidance = FeedbackAvoidance::released;
+    FourChannel::Params four_channel = {};
     static constexpr auto fields() {
       using P = Params;
       return List{
@@ -88,7 +102,10 @@ class ArmLeader {
           field("command_low_pass_Hz", &P::command_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
                 "First-order low-pass on the command to the follower; 0 is none."),
           field("feed_forward", &P::feed_forward, "What carries the leader and helps it against friction."),
-          field("model", &P::model, "The model of induced motion.")};
+          field("model", &P::model, "The model of induced motion."),
+          field("factr", &P::factr, "With factr alone: its law beside the displayed torque."),
+          field("avoidance", &P::avoidance, "With feedback-avoidance alone: its gain of each joint."),
+          field("four_channel", &P::four_channel, "With four-channel alone: the law of both arms.")};
     }
   };
 
@@ -117,7 +134,8 @@ class ArmLeader {
 
  private:
   ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
-            const InducedMotion& model, const JointLowPass& force, const JointLowPass& command);
+            const InducedMotion& model, const JointLowPass& force, const JointLowPass& command, Seconds dt);
+  [[nodiscard]] JointVector beside_display(const ArmReading& reading, const JointVector& support) noexcept;
 
   Params params_;
   FeedForward feed_forward_;
@@ -127,6 +145,9 @@ class ArmLeader {
   JointVector damping_;
   ToolLimit damping_limit_;
   InducedMotion model_;
+  FactrLaw factr_;
+  FeedbackAvoidance avoidance_;
+  FourChannel four_channel_;
   JointLowPass force_;
   JointLowPass command_position_;
   JointLowPass command_velocity_;

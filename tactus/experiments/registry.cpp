@@ -20,7 +20,8 @@
   KIND(sensorless_experiment)              \
   KIND(faults_experiment)                  \
   KIND(arm_tapping_experiment)             \
-  KIND(arm_vibration_experiment)
+  KIND(arm_vibration_experiment)           \
+  KIND(arm_contest_experiment)
 
 namespace tactus::experiments {
 

@@ -77,6 +77,12 @@ TEST_F(Results, OfARunAreOfItsSchemaWhateverItsKindAndClock) {
   EXPECT_EQ(arms["runs"][0]["metrics"]["taps"], 1);
   const Json coupled = expect_valid("run", {"run", experiments_folder + "/arm-vibration.toml"});
   EXPECT_EQ(coupled["runs"][0]["metrics"]["vibrates"], 0);
+  const Json arm_contest =
+      expect_valid("run", {"run", experiments_folder + "/arm-contest.toml", "--set", "task.taps=1", "--set",
+                           "task.lowest_gain=0.9", "--set", "task.highest_gain=1.1", "--set", "pairs.pair_2.name=''",
+                           "--set", "pairs.pair_3.name=''", "--set", "hands.hand_2.name=''"});
+  EXPECT_EQ(arm_contest["results"].size(), arm_contest["methods"].size());
+  EXPECT_TRUE(arm_contest["results"][0]["gain_limit_censored"]);
   for (const char* kind : {"force-display", "hydraulic-chirp", "inverse-model-chirp", "prediction-block"}) {
     expect_valid("run", {"run", experiments_folder + "/" + kind + ".toml"});
   }

@@ -165,6 +165,10 @@ Result<station::JointSupervisedPair> arm_sites(const ArmPairSetup& setup, const 
                                                const Joints<station::DeviceLimits>& follower) {
   const auto& sites = setup.params.control;
   const experiments::ArmRigParams& rig = setup.params.rig;
+  if (sites.method == ArmMethod::four_channel) {
+    return problem_at("control.method", ErrorCode::inconsistent,
+                      "four-channel control is tried in virtual time alone: write another method for a rig");
+  }
   const std::size_t of_arm = setup.joints.size(), joints = leader.size();
   if (joints < of_arm || joints > most_joints) {
     return out_of_bounds("joints", static_cast<double>(joints), between(static_cast<double>(of_arm), most_joints),

@@ -19,7 +19,7 @@ Result<RigPair> as_arms(const RigPair& pair, const experiments::ArmPairSetup& se
 
 /// The sites under supervision, before devices with these limits: their gates are within them, and so is the torque
 /// that the sites believe to have. Errors, whose parameters are those of `arm-tapping`'s file: a limit of a gate that
-/// nobody chose; those of the sites and of their supervision.
+/// nobody chose; `inconsistent` for four-channel control; those of the sites and of their supervision.
 Result<station::JointSupervisedPair> arm_sites(const experiments::ArmPairSetup& setup,
                                                const Joints<station::DeviceLimits>& leader,
                                                const Joints<station::DeviceLimits>& follower);

@@ -132,11 +132,14 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const arm_control::Indu
   auto leader_site =
       arm_control::leader_site(control, {.carried = setup.arm.chain, .induced = induced, .gains = gains}, gates, tick);
   if (!leader_site) return under("control", leader_site.error());
-  auto follower_site = arm_control::follower_site(params.control.follower,
-                                                  {.chain = setup.arm.chain,
-                                                   .tool_m = setup.arm.tool_m,
-                                                   .joint_stiffness_N_m_per_rad = induced.joint_stiffness_N_m_per_rad},
-                                                  gates, tick);
+  arm_control::ArmFollower::Arm follows{.chain = setup.arm.chain,
+                                        .tool_m = setup.arm.tool_m,
+                                        .joint_stiffness_N_m_per_rad = induced.joint_stiffness_N_m_per_rad};
+  if (params.control.method == arm_control::ArmMethod::four_channel) {
+    follows.four_channel =
+        arm_control::FourChannelCoupling{.params = params.control.four_channel, .gain = params.control.force_gain};
+  }
+  auto follower_site = arm_control::follower_site(params.control.follower, follows, gates, tick);
   if (!follower_site) return under("control.follower", follower_site.error());
   Joints<double> start(joints);
   for (std::size_t i = 0; i < joints; ++i) start[i] = setup.start[static_cast<Eigen::Index>(i)];

@@ -139,30 +139,43 @@ ArmTaps::Contact ArmTaps::run_once(const ArmPairSetup& setup, const ArmTap& tap,
 }
 
 ArmTapResult ArmTaps::run(std::size_t tap, std::vector<ArmRecord>* trace) const {
-  const Contact at_gain = run_once(setup_, taps_[tap], trace);
+  return run_at(setup_.params.control.force_gain, tap, run_without_display(tap), trace);
+}
+
+ArmContact ArmTaps::run_without_display(std::size_t tap) const {
   ArmPairSetup without = setup_;
   without.params.control.method = arm_control::ArmMethod::position_force;
   without.params.control.force_gain = 0.0;
-  const Contact at_none = run_once(without, taps_[tap], nullptr);
+  return run_once(without, taps_[tap], nullptr).contact;
+}
+
+ArmTapResult ArmTaps::run_at(double gain, std::size_t tap, const ArmContact& without_display,
+                             std::vector<ArmRecord>* trace) const {
+  ArmPairSetup setup = setup_;
+  setup.params.control.force_gain = gain;
+  const Contact at_gain = run_once(setup, taps_[tap], trace);
   return {.contact = at_gain.contact,
-          .ran_away = at_gain.contact.peak_N > 1.6 * at_none.contact.peak_N + 1.0 ||
-                      at_gain.contact.steady_N > 2.0 * at_none.contact.steady_N,
+          .ran_away = at_gain.contact.peak_N > 1.6 * without_display.peak_N + 1.0 ||
+                      at_gain.contact.steady_N > 2.0 * without_display.steady_N,
           .diverged = at_gain.diverged};
 }
 
-double ArmTaps::reach_lag_m() const {
+ArmReach ArmTaps::reach() const {
   constexpr double far_below_m = -10.0;
   const mechanics::MinimumJerk reach{.start_m = 0.0, .end_m = 0.2, .start_time_s = rest_s, .duration_s = 0.75};
   const ArmTap& tap = taps_.front();
   ArmPair pair = *ArmPair::make(setup_, tap.induced, tap.hand, far_below_m);
-  double most_m = 0.0;
+  ArmReach found;
+  std::vector<double> forces_N;
   for (std::size_t k = 0; k < ticks_in(rest_s + reach.duration_s, pair.tick_s()); ++k) {
     const double now_s = static_cast<double>(k) * pair.tick_s();
     const ArmRecord record =
         pair.step(reach.position_m(now_s) * setup_.outward, reach.position_m(now_s + pair.tick_s()) * setup_.outward);
-    most_m = std::max(most_m, record.tools_apart_m);
+    found.lag_m = std::max(found.lag_m, record.tools_apart_m);
+    if (now_s >= rest_s) forces_N.push_back(record.hand_N);
   }
-  return most_m;
+  found.effort_N = signal::root_mean_square(forces_N);
+  return found;
 }
 
 ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, double reach_lag_m) {

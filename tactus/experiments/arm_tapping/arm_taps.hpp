@@ -38,6 +38,12 @@ struct ArmTapResult {
   [[nodiscard]] bool settled() const { return contact.touched && !contact.rings && !ran_away && !diverged; }
 };
 
+/// A reach of 200 mm outward in 0.75 s that meets nothing.
+struct ArmReach {
+  double lag_m = 0.0;     ///< farthest that the tools are apart
+  double effort_N = 0.0;  ///< of the hand's spring and damper along the reach, RMS
+};
+
 /// The ensemble of one combination.
 class ArmTaps {
  public:
@@ -48,8 +54,12 @@ class ArmTaps {
   [[nodiscard]] double tick_s() const { return 1.0 / setup_.params.servo.rate_Hz; }
   /// Runs a tap twice, at the gain and at gain 0; with `trace`, appends every tick of the first.
   ArmTapResult run(std::size_t tap, std::vector<ArmRecord>* trace = nullptr) const;
-  /// How far the tools are apart at most while the person reaches 200 mm outward in 0.75 s and nothing is there.
-  [[nodiscard]] double reach_lag_m() const;
+  /// A tap at gain 0: what one that may run away is compared with.
+  [[nodiscard]] ArmContact run_without_display(std::size_t tap) const;
+  /// Runs a tap at this gain.
+  ArmTapResult run_at(double gain, std::size_t tap, const ArmContact& without_display,
+                      std::vector<ArmRecord>* trace = nullptr) const;
+  [[nodiscard]] ArmReach reach() const;
 
  private:
   struct Contact {

@@ -156,7 +156,7 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
         const ArmTaps& taps = cases->all[run].prepared;
         Results& found = results[run];
         if (tap == taps.size()) {
-          found.reach_lag_m = taps.reach_lag_m();
+          found.reach_lag_m = taps.reach().lag_m;
         } else {
           found.taps[tap] = taps.run(tap, tap == 0 ? &found.trace : nullptr);
         }

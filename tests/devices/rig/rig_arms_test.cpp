@@ -264,6 +264,8 @@ TEST(RigArms, ALawBeyondWhatTheRigAllowsIsRefusedBeforeAnythingMoves) {
             0U);
   EXPECT_EQ(
       refusal("rig.probe_torque.joint_3.torque_N_m=0").find("rig.supervision.probe.force_N: 0 N m tries no motor"), 0U);
+  EXPECT_EQ(refusal("control.method=four-channel").find("control.method: four-channel control is tried in virtual"),
+            0U);
 }
 
 }  // namespace rig_arms_test
