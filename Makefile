@@ -29,12 +29,12 @@ web/dist/index.html: web/node_modules/.package-lock.json web/index.html $(shell 
 	npm run --prefix web build
 
 # A core has two slots for tests (tests/CMakeLists.txt).
-test: configure ## Build everything and run the test suite
+test: configure ## Build tactus and its tests, and run them
 	cmake --build --preset release --parallel $(JOBS)
 	ctest --preset release --parallel $$((2 * $(JOBS)))
 
-bench: configure ## Build and run the benchmarks
-	cmake --build --preset release --parallel $(JOBS) --target bench_tactus
+bench: configure ## Build the benchmarks, and run those of the servo tick
+	cmake --build --preset release --parallel $(JOBS) --target benchmarks
 	$(BUILD)/bin/bench_tactus
 
 format: ## Format every source file in place

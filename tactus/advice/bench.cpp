@@ -51,7 +51,7 @@ Result<Bench> make_bench(configuration::Document document, const std::vector<std
   if (*kind != "tapping") {
     return document.locate({ErrorCode::inconsistent,
                             "task.kind",
-                            "advice is given on experiments of the kind tapping, not " + *kind +
+                            "advice is given on experiments of the kinds tapping and arm-tapping, not " + *kind +
                                 ": name one, as experiments/tapping.toml with your device in it",
                             {}});
   }

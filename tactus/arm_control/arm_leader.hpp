@@ -39,7 +39,7 @@ struct DriveGains {
   static constexpr auto fields() {
     using D = DriveGains;
     return List{field("stiffness_N_m_per_rad", &D::stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
-                      between(0.0, 500.0), "Proportional gain of the drive."),
+                      between(0.0, 1000.0), "Proportional gain of the drive."),
                 field("damping_N_m_s_per_rad", &D::damping_N_m_s_per_rad, arm::units::newton_metre_second_per_radian,
                       between(0.0, 50.0), "Derivative gain of the drive.")};
   }

@@ -28,7 +28,8 @@ constexpr double log_friction_deviation = 2.0;
 constexpr double usual_load_share = 0.02;
 constexpr double known = 1e-9;
 constexpr int most_steps = 1000;
-constexpr double settled = 1e-3;  ///< gain of the sum of squares over the noise's that tells nothing any more
+constexpr double longest_step = 1.0;  ///< of any coordinate, in deviations of the prior
+constexpr double settled = 1e-3;      ///< gain of the sum of squares over the noise's that tells nothing any more
 
 // Places among the coordinates of a body: half the logarithm of the mass, three of the gyration, three shears, and the
 // centre.
@@ -283,7 +284,10 @@ ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::ve
     while (!better && damping < 1e12) {
       MatrixXd damped = curvature;
       damped.diagonal() *= 1.0 + damping;
-      const VectorXd next = x + signal::solve_definite(damped, pull);
+      VectorXd onward = signal::solve_definite(damped, pull);
+      const double longest = onward.cwiseQuotient(problem.deviations).cwiseAbs().maxCoeff();
+      if (longest > longest_step) onward *= longest_step / longest;
+      const VectorXd next = x + onward;
       const double tried = next.allFinite() ? cost_of(problem, next) : std::numeric_limits<double>::infinity();
       better = tried <= cost;
       if (!better) {

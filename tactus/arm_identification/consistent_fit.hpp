@@ -63,9 +63,10 @@ struct ConsistentFit {
 ///
 /// A body is a heap of masses of any density but negative, however far the data pull: its pseudo-inertia is U·Uᵀ with U
 /// upper triangular and its diagonal exponentials, and everything that cannot be negative is an exponential. Prior
-/// deviations: mass 50 %, lengths of gyration 40 %, centre half of the length of gyration; armature and friction a
-/// factor of e to e². Where data say nothing the prior stays, and `covariance` is that of the prior.
-/// Levenberg-Marquardt on the sums; deterministic; not real-time safe. Sources: Rucker and Wensing, Smooth
+/// deviations: mass a factor of 4.5, lengths of gyration one of 3.3, centre 1.5 lengths of gyration; armature a factor
+/// of 4.5, friction one of e². Where data say nothing the prior stays, and `covariance` is that of the prior.
+/// Levenberg-Marquardt on the sums, in steps of at most one prior deviation: a longer one can make an exponential so
+/// small that nothing pulls it back. Deterministic; not real-time safe. Sources: Rucker and Wensing, Smooth
 /// parameterization of rigid-body inertia, IEEE RA-L 7(2), 2022; Traversaro et al., Identification of fully physical
 /// consistent inertial parameters using optimization on manifolds, IROS 2016.
 ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::vector<JointPrior>& priors,

@@ -3,8 +3,6 @@
 #include <tactus/arm_identification/rows_fit.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/identification/refusal.hpp>
-#include <tactus/signal/decompositions.hpp>
-#include <tactus/signal/random.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,92 +25,28 @@ constexpr double most_rows = 12'000.0;
 constexpr double rows_per_cutoff = 4.0;
 constexpr double normal_95 = 1.96;
 constexpr double worth_a_scale = 0.97;
+constexpr double one_scale = 0.05;        ///< of the logarithm: torque constants that differ by less are one
 constexpr double least_explained = 0.75;  ///< relative residual beyond which a model is refused
 constexpr double threshold_margin = 1.25;
+
+/// Leaves a scale of its own to joints whose found one differs from the others', and gives the others one: 1 where they
+/// are torques. A scale that is free where none is needed takes up what is no scale, and unseen motion shows it.
+void keep_scales_that_differ(const std::vector<double>& found, std::vector<JointPrior>& priors) {
+  std::vector<double> sorted = found;
+  std::sort(sorted.begin(), sorted.end());
+  const double middle = sorted[sorted.size() / 2];
+  const double common = std::fabs(std::log(middle)) < one_scale ? 1.0 : middle;
+  for (std::size_t j = 0; j < priors.size(); ++j) {
+    if (std::fabs(std::log(found[j] / common)) >= one_scale) continue;
+    priors[j].scale = common;
+    priors[j].scale_deviation = 0.0;
+  }
+}
 
 std::string short_text(double value) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.2g", value);
   return buffer.data();
-}
-
-/// How many combinations of parameters torques depend on, from the singular values of the regressor at random states.
-int base_parameters_of(const arm::Chain& chain) {
-  signal::Random random(1);
-  const Index joints = chain.joints();
-  constexpr Index states = 60;
-  MatrixXd rows(states * joints, (arm::joint_parameters - 3) * joints);
-  const auto draw = [&] {
-    arm::JointVector v(joints);
-    for (double& value : v) value = 6.0 * random.uniform() - 3.0;
-    return v;
-  };
-  for (Index i = 0; i < states; ++i) {
-    const arm::JointVector q = draw();
-    const arm::JointVector v = draw();
-    const arm::Regressor regressor = chain.regressor(q, v, draw());
-    for (Index j = 0; j < joints; ++j) {
-      // Bodies and armatures.
-      rows.block(i * joints, (arm::joint_parameters - 3) * j, joints, arm::joint_parameters - 3) =
-          regressor.middleCols(arm::joint_parameters * j, arm::joint_parameters - 3);
-    }
-  }
-  Eigen::ColPivHouseholderQR<MatrixXd> qr(rows);
-  qr.setThreshold(1e-9);
-  return static_cast<int>(qr.rank());
-}
-
-/// Directions of the coordinates in which the data leave at most half of the prior's variance.
-int told_of(const ConsistentFit& fit) {
-  const VectorXd firmness = fit.prior_deviations.cwiseInverse();
-  const MatrixXd whitened = firmness.asDiagonal() * fit.covariance * firmness.asDiagonal();
-  const VectorXd left = signal::symmetric_eigenvalues(whitened);
-  return static_cast<int>((left.array() < 0.5).count());
-}
-
-void add_parameters(const ConsistentFit& fit, const ConsistentFit& nothing, int joint, const FrictionShape& shape,
-                    std::vector<ArmParameter>& into) {
-  struct Row {
-    const char* name;
-    const char* unit;
-    int place;
-  };
-  static constexpr std::array<Row, 16> rows{{{"mass", "kg", 0},
-                                             {"first_moment_x", "kg m", 1},
-                                             {"first_moment_y", "kg m", 2},
-                                             {"first_moment_z", "kg m", 3},
-                                             {"inertia_xx", "kg m^2", 4},
-                                             {"inertia_xy", "kg m^2", 5},
-                                             {"inertia_xz", "kg m^2", 6},
-                                             {"inertia_yy", "kg m^2", 7},
-                                             {"inertia_yz", "kg m^2", 8},
-                                             {"inertia_zz", "kg m^2", 9},
-                                             {"armature", "kg m^2", 10},
-                                             {"coulomb", "N m", 11},
-                                             {"viscous", "N m s/rad", 12},
-                                             {"offset", "N m", 13},
-                                             {"load", "", 14},
-                                             {"stribeck", "N m", 15}}};
-  for (const Row& row : rows) {
-    if ((row.place == 14 && !shape.load) || (row.place == 15 && shape.stribeck < 0)) continue;
-    const bool own = row.place >= arm::body_parameters;
-    const double value =
-        own ? fit.local[static_cast<std::size_t>(joint)][static_cast<std::size_t>(row.place - arm::body_parameters)]
-            : fit.bodies[arm::body_parameters * joint + row.place];
-    const double deviation = fit.deviation(joint, row.place);
-    const double before = nothing.deviation(joint, row.place);
-    ArmParameter parameter{.name = row.name, .unit = row.unit, .value = value};
-    const bool exponential = own && row.place != 13 && row.place != 15;
-    const double factor = exponential && value > 0.0 ? std::exp(normal_95 * deviation / value) : 1.0;
-    parameter.lower = exponential ? value / factor : value - normal_95 * deviation;
-    parameter.upper = exponential ? value * factor : value + normal_95 * deviation;
-    parameter.told =
-        exponential ? deviation / value <= 0.5 * before /
-                                               nothing.local[static_cast<std::size_t>(joint)]
-                                                            [static_cast<std::size_t>(row.place - arm::body_parameters)]
-                    : deviation <= 0.5 * before;
-    into.push_back(parameter);
-  }
 }
 
 ArmModel model_of(const ArmData& data, const RowsFit& fit, const std::vector<std::string>& joints,
@@ -185,32 +119,33 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
   }
   if (Check wrong = check_efforts(data, bodies, joints, recordings.front())) return in_file(*std::move(wrong));
 
-  const std::vector<JointPrior> priors = priors_of(data, *chain, urdf, bodies, result.scaled_efforts);
+  std::vector<JointPrior> priors = priors_of(data, *chain, urdf, bodies, result.scaled_efforts);
   const RowSpan all{0, data.rows()};
   const RowSpan seen{0, data.rows() / 2};
   const RowSpan judged{seen.count, data.rows() - seen.count};
+  const RowsFit free = fit_rows(data, seen, priors, false);
   if (!result.scaled_efforts) {
     const RowsFit as_torques = fit_rows(data, seen, priors, true);
-    const RowsFit free = fit_rows(data, seen, priors, false);
     for (std::size_t j = 0; j < joints.size(); ++j) {
       const bool better = free.found.residual_rms[j] < worth_a_scale * as_torques.found.residual_rms[j];
       result.scaled_efforts = result.scaled_efforts || better;
     }
   }
+  if (result.scaled_efforts) {
+    keep_scales_that_differ(free.found.scales, priors);
+    result.scaled_efforts = std::any_of(priors.begin(), priors.end(), [](const JointPrior& prior) {
+      return prior.scale != 1.0 || prior.scale_deviation > 0.0;
+    });
+  }
   const RowsFit half = fit_rows(data, seen, priors, !result.scaled_efforts);
   const RowsFit whole = fit_rows(data, all, priors, !result.scaled_efforts);
   const std::vector<double> ordinary = ordinary_least_squares(data, seen, judged);
-  std::vector<JointSums> no_sums;
-  const Index columns = bodies.size() + local_parameters;
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    no_sums.push_back({MatrixXd::Zero(columns, columns), VectorXd::Zero(columns), 0.0, 1.0});
-  }
   std::vector<JointPrior> used = priors;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     used[j].load = whole.shapes[j].load;
     used[j].stribeck = whole.shapes[j].stribeck >= 0;
   }
-  const ConsistentFit nothing = fit_consistently(no_sums, used, std::vector<double>(joints.size(), 1.0), {});
+  const ConsistentFit nothing = fit_of_nothing(used);
 
   std::vector<double> thresholds;
   for (int j = 0; j < data.joints(); ++j) {
@@ -237,7 +172,7 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
                         joints[at] + "' (column '" + recordings.front().effort_names[at] +
                         "'): are columns swapped, was something touched, or is this the URDF of another arm?"));
     }
-    add_parameters(whole.found, nothing, j, whole.shapes[at], fit.parameters);
+    fit.parameters = parameters_of(whole.found, nothing, j, whole.shapes[at]);
     thresholds.push_back(threshold_margin * std::max(left.cwiseAbs().maxCoeff(), held_out.cwiseAbs().maxCoeff()));
     result.joints.push_back(std::move(fit));
   }

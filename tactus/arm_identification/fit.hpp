@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/arm_identification/model.hpp>
+#include <tactus/arm_identification/parameters.hpp>
 #include <tactus/arm_identification/recording.hpp>
 
 #include <optional>
@@ -9,18 +10,6 @@
 #include <vector>
 
 namespace tactus::arm_identification {
-
-/// One number of an identified arm.
-struct ArmParameter {
-  std::string name = {};  ///< as in `model.toml`: `body.mass_kg`
-  std::string unit = {};
-  double value = 0.0;
-  double lower = 0.0;  ///< of the 95 % interval
-  double upper = 0.0;
-  /// Whether the recordings tell it: they leave at most half of the deviation that the URDF was given. Else the value
-  /// is near that of the URDF, and another with the same torques would do as well.
-  bool told = false;
-};
 
 /// How well the model explains one joint. Efforts are those below the cutoff, in the unit of the recording.
 struct ArmJointFit {

@@ -268,8 +268,10 @@ JointVector ArmPlant::bearing_torque() const {
 JointVector ArmPlant::torque_of(const ToolForce& on_tool) const {
   const Engine& e = *engine_;
   const auto jacobian = e.jacobian();
-  const Eigen::VectorXd all =
-      jacobian.moving.transpose() * on_tool.force_N + jacobian.turning.transpose() * on_tool.moment_N_m;
+  // Of motors and, where joints are elastic, of links: in a place of its own size, for a tick does not allocate.
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * arm::most, 1> all =
+      jacobian.moving.transpose().lazyProduct(on_tool.force_N) +
+      jacobian.turning.transpose().lazyProduct(on_tool.moment_N_m);
   return e.motor_side(all.data());
 }
 

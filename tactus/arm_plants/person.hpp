@@ -3,27 +3,27 @@
 #include <tactus/arm/hand.hpp>
 #include <tactus/arm_plants/arm_plant.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/mechanics/environment.hpp>
 #include <tactus/signal/low_pass.hpp>
 
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace tactus::arm_plants {
 
-/// A stiff plane that the tool meets (Kelvin and Voigt): it pushes, and never pulls, along its normal by
-/// stiffness·depth + damping·speed into it.
+/// A smooth plane that the tool meets: it pushes along its normal by what the law of one axis says of the depth and of
+/// the speed into it. Real-time safe.
 struct Wall {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitZ();  ///< out of it, of length 1
-  double stiffness_N_per_m = 0.0;
-  double damping_N_s_per_m = 0.0;
+  mechanics::Environment contact;     ///< along the depth, its surface at 0
 
-  [[nodiscard]] Vector3 force_N(const ToolState& tool) const noexcept {
-    const double depth_m = normal.dot(point_m - tool.position_m);
-    if (!(depth_m > 0.0)) return Vector3::Zero();
-    const double push_N = stiffness_N_per_m * depth_m - damping_N_s_per_m * normal.dot(tool.velocity_m_per_s);
-    return push_N > 0.0 ? Vector3(push_N * normal) : Vector3::Zero();
+  [[nodiscard]] Vector3 force_N(const ToolState& tool) noexcept {
+    const double push_N = contact.step(
+        {.position_m = normal.dot(point_m - tool.position_m), .velocity_m_per_s = -normal.dot(tool.velocity_m_per_s)});
+    return push_N == 0.0 ? Vector3(Vector3::Zero()) : Vector3(push_N * normal);
   }
 };
 
@@ -54,6 +54,8 @@ class Person {
 
   /// Once a tick: where the hand wants the tool now and a tick later, and where it is.
   void begin_tick(const Vector3& path_m, const Vector3& path_at_next_tick_m, const ToolState& tool);
+  /// Holds on with the spring and the damper of `other`, which gets the own ones: its mass is carried elsewhere.
+  void exchange_hand(Person& other) noexcept { std::swap(hand_, other.hand_); }
   /// What the hand does to the tool `since_tick_s` after the tick began.
   [[nodiscard]] ToolForce force(const ToolState& tool, double since_tick_s) const;
 

@@ -1,3 +1,4 @@
+#include <tactus/advice/arm_presentation.hpp>
 #include <tactus/advice/presentation.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/outcome_files.hpp>
@@ -19,28 +20,37 @@ struct AdviseOptions {
   OutputOptions output;
 };
 
-Check advise(const AdviseOptions& options, const std::string& command) {
-  auto document = load_experiment(options.experiment);
-  if (!document) return document.error();
-  auto bench = advice::make_bench(*std::move(document), options.experiment.with, options.experiment.set);
-  if (!bench) return bench.error();
+/// Searches, presents and writes, for one axis and for arms alike.
+template <class Bench>
+Check advise_on(const Bench& bench, const AdviseOptions& options, const std::string& command) {
   auto output = OutputFolder::open(options.output);
   if (!output) return output.error();
-  const experiments::Request request{.document = bench->document,
+  const experiments::Request request{.document = bench.document,
                                      .variations = {},
                                      .name = experiment_name(options.experiment.file),
                                      .command = command};
   const auto advice = [&] {
     ProgressLine line(request.name);
-    return advice::advise(*bench, [&line](double done) { line.update(done); });
+    return advice::advise(bench, [&line](double done) { line.update(done); });
   }();
   if (!advice) return advice.error();
-  const auto outcome = advice::present(*bench, *advice, request);
+  const auto outcome = advice::present(bench, *advice, request);
   if (!outcome) return outcome.error();
   if (output->wanted() && advice->start) {
-    if (auto error = output->write("advice.toml", advice::advice_toml(*bench, *advice, command))) return error;
+    if (auto error = output->write("advice.toml", advice::advice_toml(bench, *advice, command))) return error;
   }
   return write_outcome(*output, *outcome);
+}
+
+Check advise(const AdviseOptions& options, const std::string& command) {
+  auto document = load_experiment(options.experiment);
+  if (!document) return document.error();
+  if (experiments::is_of_arms(*document)) {
+    const auto bench = advice::make_arm_bench(*std::move(document), options.experiment.set);
+    return bench ? advise_on(*bench, options, command) : bench.error();
+  }
+  const auto bench = advice::make_bench(*std::move(document), options.experiment.with, options.experiment.set);
+  return bench ? advise_on(*bench, options, command) : bench.error();
 }
 
 }  // namespace

@@ -50,6 +50,29 @@ Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std:
   return std::vector{*std::move(recording)};
 }
 
+Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options) {
+  arm::Gravity gravity;
+  if (!options.gravity.empty()) gravity = {options.gravity[0], options.gravity[1], options.gravity[2]};
+  if (Check wrong = validate(gravity)) {
+    Error error = *std::move(wrong);
+    error.place = "--gravity";
+    return error;
+  }
+  auto arm = urdf::read(options.file, options.tip);
+  if (arm) arm->params.gravity = gravity;
+  return arm;
+}
+
+void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options) {
+  verb.add_option("--urdf", options.file, "URDF of the arm")->required()->type_name("FILE");
+  verb.add_option("--tip", options.tip, "Link at which the arm ends, where the URDF goes on or branches")
+      ->type_name("LINK");
+  verb.add_option("--gravity", options.gravity, "Free fall in the base's frame in m/s^2; 0,0,-9.81 if not given")
+      ->type_name("X,Y,Z")
+      ->delimiter(',')
+      ->expected(3);
+}
+
 void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& command, const std::string& out_help) {
   const auto add = [&](const char* name, std::vector<std::string>& into, const char* help) {
     return verb.add_option(name, into, help)->type_name("COLUMNS")->allow_extra_args(false);

@@ -3,6 +3,7 @@
 #include <tactus/arm_identification/recording.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/urdf/urdf.hpp>
 
 #include <string>
 #include <vector>
@@ -21,6 +22,18 @@ struct ArmOptions {
   /// An option that is given more than once names more columns.
   [[nodiscard]] arm_identification::ArmColumns columns() const;
 };
+
+/// Which arm, and how it hangs.
+struct ArmUrdfOptions {
+  std::string file;
+  std::string tip;
+  std::vector<double> gravity;
+};
+
+/// The arm of the file, with the gravity that was given. Errors: those of `urdf::read`, and of `arm::Gravity`.
+Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options);
+/// Adds `--urdf`, `--tip` and `--gravity` to a verb.
+void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options);
 
 /// A recording with these columns, or the stretches of a log (`read_rig_log`), which tells by itself what is what.
 /// Errors: those of `arm_identification::read_arm` and `read_rig_log`; `missing` for a table without a role,

@@ -8,6 +8,12 @@
 
 namespace tactus::cli {
 
+CLI::Option* add_with_option(CLI::App& verb, std::vector<std::string>& with) {
+  return verb.add_option("--with", with, "File whose keys take the place of the experiment's, as an identified model")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+}
+
 void add_set_option(CLI::App& verb, std::vector<std::string>& set) {
   verb.add_option("--set", set, "Override one value: key=value")->type_name("KEY=VALUE")->allow_extra_args(false);
 }
@@ -36,9 +42,7 @@ Check refuse_set_and_varied(const std::vector<std::string>& set, const std::stri
 
 void add_experiment_options(CLI::App& verb, ExperimentOptions& options) {
   verb.add_option("EXPERIMENT", options.file, "Experiment file (TOML)")->required();
-  verb.add_option("--with", options.with, "File whose keys take the place of the experiment's, as an identified model")
-      ->type_name("FILE")
-      ->allow_extra_args(false);
+  add_with_option(verb, options.with);
   add_set_option(verb, options.set);
 }
 

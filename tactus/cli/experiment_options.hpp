@@ -8,7 +8,8 @@
 
 namespace CLI {  // NOLINT: the name is not ours
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace tactus::cli {
 
@@ -19,6 +20,8 @@ struct ExperimentOptions {
   std::vector<std::string> set;
 };
 
+/// Adds `--with` to a verb.
+CLI::Option* add_with_option(CLI::App& verb, std::vector<std::string>& with);
 /// Adds `--set` to a verb.
 void add_set_option(CLI::App& verb, std::vector<std::string>& set);
 /// The document with these values, each `key=value`, on top. Errors: those of `document` and of `Document::set`.

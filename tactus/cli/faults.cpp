@@ -5,6 +5,7 @@
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
+#include <tactus/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/experiments/faults/experiment.hpp>
 #include <tactus/runtime/real_time_faults.hpp>
 
@@ -23,7 +24,8 @@ namespace tactus::cli {
 namespace {
 
 struct FaultsOptions {
-  std::optional<std::string> file;
+  std::optional<std::string> file;  ///< else the built-in one
+  std::vector<std::string> with;
   std::vector<std::string> set;
   std::optional<std::int64_t> seeds;
   std::optional<std::string> only;
@@ -34,15 +36,23 @@ struct FaultsOptions {
 
 /// `status` is what an interruption makes the exit status.
 Check run(const FaultsOptions& options, const std::string& command, int& status) {
-  auto document = with_set(options.file ? configuration::Document::load(*options.file)
-                                        : configuration::Document::parse("[task]\nkind = \"faults\"\n", "built in"),
-                           options.set);
+  auto document =
+      options.file ? load_experiment({.file = *options.file, .with = options.with, .set = options.set})
+                   : with_set(configuration::Document::parse("[task]\nkind = \"faults\"\n", "built in"), options.set);
   if (!document) return document.error();
+  const bool of_arms = experiments::is_of_arms(*document);
+  const std::string group = of_arms ? "faults" : "task";
   if (options.seeds) {
-    if (auto error = document->set("task.seeds=" + std::to_string(*options.seeds))) return error;
+    if (auto error = document->set(group + ".seeds=" + std::to_string(*options.seeds))) return error;
   }
   if (options.only) {
-    if (auto error = document->set("task.only=\"" + *options.only + "\"")) return error;
+    if (auto error = document->set(group + ".only=\"" + *options.only + "\"")) return error;
+  }
+  if (of_arms && options.real_time) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "--realtime",
+                 .message = "faults of arms are tried in virtual time alone: leave it out",
+                 .place = {}};
   }
   auto output = OutputFolder::open(options.output);
   if (!output) return output.error();
@@ -61,6 +71,7 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
   const auto outcome = [&] {
     ProgressLine line(request.name);
     const auto progress = [&line](double done) { line.update(done); };
+    if (of_arms) return experiments::arm_faults(request, progress);
     return options.real_time ? runtime::run_faults_in_real_time(request, options.servo, progress, listen)
                              : experiments::faults_experiment()->run(request, progress);
   }();
@@ -74,7 +85,9 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
 void add_faults(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<FaultsOptions>();
   CLI::App* faults = app.add_subcommand("faults", "Faults on purpose: how many are survived, and how");
-  faults->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind faults; else the built-in one");
+  CLI::Option* file = faults->add_option(
+      "EXPERIMENT", options->file, "Experiment file (TOML) of the kind faults, or arm-tapping; else the built-in one");
+  add_with_option(*faults, options->with)->needs(file);
   add_set_option(*faults, options->set);
   faults->add_option("--seeds", options->seeds, "Runs of each fault");
   faults->add_option("--only", options->only, "One fault by its id, as the rows of --json have it");

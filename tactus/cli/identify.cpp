@@ -12,6 +12,7 @@ void add_identify(CLI::App& app, const std::string& command, int& status) {
   verb->require_subcommand(1);
   const std::string name = app.get_name();
   add_identify_arm(*verb, name, command, status);
+  add_identify_excitation(*verb, name, command, status);
   add_identify_frf(*verb, name, command, status);
   add_identify_inverse(*verb, name, command, status);
   add_identify_bench(*verb, name, command, status);

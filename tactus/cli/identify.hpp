@@ -12,6 +12,7 @@ class App;
 namespace tactus::cli {
 
 void add_identify_arm(CLI::App& identify, const std::string& name, const std::string& command, int& status);
+void add_identify_excitation(CLI::App& identify, const std::string& name, const std::string& command, int& status);
 void add_identify_frf(CLI::App& identify, const std::string& name, const std::string& command, int& status);
 void add_identify_inverse(CLI::App& identify, const std::string& name, const std::string& command, int& status);
 void add_identify_bench(CLI::App& identify, const std::string& name, const std::string& command, int& status);

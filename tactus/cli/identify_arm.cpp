@@ -2,15 +2,17 @@
 #include <tactus/cli/arm_options.hpp>
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/internal/parameters_json.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/real_between.hpp>
+#include <tactus/core/parameters.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/urdf/urdf.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -31,16 +33,14 @@ using arm_identification::ArmRecording;
 struct IdentifyArmOptions {
   ArmOptions arm;
   std::vector<std::string> files;
-  std::string urdf;
-  std::string tip;
-  std::vector<double> gravity;
+  ArmUrdfOptions urdf;
   std::optional<double> cutoff_Hz;
 };
 
 std::string json_of(const IdentifyArmOptions& options, const ArmIdentification& found) {
   using Json = nlohmann::ordered_json;
   Json document{{"recordings", options.files},
-                {"urdf", options.urdf},
+                {"urdf", options.urdf.file},
                 {"duration_s", found.duration_s},
                 {"cutoff_Hz", found.cutoff_Hz},
                 {"scaled_efforts", found.scaled_efforts},
@@ -48,14 +48,6 @@ std::string json_of(const IdentifyArmOptions& options, const ArmIdentification& 
                 {"told_combinations", found.told_combinations},
                 {"joints", Json::array()}};
   for (const ArmJointFit& joint : found.joints) {
-    Json parameters = Json::array();
-    for (const ArmParameter& p : joint.parameters) {
-      parameters.push_back({{"name", p.name},
-                            {"value", p.value},
-                            {"unit", p.unit},
-                            {"interval_95", {p.lower, p.upper}},
-                            {"determined", p.told}});
-    }
     document["joints"].push_back({{"name", joint.name},
                                   {"effort_rms", joint.effort_rms},
                                   {"residual_rms", joint.residual_rms},
@@ -64,7 +56,7 @@ std::string json_of(const IdentifyArmOptions& options, const ArmIdentification& 
                                   {"least_squares_held_out_relative", joint.least_squares_relative},
                                   {"held_out_coverage_95", joint.held_out_coverage},
                                   {"effort_per_N_m", joint.effort_per_N_m},
-                                  {"parameters", parameters}});
+                                  {"parameters", parameters_json(joint.parameters)}});
   }
   return json_text(document);
 }
@@ -103,6 +95,20 @@ report::Table parameters_table(const ArmIdentification& found) {
   return table;
 }
 
+/// What the recordings do not tell of each joint.
+report::Table untold_table(const ArmIdentification& found) {
+  report::Table table({{.title = "Joint", .align = report::Column::Align::left},
+                       {.title = "Not told, so as the URDF has it", .align = report::Column::Align::left}});
+  for (const ArmJointFit& joint : found.joints) {
+    std::string names;
+    for (const ArmParameter& p : joint.parameters) {
+      if (!p.told) names += (names.empty() ? "" : ", ") + p.name;
+    }
+    table.add_row({joint.name, names.empty() ? "nothing" : names});
+  }
+  return table;
+}
+
 std::string words_of(const ArmIdentification& found) {
   int told = 0;
   int all = 0;
@@ -119,39 +125,35 @@ std::string words_of(const ArmIdentification& found) {
                      "recordings tell " +
                      std::to_string(found.told_combinations) + " combinations better than the URDF, and " +
                      std::to_string(told) + " of " + std::to_string(all) +
-                     " single parameters. The others stay near the URDF: other values would give the same torques.";
+                     " single parameters. The others stay near the URDF: other values would give the same torques. "
+                     "`identify excitation` designs a motion that tells more.";
   if (found.scaled_efforts) {
-    double least = found.joints.front().effort_per_N_m;
-    double most = least;
+    std::string scaled;
     for (const ArmJointFit& joint : found.joints) {
-      least = std::min(least, joint.effort_per_N_m);
-      most = std::max(most, joint.effort_per_N_m);
+      if (std::fabs(joint.effort_per_N_m - 1.0) < 1e-6) continue;  // known
+      scaled += (scaled.empty() ? "" : ", ") + joint.name + " " + report::number(joint.effort_per_N_m, 3);
     }
-    text += " Each joint's effort has a scale of its own, " + report::number(least, 3) + " to " +
-            report::number(most, 3) + " for 1 N m, for which the masses of the URDF are taken.";
+    text +=
+        " Efforts have scales of their own, for which the masses of the URDF are taken: for 1 N m at " + scaled + ".";
   }
   return text;
 }
 
-/// The three numbers of --gravity, or those of the URDF's world.
-Result<arm::Gravity> gravity_of(const std::vector<double>& given) {
-  if (given.empty()) return arm::Gravity{};
-  const arm::Gravity gravity{given[0], given[1], given[2]};
-  if (Check wrong = validate(gravity)) {
-    Error error = *std::move(wrong);
-    error.place = "--gravity";
-    return error;
+/// What a URDF has no place for, as `run --with` takes it.
+std::string armatures_of(const arm_identification::ArmModel& model, const std::string& command) {
+  std::string text =
+      "# " + command + "\n# For `tactus run --with`: what turns with each motor, beside arm.urdf.\n\n[arm.joints]\n";
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    text += "joint_" + std::to_string(j + 1) +
+            " = { armature_kg_m2 = " + format_number(model.joints[j].arm.drive.armature_kg_m2) + " }\n";
   }
-  return gravity;
+  return text;
 }
 
 Check identify_arm(const IdentifyArmOptions& options, const std::string& command) {
   if (const auto output = OutputFolder::open(options.arm.output); !output) return output.error();
-  const auto gravity = gravity_of(options.gravity);
-  if (!gravity) return gravity.error();
-  auto urdf = urdf::read(options.urdf, options.tip);
+  const auto urdf = read_arm_urdf(options.urdf);
   if (!urdf) return urdf.error();
-  urdf->params.gravity = *gravity;
   std::vector<ArmRecording> recordings;
   for (const std::string& file : options.files) {
     auto read = read_recordings(file, options.arm, urdf->joints);
@@ -161,18 +163,30 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
   const auto found = arm_identification::identify_arm(recordings, urdf->joints, urdf->params, options.cutoff_Hz);
   if (!found) return found.error();
 
+  urdf::Arm identified = *urdf;
+  identified.params = found->model.chain();
+  const auto described = urdf::with_dynamics(options.urdf.file, identified,
+                                             "Bodies, damping and friction as tactus identified them; bodies include "
+                                             "all that is fixed to a link. Armatures, offsets and other parts of "
+                                             "friction stand in model.toml.");
+  if (!described) return described.error();
+
   const report::Table joints = joints_table(*found, recordings.front().effort_unit);
-  report::Page page("Dynamics of " + (urdf->name.empty() ? options.urdf : urdf->name));
+  const report::Table untold = untold_table(*found);
+  report::Page page("Dynamics of " + (urdf->name.empty() ? options.urdf.file : urdf->name));
   page.paragraph(words_of(*found));
   page.table(joints);
+  page.table(untold);
   page.table(parameters_table(*found));
   page.footer("tactus " + std::string(version()), command);
   return write_outcome(options.arm.output,
-                       {.text = words_of(*found) + "\n\n" + joints.to_text(),
+                       {.text = words_of(*found) + "\n\n" + joints.to_text() + "\n" + untold.to_text(),
                         .json = json_of(options, *found),
                         .html = page.to_html(),
                         .figures = {}},
-                       {{"model.toml", to_toml(found->model, command)}});
+                       {{"model.toml", to_toml(found->model, command)},
+                        {"arm.urdf", *described},
+                        {"armatures.toml", armatures_of(found->model, command)}});
 }
 
 }  // namespace
@@ -180,19 +194,14 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
 void add_identify_arm(CLI::App& identify, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<IdentifyArmOptions>();
   CLI::App* verb = identify.add_subcommand("arm", "Dynamics of an arm from recordings of free motion of all joints");
-  options->arm.output.own_files = {"model.toml"};
+  options->arm.output.own_files = {"model.toml", "arm.urdf", "armatures.toml"};
   verb->add_option("RECORDING", options->files,
                    "Recordings: .csv, .tsv, .txt, with or without header, or .mat; "
                    "or the log of a rig, whose follower is taken while it follows")
       ->required();
-  verb->add_option("--urdf", options->urdf, "URDF of the arm")->required()->type_name("FILE");
-  verb->add_option("--tip", options->tip, "Link at which the arm ends, where the URDF goes on or branches")
-      ->type_name("LINK");
-  verb->add_option("--gravity", options->gravity, "Free fall in the base's frame in m/s^2; 0,0,-9.81 if not given")
-      ->type_name("X,Y,Z")
-      ->delimiter(',')
-      ->expected(3);
-  add_arm_options(*verb, options->arm, command, "Folder for model.toml, report.html and results.json");
+  add_arm_urdf_options(*verb, options->urdf);
+  add_arm_options(*verb, options->arm, command,
+                  "Folder for model.toml, arm.urdf, armatures.toml, report.html and results.json");
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")
       ->type_name("HZ")
       ->check(real_between(0.1, 500.0));

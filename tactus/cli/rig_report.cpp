@@ -1,4 +1,5 @@
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/internal/link_json.hpp>
 #include <tactus/cli/rig_report.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/report/figure.hpp>
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
@@ -26,6 +28,14 @@ std::string fixed(double value, int digits) {
 
 const devices::RigJoint& joint_of(const devices::RigSide& side, std::size_t joint) {
   return side.joints[std::min(joint, side.joints.size() - 1)];
+}
+
+/// A side that the file has; both have the same joints.
+const devices::RigSide& any_side(const RigPair& pair) { return pair.leader ? *pair.leader : *pair.follower; }
+
+/// The path of a joint of the leader, whether the file has one or not.
+std::string leading(const RigPair& pair, const devices::RigJoint& joint) {
+  return join(join(pair.name, "leader"), joint.name());
 }
 
 /// What kept a side from being good, as the rest of a line.
@@ -67,18 +77,22 @@ std::string words_of_fault(const RigSecond& second, const RigPair& pair) {
 }
 
 /// What a person does next, where there is something.
-std::string advice(const RigSecond& second, const RigPair& pair) {
+std::string advice(const RigSecond& second, const RigPair& pair, std::optional<control::SiteRole> only) {
   using control::SiteState;
-  const auto& joint = pair.leader->joints[std::min(second.joint, pair.leader->joints.size() - 1)];
+  const auto& joint = joint_of(any_side(pair), second.joint);
   if (const auto worse = std::max(second.leader_health, second.follower_health);
       worse >= station::DeviceHealth::silent) {
     return std::string("; the ") + (second.leader_health == worse ? "leader" : "follower") + " is " + name_of(worse) +
            ": look at 'tactus device check'";
   }
   if (second.too_far) {
-    return "; too far apart to arm: move " + joint.path + " by " + fixed(second.farthest, 2) + " " +
+    if (only && !(second.farthest > 0.0)) {
+      return std::string("; the ") + (*only == control::SiteRole::master ? "follower" : "leader") + " is not heard";
+    }
+    return "; too far apart to arm: move " + leading(pair, joint) + " by " + fixed(second.farthest, 2) + " " +
            joint.words().position_unit + " to where its follower is";
   }
+  if (only == control::SiteRole::slave && second.leader == SiteState::configure) return "; armed at its leader's";
   if (second.leader == SiteState::fault || second.follower == SiteState::fault) return "; type 'clear', then 'arm'";
   const bool waits = second.leader == SiteState::configure || second.leader == SiteState::hold;
   return waits ? "; hold the leader still and type 'arm'" : "";
@@ -86,30 +100,41 @@ std::string advice(const RigSecond& second, const RigPair& pair) {
 
 }  // namespace
 
-std::string line_of(const RigSecond& second, const RigPair& pair) {
-  return fixed(second.time_s, 0) + " s: leader " + name_of(second.leader) + ", follower " + name_of(second.follower) +
-         " (" + name_of(second.cause) + "), most torque " + fixed(second.most_torque, 2) + ", farthest apart " +
-         fixed(second.farthest, 3) + words_of(second.leader_trouble, "leader", *pair.leader) +
-         words_of(second.follower_trouble, "follower", *pair.follower) + words_of_fault(second, pair) +
-         advice(second, pair) + "\n";
+std::string line_of(const RigSecond& second, const RigPair& pair, std::optional<control::SiteRole> only) {
+  std::string line = fixed(second.time_s, 0) + " s: leader " + name_of(second.leader) + ", follower " +
+                     name_of(second.follower) + " (" + name_of(second.cause) + "), most torque " +
+                     fixed(second.most_torque, 2) + ", farthest apart " + fixed(second.farthest, 3);
+  if (only) {
+    line += ", round trip " + fixed(1e3 * second.link.round_trip_s, 2) + " ms, lost " +
+            fixed(100.0 * second.link.loss_fraction, 1) + " %";
+  }
+  if (only != control::SiteRole::slave) line += words_of(second.leader_trouble, "leader", *pair.leader);
+  if (only != control::SiteRole::master) line += words_of(second.follower_trouble, "follower", *pair.follower);
+  return line + words_of_fault(second, pair) + advice(second, pair, only) + "\n";
 }
 
 namespace {
 
 std::string summary_of(const RigRun& run) {
   const devices::RigTotals& totals = run.totals;
+  std::string link;
+  if (run.link) {
+    link = "; round trip " + fixed(1e3 * run.link->round_trip_mean_s, 2) + " ms, at most " +
+           fixed(1e3 * run.link->round_trip_max_s, 2) + " ms, " + std::to_string(run.link->link.sent) +
+           " packets sent, " + std::to_string(run.link->link.inbound.counted) + " came";
+  }
   return std::to_string(totals.ticks) + " ticks in " + fixed(totals.duration_s, 1) + " s, " +
          std::to_string(totals.active_ticks) + " of them coupled; armed " + std::to_string(totals.armings) +
          " times, held " + std::to_string(totals.holds) + " times, a device late in " +
          std::to_string(totals.late_ticks) + ", silent in " + std::to_string(totals.silent_ticks) + ", lost in " +
          std::to_string(totals.lost_ticks) + " ticks; " + std::to_string(run.servo.missed) +
          " deadlines missed, late " + std::to_string(run.servo.late_ours()) + " by us and " +
-         std::to_string(run.servo.late_machine()) + " by the machine; ended by " + run.ended_by + ".";
+         std::to_string(run.servo.late_machine()) + " by the machine" + link + "; ended by " + run.ended_by + ".";
 }
 
 /// The joint that was farthest from its leader's.
 const devices::RigJoint& farthest_joint(const RigSecond& second, const RigPair& pair) {
-  return pair.leader->joints[std::min(second.joint, pair.leader->joints.size() - 1)];
+  return joint_of(any_side(pair), second.joint);
 }
 
 nlohmann::ordered_json json_of(const devices::DeviceTrouble& trouble, const devices::RigSide& side) {
@@ -129,7 +154,7 @@ std::string gate_joint(const RigSecond& second, const RigPair& pair) {
 nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
   const devices::RigTotals& totals = run.totals;
   nlohmann::ordered_json document{{"pair", pair.name}, {"joints", nlohmann::ordered_json::array()}};
-  for (const devices::RigJoint& joint : pair.leader->joints) document["joints"].push_back(joint.name());
+  for (const devices::RigJoint& joint : any_side(pair).joints) document["joints"].push_back(joint.name());
   document.update({{"duration_s", totals.duration_s},
                    {"ticks", totals.ticks},
                    {"active_ticks", totals.active_ticks},
@@ -142,28 +167,40 @@ nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
                    {"lines_dropped", run.lines_dropped},
                    {"seconds", nlohmann::ordered_json::array()}});
   for (const RigSecond& second : run.seconds) {
-    document["seconds"].push_back({{"time_s", second.time_s},
-                                   {"leader", name_of(second.leader)},
-                                   {"follower", name_of(second.follower)},
-                                   {"cause", name_of(second.cause)},
-                                   {"leader_health", name_of(second.leader_health)},
-                                   {"follower_health", name_of(second.follower_health)},
-                                   {"leader_trouble", json_of(second.leader_trouble, *pair.leader)},
-                                   {"follower_trouble", json_of(second.follower_trouble, *pair.follower)},
-                                   {"gate_fault", name_of(second.fault)},
-                                   {"gate_joint", gate_joint(second, pair)},
-                                   {"most_torque", second.most_torque},
-                                   {"farthest", second.farthest},
-                                   {"joint", farthest_joint(second, pair).name()},
-                                   {"too_far", second.too_far}});
+    nlohmann::ordered_json one{{"time_s", second.time_s},
+                               {"leader", name_of(second.leader)},
+                               {"follower", name_of(second.follower)},
+                               {"cause", name_of(second.cause)}};
+    if (run.only != control::SiteRole::slave) {
+      one["leader_health"] = name_of(second.leader_health);
+      one["leader_trouble"] = json_of(second.leader_trouble, *pair.leader);
+    }
+    if (run.only != control::SiteRole::master) {
+      one["follower_health"] = name_of(second.follower_health);
+      one["follower_trouble"] = json_of(second.follower_trouble, *pair.follower);
+    }
+    one.update({{"gate_fault", name_of(second.fault)},
+                {"gate_joint", gate_joint(second, pair)},
+                {"most_torque", second.most_torque},
+                {"farthest", second.farthest},
+                {"joint", farthest_joint(second, pair).name()},
+                {"too_far", second.too_far}});
+    if (run.only) {
+      one.update({{"round_trip_s", second.link.round_trip_s},
+                  {"age_s", second.link.age_s},
+                  {"loss_fraction", second.link.loss_fraction}});
+    }
+    document["seconds"].push_back(one);
   }
+  if (run.only) document["site"] = name_of(*run.only);
+  if (run.link) document.update(link_json(*run.link));
   document["servo"] = nlohmann::ordered_json::parse(runtime::servo_json(run.servo));
   if (run.log_dropped) document["log_dropped"] = *run.log_dropped;
   return document;
 }
 
 report::Figure seconds_figure(const RigRun& run, const RigPair& pair) {
-  const devices::JointWords& words = pair.leader->joints.front().words();
+  const devices::JointWords& words = any_side(pair).joints.front().words();
   const auto panel = [&](const char* label, const char* unit, auto value) {
     report::Line line{.name = "", .x = {}, .y = {}, .colour = 0};
     for (const RigSecond& second : run.seconds) {
@@ -194,7 +231,10 @@ experiments::Outcome rig_outcome(const RigRun& run, const RigPair& pair, const e
                                  std::string_view configuration) {
   const std::string summary = summary_of(run);
   const std::vector<report::Figure> figures{seconds_figure(run, pair), runtime::timing_figure(run.servo)};
-  report::Page page(request.name + ": " + pair.name + ", leader and follower");
+  report::Page page(request.name + ": " + pair.name +
+                    (!run.only                                ? ", leader and follower"
+                     : *run.only == control::SiteRole::master ? ", leader"
+                                                              : ", follower"));
   page.paragraph(summary);
   page.figure(figures[0]);
   runtime::add_timing(page, run.servo, figures[1]);

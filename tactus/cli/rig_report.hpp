@@ -13,8 +13,10 @@
 
 namespace tactus::cli {
 
-/// What a run of a rig's pair left.
+/// What a run of a rig's pair left, or of one side of it.
 struct RigRun {
+  std::optional<control::SiteRole> only;    ///< where the other side is elsewhere
+  std::optional<runtime::LinkTotals> link;  ///< then
   std::vector<devices::RigSecond> seconds;
   devices::RigTotals totals;
   runtime::ServoReport servo;
@@ -23,8 +25,9 @@ struct RigRun {
   std::optional<std::uint64_t> log_dropped;
 };
 
-/// A second for a terminal, with what a person does next where there is something.
-std::string line_of(const devices::RigSecond& second, const devices::RigPair& pair);
+/// A second for a terminal, with what a person does next where there is something; `only` as in `RigRun`.
+std::string line_of(const devices::RigSecond& second, const devices::RigPair& pair,
+                    std::optional<control::SiteRole> only = {});
 
 /// The run for every reader. `configuration` is TOML.
 experiments::Outcome rig_outcome(const RigRun& run, const devices::RigPair& pair, const experiments::Request& request,

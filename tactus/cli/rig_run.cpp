@@ -10,13 +10,17 @@
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/devices/motor_bus_device.hpp>
 #include <tactus/devices/rig/examination.hpp>
+#include <tactus/devices/rig/rig_agreement.hpp>
 #include <tactus/devices/rig/rig_arms.hpp>
 #include <tactus/devices/rig/rig_loop.hpp>
+#include <tactus/devices/rig/rig_site_loop.hpp>
 #include <tactus/experiments/arm_tapping/params.hpp>
+#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/site_log.hpp>
 #include <tactus/runtime/site_parts.hpp>
+#include <tactus/station/wall.hpp>
 
 #include <algorithm>
 #include <array>
@@ -34,11 +38,14 @@ namespace tactus::cli {
 
 namespace {
 
+using control::SiteRole;
+using devices::JointSite;
 using devices::MotorBusDevice;
 using devices::Rig;
 using devices::RigLoop;
 using devices::RigPair;
 using devices::RigSide;
+using devices::RigSiteLoop;
 
 constexpr std::string_view suffix = ".toml";
 
@@ -53,7 +60,11 @@ std::pair<std::string, std::string> parts_of(const std::string& device) {
   return {device.substr(0, colon), device.substr(colon + 1)};
 }
 
-Result<const RigPair*> pair_of(const Rig& rig, const std::string& name) {
+/// The role of the site that drives a side.
+constexpr SiteRole driving(bool leads) { return leads ? SiteRole::master : SiteRole::slave; }
+
+/// The pair that is meant, with the side that is driven, both where `only` says none.
+Result<const RigPair*> pair_of(const Rig& rig, const std::string& name, std::optional<SiteRole> only) {
   const auto& pairs = rig.pairs();
   if (name.empty() && pairs.size() > 1) {
     return refused("--device", "the rig has two pairs: name one, as " + report::printable(rig.name()) + ":" +
@@ -63,12 +74,22 @@ Result<const RigPair*> pair_of(const Rig& rig, const std::string& name) {
   if (found == pairs.end()) {
     return refused("--device", "'" + report::printable(name) + "' is no pair of " + report::printable(rig.name()));
   }
-  if (!found->leader || !found->follower) {
+  if (only && !(*only == SiteRole::master ? found->leader : found->follower)) {
+    return rig.locate({.code = ErrorCode::missing,
+                       .parameter = found->name,
+                       .message = std::string("there is no ") +
+                                  (*only == SiteRole::master ? "leader, which the master drives"
+                                                             : "follower, which the slave drives") +
+                                  ": write it, or name the other site",
+                       .place = {}});
+  }
+  if (!only && (!found->leader || !found->follower)) {
     return rig.locate({.code = ErrorCode::missing,
                        .parameter = found->name,
                        .message = "a leader and a follower are driven together: write the other one too",
                        .place = {}});
   }
+  if (!found->follower) return &*found;
   for (const devices::RigJoint& joint : found->follower->joints) {
     if (joint.joint.gives_force) continue;
     return rig.locate(
@@ -82,10 +103,10 @@ Result<const RigPair*> pair_of(const Rig& rig, const std::string& name) {
   return &*found;
 }
 
-/// Everything that is wrong with the two, in lines; nothing gets power.
-Check refuse_unclean(const Rig& rig, const RigPair& pair, LineWriter& errors) {
+/// Everything that is wrong with them, in lines; nothing gets power.
+Check refuse_unclean(const Rig& rig, const std::vector<const RigSide*>& sides, LineWriter& errors) {
   bool clean = true;
-  for (const auto* side : {&*pair.leader, &*pair.follower}) {
+  for (const auto* side : sides) {
     const auto found = examine(rig, *side);
     clean = clean && found.well();
     const auto say = [&errors](const std::vector<Error>& problems) {
@@ -128,27 +149,22 @@ Result<Driven> drive(const Rig& rig, const RigSide& side) {
 
 /// The pair as the experiment drives it.
 struct Drive {
-  RigPair pair;
-  double rate_Hz = 0.0;
-  std::string configuration;
-  /// What a servo thread steps, before devices that outlive it. Errors are those of the experiment's file.
-  std::function<Result<RigLoop>(runtime::SiteExchange&, MotorBusDevice& leader, MotorBusDevice& follower)> loop;
-};
+  Drive(RigPair pair_, double rate, std::string configuration_)
+      : pair(std::move(pair_)), rate_Hz(rate), configuration(std::move(configuration_)) {}
 
-/// Each joint by itself.
-Result<Drive> joint_by_joint(const experiments::Request& request, const RigPair& pair, RigLoop::Params settings) {
-  const auto params = request.document.read<experiments::TappingParams>();
-  if (!params) return params.error();
-  const Joints<control::ControlParams> joints(pair.leader->joints.size(), runtime::control_of(*params));
-  settings.listen_before_arming_s = joints[0].supervision.watchdog.timeout_s;
-  return Drive{.pair = pair,
-               .rate_Hz = params->servo.rate_Hz,
-               .configuration = configuration::to_toml(*params),
-               .loop = [joints, settings, params = *params](auto& exchange, auto& leader, auto& follower) {
-                 return RigLoop::make(joints, params.channel, Seconds{1.0 / params.servo.rate_Hz}, settings, exchange,
-                                      leader, follower);
-               }};
-}
+  RigPair pair;
+  double rate_Hz;
+  std::string configuration;
+  /// What a servo thread steps where both sides are here, before devices that outlive it. Errors are those of the
+  /// experiment's file.
+  std::function<Result<RigLoop>(runtime::SiteExchange&, MotorBusDevice& leader, MotorBusDevice& follower)> loop;
+
+  // Where only one is:
+  std::optional<devices::RigAgreement> agreement;
+  std::function<Result<JointSite>(std::int64_t session)> site;  ///< errors as those of `loop`
+  RigSiteLoop::Params settings;
+  std::optional<Joints<control::ControlParams>> control;  ///< of joints that are driven each by itself
+};
 
 Joints<station::DeviceLimits> limits_of(const RigSide& side) {
   Joints<station::DeviceLimits> limits(side.joints.size());
@@ -156,9 +172,61 @@ Joints<station::DeviceLimits> limits_of(const RigSide& side) {
   return limits;
 }
 
+const RigSide& side_of(const RigPair& pair, SiteRole role) {
+  return role == SiteRole::master ? *pair.leader : *pair.follower;
+}
+
+/// A site of either role, or what is wrong with it.
+template <class Site>
+Result<JointSite> as_site(Result<Site> made, const char* group) {
+  if (!made) return under(group, made.error());
+  return JointSite(*std::move(made));
+}
+
+/// Each joint by itself.
+Result<Drive> joint_by_joint(const experiments::Request& request, const RigPair& pair, RigLoop::Params settings,
+                             std::optional<SiteRole> only) {
+  const auto params = request.document.read<experiments::TappingParams>();
+  if (!params) return params.error();
+  const RigSide& side = side_of(pair, only.value_or(SiteRole::master));
+  const Joints<control::ControlParams> joints(side.joints.size(), runtime::control_of(*params));
+  const Seconds tick{1.0 / params->servo.rate_Hz};
+  const control::SupervisionParams& supervision = joints[0].supervision;
+  settings.listen_before_arming_s = supervision.watchdog.timeout_s;
+  Drive drive(pair, params->servo.rate_Hz, configuration::to_toml(*params));
+  if (!only) {
+    drive.loop = [joints, settings, tick, channel = params->channel](auto& exchange, auto& leader, auto& follower) {
+      return RigLoop::make(joints, channel, tick, settings, exchange, leader, follower);
+    };
+    return drive;
+  }
+  if (!devices::tells_its_place(joints, tick)) {
+    return request.document.locate(
+        {.code = ErrorCode::inconsistent,
+         .parameter = "control.architecture",
+         .message = "a follower of " + joints[0].architecture +
+                    " does not tell where it is, so its leader on another host cannot see how far it is: write "
+                    "position-position or four-channel, or drive both in one program",
+         .place = {}});
+  }
+  drive.agreement = devices::RigAgreement::of(side, joints[0], tick);
+  const bool leads = *only == SiteRole::master;
+  drive.settings = {.pair = settings,
+                    .scales = Joints<double>(joints.size(), leads ? joints[0].position_scale : 1.0),
+                    .longest_age_s = supervision.packets.longest_age_s,
+                    .timeout_s = supervision.watchdog.timeout_s};
+  drive.control = joints;
+  drive.site = [own = station::tightened(joints, *only, limits_of(side)), tick, leads,
+                agreement = drive.agreement->agreement()](std::int64_t session) {
+    return leads ? as_site(control::make_supervised_master(own, session, tick, agreement), "control")
+                 : as_site(control::make_supervised_slave(own, session, tick, agreement), "control");
+  };
+  return drive;
+}
+
 /// Two arms, each with all its joints.
 Result<Drive> as_two_arms(const experiments::Request& request, const Rig& rig, const RigPair& pair,
-                          RigLoop::Params settings) {
+                          RigLoop::Params settings, std::optional<SiteRole> only) {
   const auto params = request.document.read<experiments::ArmTappingParams>();
   if (!params) return params.error();
   const std::filesystem::path folder = std::filesystem::path(request.document.name()).parent_path();
@@ -166,16 +234,109 @@ Result<Drive> as_two_arms(const experiments::Request& request, const Rig& rig, c
   if (!setup) return request.document.locate(setup.error());
   auto arms = devices::as_arms(pair, *setup);
   if (!arms) return rig.locate(arms.error());
-  auto sites = devices::arm_sites(*setup, limits_of(*arms->leader), limits_of(*arms->follower));
-  if (!sites) return request.document.locate(sites.error());
-  settings.listen_before_arming_s = params->rig.supervision.watchdog.timeout_s;
-  return Drive{.pair = *std::move(arms),
-               .rate_Hz = params->servo.rate_Hz,
-               .configuration = configuration::to_toml(*params),
-               .loop = [settings, sites = *std::move(sites), tick = Seconds{1.0 / params->servo.rate_Hz}](
-                           auto& exchange, auto& leader, auto& follower) {
-                 return RigLoop::around(sites, tick, settings, exchange, leader, follower);
-               }};
+  const control::SupervisionParams& supervision = params->rig.supervision;
+  settings.listen_before_arming_s = supervision.watchdog.timeout_s;
+  Drive drive(*std::move(arms), params->servo.rate_Hz, configuration::to_toml(*params));
+  if (!only) {
+    auto sites = devices::arm_sites(*setup, limits_of(*drive.pair.leader), limits_of(*drive.pair.follower));
+    if (!sites) return request.document.locate(sites.error());
+    drive.loop = [settings, sites = *std::move(sites), tick = Seconds{1.0 / params->servo.rate_Hz}](
+                     auto& exchange, auto& leader, auto& follower) {
+      return RigLoop::around(sites, tick, settings, exchange, leader, follower);
+    };
+    return drive;
+  }
+  const RigSide& side = side_of(drive.pair, *only);
+  drive.agreement = devices::RigAgreement::of(side, *setup);
+  drive.settings = {.pair = settings,
+                    .scales = Joints<double>(side.joints.size(), 1.0),
+                    .longest_age_s = supervision.packets.longest_age_s,
+                    .timeout_s = supervision.watchdog.timeout_s};
+  drive.site = [setup = *setup, limits = limits_of(side), leads = *only == SiteRole::master,
+                agreement = drive.agreement->agreement()](std::int64_t session) {
+    const experiments::ArmSiteStart start{.session = session, .agreement = agreement};
+    return leads ? as_site(experiments::arm_leader_site(setup, limits, start), "")
+                 : as_site(experiments::arm_follower_site(setup, limits, start), "");
+  };
+  return drive;
+}
+
+/// What is there before the loop, and outlives it.
+struct RigSurroundings {
+  const experiments::Request& request;
+  OutputFolder& folder;
+  std::uint64_t log_limit_bytes;
+  const Drive& drive;
+  std::optional<SiteRole> only;
+  runtime::ServoThreadParams servo;
+  runtime::SiteExchange& exchange;
+  const Interruption& interruption;
+  Onlookers& onlookers;
+  LineWriter& output;
+  LineWriter& errors;
+  const std::vector<std::string>& names;  ///< of the joints
+};
+
+void add_link(RigRun&, const RigLoop&) {}
+void add_link(RigRun& run, const RigSiteLoop& loop) { run.link = loop.link_totals(); }
+
+/// Steps the loop until it is over, and leaves what there is to tell.
+template <class Loop>
+Check run_rig_loop(Loop loop, const RigSurroundings& around) {
+  OutputFolder& folder = around.folder;
+  const RigPair& pair = around.drive.pair;
+  const std::vector<std::string>& names = around.names;
+  LineWriter& lines = folder.json() ? around.errors : around.output;
+  runtime::JointStreams streams(names.size(), around.only);
+  if (folder.wanted() || around.onlookers.any()) loop.leave_in(streams);
+  std::optional<runtime::SiteLog> log;
+  if (folder.wanted()) {
+    if (Check error = folder.begin()) return error;
+    runtime::LogMetadata about{{"tactus", log_origin()}};
+    about["tactus"]["experiment"] = around.request.name;
+    about["tactus"]["configuration"] = around.drive.configuration;
+    about["tactus"]["rig"] = pair.name;
+    if (around.only) about["tactus"]["site"] = name_of(*around.only);
+    for (const std::string& joint : names) about["tactus"]["joints"] += (joint == names.front() ? "" : ",") + joint;
+    auto created = runtime::SiteLog::create(folder.log_folder(), streams, about, around.log_limit_bytes);
+    if (!created) return created.error();
+    log.emplace(*std::move(created));
+  }
+  around.onlookers.watch(streams);
+  if (Check error = around.onlookers.begin([&lines](const std::string& line) { lines.say(line); })) return error;
+  auto thread = runtime::ServoThread<Loop>::start(around.servo, std::move(loop));
+  if (!thread) return thread.error();
+  RigRun run;
+  run.only = around.only;
+  const auto take_seconds = [&] {
+    while (const auto second = (*thread)->step().next_second()) {
+      lines.say(cli::line_of(*second, pair, around.only));
+      run.seconds.push_back(*second);
+    }
+    runtime::SiteMisfit misfit;
+    while (around.exchange.misfits.try_pop(misfit)) {
+      around.errors.say("tactus: " + around.drive.agreement->describe(misfit, *around.only) + "\n");
+    }
+  };
+  constexpr unsigned between_looks_us = 20'000;
+  while (!(*thread)->ended()) {
+    take_seconds();
+    usleep(between_looks_us);
+  }
+  run.servo = (*thread)->finish();
+  take_seconds();
+  if (const std::string seen = around.onlookers.end(); !seen.empty()) lines.say(seen);
+  run.totals = (*thread)->step().totals();
+  add_link(run, (*thread)->step());
+  run.ended_by = around.interruption.signal() != 0 ? around.interruption.name() : "its duration";
+  run.lines_dropped = lines.dropped();
+  Check log_error;
+  if (log) {
+    log_error = log->close();
+    run.log_dropped = log->dropped();
+  }
+  return leave_outcome(rig_outcome(run, pair, around.request, around.drive.configuration), folder, std::move(log_error),
+                       log ? log->removed() : 0, around.output, around.errors);
 }
 
 }  // namespace
@@ -187,86 +348,75 @@ bool names_a_rig(const std::string& device) {
 }
 
 Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_on, runtime::ServoThreadParams servo,
-              const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes) {
+              const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes,
+              const std::optional<link::EndpointSettings>& link) {
   if (options.devices.size() > 1) return refused("--device", "a rig has the devices of both sites: name it alone");
+  const std::optional<SiteRole> only = link ? std::optional(link->site) : std::nullopt;
   const auto [file, name] = parts_of(options.devices.front());
   const auto rig = Rig::load(file);
   if (!rig) return rig.error();
-  const auto named = pair_of(*rig, name);
+  const auto named = pair_of(*rig, name, only);
   if (!named) return named.error();
   const RigLoop::Params settings{.duration_s = options.duration_s, .arm_at_once = options.arm};
   const auto kind = request.document.text_at("task.kind");
   const bool arms = kind && *kind == name_of(experiments::ArmTappingKind::arm_tapping);
-  const auto found = arms ? as_two_arms(request, *rig, **named, settings) : joint_by_joint(request, **named, settings);
+  const auto found =
+      arms ? as_two_arms(request, *rig, **named, settings, only) : joint_by_joint(request, **named, settings, only);
   if (!found) return found.error();
   const RigPair& pair = found->pair;
+  std::vector<const RigSide*> sides;
+  for (const bool leads : {true, false}) {
+    if (!only || *only == driving(leads)) sides.push_back(&side_of(pair, driving(leads)));
+  }
+  std::vector<std::string> names;
+  for (const devices::RigJoint& joint : sides.front()->joints) names.emplace_back(joint.name());
 
   runtime::SiteExchange exchange;
   const auto interruption = Interruption::start(exchange.end);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
-  LineWriter& lines = folder.json() ? errors : output;
-  std::vector<std::string> names;
-  for (const devices::RigJoint& joint : pair.leader->joints) names.emplace_back(joint.name());
-  auto onlookers = Onlookers::open(looking_on, request, {}, names);
+  auto onlookers = Onlookers::open(looking_on, request, only, names);
   if (!onlookers) return onlookers.error();
-  if (Check unclean = refuse_unclean(*rig, pair, errors)) return unclean;
+  std::optional<link::JointEndpoint> endpoint;
+  std::optional<JointSite> site;
+  if (link) {
+    auto opened = link::JointEndpoint::make(*link, names.size());
+    if (!opened) return opened.error();
+    endpoint.emplace(*std::move(opened));
+    auto made = found->site(endpoint->session());
+    if (!made) return request.document.locate(made.error());
+    site.emplace(*std::move(made));
+  }
+  if (Check unclean = refuse_unclean(*rig, sides, errors)) return unclean;
   // The devices give up their motors before the links do, and these before the guards.
   std::array<std::optional<Driven>, 2> driven;
-  for (std::size_t side = 0; side < driven.size(); ++side) {
-    auto made = drive(*rig, side == 0 ? *pair.leader : *pair.follower);
+  for (std::size_t side = 0; side < sides.size(); ++side) {
+    auto made = drive(*rig, *sides[side]);
     if (!made) return made.error();
     driven[side].emplace(*std::move(made));
   }
   servo.rate_Hz = found->rate_Hz;
-  auto loop = found->loop(exchange, *driven[0]->device, *driven[1]->device);
-  if (!loop) return request.document.locate(loop.error());
-  const auto person = Person::listen_to(STDIN_FILENO, control::SiteRole::master, exchange, errors);
+  const auto person = Person::listen_to(STDIN_FILENO, only.value_or(SiteRole::master), exchange, errors);
   if (!person) return person.error();
-
-  runtime::JointStreams streams(names.size());
-  if (folder.wanted() || onlookers->any()) loop->leave_in(streams);
-  std::optional<runtime::SiteLog> log;
-  if (folder.wanted()) {
-    if (Check error = folder.begin()) return error;
-    runtime::LogMetadata about{{"tactus", log_origin()}};
-    about["tactus"]["experiment"] = request.name;
-    about["tactus"]["configuration"] = found->configuration;
-    about["tactus"]["rig"] = pair.name;
-    for (const std::string& joint : names) about["tactus"]["joints"] += (joint == names.front() ? "" : ",") + joint;
-    auto created = runtime::SiteLog::create(folder.log_folder(), streams, about, log_limit_bytes);
-    if (!created) return created.error();
-    log.emplace(*std::move(created));
+  const RigSurroundings around{.request = request,
+                               .folder = folder,
+                               .log_limit_bytes = log_limit_bytes,
+                               .drive = *found,
+                               .only = only,
+                               .servo = servo,
+                               .exchange = exchange,
+                               .interruption = **interruption,
+                               .onlookers = *onlookers,
+                               .output = output,
+                               .errors = errors,
+                               .names = names};
+  if (only) {
+    auto loop = RigSiteLoop::make(*std::move(site), *std::move(endpoint), Seconds{1.0 / found->rate_Hz},
+                                  found->settings, exchange, *driven[0]->device, found->control);
+    return loop ? run_rig_loop(*std::move(loop), around) : request.document.locate(loop.error());
   }
-  onlookers->watch(streams);
-  if (Check error = onlookers->begin([&lines](const std::string& line) { lines.say(line); })) return error;
-  auto thread = runtime::ServoThread<RigLoop>::start(servo, *std::move(loop));
-  if (!thread) return thread.error();
-  RigRun run;
-  const auto take_seconds = [&] {
-    while (const auto second = (*thread)->step().next_second()) {
-      lines.say(line_of(*second, pair));
-      run.seconds.push_back(*second);
-    }
-  };
-  constexpr unsigned between_looks_us = 20'000;
-  while (!(*thread)->ended()) {
-    take_seconds();
-    usleep(between_looks_us);
-  }
-  run.servo = (*thread)->finish();
-  take_seconds();
-  if (const std::string seen = onlookers->end(); !seen.empty()) lines.say(seen);
-  run.totals = (*thread)->step().totals();
-  run.ended_by = (*interruption)->signal() != 0 ? (*interruption)->name() : "its duration";
-  run.lines_dropped = lines.dropped();
-  Check log_error;
-  if (log) {
-    log_error = log->close();
-    run.log_dropped = log->dropped();
-  }
-  return leave_outcome(rig_outcome(run, pair, request, found->configuration), folder, std::move(log_error),
-                       log ? log->removed() : 0, output, errors);
+  auto loop = found->loop(exchange, *driven[0]->device, *driven[1]->device);
+  return loop ? run_rig_loop(*std::move(loop), around) : request.document.locate(loop.error());
 }
 
 }  // namespace tactus::cli

@@ -5,9 +5,11 @@
 #include <tactus/cli/supervised_run.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/experiments/experiment.hpp>
+#include <tactus/link/endpoint.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -21,8 +23,10 @@ bool drives_a_rig(std::string_view kind);
 
 /// Drives a pair of a rig under supervision until it is over: what `tactus run EXPERIMENT --realtime --device
 /// FILE.toml` is. Each joint by the controller of an experiment of the kind `tapping`; two arms by the sites of one of
-/// the kind `arm-tapping`, which carry them. Nothing gets power before the rig is clean.
+/// the kind `arm-tapping`, which carry them. Nothing gets power before the rig is clean. With a `link` only the side of
+/// its site is driven, the leader by the master: that is `--site`, and the rig file needs no more than that side.
 Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_on, runtime::ServoThreadParams servo,
-              const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes);
+              const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes,
+              const std::optional<link::EndpointSettings>& link = {});
 
 }  // namespace tactus::cli

@@ -69,7 +69,7 @@ Check serve(const ServeOptions& options, const std::string& command) {
   const std::string name = options.experiment.empty() ? "tapping" : experiment_name(options.experiment);
   const auto view = live::LiveView::make(*settings, {.allow_tuning = options.allow_tuning, .experiment = name});
   if (!view) return document->locate(view.error());
-  const std::string configuration = configuration::to_toml(*document->read<experiments::TappingParams>());
+  const std::string configuration = settings->configuration();
 
   // Before all other threads.
   runtime::EndRequest end;
@@ -144,7 +144,7 @@ void add_serve(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<ServeOptions>();
   CLI::App* verb = app.add_subcommand("serve", "Serve the live page: be the operator in a browser");
   verb->add_option("EXPERIMENT", options->experiment,
-                   "Experiment file of the kind tapping; its own, where none is named");
+                   "Experiment file of the kind tapping or arm-tapping; its own, where none is named");
   add_set_option(*verb, options->set);
   verb->add_option("--port", options->server.port, "Port to listen on; 0 takes any that is free");
   verb->add_option("--listen", options->server.address, "Address of this machine to listen on")->type_name("ADDRESS");

@@ -1,6 +1,9 @@
+#include <tactus/arm_stability/arm_map.hpp>
+#include <tactus/arm_stability/arm_margins_report.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/real_between.hpp>
 #include <tactus/cli/stability.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/configuration/toml_writer.hpp>
@@ -25,12 +28,17 @@ namespace tactus::cli {
 namespace {
 
 struct MapOptions {
-  std::string file;
-  std::vector<std::string> set;
+  ExperimentOptions experiment;
   std::vector<std::string> vary;
   std::string precision = "double";
+  std::vector<std::string> hands;
+  std::optional<double> friction_speed_rad_per_s;
   OutputOptions output;
 };
+
+Error of_other_experiments(const char* option, const char* message) {
+  return {.code = ErrorCode::inconsistent, .parameter = {}, .message = message, .place = option};
+}
 
 /// Which process of how many this is, as the launcher of Open MPI tells every program that it starts.
 stability::MapShare share_of_this_process() {
@@ -51,7 +59,7 @@ Result<stability::MapRequest> make_request(const MapOptions& options, const conf
   for (const std::string& text : options.vary) {
     auto axis = stability::parse_axis(text);
     if (!axis) return axis.error();
-    if (auto error = refuse_set_and_varied(options.set, axis->key)) return *std::move(error);
+    if (auto error = refuse_set_and_varied(options.experiment.set, axis->key)) return *std::move(error);
     request.axes.push_back(*std::move(axis));
   }
   request.precision =
@@ -93,11 +101,55 @@ Check present(OutputFolder& output, const stability::MapResult& map, stability::
   return std::nullopt;
 }
 
+/// The map of two arms.
+Check run_arms(const MapOptions& options, const configuration::Document& document, const std::string& command,
+               OutputFolder& output) {
+  if (options.precision != "double") {
+    return of_other_experiments("--precision", "a map of two arms is computed in double: leave it out");
+  }
+  const experiments::Request about{
+      .document = document, .variations = {}, .name = experiment_name(options.experiment.file), .command = command};
+  arm_stability::ArmMapRequest request{.hands = {{.name = "own", .request = about}},
+                                       .variations = {},
+                                       .friction_speed_rad_per_s = options.friction_speed_rad_per_s.value_or(0.0)};
+  for (const std::string& file : options.hands) {
+    ExperimentOptions held = options.experiment;
+    held.with.push_back(file);
+    const auto in_hand = load_experiment(held);
+    if (!in_hand) return in_hand.error();
+    request.hands.push_back({.name = experiment_name(file), .request = about});
+    request.hands.back().request.document = *in_hand;
+  }
+  for (const std::string& text : options.vary) {
+    auto variation = experiments::parse_variation(text);
+    if (!variation) return variation.error();
+    if (auto error = refuse_set_and_varied(options.experiment.set, variation->key)) return error;
+    request.variations.push_back(*std::move(variation));
+  }
+  const auto map = [&] {
+    ProgressLine line("map");
+    return arm_stability::map_arms(request, [&line](double done) { line.update(done); });
+  }();
+  if (!map) return map.error();
+  arm_stability::ArmMapReport report = report_arm_map(*map, about, request.friction_speed_rad_per_s);
+  std::vector<NamedText> files{{"map.csv", std::move(report.csv)}};
+  if (report.svg) files.push_back({"map.svg", *std::move(report.svg)});
+  if (!output.wanted()) files.clear();
+  return write_outcome(output, report.outcome, files);
+}
+
 Check run(const MapOptions& options, const std::string& command) {
-  auto document = with_set(configuration::Document::load(options.file), options.set);
+  auto document = load_experiment(options.experiment);
   if (!document) return document.error();
   auto output = OutputFolder::open(options.output);
   if (!output) return output.error();
+  if (experiments::is_of_arms(*document)) return run_arms(options, *document, command, *output);
+  if (!options.hands.empty()) {
+    return of_other_experiments("--hand", "hands are mapped of two arms: vary the keys of operator instead");
+  }
+  if (options.friction_speed_rad_per_s) {
+    return of_other_experiments("--friction-speed", "a map of taps has friction itself: leave it out");
+  }
   const auto request = make_request(options, *document);
   if (!request) return request.error();
   const auto start = std::chrono::steady_clock::now();
@@ -108,8 +160,10 @@ Check run(const MapOptions& options, const std::string& command) {
   if (!map) return document->locate(map.error());
   if (request->share.rank > 0) return {};
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const experiments::Request about{
-      .document = *std::move(document), .variations = {}, .name = experiment_name(options.file), .command = command};
+  const experiments::Request about{.document = *std::move(document),
+                                   .variations = {},
+                                   .name = experiment_name(options.experiment.file),
+                                   .command = command};
   return present(*output, *map, stability::report_map(*map, request->base, elapsed_s, about),
                  configuration::to_toml(request->base));
 }
@@ -118,13 +172,21 @@ Check run(const MapOptions& options, const std::string& command) {
 
 void add_stability_map(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<MapOptions>();
-  CLI::App* verb = stability.add_subcommand("map", "Run a tap at every point of a grid and draw where it is stable");
-  verb->add_option("EXPERIMENT", options->file, "File of kind stability-map (TOML)")->required();
-  add_set_option(*verb, options->set);
-  verb->add_option("--vary", options->vary, "An axis: key=from:to:count, key=from:to:count[log] or key=a,b,c")
+  CLI::App* verb =
+      stability.add_subcommand("map", "Draw over a grid where taps are stable, or up to which gain two arms are");
+  add_experiment_options(*verb, options->experiment);
+  verb->add_option(
+          "--vary", options->vary,
+          "An axis: key=from:to:count, key=from:to:count[log] or key=a,b,c; of two arms key=a,b,c, and without "
+          "any poses, directions and methods")
       ->type_name("AXIS")
-      ->required()
       ->allow_extra_args(false);
+  verb->add_option("--hand", options->hands, "Two arms: another hand beside the file's, a file as for --with")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  verb->add_option("--friction-speed", options->friction_speed_rad_per_s,
+                   "Two arms: velocity amplitude of friction's describing function, in rad/s; 0 leaves friction out")
+      ->check(real_between(0.0, 1e6));
   verb->add_option("--precision", options->precision, "double, or float with the boundary again in double")
       ->check(CLI::IsMember({"double", "float"}));
   options->output.own_files = {"map.csv", "map.h5", "map.svg"};

@@ -1,3 +1,4 @@
+#include <tactus/arm_stability/arm_margins_report.hpp>
 #include <tactus/cli/stability.hpp>
 #include <tactus/cli/stability_verb.hpp>
 
@@ -5,10 +6,12 @@ namespace tactus::cli {
 
 void add_stability_margins(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
   const auto report = [](const auto& request, const auto& options, const auto&) {
-    return stability::report_margins(request, options);
+    return experiments::is_of_arms(request.document) ? arm_stability::report_arm_margins(request, options)
+                                                     : stability::report_margins(request, options);
   };
-  add_stability_verb(stability, "margins", "Margins, poles and gain limit of the linear loop in contact", report, name,
-                     command, status);
+  add_stability_verb(stability, "margins",
+                     "Margins, poles and gain limit of the linear loop in contact, of one axis or two arms", report,
+                     name, command, status);
 }
 
 }  // namespace tactus::cli

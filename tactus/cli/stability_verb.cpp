@@ -8,8 +8,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <optional>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -18,19 +16,20 @@ namespace tactus::cli {
 namespace {
 
 struct StabilityOptions {
-  std::string file;
-  std::vector<std::string> set;
+  ExperimentOptions experiment;
   OutputOptions output;
   stability::ReportOptions report;
 };
 
 Check run(const StabilityOptions& options, const StabilityReport& report, const std::string& command) {
-  auto document = with_set(configuration::Document::load(options.file), options.set);
+  auto document = load_experiment(options.experiment);
   if (!document) return document.error();
   auto output = OutputFolder::open(options.output);
   if (!output) return output.error();
-  const experiments::Request request{
-      .document = *std::move(document), .variations = {}, .name = experiment_name(options.file), .command = command};
+  const experiments::Request request{.document = *std::move(document),
+                                     .variations = {},
+                                     .name = experiment_name(options.experiment.file),
+                                     .command = command};
   const auto outcome = [&] {
     ProgressLine line(request.name);
     return report(request, options.report, [&line](double done) { line.update(done); });
@@ -46,11 +45,11 @@ void add_stability_verb(CLI::App& stability, const std::string& verb, const std:
                         int& status) {
   auto options = std::make_shared<StabilityOptions>();
   CLI::App* added = stability.add_subcommand(verb, summary);
-  added->add_option("EXPERIMENT", options->file, "Experiment file (TOML) of the kind tapping")->required();
-  add_set_option(*added, options->set);
+  add_experiment_options(*added, options->experiment);
   added
-      ->add_option("--friction-speed", options->report.linearisation.friction_speed_m_per_s,
-                   "Velocity amplitude of friction's describing function, in m/s; 0 leaves friction out")
+      ->add_option(
+          "--friction-speed", options->report.linearisation.friction_speed_m_per_s,
+          "Velocity amplitude of friction's describing function, in m/s, of arms in rad/s; 0 leaves friction out")
       ->check(real_between(0.0, 1e6));
   added
       ->add_option("--linkage-amplitude", options->report.linearisation.linkage_amplitude_m,

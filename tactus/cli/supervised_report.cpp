@@ -1,4 +1,5 @@
 #include <tactus/cli/internal/json_text.hpp>
+#include <tactus/cli/internal/link_json.hpp>
 #include <tactus/cli/supervised_report.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/report/figure.hpp>
@@ -299,7 +300,27 @@ nlohmann::ordered_json json_of(const SiteTotals& totals) {
           {"not_finite", totals.not_finite}};
 }
 
-nlohmann::ordered_json json_of(const LinkTotals& totals) {
+std::string json_of(const SupervisedRun& run) {
+  nlohmann::ordered_json document;
+  if (run.here.one) {
+    document["site"] = name_of(*run.here.one);
+    document.update(json_of(run.sites.front().totals));
+  } else {
+    for (const auto& site : run.sites) document["sites"][name_of(site.role)] = json_of(site.totals);
+  }
+  document["ended_by"] = run.ended_by;
+  if (run.link) document.update(link_json(*run.link));
+  document["lines_dropped"] = run.lines_dropped;
+  document["seconds"] = nlohmann::ordered_json::array();
+  for (const SiteSecond& second : run.seconds) document["seconds"].push_back(json_of(run, second));
+  document["servo"] = nlohmann::ordered_json::parse(runtime::servo_json(run.servo));
+  if (run.log_dropped) document["log_dropped"] = *run.log_dropped;
+  return json_text(document);
+}
+
+}  // namespace
+
+nlohmann::ordered_json link_json(const LinkTotals& totals) {
   const auto& link = totals.link;
   return {{"round_trip_mean_s", totals.round_trip_mean_s},
           {"round_trip_max_s", totals.round_trip_max_s},
@@ -325,26 +346,6 @@ nlohmann::ordered_json json_of(const LinkTotals& totals) {
             {"handshakes", link.secure.handshakes},
             {"overflowed", link.secure.overflowed}}}};
 }
-
-std::string json_of(const SupervisedRun& run) {
-  nlohmann::ordered_json document;
-  if (run.here.one) {
-    document["site"] = name_of(*run.here.one);
-    document.update(json_of(run.sites.front().totals));
-  } else {
-    for (const auto& site : run.sites) document["sites"][name_of(site.role)] = json_of(site.totals);
-  }
-  document["ended_by"] = run.ended_by;
-  if (run.link) document.update(json_of(*run.link));
-  document["lines_dropped"] = run.lines_dropped;
-  document["seconds"] = nlohmann::ordered_json::array();
-  for (const SiteSecond& second : run.seconds) document["seconds"].push_back(json_of(run, second));
-  document["servo"] = nlohmann::ordered_json::parse(runtime::servo_json(run.servo));
-  if (run.log_dropped) document["log_dropped"] = *run.log_dropped;
-  return json_text(document);
-}
-
-}  // namespace
 
 experiments::Outcome supervised_outcome(const SupervisedRun& run, const experiments::Request& request,
                                         std::string_view configuration) {

@@ -49,7 +49,7 @@ Result<link::Address> listening_address(const std::optional<std::string>& listen
   return port->any_host();
 }
 
-Result<link::Endpoint::Settings> link_settings(const SupervisedOptions& options, SiteRole role) {
+Result<link::EndpointSettings> link_settings(const SupervisedOptions& options, SiteRole role) {
   if (options.peer.empty()) return refused(ErrorCode::missing, "--peer", "name the other site: HOST:PORT");
   const auto peer = link::Address::parse(options.peer);
   if (!peer) return peer.error();
@@ -68,7 +68,7 @@ Result<link::Endpoint::Settings> link_settings(const SupervisedOptions& options,
                    "the link is encrypted: make a key with `tactus key FILE` and give it to both sites; on one host, "
                    "--unencrypted does without");
   }
-  return link::Endpoint::Settings{.site = role, .peer = *peer, .listen = *listen, .key = key};
+  return link::EndpointSettings{.site = role, .peer = *peer, .listen = *listen, .key = key};
 }
 
 /// The name of the kind that each `--device` asks for, by role; empty for the device of the experiment.
@@ -224,7 +224,7 @@ void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
   };
   add("--device", options.devices,
       "Drive this device, which the program must bring, in place of the simulated one, at both sites or at one; or the "
-      "leader and follower of a rig file, or of a pair of it",
+      "leader and follower of a rig file, or of a pair of it, of which --site drives one",
       "[SITE=]NAME|RIG.toml[:PAIR]")
       ->allow_extra_args(false);
   add("--site", options.site, "Run only this site, the other being elsewhere", "SITE")
@@ -254,18 +254,15 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
     }
     return refused(ErrorCode::inconsistent, here.one ? "--site" : "--device", std::move(why));
   }
-  if (rig) {
-    if (here.one) {
-      return refused(ErrorCode::inconsistent, "--site",
-                     "a rig has a leader and a follower, which run in one program: leave out --site");
-    }
-    return run_rig(options, looking_on, servo, request, folder, log_limit_bytes);
+  std::optional<link::EndpointSettings> link;
+  if (here.one) {
+    auto stated = link_settings(options, *here.one);
+    if (!stated) return stated.error();
+    link = *std::move(stated);
   }
+  if (rig) return run_rig(options, looking_on, servo, request, folder, log_limit_bytes, link);
   const auto params = document.read<TappingParams>();
   if (!params) return params.error();
-  Result<link::Endpoint::Settings> link = link::Endpoint::Settings{};
-  if (here.one) link = link_settings(options, *here.one);
-  if (!link) return link.error();
   const auto names = device_names(options, here);
   if (!names) return names.error();
 

@@ -53,7 +53,9 @@ std::string text_at(const auto& cell_at, std::size_t first) {
   return text;
 }
 
-AgreedParams agreed(const ControlParams& params, Seconds dt) {
+}  // namespace
+
+AgreedParams agreed_params(const ControlParams& params, Seconds dt) {
   const SupervisionParams& supervision = params.supervision;
   AgreedParams all;
   all.architecture = params.architecture;
@@ -74,12 +76,14 @@ AgreedParams agreed(const ControlParams& params, Seconds dt) {
   return all;
 }
 
-}  // namespace
-
 Agreement agreement_of(const ControlParams& params, Seconds dt) {
-  AgreedParams all = agreed(params, dt);
+  AgreedParams all = agreed_params(params, dt);
+  return agreement_of(bind(all));
+}
+
+Agreement agreement_of(std::span<const Binding> values) {
   Agreement agreement;
-  for (const Binding& binding : bind(all)) {
+  for (const Binding& binding : values) {
     if (binding.is_section()) continue;
     if (const auto* const* text = std::get_if<std::string*>(&binding.target)) {
       const std::string& value = **text;
@@ -106,13 +110,17 @@ Agreement agreement_of(const JointParams auto& params, Seconds dt) {
 template Agreement agreement_of(const Joints<ControlParams>&, Seconds);
 
 std::optional<Disagreement> first_disagreement(const AgreementCheck& check) {
+  AgreedParams any;
+  return first_disagreement(check, bind(any));
+}
+
+std::optional<Disagreement> first_disagreement(const AgreementCheck& check, std::span<const Binding> values) {
   if (!check.disagrees() || check.first_difference() == 0) return std::nullopt;
   const std::size_t differing = check.first_difference() - 1;
   const auto own_at = [&check](std::size_t cell) { return check.own()[cell]; };
   const auto other_at = [&check](std::size_t cell) { return check.other(cell); };
-  AgreedParams any;
   std::size_t cell = 0;
-  for (const Binding& binding : bind(any)) {
+  for (const Binding& binding : values) {
     const std::size_t cells = cells_of(binding);
     if (differing >= cell && differing < cell + cells) {
       if (std::holds_alternative<std::string*>(binding.target)) {

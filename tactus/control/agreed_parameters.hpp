@@ -3,9 +3,11 @@
 #include <tactus/control/agreement.hpp>
 #include <tactus/control/architecture.hpp>
 #include <tactus/control/own_params.hpp>
+#include <tactus/core/binding.hpp>
 #include <tactus/core/parameters.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 
 namespace tactus::control {
@@ -53,6 +55,11 @@ struct AgreedParams {
   }
 };
 
+/// What both sites of an experiment's `[control]` section must have in common, at a sample time. Allocates.
+AgreedParams agreed_params(const ControlParams& params, Seconds dt);
+
+/// Of values under keys, in order, groups left out: a cell for each, and four for a text. Allocates.
+Agreement agreement_of(std::span<const Binding> values);
 /// Of the `[control]` section of an experiment at a sample time. Allocates.
 Agreement agreement_of(const ControlParams& params, Seconds dt);
 /// Of all joints of a device: a cell for each, which holds the digest of what is agreed for it. So the first cell that
@@ -69,5 +76,7 @@ struct Disagreement {
 /// The first key in which the sites of `check` are known to differ; none where they agree, or where the other site
 /// knows other keys, being of another build. Allocates.
 std::optional<Disagreement> first_disagreement(const AgreementCheck& check);
+/// The same where the own agreement is that of `values`.
+std::optional<Disagreement> first_disagreement(const AgreementCheck& check, std::span<const Binding> values);
 
 }  // namespace tactus::control

@@ -49,8 +49,8 @@ struct DriveTells {
   double velocity_m_per_s = 0.0;
   double force_N = 0.0;  ///< that the motor gives to the joint, as the drive believes, from its current
 };
-inline bool is_finite(const DriveTells& tells) noexcept {
-  return std::isfinite(tells.velocity_m_per_s) && std::isfinite(tells.force_N);
-}
+/// Whether a drive can mean it: a number, and not beyond what any motor does, in m/s or rad/s and in N or N m. Of a
+/// single tick of 1e300 an observer would be lost for good.
+inline bool can_be_told(double value) noexcept { return std::fabs(value) <= 1e6; }
 
 }  // namespace tactus::control

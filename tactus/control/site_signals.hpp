@@ -96,7 +96,10 @@ struct SlaveOutput {
   double support_N = 0.0;  ///< of `motor_force_N`, what carries the device: it stays where the rest fades
 };
 
-/// Whether every number that a site reads is one. Real-time safe.
+/// Whether every number that a site reads is one, and what drives tell is of motors. Real-time safe.
+inline bool is_finite(const DriveTells& tells) noexcept {
+  return can_be_told(tells.velocity_m_per_s) && can_be_told(tells.force_N);
+}
 inline bool is_finite(const Message& message) noexcept {
   bool finite = true;
   for_each_signal<Message>([&](const auto& each) { finite = finite && std::isfinite(message.*each.member); });
@@ -128,6 +131,10 @@ inline double resisting_N(const SlaveInput& input) noexcept { return input.tip_f
 inline void mend(double& value, double last) noexcept {
   if (!std::isfinite(value)) value = last;
 }
+inline void mend(DriveTells& tells, const DriveTells& last) noexcept {
+  if (!can_be_told(tells.velocity_m_per_s)) tells.velocity_m_per_s = last.velocity_m_per_s;
+  if (!can_be_told(tells.force_N)) tells.force_N = last.force_N;
+}
 inline void mend(Message& message, const Message& last) noexcept {
   for_each_signal<Message>([&](const auto& each) { mend(message.*each.member, last.*each.member); });
 }
@@ -136,16 +143,14 @@ inline void mend(MasterInput& input, const MasterInput& last) noexcept {
   mend(input.motor_age_s, last.motor_age_s);
   mend(input.hand_force_N, last.hand_force_N);
   mend(input.grip, last.grip);
-  mend(input.motor_tells.velocity_m_per_s, last.motor_tells.velocity_m_per_s);
-  mend(input.motor_tells.force_N, last.motor_tells.force_N);
+  mend(input.motor_tells, last.motor_tells);
   mend(input.arrival.message, last.arrival.message);
 }
 inline void mend(SlaveInput& input, const SlaveInput& last) noexcept {
   mend(input.motor_position_m, last.motor_position_m);
   mend(input.motor_age_s, last.motor_age_s);
   mend(input.tip_force_N, last.tip_force_N);
-  mend(input.motor_tells.velocity_m_per_s, last.motor_tells.velocity_m_per_s);
-  mend(input.motor_tells.force_N, last.motor_tells.force_N);
+  mend(input.motor_tells, last.motor_tells);
   mend(input.arrival.message, last.arrival.message);
 }
 

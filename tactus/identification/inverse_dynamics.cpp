@@ -2,6 +2,7 @@
 #include <tactus/identification/linear_fit.hpp>
 #include <tactus/identification/refusal.hpp>
 #include <tactus/identification/zero_phase.hpp>
+#include <tactus/signal/decompositions.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace tactus::identification {
 namespace {
@@ -216,8 +217,7 @@ Check check_motion(const Problem& problem) {
 std::array<Estimate, parameters> estimate(const Problem& problem) {
   const Eigen::Index rows = problem.force.size();
   const Eigen::Matrix4d normal = problem.instruments.transpose() * problem.regressors;
-  const auto solver = normal.colPivHouseholderQr();
-  const Eigen::Vector4d found = solver.solve(problem.instruments.transpose() * problem.force);
+  const Eigen::Vector4d found = signal::solve_least_squares(normal, problem.instruments.transpose() * problem.force);
   const Vector residual = problem.force - problem.regressors * found;
   Eigen::Matrix4d scatter = Eigen::Matrix4d::Zero();
   for (Eigen::Index block = 0; block < scatter_blocks; ++block) {
@@ -227,7 +227,7 @@ std::array<Estimate, parameters> estimate(const Problem& problem) {
         problem.instruments.middleRows(first, size).transpose() * residual.segment(first, size);
     scatter += score * score.transpose();
   }
-  const Eigen::Matrix4d inverse = solver.inverse();
+  const Eigen::Matrix4d inverse = signal::inverse(Eigen::MatrixXd(normal));
   const Eigen::Matrix4d covariance =
       inverse * scatter * inverse.transpose() * (static_cast<double>(scatter_blocks) / (scatter_blocks - 1));
   std::array<Estimate, parameters> result;

@@ -1,10 +1,11 @@
 #include <tactus/identification/linear_fit.hpp>
 #include <tactus/identification/refusal.hpp>
+#include <tactus/signal/decompositions.hpp>
 
 #include <cmath>
 #include <string>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace tactus::identification {
 namespace {
@@ -39,28 +40,19 @@ Result<LinearFit> fit_linear(std::span<const double> regressors, std::size_t col
     if (lengths[column] == 0) lengths[column] = 1;
   }
   const Eigen::MatrixXd scaled = a * lengths.cwiseInverse().asDiagonal();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(smallest_pivot);
-  qr.compute(scaled);
-  if (qr.rank() < a.cols()) {
-    const auto column = qr.colsPermutation().indices()[qr.rank()];
-    return inconsistent("the data cannot tell the parameters apart: column " + std::to_string(column) +
+  const signal::Regression found = signal::regress(scaled, b, smallest_pivot);
+  if (found.idle) {
+    return inconsistent("the data cannot tell the parameters apart: column " + std::to_string(*found.idle) +
                         " of the regressors adds nothing to the others; excite the device more richly");
   }
 
-  const Eigen::VectorXd solution = qr.solve(b);
-  const double squares = (scaled * solution - b).squaredNorm();
-  const Eigen::MatrixXd inverse_r = qr.matrixR()
-                                        .topLeftCorner(a.cols(), a.cols())
-                                        .triangularView<Eigen::Upper>()
-                                        .solve(Eigen::MatrixXd::Identity(a.cols(), a.cols()));
-  const Eigen::VectorXd variances = qr.colsPermutation() * Eigen::VectorXd(inverse_r.rowwise().squaredNorm());
+  const double squares = (scaled * found.x - b).squaredNorm();
   const double variance = squares / static_cast<double>(rows - columns);
 
   LinearFit fit;
   for (Eigen::Index column = 0; column < a.cols(); ++column) {
-    fit.parameters.push_back(solution[column] / lengths[column]);
-    fit.standard_errors.push_back(std::sqrt(variance * variances[column]) / lengths[column]);
+    fit.parameters.push_back(found.x[column] / lengths[column]);
+    fit.standard_errors.push_back(std::sqrt(variance * found.spread[column]) / lengths[column]);
   }
   fit.residual_rms = std::sqrt(squares / static_cast<double>(rows));
   return fit;

@@ -2,6 +2,7 @@
 #include <tactus/identification/refusal.hpp>
 #include <tactus/identification/zero_phase.hpp>
 #include <tactus/report/text.hpp>
+#include <tactus/signal/decompositions.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace tactus::identification {
 namespace {
@@ -143,11 +144,9 @@ Result<Problem> prepare(const AxisSignals& signals, Band band, double window_s) 
 
 /// No value where the motion does not span acceleration, velocity and position.
 std::optional<Vector> solve(const Sums& sums) {
-  Eigen::ColPivHouseholderQR<Matrix> solver;
-  solver.setThreshold(1e-9);
-  solver.compute(sums.instruments_regressors);
-  if (solver.rank() < 3) return std::nullopt;
-  return Vector(solver.solve(sums.instruments_force));
+  const signal::Regression found = signal::regress(sums.instruments_regressors, sums.instruments_force, 1e-9);
+  if (found.idle) return std::nullopt;
+  return Vector(found.x);
 }
 
 /// The two-sided 95 % point of Student's t, within 1e-3 from seven degrees of freedom on (Cornish and Fisher's

@@ -1,5 +1,6 @@
 #include <tactus/identification/linear_fit.hpp>
 #include <tactus/identification/rational_fit.hpp>
+#include <tactus/signal/matrix_functions.hpp>
 
 #include <algorithm>
 #include <array>
@@ -9,8 +10,6 @@
 #include <numbers>
 #include <optional>
 #include <vector>
-
-#include <Eigen/Eigenvalues>
 
 namespace tactus::identification {
 
@@ -31,12 +30,11 @@ std::vector<double> simulate(const RationalFilter& made, std::span<const double>
 
 /// The same polynomial with its roots right of the imaginary axis (or on it) moved to the left of it.
 Coefficients stabilised(const Coefficients& monic) {
-  Eigen::Matrix4d companion = Eigen::Matrix4d::Zero();
-  for (int i = 0; i < 4; ++i) companion(i, 3) = -monic[static_cast<std::size_t>(i)];
-  for (int i = 1; i < 4; ++i) companion(i, i - 1) = 1.0;
-  const Eigen::Vector4cd roots = companion.eigenvalues();
+  std::array<double, order * order> companion{};
+  for (std::size_t i = 0; i < order; ++i) companion[order * i + order - 1] = -monic[i];
+  for (std::size_t i = 1; i < order; ++i) companion[order * i + i - 1] = 1.0;
   std::array<std::complex<double>, order + 1> product{1.0};
-  for (const std::complex<double> root : roots) {
+  for (const std::complex<double> root : signal::eigenvalues(companion, order)) {
     const double left = -std::max(std::abs(root.real()), 1e-6 * (1.0 + std::abs(root)));
     const std::complex<double> moved(left, root.imag());
     for (std::size_t i = order + 1; i-- > 0;) product[i] = (i > 0 ? product[i - 1] : 0.0) - moved * product[i];

@@ -70,19 +70,20 @@ class FrameTags::Mac {
   EVP_MAC_CTX* context_ = nullptr;
 };
 
-FrameTags::FrameTags(std::unique_ptr<Mac> mac, SiteRole own_site) : mac_(std::move(mac)), own_site_(own_site) {}
+FrameTags::FrameTags(std::unique_ptr<Mac> mac, SiteRole own_site, std::size_t joints)
+    : mac_(std::move(mac)), own_site_(own_site), joints_(static_cast<std::uint8_t>(joints)) {}
 FrameTags::FrameTags(FrameTags&&) noexcept = default;
 FrameTags& FrameTags::operator=(FrameTags&&) noexcept = default;
 FrameTags::~FrameTags() = default;
 
-Result<FrameTags> FrameTags::make(const Key& key, SiteRole own_site) {
+Result<FrameTags> FrameTags::make(const Key& key, SiteRole own_site, std::size_t joints) {
   TagKey derived;
   bool good = derive(key, derived);
   auto mac = std::make_unique<Mac>(derived);
   Tag trial{};
   good = good && mac->make({}, trial);
   ERR_clear_error();
-  if (good) return FrameTags(std::move(mac), own_site);
+  if (good) return FrameTags(std::move(mac), own_site, joints);
   return Error{.code = ErrorCode::failed,
                .parameter = {},
                .message = "OpenSSL cannot do HKDF and SipHash: install OpenSSL 3 with its default provider",
@@ -94,7 +95,7 @@ std::span<const std::byte> FrameTags::write(const HandshakeFrame& frame, FrameBy
   head.put(frame_magic);
   head.put(frame.version);
   head.put(site_byte(own_site_));
-  head.put(std::uint8_t{0});
+  head.put(static_cast<std::uint8_t>(joints_ - 1));  // 0 of one axis
   head.put(frame.session);
   head.put(frame.peer);
   head.put(frame.number);
@@ -120,12 +121,12 @@ FrameTags::Verdict FrameTags::read(std::span<const std::byte> bytes, HandshakeFr
   }
   frame.version = version;
   if (version != datagram_version) return Verdict::version;
-  head.get<std::uint8_t>();
+  frame.joints = static_cast<std::uint8_t>(head.get<std::uint8_t>() + 1);
   frame.session = head.get<std::uint64_t>();
   frame.peer = head.get<std::uint64_t>();
   frame.number = head.get<std::uint64_t>();
   frame.records = bytes.subspan(frame_head_bytes, tag_at - frame_head_bytes);
-  return Verdict::genuine;
+  return frame.joints == joints_ ? Verdict::genuine : Verdict::joints;
 }
 
 }  // namespace tactus::link

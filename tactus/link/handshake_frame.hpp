@@ -21,6 +21,7 @@ struct HandshakeFrame {
   std::uint64_t number = 0;              ///< from 1, one more for each frame of the sender
   std::span<const std::byte> records{};  ///< of DTLS
   std::uint16_t version = datagram_version;
+  std::uint8_t joints = 1;  ///< that the sender has: told by `read`
 };
 
 inline constexpr std::size_t frame_head_bytes = 32;
@@ -40,30 +41,33 @@ inline constexpr std::size_t frame_site_at = 6;
 /// this alone. By OpenSSL. Belongs to one thread.
 class FrameTags {
  public:
-  /// Errors: `failed` where OpenSSL lacks something.
-  static Result<FrameTags> make(const Key& key, SiteRole own_site);
+  /// Of a site of so many joints. Errors: `failed` where OpenSSL lacks something.
+  static Result<FrameTags> make(const Key& key, SiteRole own_site, std::size_t joints = 1);
   FrameTags(FrameTags&&) noexcept;
   FrameTags& operator=(FrameTags&&) noexcept;
   ~FrameTags();
 
-  /// The bytes of a frame with at most `most_record_bytes` of records, which stand in `bytes`. Real-time safe.
+  /// The bytes of a frame of this site, with its number of joints and at most `most_record_bytes` of records, which
+  /// stand in `bytes`. Real-time safe.
   std::span<const std::byte> write(const HandshakeFrame& frame, FrameBytes& bytes) noexcept;
 
   enum class Verdict : std::uint8_t {
     none,     ///< no frame of the other site, by size and first bytes
     forged,   ///< made by somebody without the key, or damaged
     version,  ///< made with the key, in another version of the format
+    joints,   ///< made with the key, by a site of another number of joints
     genuine,
   };
-  /// What bytes from anywhere say, for the price of one tag at most. `frame` is filled where it is genuine, its records
-  /// being among the bytes; of one of another version only that. Real-time safe.
+  /// What bytes from anywhere say, for the price of one tag at most. `frame` is filled where it is genuine or of
+  /// another number of joints, its records being among the bytes; of one of another version only that. Real-time safe.
   Verdict read(std::span<const std::byte> bytes, HandshakeFrame& frame) noexcept;
 
  private:
   class Mac;
-  FrameTags(std::unique_ptr<Mac> mac, SiteRole own_site);
+  FrameTags(std::unique_ptr<Mac> mac, SiteRole own_site, std::size_t joints);
   std::unique_ptr<Mac> mac_;
   SiteRole own_site_;
+  std::uint8_t joints_;
 };
 
 }  // namespace tactus::link

@@ -4,18 +4,19 @@
 
 namespace tactus::link {
 
-void Inbound::take_up(const control::Packet& packet) noexcept {
-  sessions_.take_up(packet.session);
-  answered_session_ = packet.session;
+void Inbound::take_up(std::int64_t session, std::int64_t sequence) noexcept {
+  sessions_.take_up(session);
+  answered_session_ = session;
   window_ = {};
   clock_.reset();
-  first_sequence_ = static_cast<std::uint64_t>(packet.sequence);
+  first_sequence_ = static_cast<std::uint64_t>(sequence);
   arrived_ = 0;
   ++counters_.sessions;
 }
 
-Inbound::Verdict Inbound::judge(Datagram& datagram, std::int64_t now_ns) noexcept {
-  control::Packet& packet = datagram.packet;
+template <class Payload>
+Inbound::Verdict Inbound::judge(DatagramOf<Payload>& datagram, std::int64_t now_ns) noexcept {
+  control::PacketOf<Payload>& packet = datagram.packet;
   if (datagram.site == own_site_) return Verdict::reflected;
   const bool answers = datagram.peer_session == own_session_;
   if ((!answers && datagram.peer_session != 0) || sessions_.was_left(packet.session)) return Verdict::foreign;
@@ -27,7 +28,7 @@ Inbound::Verdict Inbound::judge(Datagram& datagram, std::int64_t now_ns) noexcep
     echo_heard_ns_ = now_ns;
     return Verdict::greeting;
   }
-  if (packet.session != sessions_.current()) take_up(packet);
+  if (packet.session != sessions_.current()) take_up(packet.session, packet.sequence);
   const auto seen = window_.judge(static_cast<std::uint64_t>(packet.sequence));
   if (seen == ReplayWindow::Verdict::repeated) return Verdict::repeated;
   ++arrived_;
@@ -44,7 +45,8 @@ Inbound::Verdict Inbound::judge(Datagram& datagram, std::int64_t now_ns) noexcep
   return Verdict::counted;
 }
 
-Inbound::Verdict Inbound::take(Datagram& datagram, std::int64_t now_ns) noexcept {
+template <class Payload>
+Inbound::Verdict Inbound::take(DatagramOf<Payload>& datagram, std::int64_t now_ns) noexcept {
   const Verdict verdict = judge(datagram, now_ns);
   switch (verdict) {
     case Verdict::counted:
@@ -65,5 +67,7 @@ Inbound::Verdict Inbound::take(Datagram& datagram, std::int64_t now_ns) noexcept
   }
   return verdict;
 }
+template Inbound::Verdict Inbound::take(Datagram&, std::int64_t) noexcept;
+template Inbound::Verdict Inbound::take(JointDatagram&, std::int64_t) noexcept;
 
 }  // namespace tactus::link

@@ -35,7 +35,8 @@ class Inbound {
   Inbound(SiteRole own_site, std::int64_t own_session) : own_site_(own_site), own_session_(own_session) {}
 
   /// Where the verdict is `counted`, the datagram's packet is given its age: infinite as long as no echo has told.
-  Verdict take(Datagram& datagram, std::int64_t now_ns) noexcept;
+  template <class Payload>
+  Verdict take(DatagramOf<Payload>& datagram, std::int64_t now_ns) noexcept;
 
   /// When a datagram was counted last, own clock; 0 before the first.
   [[nodiscard]] std::int64_t heard_ns() const noexcept { return heard_ns_; }
@@ -54,8 +55,9 @@ class Inbound {
   [[nodiscard]] std::uint64_t arrived() const noexcept { return arrived_; }
 
  private:
-  Verdict judge(Datagram& datagram, std::int64_t now_ns) noexcept;
-  void take_up(const control::Packet& packet) noexcept;
+  template <class Payload>
+  Verdict judge(DatagramOf<Payload>& datagram, std::int64_t now_ns) noexcept;
+  void take_up(std::int64_t session, std::int64_t sequence) noexcept;
 
   SiteRole own_site_;
   std::int64_t own_session_;

@@ -32,7 +32,7 @@ std::uint64_t number_of(const Received& packet) noexcept {
 
 /// A message that may prove that the client has its keys. The client sends another at its next tick.
 struct Proof {
-  std::array<std::byte, datagram_bytes + SecureChannel::overhead_bytes> data;
+  std::array<std::byte, longest_datagram_bytes + SecureChannel::overhead_bytes> data;
   std::size_t size;
 };
 
@@ -140,7 +140,11 @@ void SecureChannel::Implementation::take_frame(const Received& packet) noexcept 
   HandshakeFrame frame;
   const auto verdict = tags_.read(packet.bytes(), frame);
   if (verdict == FrameTags::Verdict::version) counters_.other_version = frame.version;
-  const auto passed = verdict == FrameTags::Verdict::genuine ? inbox_.take(frame) : HandshakeInbox::Verdict::refused;
+  if (verdict == FrameTags::Verdict::joints) counters_.other_joints = frame.joints;
+  // A site of other joints is greeted back, so that it knows too, and no more.
+  const bool greets = verdict == FrameTags::Verdict::joints && own_site_ == SiteRole::slave && frame.records.empty();
+  const auto passed =
+      verdict == FrameTags::Verdict::genuine || greets ? inbox_.take(frame) : HandshakeInbox::Verdict::refused;
   switch (passed) {
     case HandshakeInbox::Verdict::passed_on:
       ++counters_.handshake_packets;
@@ -207,13 +211,12 @@ SecureChannel::SecureChannel(SecureChannel&&) noexcept = default;
 SecureChannel& SecureChannel::operator=(SecureChannel&&) noexcept = default;
 SecureChannel::~SecureChannel() = default;
 
-Result<SecureChannel> SecureChannel::make(SiteRole own_site, const Key& key, const Socket& socket,
-                                          std::size_t message_bytes) {
-  auto reading = FrameTags::make(key, own_site), writing = FrameTags::make(key, own_site);
+Result<SecureChannel> SecureChannel::make(SiteRole own_site, const Key& key, const Socket& socket, std::size_t joints) {
+  auto reading = FrameTags::make(key, own_site, joints), writing = FrameTags::make(key, own_site, joints);
   if (!reading) return reading.error();
   if (!writing) return writing.error();
-  auto implementation = std::make_unique<Implementation>(own_site, key, socket, message_bytes, *std::move(reading),
-                                                         FrameSender(socket, *std::move(writing)));
+  auto implementation = std::make_unique<Implementation>(own_site, key, socket, datagram_bytes_of(joints),
+                                                         *std::move(reading), FrameSender(socket, *std::move(writing)));
   if (auto error = implementation->start()) return *std::move(error);
   return SecureChannel(std::move(implementation));
 }

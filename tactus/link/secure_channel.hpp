@@ -37,15 +37,17 @@ class SecureChannel {
     std::uint64_t handshakes = 0;         ///< finished, and in use since
     std::uint64_t overflowed = 0;         ///< hand-shake packets for which the queue had no room
     std::uint16_t other_version = 0;      ///< of the format that the other site shakes hands in, where it is another
+    std::size_t other_joints = 0;         ///< that the other site shakes hands for, where they are others
   };
 
-  /// `socket` must outlive the channel. Errors: `failed` where OpenSSL lacks something.
-  static Result<SecureChannel> make(SiteRole own_site, const Key& key, const Socket& socket, std::size_t message_bytes);
+  /// For datagrams of so many joints. `socket` must outlive the channel. Errors: `failed` where OpenSSL lacks
+  /// something.
+  static Result<SecureChannel> make(SiteRole own_site, const Key& key, const Socket& socket, std::size_t joints);
   SecureChannel(SecureChannel&&) noexcept;
   SecureChannel& operator=(SecureChannel&&) noexcept;
   ~SecureChannel();
 
-  /// Opens one packet into `message`, which has room for `message_bytes`. True where it was an authentic message that
+  /// Opens one packet into `message`, which has room for a datagram. True where it was an authentic message that
   /// had not come before. Real-time safe.
   bool open(const Received& packet, std::span<std::byte> message) noexcept;
   /// Encrypts a message and sends it. False where there are no keys yet or the kernel did not take it. Real-time safe.

@@ -21,7 +21,7 @@ inline constexpr std::string_view subprotocols[] = {"foxglove.sdk.v1", "foxglove
 
 /// How much one client may ask for.
 struct ConversationLimits {
-  std::size_t subscriptions = 32;  ///< four times as many as there are topics
+  std::size_t subscriptions = 32;  ///< three times as many as there are topics
   std::size_t advertisements = 16;
   std::size_t names = 64;  ///< parameters named in one request
   Outbox::Limits outbox;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 namespace tactus::live {
@@ -40,14 +41,16 @@ class LoopStream final : public telemetry::Stream {
 }  // namespace
 
 Result<std::unique_ptr<Engine>> Engine::make(Setup setup) {
-  const double tick_s = setup.teleoperators[0].tick_s();
-  auto hand = Hand::make(Seconds{tick_s});
-  if (!hand) return hand.error();
-  return std::unique_ptr<Engine>(new Engine(std::move(setup), *hand));
+  const Seconds tick{setup.loop[0]->tick_s()};
+  const auto toward = Hand::make(tick);
+  if (!toward) return toward.error();
+  const auto across = Hand::make(tick, Hand::fastest_across_m_per_s);
+  if (!across) return across.error();
+  return std::unique_ptr<Engine>(new Engine(std::move(setup), {*toward, *across, *across}));
 }
 
-Engine::Engine(Setup setup, const Hand& hand)
-    : setup_(std::move(setup)), tick_s_(setup_.teleoperators[0].tick_s()), hand_(hand) {}
+Engine::Engine(Setup setup, const Hands& hands)
+    : setup_(std::move(setup)), tick_s_(setup_.loop[0]->tick_s()), hands_(hands) {}
 
 Engine::~Engine() {
   Order order;
@@ -69,7 +72,7 @@ Engine::Ticks::Reader Engine::watch() {
   return Ticks::Reader(ticks_);
 }
 
-bool Engine::aim(double target_m) noexcept { return orders_.try_push({.target_m = target_m}); }
+bool Engine::aim(const HandPoint& target) noexcept { return orders_.try_push({.target = target}); }
 
 bool Engine::change(std::unique_ptr<Change> change) {
   destroy_returned();
@@ -87,7 +90,7 @@ void Engine::take_orders() noexcept {
   Order order;
   while (orders_.try_pop(order)) {
     if (order.change == nullptr) {
-      hand_.aim(order.target_m);
+      for (std::size_t i = 0; i < hands_.size(); ++i) hands_[i].aim(order.target[i]);
       continue;
     }
     apply(*order.change);
@@ -98,27 +101,30 @@ void Engine::take_orders() noexcept {
 
 void Engine::apply(Change& change) noexcept {
   for (std::size_t i = 0; i < loops; ++i) {
-    Change::Loop& loop = change.loop[i];
-    if (loop.made && loop.parts) {
-      setup_.teleoperators[i].exchange(*loop.made, *loop.parts);
+    LoopChange& loop = change.loop[i];
+    if (loop.made && loop.goes_on) {
+      setup_.loop[i]->exchange(*loop.made);
       ++tick_.loop[i].changes;
     } else if (loop.made) {
-      std::swap(setup_.teleoperators[i], *loop.made);
+      std::swap(setup_.loop[i], loop.made);
       tick_.loop[i].stopped = false;
       ++tick_.loop[i].run;
     }
     setup_.runs[i] = change.runs[i].value_or(setup_.runs[i]);
   }
-  if (change.reset_hand) hand_.reset();
-  if (change.tap) hand_.begin(*change.tap);
+  if (change.reset_hand) {
+    for (Hand& hand : hands_) hand.reset();
+  }
+  if (change.tap) hands_[0].begin(*change.tap);
 }
 
 void Engine::step() noexcept {
   take_orders();
   const double time_s = static_cast<double>(ticks_done_) * tick_s_;
   const auto time_ns = static_cast<std::uint64_t>(std::llround(1e9 * time_s));
-  const double target_m = hand_.target_m();
-  const auto [path_m, path_at_next_tick_m] = hand_.step();
+  const double target_m = hands_[0].target_m();
+  HandPoint path, path_at_next_tick;
+  for (std::size_t i = 0; i < hands_.size(); ++i) std::tie(path[i], path_at_next_tick[i]) = hands_[i].step();
   ++ticks_done_;
   for (std::size_t i = 0; i < loops; ++i) {
     tick_.ran[i] = setup_.runs[i];
@@ -126,19 +132,16 @@ void Engine::step() noexcept {
     LoopTick& tick = tick_.loop[i];
     Record& record = tick.record;
     if (!tick.stopped) {
-      record = setup_.teleoperators[i].step(path_m, path_at_next_tick_m, share_);
-      // Written so that a NaN counts as outside.
-      const bool inside = std::fabs(record.master_position_m) < setup_.reach_m[i] &&
-                          std::fabs(record.tip_position_m) < setup_.reach_m[i];
-      tick.stopped = !inside || !setup_.teleoperators[i].healthy();
+      setup_.loop[i]->step(path, path_at_next_tick, share_, tick);
+      tick.stopped = !setup_.loop[i]->good();
       // A loop that started over counts from zero; the log and the view do not.
       if (record.touched) record.touched_at_s += time_s - record.time_s;
     }
     record.time_s = time_s;
     tick.time_ns = time_ns;
     tick.hand_position_m = target_m;
-    tick.hand_speed_m_per_s = (path_at_next_tick_m - path_m) / tick_s_;
-    tick.wall_position_m = setup_.wall_m;
+    tick.hand_speed_m_per_s = (path_at_next_tick[0] - path[0]) / tick_s_;
+    tick.wall_position_m = loop_wall_m;
     tick.real_time_ratio = real_time_ratio_;
     tick.number = ticks_of_[i]++;
   }
@@ -148,7 +151,7 @@ void Engine::step() noexcept {
 bool Engine::at_rest() const noexcept {
   bool rest = true;
   for (std::size_t i = 0; i < loops; ++i) {
-    rest = rest && (!setup_.runs[i] || tick_.loop[i].stopped || setup_.teleoperators[i].at_rest());
+    rest = rest && (!setup_.runs[i] || tick_.loop[i].stopped || setup_.loop[i]->at_rest());
   }
   return rest;
 }

@@ -2,8 +2,9 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/live/hand.hpp>
+#include <tactus/live/loop.hpp>
+#include <tactus/live/loops.hpp>
 #include <tactus/live/messages.hpp>
-#include <tactus/simulation/teleoperator.hpp>
 #include <tactus/telemetry/broadcast.hpp>
 #include <tactus/telemetry/recorder.hpp>
 #include <tactus/telemetry/ring.hpp>
@@ -23,12 +24,7 @@ inline constexpr std::array<const char*, loops> loop_names{"left", "right"};
 
 /// What changes between two ticks, made beforehand on the thread that asks for it.
 struct Change {
-  struct Loop {
-    std::optional<simulation::Teleoperator> made;
-    /// Parts of `made` to go on with; none where the loop starts over as `made`.
-    std::optional<simulation::Teleoperator::Parts> parts;
-  };
-  std::array<Loop, loops> loop;
+  std::array<LoopChange, loops> loop;
   std::array<std::optional<bool>, loops> runs;  ///< whether a loop runs from now on
   bool reset_hand = false;
   std::optional<ScriptedTap> tap;
@@ -40,7 +36,7 @@ struct EngineTick {
   std::array<bool, loops> ran{};  ///< of each loop, whether it runs
 };
 
-/// Teleoperators in virtual time, paced to real time.
+/// Loops in virtual time, paced to real time.
 ///
 /// Two threads: the loop's, which calls `run`, and that of the view, which calls all else. Between them is a broadcast
 /// of each tick, one copy for the view and the log, and wait-free rings for what is asked of the loop. So the view can
@@ -54,10 +50,8 @@ class Engine {
   using Ticks = telemetry::Broadcast<EngineTick, 4096>;
 
   struct Setup {
-    std::array<simulation::Teleoperator, loops> teleoperators;
+    std::array<std::unique_ptr<Loop>, loops> loop;  ///< of one tick
     std::array<bool, loops> runs{true, true};
-    double wall_m = 0.01;                 ///< of the environment, as the master's hand sees it
-    std::array<double, loops> reach_m{};  ///< a device farther than this from its origin has left its workspace
   };
   static Result<std::unique_ptr<Engine>> make(Setup setup);
   Engine(const Engine&) = delete;
@@ -74,8 +68,8 @@ class Engine {
   /// One tick of both loops, for who paces it otherwise. The loop's thread.
   void step() noexcept;
 
-  /// Where the hand shall go, in m from rest. False where the loop has not taken what was said before. View's thread.
-  bool aim(double target_m) noexcept;
+  /// Where the hand shall go, from rest. False where the loop has not taken what was said before. View's thread.
+  bool aim(const HandPoint& target) noexcept;
   /// View's thread. False, and `change` is lost, where the loop has not taken what was said before.
   bool change(std::unique_ptr<Change> change);
   /// Shows every tick from now on. Before anybody asks for that, a tick is not copied. Any thread.
@@ -84,15 +78,16 @@ class Engine {
   /// What a loop did in its newest tick. The loop's thread.
   [[nodiscard]] const Record& newest(std::size_t loop) const noexcept { return tick_.loop[loop].record; }
   [[nodiscard]] double tick_s() const noexcept { return tick_s_; }
-  [[nodiscard]] double wall_m() const noexcept { return setup_.wall_m; }
 
  private:
   struct Order {
-    double target_m = 0.0;
+    HandPoint target{};
     Change* change = nullptr;
   };
 
-  Engine(Setup setup, const Hand& hand);
+  using Hands = std::array<Hand, 3>;  ///< of a hand, one along each direction
+
+  Engine(Setup setup, const Hands& hands);
   void take_orders() noexcept;
   /// No loop that runs commands a force.
   [[nodiscard]] bool at_rest() const noexcept;
@@ -101,7 +96,7 @@ class Engine {
 
   Setup setup_;
   double tick_s_;
-  Hand hand_;
+  Hands hands_;
   EngineTick tick_;
   std::array<std::uint32_t, loops> ticks_of_{};
   std::uint64_t ticks_done_ = 0;

@@ -1,4 +1,5 @@
 #include <tactus/core/version.hpp>
+#include <tactus/live/arm_loop.hpp>
 #include <tactus/live/live_view.hpp>
 #include <tactus/telemetry/cdr.hpp>
 #include <tactus/telemetry/description.hpp>
@@ -14,10 +15,10 @@ namespace tactus::live {
 namespace {
 
 constexpr double state_every_s = 1.0 / 60.0;
+/// How much later than the hand a follower's tool is at the wall, at the most.
+constexpr double arms_follow_s = 0.15;
 /// A tenth of a second at 5 kHz, ten times what a call usually finds.
 constexpr std::size_t most_ticks_a_call = 512;
-/// Beyond this a device has left its workspace, as in the tapping experiment.
-constexpr double device_reach_m = 1.0;
 
 Payload shared(std::string bytes) { return std::make_shared<const std::string>(std::move(bytes)); }
 
@@ -44,19 +45,25 @@ const char* word_of(LiveVerdict verdict) {
   return words[static_cast<std::size_t>(verdict)];
 }
 
-Result<std::array<simulation::Teleoperator, loops>> made_of(
-    const std::array<simulation::Teleoperator::Params, loops>& params, const std::array<double, loops>& start_m) {
-  auto left = simulation::Teleoperator::make(params[0], start_m[0]);
-  if (!left) return left.error();
-  auto right = simulation::Teleoperator::make(params[1], start_m[1]);
-  if (!right) return right.error();
-  return std::array<simulation::Teleoperator, loops>{*std::move(left), *std::move(right)};
+/// Where a message says that a hand is: a number, or one for each direction that the devices have.
+std::optional<HandPoint> point_in(const nlohmann::json& position, const HandPoint& workspace_m) {
+  HandPoint point{};
+  if (position.is_number()) {
+    point[0] = position.get<double>();
+    return point;
+  }
+  if (!position.is_array() || position.size() != point.size() || workspace_m[1] == 0.0) return std::nullopt;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    if (!position[i].is_number()) return std::nullopt;
+    point[i] = position[i].get<double>();
+  }
+  return point;
 }
 
 }  // namespace
 
-Result<LiveView::LoopParams> LiveView::params_of(const Settings& settings) {
-  LoopParams all;
+Result<LiveView::Params> LiveView::params_of(const Settings& settings) {
+  Params all;
   for (std::size_t i = 0; i < loops; ++i) {
     auto params = settings.of_loop(i);
     if (!params) return params.error();
@@ -68,32 +75,31 @@ Result<LiveView::LoopParams> LiveView::params_of(const Settings& settings) {
 Result<std::unique_ptr<LiveView>> LiveView::make(const Settings& settings, const Options& options) {
   auto params = params_of(settings);
   if (!params) return params.error();
-  auto teleoperators = made_of(*params, {});
-  if (!teleoperators) return teleoperators.error();
-  auto judge = ContactJudge::make(Seconds{(*teleoperators)[0].tick_s()});
-  if (!judge) return judge.error();
-  const auto energy = VibrationEnergy::make(Seconds{(*teleoperators)[0].tick_s()});
-  if (!energy) return energy.error();
-  std::array<double, loops> reach_m{};
+  Engine::Setup setup{.loop = {}, .runs = {settings.runs(0), settings.runs(1)}};
   for (std::size_t i = 0; i < loops; ++i) {
-    reach_m[i] = device_reach_m * std::max(1.0, (*params)[i].control.position_scale);
+    auto made = make_loop((*params)[i], 0.0);
+    if (!made) return made.error();
+    setup.loop[i] = *std::move(made);
   }
-  auto engine = Engine::make({.teleoperators = *std::move(teleoperators),
-                              .runs = {settings.runs(0), settings.runs(1)},
-                              .wall_m = Settings::wall_m,
-                              .reach_m = reach_m});
+  const Seconds tick{setup.loop[0]->tick_s()};
+  auto judge = ContactJudge::make(tick);
+  if (!judge) return judge.error();
+  const auto energy = VibrationEnergy::make(tick);
+  if (!energy) return energy.error();
+  auto engine = Engine::make(std::move(setup));
   if (!engine) return engine.error();
   return std::unique_ptr<LiveView>(
       new LiveView(settings, options, *std::move(params), *std::move(engine), *judge, *energy));
 }
 
-LiveView::LiveView(const Settings& settings, const Options& options, LoopParams params, std::unique_ptr<Engine> engine,
+LiveView::LiveView(const Settings& settings, const Options& options, Params params, std::unique_ptr<Engine> engine,
                    const ContactJudge& judge, const VibrationEnergy& energy)
     : settings_(settings),
       initial_(settings),
       options_(options),
       params_(std::move(params)),
       engine_(std::move(engine)),
+      topics_of_loop_(0),
       history_(settings.parameters()) {
   const std::string package = "tactus_msgs/msg/";
   for (const char* loop : loop_names) {
@@ -104,8 +110,12 @@ LiveView::LiveView(const Settings& settings, const Options& options, LoopParams 
     topics_.push_back({prefix + "state", package + "LiveState", live_state_definition()});
     topics_.push_back({prefix + "teleoperator", package + "TeleoperatorRecord",
                        telemetry::ros2msg(telemetry::columns_of<Engine::Record>())});
+    if (settings_.arms() != nullptr) {
+      topics_.push_back({prefix + "arms", package + "LiveArms", live_arms_definition()});
+    }
     watched_.push_back({.block = BlockBuilder(engine_->tick_s()), .judge = judge, .energy = energy, .state = {}});
   }
+  topics_of_loop_ = topics_.size() / loops;
 }
 
 std::map<std::string, std::string> LiveView::metadata() const {
@@ -129,9 +139,11 @@ std::map<std::string, std::string> LiveView::metadata() const {
     }
     list.push_back(std::move(item));
   }
-  return {{"tactus.parameters", list.dump()},
-          {"tactus.version", std::string(version())},
-          {"tactus.experiment", options_.experiment}};
+  std::map<std::string, std::string> about{{"tactus.parameters", list.dump()},
+                                           {"tactus.version", std::string(version())},
+                                           {"tactus.experiment", options_.experiment}};
+  if (settings_.arms() != nullptr) about["tactus.arms"] = arms_as_json(*settings_.arms());
+  return about;
 }
 
 std::vector<Status> LiveView::set_parameters(const std::vector<Parameter>& wanted) {
@@ -163,16 +175,18 @@ Check LiveView::apply(const Settings& settings) {
   if (!params) return params.error();
   auto change = std::make_unique<Change>();
   for (std::size_t i = 0; i < loops; ++i) {
-    Change::Loop& loop = change->loop[i];
-    loop.parts = difference(params_[i], (*params)[i]);
-    const bool starts = settings.runs(i) && !settings_.runs(i);
-    if (starts) loop.parts.reset();
-    if (loop.parts && *loop.parts == simulation::Teleoperator::Parts{}) continue;
     // What starts over begins before the wall, wherever the hand is by now; the hand takes it along smoothly.
+    const double workspace_m = settings.workspace_m()[0];
     const double start_m = std::clamp(watched_[i].state.master_position_m, -workspace_m, 0.9 * Settings::wall_m);
-    auto made = simulation::Teleoperator::make((*params)[i], loop.parts ? 0.0 : start_m);
-    if (!made) return made.error();
-    loop.made = *std::move(made);
+    if (settings.runs(i) && !settings_.runs(i)) {
+      auto made = make_loop((*params)[i], start_m);
+      if (!made) return made.error();
+      change->loop[i].made = *std::move(made);
+    } else {
+      auto changed = change_loop(params_[i], (*params)[i], start_m);
+      if (!changed) return changed.error();
+      change->loop[i] = *std::move(changed);
+    }
   }
   for (std::size_t i = 0; i < loops; ++i) change->runs[i] = settings.runs(i);
   if (!engine_->change(std::move(change))) {
@@ -199,8 +213,11 @@ std::optional<Status> LiveView::move_hand(ClientId client, std::string_view byte
   const nlohmann::json message = object_in(bytes);
   const auto position = message.is_object() ? message.find("position_m") : message.end();
   const auto engaged = message.is_object() ? message.find("engaged") : message.end();
-  if (position == message.end() || engaged == message.end() || !position->is_number() || !engaged->is_boolean()) {
-    return nonsense("/operator/hand", R"({"position_m": 0.005, "engaged": true})");
+  const HandPoint workspace_m = settings_.workspace_m();
+  const auto asked = position == message.end() ? std::nullopt : point_in(*position, workspace_m);
+  if (!asked || engaged == message.end() || !engaged->is_boolean()) {
+    return nonsense("/operator/hand", workspace_m[1] == 0.0 ? R"({"position_m": 0.005, "engaged": true})"
+                                                            : R"({"position_m": [0.005, 0.0, 0.0], "engaged": true})");
   }
   if (holder_ && *holder_ != client) {
     return Status{StatusLevel::warning, "another client holds the handle; it is free when that lets go"};
@@ -210,12 +227,16 @@ std::optional<Status> LiveView::move_hand(ClientId client, std::string_view byte
     return std::nullopt;
   }
   holder_ = client;
-  const auto asked_m = position->get<double>();
-  const double target_m = std::clamp(asked_m, -workspace_m, workspace_m);
-  if (!engine_->aim(target_m)) return Status{StatusLevel::warning, "the loop is busy: the hand was not moved"};
-  if (target_m == asked_m) return std::nullopt;
-  return Status{StatusLevel::warning, "position_m = " + format_number(asked_m) + " m is outside the workspace: it " +
-                                          describe_bounds(between(-workspace_m, workspace_m), units::metre)};
+  HandPoint target = *asked;
+  for (std::size_t i = 0; i < target.size(); ++i) target[i] = std::clamp(target[i], -workspace_m[i], workspace_m[i]);
+  if (!engine_->aim(target)) return Status{StatusLevel::warning, "the loop is busy: the hand was not moved"};
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    if (target[i] == (*asked)[i]) continue;
+    return Status{StatusLevel::warning, "position_m = " + format_number((*asked)[i]) +
+                                            " m is outside the workspace: it " +
+                                            describe_bounds(between(-workspace_m[i], workspace_m[i]), units::metre)};
+  }
+  return std::nullopt;
 }
 
 std::optional<Status> LiveView::command(std::string_view bytes) {
@@ -224,16 +245,17 @@ std::optional<Status> LiveView::command(std::string_view bytes) {
   if (word == message.end() || (*word != "tap" && *word != "reset")) {
     return nonsense("/operator/command", R"({"command": "tap"} or {"command": "reset"})");
   }
-  return start_over(*word == "tap" ? std::optional<ScriptedTap>(ScriptedTap{.wall_m = Settings::wall_m})
-                                   : std::nullopt);
+  return start_over(*word == "tap" ? std::optional<ScriptedTap>(settings_.tap()) : std::nullopt);
 }
 
 std::optional<Status> LiveView::start_over(const std::optional<ScriptedTap>& tap) {
-  const double start_m = tap ? tap->start_m() : 0.0;
-  auto made = made_of(params_, {start_m, start_m});
-  if (!made) return problem(made.error());
+  const double start_m = tap ? tap->begin_m() : 0.0;
   auto change = std::make_unique<Change>();
-  for (std::size_t i = 0; i < loops; ++i) change->loop[i].made = std::move((*made)[i]);
+  for (std::size_t i = 0; i < loops; ++i) {
+    auto made = make_loop(params_[i], start_m);
+    if (!made) return problem(made.error());
+    change->loop[i].made = *std::move(made);
+  }
   change->reset_hand = true;
   change->tap = tap;
   if (!engine_->change(std::move(change))) return Status{StatusLevel::warning, "the loop is busy: try again"};
@@ -244,7 +266,7 @@ void LiveView::leave(ClientId client) {
   if (holder_ != client) return;
   holder_.reset();
   // Where the loop has no room for this, it has not moved for long either.
-  static_cast<void>(engine_->aim(0.0));
+  static_cast<void>(engine_->aim({}));
 }
 
 void LiveView::stand_alone() {
@@ -255,7 +277,7 @@ void LiveView::stand_alone() {
 void LiveView::collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) {
   if (!ticks_) ticks_.emplace(engine_->watch());
   std::array<bool, loops> every_tick;
-  for (std::size_t i = 0; i < loops; ++i) every_tick[i] = is_wanted(i * topics_of_loop + full_rate);
+  for (std::size_t i = 0; i < loops; ++i) every_tick[i] = is_wanted(i * topics_of_loop_ + full_rate);
   EngineTick tick;
   // What the loops do while this runs waits for the next call: else a slow call would never end.
   for (std::size_t shown = 0; shown < most_ticks_a_call && ticks_->next(tick); ++shown) {
@@ -269,7 +291,7 @@ void LiveView::collect(const std::function<bool(std::size_t topic)>& is_wanted, 
 void LiveView::show(std::size_t loop, const LoopTick& tick, bool every_tick, const Publish& publish) {
   const auto state_ticks = static_cast<std::size_t>(std::max(1L, std::lround(state_every_s / engine_->tick_s())));
   Watched& watched = watched_[loop];
-  const std::size_t first_topic = loop * topics_of_loop;
+  const std::size_t first_topic = loop * topics_of_loop_;
   watch(loop, tick);
   if (every_tick) {
     const auto bytes = telemetry::to_cdr(tick.record);
@@ -287,8 +309,11 @@ void LiveView::show(std::size_t loop, const LoopTick& tick, bool every_tick, con
   watched.state.cause =
       tick.stopped ? "A safety gate closed or a device left its workspace; reset starts over." : watched.judge.cause();
   watched.state.advice = tick.stopped ? "" : advice(loop);
-  watched.state.force_limit_N = params_[loop].control.force_limit_N;
+  watched.state.force_limit_N = force_limit_N(params_[loop]);
   publish(first_topic + state, tick.time_ns, shared(to_cdr(watched.state)));
+  if (settings_.arms() != nullptr) {
+    publish(first_topic + arms, tick.time_ns, shared(to_cdr(tick.arms, tick.record.time_s)));
+  }
 }
 
 std::string LiveView::advice(std::size_t loop) const {
@@ -318,6 +343,12 @@ void LiveView::watch(std::size_t loop, const LoopTick& tick) {
     watched.energy.reset(record.master_position_m);
     history_.start_over(loop);
   }
+  const double follows_s = settings_.arms() == nullptr ? 0.0 : arms_follow_s;
+  const auto held = static_cast<double>(tick.number - watched.fastest_at) * engine_->tick_s();
+  if (tick.hand_speed_m_per_s >= watched.fastest_m_per_s || held > follows_s) {
+    watched.fastest_m_per_s = tick.hand_speed_m_per_s;
+    watched.fastest_at = tick.number;
+  }
   const bool changed = tick.changes != watched.changes;
   watched.changes = tick.changes;
   if (changed) watched.judge.judge_anew();
@@ -327,7 +358,7 @@ void LiveView::watch(std::size_t loop, const LoopTick& tick) {
   if (watched.judge.has_begun()) {
     watched.energy.begin();
     watched.rang = false;
-    watched.touch_speed_m_per_s = goes_on ? std::nullopt : std::optional(tick.hand_speed_m_per_s);
+    watched.touch_speed_m_per_s = goes_on ? std::nullopt : std::optional(watched.fastest_m_per_s);
   }
   watched.rang = watched.rang || watched.judge.verdict() == LiveVerdict::rings;
   shown.vibration_energy_J = watched.energy.energy_J();

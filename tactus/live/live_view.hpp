@@ -20,19 +20,17 @@ namespace tactus::live {
 
 /// The live view of an engine: what its loops do as topics, what a visitor does as hand and parameters.
 ///
-/// For each loop `/left/...` and `/right/...`: `block` and `hand_force` at 50 Hz, `state` at about 60 Hz, and
-/// `teleoperator`, the record of every tick as in the log. A client publishes JSON to `/operator/hand`
-/// (`{"position_m": x, "engaged": true}`) and `/operator/command` (`{"command": "tap"}` or `"reset"`). The first client
-/// that engages holds the handle until it lets go or leaves; then the hand goes to rest.
+/// For each loop `/left/...` and `/right/...`: `block` and `hand_force` at 50 Hz, `state` at about 60 Hz,
+/// `teleoperator`, the record of every tick as in the log, and of arms `arms`, with `state`. A client publishes JSON to
+/// `/operator/hand` (`{"position_m": x, "engaged": true}`; of arms x may be three numbers, toward the wall and across)
+/// and `/operator/command` (`{"command": "tap"}` or `"reset"`). The first client that engages holds the handle until it
+/// lets go or leaves; then the hand goes to rest.
 class LiveView final : public Application {
  public:
   struct Options {
     bool allow_tuning = false;
     std::string experiment;  ///< its name
   };
-
-  /// How far to either side of rest the hand may go.
-  static constexpr double workspace_m = 0.05;
 
   static Result<std::unique_ptr<LiveView>> make(const Settings& settings, const Options& options);
 
@@ -56,8 +54,9 @@ class LiveView final : public Application {
   void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) override;
 
  private:
-  using LoopParams = std::array<simulation::Teleoperator::Params, loops>;
-  enum TopicOf : std::size_t { block, hand_force, state, full_rate, topics_of_loop };
+  using Params = std::array<LoopParams, loops>;
+  /// Of each loop; those of one axis have no `arms`.
+  enum TopicOf : std::size_t { block, hand_force, state, full_rate, arms };
 
   /// What is known of one loop.
   struct Watched {
@@ -71,11 +70,13 @@ class LiveView final : public Application {
     std::optional<double> touch_speed_m_per_s = std::nullopt;
     bool rang = false;  ///< at any time of the contact
     std::size_t ticks_to_state = 0;
+    double fastest_m_per_s = 0.0;  ///< of the hand, as long as it takes a follower to be where the hand was
+    std::uint32_t fastest_at = 0;  ///< the tick in which it was
   };
 
-  LiveView(const Settings& settings, const Options& options, LoopParams params, std::unique_ptr<Engine> engine,
+  LiveView(const Settings& settings, const Options& options, Params params, std::unique_ptr<Engine> engine,
            const ContactJudge& judge, const VibrationEnergy& energy);
-  static Result<LoopParams> params_of(const Settings& settings);
+  static Result<Params> params_of(const Settings& settings);
   std::optional<Status> move_hand(ClientId client, std::string_view bytes);
   std::optional<Status> command(std::string_view bytes);
   std::optional<Status> start_over(const std::optional<ScriptedTap>& tap);
@@ -88,9 +89,10 @@ class LiveView final : public Application {
   Settings settings_;
   const Settings initial_;
   Options options_;
-  LoopParams params_;
+  Params params_;
   std::unique_ptr<Engine> engine_;
   std::vector<Topic> topics_;
+  std::size_t topics_of_loop_;
   std::vector<Watched> watched_;
   std::optional<Engine::Ticks::Reader> ticks_;
   std::atomic<std::uint64_t> lost_ticks_{0};

@@ -57,6 +57,17 @@ std::string live_state_definition() {
          line("float64", "estimated_grip_deviation", "Standard deviation of that; 0 where nothing is estimated.");
 }
 
+std::string live_arms_definition() {
+  return line("float64", "time_s", "Virtual time of the tick.") +
+         line("float32[]", "leader_rad", "Of each joint's link, from the base on; metres where it slides.") +
+         line("float32[]", "follower_rad", "The same of the follower.") +
+         line("float32[]", "hand_m", "Where the person means the leader's tool to be, along the axes of the base.") +
+         line("float32[]", "displayed_force_N",
+              "Of the leader's motors beside what carries it, at its tool, along the axes of the base.") +
+         line("float32[]", "contact_force_N", "Of the wall on the follower's tool, along the axes of the base.") +
+         line("float32[]", "induced_m", "Motion of the leader's tool that its site takes from the command.");
+}
+
 BlockBuilder::BlockBuilder(double tick_s)
     : tick_s_(tick_s), column_ticks_(static_cast<std::size_t>(std::max(1L, std::lround(column_s / tick_s)))) {}
 
@@ -115,6 +126,17 @@ std::string to_cdr(const LiveState& state) {
   writer.add(state.dropped);
   writer.add(state.estimated_grip);
   writer.add(state.estimated_grip_deviation);
+  return std::move(writer).take();
+}
+
+std::string to_cdr(const ArmsTick& arms, double time_s) {
+  CdrWriter writer;
+  writer.add(time_s);
+  writer.add(std::span(arms.leader_rad).first(arms.joints));
+  writer.add(std::span(arms.follower_rad).first(arms.joints));
+  for (const auto* vector : {&arms.hand_m, &arms.displayed_force_N, &arms.contact_force_N, &arms.induced_m}) {
+    writer.add(std::span<const float>(*vector));
+  }
   return std::move(writer).take();
 }
 

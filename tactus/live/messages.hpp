@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/core/joints.hpp>
 #include <tactus/core/units.hpp>
 #include <tactus/simulation/teleoperator.hpp>
 
@@ -12,10 +13,22 @@
 /// The messages of the live view beside the full-rate records.
 namespace tactus::live {
 
+/// What a loop of two arms is about in a tick, of links and tools; vectors along the axes of the base.
+struct ArmsTick {
+  std::uint64_t joints = 0;  ///< of each arm; none where the loop has no arms
+  std::array<float, most_joints> leader_rad{};
+  std::array<float, most_joints> follower_rad{};
+  std::array<float, 3> hand_m{};             ///< where the person means the leader's tool to be
+  std::array<float, 3> displayed_force_N{};  ///< of the leader's motors beside its support, at its tool
+  std::array<float, 3> contact_force_N{};    ///< of the wall on the follower's tool
+  std::array<float, 3> induced_m{};          ///< motion of the leader's tool that its site takes from the command
+};
+
 /// What one loop did in one tick.
 struct LoopTick {
   std::uint64_t time_ns = 0;
   simulation::Teleoperator::Record record;
+  ArmsTick arms;
   double hand_position_m = 0.0;     ///< where the visitor, or the script, wants the hand
   double hand_speed_m_per_s = 0.0;  ///< of the path that the hand means to take
   double wall_position_m = 0.0;     ///< as the master's hand sees it
@@ -56,6 +69,8 @@ std::string live_block_definition();
 /// The force of the hand at every tick.
 std::string hand_force_definition();
 std::string live_state_definition();
+/// Of `ArmsTick`.
+std::string live_arms_definition();
 
 /// Gathers ticks of one loop and turns them into `LiveBlock` and `HandForce` messages.
 class BlockBuilder {
@@ -105,5 +120,6 @@ struct LiveState {
   std::uint64_t dropped = 0;  ///< ticks of this loop that the view lost
 };
 std::string to_cdr(const LiveState& state);
+std::string to_cdr(const ArmsTick& arms, double time_s);
 
 }  // namespace tactus::live

@@ -3,11 +3,13 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/arm_tapping/arm_pair.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/live/application.hpp>
-#include <tactus/live/engine.hpp>
+#include <tactus/live/hand.hpp>
+#include <tactus/live/loops.hpp>
 
-#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,8 +34,8 @@ struct ParameterDescription {
 /// copy.
 class Settings {
  public:
-  /// From an experiment of the kind `tapping`. Its wall is put 10 mm before the place of rest. Errors: those of the
-  /// document, and `wrong_type` for another kind.
+  /// From an experiment of the kind `tapping` or `arm-tapping`. Its wall is put 10 mm before the place of rest. Errors:
+  /// those of the document and of the arms, and `out_of_bounds` for another kind.
   static Result<Settings> make(const configuration::Document& document);
 
   [[nodiscard]] const std::vector<ParameterDescription>& descriptions() const { return descriptions_; }
@@ -42,25 +44,46 @@ class Settings {
   Check set(const Parameter& wanted);
 
   /// The parameters of a loop as they are now set. Errors: what the described parameters refuse.
-  [[nodiscard]] Result<simulation::Teleoperator::Params> of_loop(std::size_t loop) const;
+  [[nodiscard]] Result<LoopParams> of_loop(std::size_t loop) const;
   [[nodiscard]] bool runs(std::size_t loop) const;
   /// Nothing in it acts against instability.
   [[nodiscard]] bool is_plain(std::size_t loop) const;
+  /// How far to either side of rest the hand may go, in each direction; 0 is a direction that the devices do not have.
+  [[nodiscard]] HandPoint workspace_m() const;
+  [[nodiscard]] ScriptedTap tap() const;
+  /// The arms behind the loops, as the experiment has them; null for one axis.
+  [[nodiscard]] const experiments::ArmPairSetup* arms() const { return arms_ ? &*arms_ : nullptr; }
+  /// The experiment with all its keys, as TOML.
+  [[nodiscard]] std::string configuration() const;
   /// The wall as the master's hand sees it.
-  static constexpr double wall_m = 0.01;
+  static constexpr double wall_m = loop_wall_m;
 
  private:
+  /// A word of the choice of methods, and what it sets in the experiment.
+  struct Method {
+    std::string word;
+    std::vector<std::string_view> settings;
+    std::string_view explanation;
+  };
+
   explicit Settings(const configuration::Document& document) : document_(document) {}
+  Check take_axis();
+  Check take_arms();
+  void add(ParameterDescription description, const ParameterValue& value);
+  void add_number(const char* name, const char* label, const Unit& unit, const Bounds& usual, double value,
+                  bool logarithmic = false);
+  /// The choice of each loop's method, and whether both run.
+  void add_comparison();
+  [[nodiscard]] Result<LoopParams> axis(const configuration::Document& document) const;
+  [[nodiscard]] Result<LoopParams> arms(const configuration::Document& document) const;
   [[nodiscard]] const ParameterValue& value(std::string_view name) const;
+  [[nodiscard]] double number(std::string_view name) const { return std::get<double>(value(name)); }
 
   configuration::Document document_;
+  std::optional<experiments::ArmPairSetup> arms_;
+  std::vector<Method> methods_;
   std::vector<ParameterDescription> descriptions_;
   std::vector<ParameterValue> values_;
 };
-
-/// The parameters that the parts of a running loop hang on: what must be exchanged where `before` became `after`; none
-/// where the loop must start over.
-std::optional<simulation::Teleoperator::Parts> difference(const simulation::Teleoperator::Params& before,
-                                                          const simulation::Teleoperator::Params& after);
 
 }  // namespace tactus::live

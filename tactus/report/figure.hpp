@@ -56,6 +56,8 @@ struct Panel {
   std::vector<Line> lines;
   std::vector<Rule> rules;
   std::vector<Bars> bars = {};
+  /// A unit is as long on both axes, which have one unit then and are linear: limits that are too narrow are widened.
+  bool equal_scales = false;
 };
 
 /// Which panels have equal limits. Neighbours with equal limits are labelled only at the outer edge.

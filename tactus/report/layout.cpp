@@ -36,6 +36,17 @@ PanelSize panel_size(const Figure& figure, int columns, int rows) {
   return {width, std::clamp(std::floor(0.62 * width), 90.0, rows > 1 ? 220.0 : 300.0)};
 }
 
+/// Widens both axes about their middles until a unit is as long on either, with some room around.
+void equal_scales(Limits& x, Limits& y, const PanelSize& size) {
+  const double per_px = 1.08 * std::max((x.upper - x.lower) / size.width, (y.upper - y.lower) / size.height);
+  const auto widen = [](Limits& limits, double length) {
+    const double middle = 0.5 * (limits.lower + limits.upper);
+    limits = {middle - 0.5 * length, middle + 0.5 * length};
+  };
+  widen(x, per_px * size.width);
+  widen(y, per_px * size.height);
+}
+
 /// As many ticks as there is room for, so that no two labels touch: `room` px for the next label after a `label`.
 template <class Room>
 void choose_ticks(PlacedAxis& axis, int most, Room&& room) {
@@ -98,10 +109,11 @@ class Builder {
 
   void place_axes() {
     const auto columns = static_cast<std::size_t>(columns_);
-    const auto [x, y, x_group, y_group] = shared_limits(figure_, columns);
+    auto [x, y, x_group, y_group] = shared_limits(figure_, columns);
     const std::size_t count = figure_.panels.size();
     for (std::size_t i = 0; i < count; ++i) {
       const Panel& panel = figure_.panels[i];
+      if (panel.equal_scales) equal_scales(x[i], y[i], size_);
       PlacedAxis across{x[i], {}, is_logarithmic(panel.x), 0.0, size_.width, true, {}};
       PlacedAxis up{y[i], {}, is_logarithmic(panel.y), size_.height, 0.0, true, {}};
       choose_ticks(across, static_cast<int>(size_.width / 25.0), [](const std::string& a, const std::string& b) {

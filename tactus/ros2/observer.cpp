@@ -120,14 +120,16 @@ void tell_of(JointSnapshot& of, const Record& record, SiteRole role) {
   }
 }
 
-/// Both sites of several joints.
+/// The sites of several joints that are here.
 class JointsReader {
  public:
   explicit JointsReader(const JointStreams& streams, std::int64_t to_time_of_day_ns)
-      : to_time_of_day_ns_(to_time_of_day_ns) {
+      : count_(streams.joints()), to_time_of_day_ns_(to_time_of_day_ns) {
     for (const auto& [role, name] : enumerators(SiteRole{})) {
+      if (!streams.has(role)) continue;
+      roles_.push_back(role);
       sites_.emplace_back(streams.site(role));
-      for (std::size_t joint = 0; joint < streams.joints(); ++joint) joints_.emplace_back(streams.joint(role, joint));
+      for (std::size_t joint = 0; joint < count_; ++joint) joints_.emplace_back(streams.joint(role, joint));
     }
   }
 
@@ -138,14 +140,14 @@ class JointsReader {
     });
     lost = sites_.front().reader.lost();
     if (!told) return false;
-    const std::size_t joints = joints_.size() / sites_.size();
     Snapshot snapshot{.stamp_ns = static_cast<std::int64_t>(sites_.front().entry.time_ns) + to_time_of_day_ns_,
-                      .joints = Joints<JointSnapshot>(joints),
-                      .state = together(state_of(sites_[0].entry.record), state_of(sites_[1].entry.record))};
-    for (const auto& [role, name] : enumerators(SiteRole{})) {
-      const auto first = static_cast<std::size_t>(role) * joints;
-      for (std::size_t joint = 0; joint < joints; ++joint) {
-        tell_of(snapshot.joints[joint], joints_[first + joint].entry.record, role);
+                      .joints = Joints<JointSnapshot>(count_),
+                      .state = together(state_of(sites_.front().entry.record), state_of(sites_.back().entry.record))};
+    for (std::size_t site = 0; site < roles_.size(); ++site) {
+      for (std::size_t joint = 0; joint < count_; ++joint) {
+        const auto& record = joints_[site * count_ + joint].entry.record;
+        tell_of(snapshot.joints[joint], record, roles_[site]);
+        if (roles_.front() == SiteRole::slave) snapshot.joints[joint].slave_command_m = record.Heard::position_m;
       }
     }
     bridge.publish(snapshot);
@@ -153,8 +155,10 @@ class JointsReader {
   }
 
  private:
-  std::vector<Followed<JointStreams::Site>> sites_;    ///< by role
-  std::vector<Followed<JointStreams::Joint>> joints_;  ///< the master's, then the slave's
+  std::size_t count_;
+  std::vector<SiteRole> roles_;
+  std::vector<Followed<JointStreams::Site>> sites_;    ///< of `roles_`
+  std::vector<Followed<JointStreams::Joint>> joints_;  ///< of the first role, then of the other
   std::int64_t to_time_of_day_ns_;
   InStep step_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/link/endpoint.hpp>
 #include <tactus/runtime/servo_record.hpp>
 #include <tactus/runtime/site_record.hpp>
 #include <tactus/station/local_teleoperator.hpp>
@@ -9,39 +10,49 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace tactus::runtime {
 
-/// Where both sites of a teleoperator of several joints leave every tick: a stream for what the joints of a site share,
-/// and one for each joint.
+/// Where the sites of a teleoperator of several joints leave every tick, both or the one that runs here: a stream for
+/// what the joints of a site share, and one for each joint.
 class JointStreams {
  public:
-  /// 1 to `most_joints` at each site. Times count from now.
-  explicit JointStreams(std::size_t joints);
+  /// 1 to `most_joints` at each site; `only` where the other one runs elsewhere. Times count from now.
+  explicit JointStreams(std::size_t joints, std::optional<control::SiteRole> only = {});
 
   /// A tick of both sites. One thread only. Real-time safe.
   void push(const station::Tick& tick, const control::SiteRequests& pressed,
             const station::JointLocalTeleoperator& sites, const station::JointLocalTeleoperator::Output& done) noexcept;
 
+  /// A tick of the one site, with what the link knew of the other and how many packets came. The same.
+  template <class Supervised>
+  void push(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,
+            const station::Step<Supervised>& done, const link::LinkCondition& condition,
+            std::int64_t arrivals) noexcept;
+
   using Site = telemetry::RecordStream<SiteTickRecord>;
   using Joint = telemetry::RecordStream<JointLogRecord>;
+  [[nodiscard]] bool has(control::SiteRole role) const noexcept { return of(role).ticks != nullptr; }
+  /// Of a site that is here, as the next.
   [[nodiscard]] const Site& site(control::SiteRole role) const noexcept { return *of(role).ticks; }
   /// From 0.
   [[nodiscard]] const Joint& joint(control::SiteRole role, std::size_t number) const noexcept {
     return *of(role).joints[number];
   }
-  [[nodiscard]] std::size_t joints() const noexcept { return sites_.front().joints.size(); }
+  [[nodiscard]] std::size_t joints() const noexcept { return joints_; }
   /// From which the times of the records count, on CLOCK_MONOTONIC.
   [[nodiscard]] std::int64_t origin_ns() const noexcept { return origin_ns_; }
 
-  /// Calls `visit(topic, type_name, stream)` for each stream: `/master/site`, `/master/joint_1` and on, the slave's,
-  /// `/servo`.
+  /// Calls `visit(topic, type_name, stream)` for each stream there is: `/master/site`, `/master/joint_1` and on, the
+  /// slave's, `/servo`.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const auto& [role, name] : enumerators(control::SiteRole{})) {
       const OfSite& site = of(role);
+      if (!site.ticks) continue;
       const std::string place = std::string("/").append(name);
       visit(std::string(place).append("/site"), "tactus_msgs/msg/SiteTickRecord", *site.ticks);
       for (std::size_t joint = 0; joint < site.joints.size(); ++joint) {
@@ -58,15 +69,16 @@ class JointStreams {
     std::vector<std::shared_ptr<Joint>> joints;
 
     template <class Supervised>
-    void push(std::uint64_t due_ns, const station::Tick& tick, const control::SiteRequests& pressed,
-              const Supervised& site, const station::Step<Supervised>& done) noexcept;
+    void push(std::uint64_t due_ns, const station::Tick& tick, const SiteTickRecord& record, const Supervised& site,
+              const station::Step<Supervised>& done) const noexcept;
   };
 
   [[nodiscard]] const OfSite& of(control::SiteRole role) const noexcept {
     return sites_[static_cast<std::size_t>(role)];
   }
 
-  std::array<OfSite, 2> sites_;  ///< by role
+  std::size_t joints_;
+  std::array<OfSite, 2> sites_;  ///< by role; without streams where it is elsewhere
   std::shared_ptr<telemetry::RecordStream<ServoRecord>> servo_;
   std::int64_t origin_ns_;
 };

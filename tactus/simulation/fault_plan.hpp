@@ -60,6 +60,7 @@ enum class FaultKind {
   stale_commands,         ///< a live controller goes on with an old command
   emergency_stop,         ///< the person presses the emergency stop
   power_lost,             ///< a motor's supply fails and comes back
+  dead_man_released,      ///< the person lets the dead-man switch go and holds on
 };
 constexpr auto enumerators(FaultKind) {
   return std::array{Enumerator{FaultKind::none, "none"},
@@ -110,7 +111,8 @@ constexpr auto enumerators(FaultKind) {
                     Enumerator{FaultKind::fault_while_arming, "fault-while-arming"},
                     Enumerator{FaultKind::stale_commands, "stale-commands"},
                     Enumerator{FaultKind::emergency_stop, "emergency-stop"},
-                    Enumerator{FaultKind::power_lost, "power-lost"}};
+                    Enumerator{FaultKind::power_lost, "power-lost"},
+                    Enumerator{FaultKind::dead_man_released, "dead-man-released"}};
 }
 
 enum class FaultSite { master, slave };

@@ -14,17 +14,18 @@ namespace tactus::simulation {
 
 /// One way of the link in ticks of virtual time: packets in, whatever a faulty network makes of them out. It counts the
 /// ticks that it is asked, so packets wait for a site that is not stepped.
-class PacketRelay {
+template <class Packet>
+class PacketRelayOf {
  public:
   /// A relay whose packets pass one link after another, each of which impairs them while `send` is told to. `tick_s` is
   /// the duration of a tick.
-  PacketRelay(const std::vector<ImpairedLink>& links, double longest_way_s, double tick_s)
+  PacketRelayOf(const std::vector<ImpairedLink>& links, double longest_way_s, double tick_s)
       : links_(links), tick_s_(tick_s), slots_(static_cast<std::size_t>(std::ceil(longest_way_s / tick_s)) + 2) {}
 
   /// Sends a packet at `tick`. `share(i)` of the delay of link number i is there now, 0 for no impairment. What comes
   /// twice from one link comes no more often from the next. Does not allocate.
   template <class Share>
-  void send(const control::Packet& packet, std::int64_t tick, Share&& share) noexcept {
+  void send(const Packet& packet, std::int64_t tick, Share&& share) noexcept {
     PacketFate fate;
     for (std::size_t i = 0; i < links_.size(); ++i) {
       const double of_delay = share(i);
@@ -48,7 +49,7 @@ class PacketRelay {
   void deliver(std::int64_t tick, Take&& take) noexcept {
     Slot& slot = slots_[static_cast<std::size_t>(tick) % slots_.size()];
     for (std::size_t i = 0; i < slot.count; ++i) {
-      control::Packet packet = slot.waiting[i].packet;
+      Packet packet = slot.waiting[i].packet;
       packet.age_s = static_cast<double>(tick - slot.waiting[i].sent_tick) * tick_s_;
       take(packet);
     }
@@ -57,7 +58,7 @@ class PacketRelay {
 
  private:
   struct Waiting {
-    control::Packet packet;
+    Packet packet;
     std::int64_t sent_tick = 0;
   };
   struct Slot {
@@ -69,5 +70,8 @@ class PacketRelay {
   double tick_s_;
   std::vector<Slot> slots_;  ///< a ring, as long as the longest way takes
 };
+/// Of sites of one axis, and of several joints.
+using PacketRelay = PacketRelayOf<control::Packet>;
+using JointPacketRelay = PacketRelayOf<control::JointPacket>;
 
 }  // namespace tactus::simulation

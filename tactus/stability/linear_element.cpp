@@ -1,3 +1,4 @@
+#include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/random.hpp>
 #include <tactus/stability/linear_element.hpp>
 
@@ -5,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace tactus::stability {
 
@@ -36,7 +37,7 @@ Result<StateSpace> probe(int order, const std::function<double(double)>& step) {
   Eigen::MatrixXd past(rows, n);
   for (Eigen::Index i = 0; i < n; ++i) past.col(i) = h.segment(n - i, rows);
   Eigen::VectorXd a(n);
-  if (n > 0) a = past.completeOrthogonalDecomposition().solve(-h.segment(n + 1, rows));
+  if (n > 0) a = signal::solve_shortest(past, -h.segment(n + 1, rows));
 
   StateSpace system{.a = Eigen::MatrixXd::Zero(n, n),
                     .b = Eigen::MatrixXd::Zero(n, 1),
@@ -85,7 +86,7 @@ StateSpace continuous(const StateSpace& held, double tick_s) {
   tick.topLeftCorner(n, n) = held.a;
   tick.topRightCorner(n, 1) = held.b;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(whole, whole);
-  const Eigen::MatrixXd ratio = (tick + one).partialPivLu().solve(tick - one);
+  const Eigen::MatrixXd ratio = signal::solve(tick + one, tick - one);
   const Eigen::MatrixXd square = ratio * ratio;
   Eigen::MatrixXd power = ratio, rate = Eigen::MatrixXd::Zero(whole, whole);
   for (int i = 1; i < 40; i += 2) {
@@ -148,8 +149,7 @@ Result<StateSpace> probe_model(control::InducedMotionModel::Params params, Secon
   const Eigen::VectorXd scale = before.rowwise().lpNorm<Eigen::Infinity>();
   const Eigen::MatrixXd scaled_before = scale.cwiseInverse().asDiagonal() * before;
   const Eigen::MatrixXd scaled_after = scale.head(states).cwiseInverse().asDiagonal() * after;
-  auto decomposition = scaled_before.transpose().completeOrthogonalDecomposition();
-  const Eigen::MatrixXd fit = decomposition.solve(scaled_after.transpose()).transpose();
+  const Eigen::MatrixXd fit = signal::solve_shortest(scaled_before.transpose(), scaled_after.transpose()).transpose();
   const double misfit = (fit * scaled_before - scaled_after).cwiseAbs().maxCoeff();
   if (!(misfit <= tolerance)) return not_linear("the model of cancellation");
 

@@ -1,3 +1,4 @@
+#include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/matrix_functions.hpp>
 #include <tactus/stability/state_space.hpp>
 
@@ -12,7 +13,7 @@ namespace tactus::stability {
 Eigen::MatrixXcd response(const StateSpace& system, std::complex<double> p) {
   Eigen::MatrixXcd shifted = -system.a.cast<std::complex<double>>();
   shifted.diagonal().array() += p;
-  return system.c * shifted.partialPivLu().solve(system.b.cast<std::complex<double>>()) + system.d;
+  return system.c * signal::complex_solve(shifted, system.b.cast<std::complex<double>>()) + system.d;
 }
 
 StateSpace assemble(Eigen::Index states, Eigen::Index inputs, Eigen::Index outputs, const Tick& tick) {

@@ -220,7 +220,7 @@ std::string place(const std::filesystem::path& file, int line) {
   return line > 0 ? file.string() + ":" + std::to_string(line) : file.string();
 }
 
-Result<Robot> read_elements(const std::filesystem::path& file) {
+Check load(const std::filesystem::path& file, tinyxml2::XMLDocument& into) {
   std::error_code failure;
   if (!std::filesystem::exists(file, failure)) {
     return Error{ErrorCode::missing, {}, "does not exist; name a URDF file", file.string()};
@@ -234,9 +234,8 @@ Result<Robot> read_elements(const std::filesystem::path& file) {
     error.place = file.string();
     return error;
   }
-  tinyxml2::XMLDocument document;
-  if (document.Parse(bytes->data(), bytes->size()) != tinyxml2::XML_SUCCESS) return not_xml(file, document);
-  const XMLElement* root = document.RootElement();
+  if (into.Parse(bytes->data(), bytes->size()) != tinyxml2::XML_SUCCESS) return not_xml(file, into);
+  const XMLElement* root = into.RootElement();
   if (root == nullptr || std::string_view(root->Name()) != "robot") {
     return Error{ErrorCode::syntax, {}, "is no URDF: its outermost element must be <robot>", file.string()};
   }
@@ -246,6 +245,13 @@ Result<Robot> read_elements(const std::filesystem::path& file) {
                  "is xacro, from which URDF is made: run `xacro FILE > arm.urdf` of ROS first",
                  file.string()};
   }
+  return {};
+}
+
+Result<Robot> read_elements(const std::filesystem::path& file) {
+  tinyxml2::XMLDocument document;
+  if (Check wrong = load(file, document)) return *std::move(wrong);
+  const XMLElement* root = document.RootElement();
   Reader reader(file);
   Robot robot;
   if (const char* name = root->Attribute("name")) robot.name = name;

@@ -10,6 +10,10 @@
 #include <string>
 #include <vector>
 
+namespace tinyxml2 {  // NOLINT: the name is not ours
+class XMLDocument;
+}
+
 namespace tactus::urdf {
 
 /// A body as `<inertial>` gives it: mass, its centre and inertia along axes that are turned against the link's.
@@ -51,6 +55,9 @@ struct Robot {
 
 /// Reads the elements; `read` in urdf.hpp tells the errors. A joint's links are known to be there.
 Result<Robot> read_elements(const std::filesystem::path& file);
+
+/// Reads a file whose outermost element is <robot>; `read` in urdf.hpp tells the errors.
+Check load(const std::filesystem::path& file, tinyxml2::XMLDocument& into);
 
 /// `file:line`.
 std::string place(const std::filesystem::path& file, int line);

@@ -111,6 +111,7 @@ class Walk {
   struct Group {
     arm::BodyVector body = arm::BodyVector::Zero();
     bool has_body = false;
+    std::vector<LinkFrame> frames;
     std::vector<std::pair<std::size_t, LinkPose>>
         onward;  ///< joints that move, and the frames of the links they are on
   };
@@ -126,6 +127,7 @@ class Walk {
         return error(ErrorCode::inconsistent, 0, "its fixed joints go in a circle at link '" + name + "'");
       }
       const Link& link = robot_.links[robot_.link_by_name.at(name)];
+      found.frames.push_back({name, pose.position_m});
       if (link.inertial) {
         const arm::Body body = placed(*link.inertial, pose);
         if (Check wrong = arm::check(link.inertial->moments)) {
@@ -229,6 +231,7 @@ Result<Arm> read(const std::filesystem::path& file, const std::string& tip) {
     joints.push_back(params_of(joint, frame, group->body));
     made.joints.push_back(joint.name);
     made.links.push_back(joint.child);
+    made.frames.push_back(group->frames);
   }
   if (!group) return group.error();
   if (joints.empty()) {

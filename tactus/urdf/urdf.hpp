@@ -10,6 +10,12 @@
 /// Arms from URDF files, the format in which makers of robots and ROS describe them.
 namespace tactus::urdf {
 
+/// A link of a body.
+struct LinkFrame {
+  std::string name;
+  arm::Vector3 origin_m;  ///< in the frame of the body's first link
+};
+
 /// A serial arm as a file describes it.
 struct Arm {
   std::string name = {};
@@ -17,6 +23,8 @@ struct Arm {
   /// Joints that move, from the base on, and the links right behind them.
   std::vector<std::string> joints = {};
   std::vector<std::string> links = {};
+  /// For each of those joints: the link behind it first, then all that are fixed to it. The tool is among the last.
+  std::vector<std::vector<LinkFrame>> frames = {};
   /// Gravity is 9.81 m/s² along −z of the base. Limits and `dynamics` are taken over; `friction` is Coulomb's,
   /// `damping` viscous.
   arm::Chain::Params params = {};
@@ -35,5 +43,13 @@ struct Arm {
 /// that no body can have; `out_of_bounds` for a number that is not finite, a negative mass, and a file beyond 4 MiB,
 /// 1,000 links or 1,000 joints. Not real-time safe. Source: the URDF specification, http://wiki.ros.org/urdf/XML.
 Result<Arm> read(const std::filesystem::path& file, const std::string& tip = {});
+
+/// The text of the file with other bodies, damping and Coulomb friction, and all else as it is: names, limits, meshes,
+/// what stands off the chain. `arm`: as `read` made it of this file, its `params` with the new numbers. A body is
+/// written to the link behind its joint; links that are fixed to that lose theirs, since it is in there. `comment` is
+/// put at the top of the robot, without "--", which XML forbids there. Read back with the same `tip`, it has these
+/// bodies to rounding. Relative paths of meshes stay as they are, so they count from another folder where the text is
+/// written to one. Errors: those of `read` that concern the file and its XML. Not real-time safe.
+Result<std::string> with_dynamics(const std::filesystem::path& file, const Arm& arm, const std::string& comment);
 
 }  // namespace tactus::urdf

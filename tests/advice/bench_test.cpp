@@ -86,7 +86,8 @@ TEST(AdviceBench, AnotherKindIsRefusedAndTheRightOneNamed) {
   const auto bench = make_bench(*other, {}, {});
   ASSERT_FALSE(bench);
   EXPECT_EQ(bench.error().parameter, "task.kind");
-  EXPECT_NE(bench.error().message.find("kind tapping, not contest"), std::string::npos) << bench.error().message;
+  EXPECT_NE(bench.error().message.find("kinds tapping and arm-tapping, not contest"), std::string::npos)
+      << bench.error().message;
   EXPECT_EQ(bench.error().place, "contest.toml:2:8");
   EXPECT_EQ(make_bench(*configuration::Document::parse("a = 1\n", "none.toml"), {}, {}).error().code,
             ErrorCode::missing);

@@ -117,10 +117,10 @@ struct Bench {
   station::JointSupervisedPair sites = supervised_pair();
   station::JointSupervisedPair::Output last;
   arm::Vector3 began_m = follower.plant().tool().position_m;
-  arm_plants::Wall wall{.point_m = began_m - 0.01 * arm::Vector3::UnitZ(),
-                        .normal = arm::Vector3::UnitZ(),
-                        .stiffness_N_per_m = 20000.0,
-                        .damping_N_s_per_m = 20.0};
+  arm_plants::Wall wall{
+      .point_m = began_m - 0.01 * arm::Vector3::UnitZ(),
+      .normal = arm::Vector3::UnitZ(),
+      .contact = *mechanics::Environment::make({.stiffness_N_per_m = 20000.0, .damping_N_s_per_m = 20.0}, tick)};
   double aim_m = 0.0;        ///< of the hand, along the wall's normal
   double contact_N = 0.0;    ///< now
   double most_step_N = 0.0;  ///< between two ticks, of any motor, as the gate counts it
@@ -345,10 +345,11 @@ struct Spoilt {
   ArmDevice* arm;
   double station::DeviceReading::*member = nullptr;
   double control::DriveTells::*tells = nullptr;
+  double told = std::numeric_limits<double>::infinity();
   Joints<station::DeviceReading> read(const station::Tick& now) noexcept {
     auto reading = arm->read(now);
     if (member != nullptr) reading[3].*member = std::numeric_limits<double>::quiet_NaN();
-    if (tells != nullptr) reading[3].motor_tells.*tells = std::numeric_limits<double>::infinity();
+    if (tells != nullptr) reading[3].motor_tells.*tells = told;
     return reading;
   }
   void write(const Joints<station::DeviceCommand>& command) noexcept { arm->write(command); }
@@ -371,6 +372,19 @@ TEST(ArmsUnderSupervision, ANumberOfOneJointThatIsNoneLetsTheWholeArmGo) {
     EXPECT_TRUE(Bench::has_let_go(done.slave)) << which;
     for (const auto& joint : done.master.output.site) EXPECT_TRUE(std::isfinite(joint.motor_force_N));
   }
+}
+
+TEST(ArmsUnderSupervision, WhatNoMotorDoesIsNotBelievedAndTheArmFollowsAgainAfterwards) {
+  Bench bench;
+  bench.couple();
+  Spoilt spoilt{.arm = &bench.follower, .tells = &control::DriveTells::velocity_m_per_s, .told = 1e300};
+  bench.sites.step(bench.leader, spoilt, {.number = bench.number++}, {.dead_man = true});
+  EXPECT_EQ(bench.sites.slave().site().fault(), GateFault::not_finite);
+  bench.run(0.1, {});
+  bench.run(0.2, {.clear = true});
+  bench.run(0.05, {.arm = true});
+  bench.run(0.5, {.dead_man = true});
+  EXPECT_TRUE(bench.both(SiteState::active));
 }
 
 /// What passes is what the drive gives where it is, law and all.

@@ -110,6 +110,22 @@ TEST(ArmIdentification, CurrentsWithAScaleForEachJointAreExplainedAsWellAsTorque
   }
 }
 
+TEST(ArmIdentification, OnlyTheJointsWhoseTorqueConstantsAreOffHaveAScaleOfTheirOwn) {
+  ArmRecording off = free_motion(1);
+  for (double& value : off.effort[5]) value *= 1.25;
+  for (double& value : off.effort[6]) value *= 0.75;
+  const auto found = identify_arm(std::array{off}, names, believed(truth(), 3));
+  ASSERT_TRUE(found) << describe(found.error());
+  EXPECT_TRUE(found->scaled_efforts);
+  const double common = found->joints[0].effort_per_N_m;
+  for (std::size_t j = 1; j < 5; ++j) EXPECT_NEAR(found->joints[j].effort_per_N_m, common, 1e-6) << names[j];
+  EXPECT_NEAR(found->joints[5].effort_per_N_m, 1.25 * common, 0.06);
+  EXPECT_NEAR(found->joints[6].effort_per_N_m, 0.75 * common, 0.06);
+  for (const ArmJointFit& joint : found->joints) {
+    EXPECT_LT(joint.held_out_relative, 1.05 * joint.least_squares_relative) << joint.name;
+  }
+}
+
 TEST(ArmIdentification, APushIsFoundWithinFiftyMillisecondsAndNoneInFreeMotion) {
   const std::vector<Push> pushes{{4.0, 4.6, 15.0}, {7.0, 8.0, -12.0}, {11.5, 11.8, 20.0}};
   const ArmRecording pushed = recorded(simulate(truth(), {.duration_s = 14.0, .seed = 6, .pushes = pushes}));

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -132,8 +133,12 @@ struct Session {
   std::uint64_t seed = 1;  ///< of the motion and of the noise
   double noise_N_m = 0.02;
   double resolution_rad = 1e-5;
-  int steps_between = 8;  ///< of 4 kHz: recorded at 500 Hz
+  /// Of the integrator, which is of first order: its torques are half a step early.
+  double step_s = 1.0 / 4000.0;
+  int steps_between = 8;  ///< recorded at 500 Hz
   std::vector<Push> pushes = {};
+  /// Where a joint is to be at a time; without it a sum of sines that `seed` draws.
+  std::function<double(unsigned joint, double time_s)> path = {};
 };
 
 struct Samples {
@@ -141,7 +146,7 @@ struct Samples {
   std::vector<std::vector<double>> position, velocity, torque;  ///< by joint
 };
 
-/// Integrates the arm under a controller that follows a sum of sines, with KDL's mass matrix, Coriolis torque and
+/// Integrates the arm under a controller that follows a path, with KDL's mass matrix, Coriolis torque and
 /// gravity: none of this project's dynamics is in it.
 inline Samples simulate(const arm::Chain::Params& truth, const Session& session) {
   KDL::Chain chain;
@@ -162,21 +167,22 @@ inline Samples simulate(const arm::Chain::Params& truth, const Session& session)
 
   signal::Random random(session.seed);
   constexpr int sines = 4;
-  std::vector<std::array<std::array<double, 3>, sines>> path(n);
-  for (auto& joint : path) {
+  std::vector<std::array<std::array<double, 3>, sines>> waves(n);
+  for (auto& joint : waves) {
     for (int k = 0; k < sines; ++k) {
       joint[static_cast<std::size_t>(k)] = {(0.15 + 0.35 * random.uniform()) / (1.0 + 0.7 * k),
                                             0.1 + 0.35 * k + 0.2 * random.uniform(), 6.28 * random.uniform()};
     }
   }
   const auto wanted = [&](unsigned j, double t) {
+    if (session.path) return session.path(j, t);
     double sum = j == 3 ? 1.2 : 0.2;
-    for (const auto& [size, frequency, phase] : path[j]) sum += size * std::sin(6.2832 * frequency * t + phase);
+    for (const auto& [size, frequency, phase] : waves[j]) sum += size * std::sin(6.2832 * frequency * t + phase);
     return sum;
   };
   constexpr std::array<double, 7> stiffness{240, 240, 240, 240, 24, 31, 25};
   constexpr std::array<double, 7> damping{6, 6, 6, 6, 0.6, 0.6, 0.6};
-  constexpr double step_s = 1.0 / 4000.0;
+  const double step_s = session.step_s;
   KDL::JntArray q(n), v(n), gravity(n), coriolis(n);
   KDL::JntSpaceInertiaMatrix mass(static_cast<int>(n));
   KDL::Jacobian jacobian(n);

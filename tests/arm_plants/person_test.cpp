@@ -73,10 +73,10 @@ TEST(Person, CorrectsSlowlyWhatPushesTheToolAway) {
 }
 
 TEST(Person, AWallPushesAndNeverPulls) {
-  const Wall wall{.point_m = Vector3(0.0, 0.0, 1.0),
-                  .normal = Vector3::UnitZ(),
-                  .stiffness_N_per_m = 1000.0,
-                  .damping_N_s_per_m = 10.0};
+  Wall wall{.point_m = Vector3(0.0, 0.0, 1.0),
+            .normal = Vector3::UnitZ(),
+            .contact = *mechanics::Environment::make({.stiffness_N_per_m = 1000.0, .damping_N_s_per_m = 10.0},
+                                                     Seconds{tick_s})};
   ToolState tool{.position_m = Vector3(5.0, 5.0, 1.001),
                  .rotation = arm::Matrix3::Identity(),
                  .velocity_m_per_s = Vector3(0, 0, -1),
@@ -86,6 +86,61 @@ TEST(Person, AWallPushesAndNeverPulls) {
   EXPECT_LT((wall.force_N(tool) - Vector3(0.0, 0.0, 20.0)).norm(), 1e-12);
   tool.velocity_m_per_s.z() = 2.0;
   EXPECT_EQ(wall.force_N(tool), Vector3::Zero());
+}
+
+constexpr double mass_kg = 0.5;
+
+/// A point of `mass_kg` that slides along z without weight, thrown at a wall of Hunt and Crossley that it meets at 0:
+/// speed after over speed before.
+double restitution(double dissipation_s_per_m, double exponent, double speed_m_per_s) {
+  constexpr double step_s = 1e-6;
+  arm::JointParams slide;
+  slide.kind = arm::JointKind::prismatic;
+  slide.axis = {.x = 0.0, .y = 0.0, .z = 1.0};
+  slide.body = {.mass_kg = mass_kg, .xx_kg_m2 = 1e-4, .yy_kg_m2 = 1e-4, .zz_kg_m2 = 1e-4};
+  ArmPlant::Params params{.chain = {.joints = Joints<arm::JointParams>(1, slide), .gravity = {0.0, 0.0, 0.0}},
+                          .motors = Joints<MotorParams>(1),
+                          .step_s = step_s};
+  ArmPlant point = *ArmPlant::make(params, arm::JointVector::Constant(1, 1e-4));
+  for (int i = 0; i < 1000; ++i) point.step({.force_N = Vector3(0.0, 0.0, -mass_kg * speed_m_per_s / 1e-3)});
+  Wall wall{.point_m = Vector3(0.0, 0.0, -1e-4),
+            .normal = Vector3::UnitZ(),
+            .contact = *mechanics::Environment::make({.law = mechanics::ContactLaw::hunt_crossley,
+                                                      .stiffness_N_per_m = 20000.0,
+                                                      .exponent = exponent,
+                                                      .dissipation_s_per_m = dissipation_s_per_m},
+                                                     Seconds{step_s})};
+  const double before_m_per_s = point.tool().velocity_m_per_s.z();
+  bool touched = false;
+  for (int i = 0; i < 1000000; ++i) {
+    const Vector3 force_N = wall.force_N(point.tool());
+    EXPECT_GE(force_N.z(), 0.0) << "it never pulls";
+    if (touched && force_N == Vector3::Zero()) break;
+    touched = touched || force_N != Vector3::Zero();
+    point.step({.force_N = force_N});
+  }
+  return -point.tool().velocity_m_per_s.z() / before_m_per_s;
+}
+
+TEST(Person, AWallOfHuntAndCrossleyThrowsAPointBackAsItsClosedFormSays) {
+  // m v dv/dδ = −k δⁿ (1 + c v) separates: G(v) = v/c − ln(1 + c v)/c² is the same on the way in and out, whatever k, n
+  // and m. For slow impacts that is Hunt and Crossley's e = 1 − 2/3 c v.
+  for (const double exponent : {1.0, 1.5, 2.5}) {
+    for (const double c : {0.5, 4.0}) {
+      constexpr double speed_m_per_s = 0.15;
+      const auto g = [c](double v) { return v / c - std::log1p(c * v) / (c * c); };
+      double slow = 0.0, fast = 1.0;
+      for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (slow + fast);
+        (g(-middle * speed_m_per_s) < g(speed_m_per_s) ? slow : fast) = middle;
+      }
+      EXPECT_NEAR(restitution(c, exponent, speed_m_per_s), slow, 1e-3) << "n " << exponent << ", c " << c;
+    }
+  }
+  for (const double speed_m_per_s : {0.02, 0.04}) {
+    const double lost = 1.0 - restitution(0.5, 1.5, speed_m_per_s);
+    EXPECT_NEAR(lost, 2.0 / 3.0 * 0.5 * speed_m_per_s, 0.05 * lost) << speed_m_per_s;
+  }
 }
 
 TEST(Person, RefusesWhatNoPersonIs) {

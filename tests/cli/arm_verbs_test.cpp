@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -58,8 +59,8 @@ TEST_F(ArmVerbs, an_arm_identified_in_free_motion_tells_when_it_is_pushed) {
     EXPECT_LT(joint["relative"].get<double>(), 0.03);
     EXPECT_LT(joint["held_out_relative"].get<double>(), 1.05 * joint["least_squares_held_out_relative"].get<double>());
   }
-  EXPECT_EQ(files(),
-            (std::vector<std::string>{"results", "results/model.toml", "results/report.html", "results/results.json"}));
+  EXPECT_EQ(files(), (std::vector<std::string>{"results", "results/arm.urdf", "results/armatures.toml",
+                                               "results/model.toml", "results/report.html", "results/results.json"}));
 
   const Outcome estimated = tactus(with(
       {"estimate", "torque", example("arm-pushed.csv"), "--model", "results/model.toml", "--json", "--out", "torque"},
@@ -78,6 +79,57 @@ TEST_F(ArmVerbs, an_arm_identified_in_free_motion_tells_when_it_is_pushed) {
       with({"estimate", "torque", example("arm-free-motion.csv"), "--model", "results/model.toml", "--json"}, names));
   ASSERT_EQ(free.status, 0) << free.err;
   EXPECT_TRUE(ArmJson::parse(free.out)["contacts"].empty());
+}
+
+TEST_F(ArmVerbs, what_a_recording_does_not_tell_is_named) {
+  // Two seconds and a half; the first link's mass never moves.
+  const std::string text = headless();
+  write("short.csv", text.substr(0, text.find("\n2.50,") + 1));
+  const Outcome poor = identify({"short.csv"}, numbers);
+  ASSERT_EQ(poor.status, 0) << poor.err;
+  const std::size_t at = poor.out.find("Not told, so as the URDF has it");
+  ASSERT_NE(at, std::string::npos) << poor.out;
+  const std::string line = poor.out.substr(poor.out.find("shoulder_1", at), 60);
+  EXPECT_NE(line.find("mass, first_moment_x"), std::string::npos) << line;
+  EXPECT_NE(poor.out.find("`identify excitation` designs a motion that tells more"), std::string::npos);
+}
+
+TEST_F(ArmVerbs, a_motion_that_tells_most_is_left_as_a_table_within_the_limits) {
+  const std::vector<std::string> words{"identify",  "excitation", "--urdf",       example("three-joints.urdf"),
+                                       "--gravity", "0,-9.81,0",  "--duration-s", "6",
+                                       "--rate-Hz", "50"};
+  const Outcome made = tactus(with(words, {"--above-m", "0.02", "--json", "--out", "motion"}));
+  ASSERT_EQ(made.status, 0) << made.err;
+  const ArmJson found = ArmJson::parse(made.out);
+  EXPECT_GT(found["designed"]["information_nats"], found["random"]["information_nats"]);
+  EXPECT_GE(found["clearance_m"].get<double>(), 0.0);
+  EXPECT_EQ(found["seed"], 1);
+  std::istringstream table(content("motion/trajectory.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_TRUE(line.starts_with(R"(time_s,"shoulder_1_rad","shoulder_2_rad","elbow_rad","shoulder_1_rad_per_s",)"))
+      << line;
+  int rows = 0;
+  while (std::getline(table, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream values(line);
+    double time_s = 0.0;
+    double position = 0.0;
+    values >> time_s;
+    EXPECT_NEAR(time_s, 0.02 * rows, 1e-6);
+    for (int j = 0; j < 3; ++j) {
+      values >> position;
+      EXPECT_LE(std::fabs(position), 0.7 * 2.5);
+    }
+    ++rows;
+  }
+  EXPECT_EQ(rows, 301);
+  const Outcome high = tactus(with(words, {"--above-m", "3"}));
+  EXPECT_EQ(high.status, 2);
+  EXPECT_NE(high.err.find("mm outside of the box"), std::string::npos) << high.err;
+  const Outcome two = tactus(with(words, {"--noise-N-m", "0.1,0.2"}));
+  EXPECT_EQ(two.status, 2);
+  EXPECT_NE(two.err.find("--noise-N-m: 2 numbers, but the arm has 3 joints"), std::string::npos) << two.err;
 }
 
 TEST_F(ArmVerbs, a_table_wants_its_columns_named_and_a_log_does_not) {

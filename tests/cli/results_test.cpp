@@ -77,10 +77,10 @@ TEST_F(Results, OfARunAreOfItsSchemaWhateverItsKindAndClock) {
   EXPECT_EQ(arms["runs"][0]["metrics"]["taps"], 1);
   const Json coupled = expect_valid("run", {"run", experiments_folder + "/arm-vibration.toml"});
   EXPECT_EQ(coupled["runs"][0]["metrics"]["vibrates"], 0);
-  const Json arm_contest =
-      expect_valid("run", {"run", experiments_folder + "/arm-contest.toml", "--set", "task.taps=1", "--set",
-                           "task.lowest_gain=0.9", "--set", "task.highest_gain=1.1", "--set", "pairs.pair_2.name=''",
-                           "--set", "pairs.pair_3.name=''", "--set", "hands.hand_2.name=''"});
+  const Json arm_contest = expect_valid(
+      "run", {"run", experiments_folder + "/arm-contest.toml", "--set", "task.taps=1", "--set", "task.lowest_gain=0.9",
+              "--set", "task.highest_gain=1.1", "--set", "pairs.pair_2.name=''", "--set", "pairs.pair_3.name=''",
+              "--set", "pairs.pair_4.name=''", "--set", "hands.hand_2.name=''"});
   EXPECT_EQ(arm_contest["results"].size(), arm_contest["methods"].size());
   EXPECT_TRUE(arm_contest["results"][0]["gain_limit_censored"]);
   for (const char* kind : {"force-display", "hydraulic-chirp", "inverse-model-chirp", "prediction-block"}) {
@@ -102,6 +102,10 @@ TEST_F(Results, OfStabilityAreOfTheirSchemas) {
                         "--vary", "control.force_gain=0.01,0.02"});
   EXPECT_EQ(map["settled_limit"].size(), map["settled_limit_censored"].size());
   EXPECT_TRUE(map["settled_limit_censored"][0]) << "the largest gain of the map settles on a soft wall";
+  const std::string arms = experiments_folder + "/arm-tapping.toml";
+  expect_valid("stability margins", {"stability", "margins", arms});
+  expect_valid("stability margins", {"stability", "margins", arms, "--set", "control.force_gain=90"});
+  expect_valid("stability map", {"stability", "map", arms, "--vary", "control.method=position-force"});
 }
 
 TEST_F(Results, OfRecordingsAreOfTheirSchemas) {
@@ -134,6 +138,7 @@ TEST_F(Results, OfRecordingsAreOfTheirSchemas) {
   };
   expect_valid("identify arm", with_columns({"identify", "arm", examples_folder + "/recordings/arm-free-motion.csv",
                                              "--urdf", urdf, "--out", "arm"}));
+  expect_valid("identify excitation", {"identify", "excitation", "--urdf", urdf, "--duration-s", "6"});
   expect_valid("estimate torque", with_columns({"estimate", "torque", examples_folder + "/recordings/arm-pushed.csv",
                                                 "--model", "arm/model.toml"}));
   expect_valid("identify prediction", {"identify", "prediction", experiments_folder + "/inverse-model-chirp.toml"});
@@ -146,6 +151,10 @@ TEST_F(Results, OfLogsMachinesAndFaultsAreOfTheirSchemas) {
   const Outcome doctor = tactus({"doctor", "--duration-s", "0.2", "--json"});
   expect_document("doctor", Json::parse(doctor.out, nullptr, false));
   expect_valid("faults", {"faults", "--seeds", "1", "--only", "encoder-freeze"}, 0);
+  const Json of_arms =
+      expect_valid("faults", {"faults", experiments_folder + "/arm-tapping.toml", "--with",
+                              experiments_folder + "/arms/limits.toml", "--seeds", "1", "--only", "cut"});
+  EXPECT_EQ(of_arms["rows"][0]["survived"], 1);
   expect_valid("plant", {"plant", "quick.toml", "--name", "results-test", "--duration-s", "0.2", "--priority", "10"});
   expect_valid("relay", {"relay", "quick.toml", "--master", "127.0.0.1:47101", "--for-master", "127.0.0.1:47102",
                          "--slave", "127.0.0.1:47103", "--for-slave", "127.0.0.1:47104", "--duration-s", "0.1"});

@@ -75,6 +75,63 @@ TEST_F(Stability, a_scorecard_says_what_changes_the_limit) {
   EXPECT_GT(card["force_bandwidth_Hz"].get<double>(), 20.0);
 }
 
+const std::string arms = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arm-tapping.toml";
+const std::string soft_hand = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arms/soft-hand.toml";
+const std::string bare_arms = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arms/bare.toml";
+
+TEST_F(Stability, two_arms_have_margins_too_and_a_report_is_left) {
+  const Outcome outcome = tactus({"stability", "margins", arms, "--with", bare_arms, "--set", "task.direction=along-x",
+                                  "--json", "--out", "results"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json found = Json::parse(outcome.out);
+  EXPECT_TRUE(found["stable"]);
+  EXPECT_EQ(found["drawn_models"], 0) << "position-force has no model";
+  EXPECT_NEAR(found["gain_margin"].get<double>(), found["gain_limit"].get<double>(), 1e-9) << "at a gain of 1";
+  EXPECT_LE(found["disk_gain_factor"].get<double>(), 1.01 * found["gain_margin"].get<double>());
+  EXPECT_NEAR(found["at_limit"]["frequency_Hz"].get<double>(), 10.0, 5.0);
+  const auto left = files();
+  EXPECT_NE(std::find(left.begin(), left.end(), "results/report.html"), left.end());
+}
+
+TEST_F(Stability, two_arms_are_mapped_over_pose_and_hand) {
+  const Outcome outcome =
+      tactus({"stability", "map", arms, "--with", bare_arms, "--hand", soft_hand, "--vary", "task.pose=0,1", "--vary",
+              "control.method=position-force,cancellation", "--friction-speed", "0.1", "--json", "--out", "results"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json points = Json::parse(outcome.out)["points"];
+  ASSERT_EQ(points.size(), 8U);
+  EXPECT_EQ(points[0]["hand"], "own");
+  EXPECT_EQ(points[7]["hand"], "soft-hand");
+  EXPECT_EQ(points[7]["set"]["task.pose"], 1);
+  for (std::size_t i = 0; i < points.size(); i += 2) {
+    // What docs/theory/arms.md says: without damping, do not cancel with a model that errs.
+    EXPECT_LT(points[i + 1]["drawn_limit"].get<double>(), points[i]["drawn_limit"].get<double>()) << i;
+    EXPECT_LE(points[i + 1]["drawn_limit"].get<double>(), 1.01 * points[i + 1]["gain_limit"].get<double>()) << i;
+  }
+  const auto left = files();
+  for (const char* file : {"results/report.html", "results/map.csv", "results/map.svg"}) {
+    EXPECT_NE(std::find(left.begin(), left.end(), file), left.end()) << file;
+  }
+}
+
+TEST_F(Stability, of_two_arms_what_has_no_linear_loop_or_no_use_is_refused_by_name) {
+  for (const char* method : {"position-position", "factr", "feedback-avoidance", "four-channel"}) {
+    for (const char* verb : {"margins", "map"}) {
+      const Outcome outcome = tactus({"stability", verb, arms, "--set", std::string("control.method=") + method,
+                                      verb == std::string("map") ? "--vary=task.pose=0,1" : "--friction-speed=0"});
+      EXPECT_EQ(outcome.status, 2) << method;
+      EXPECT_NE(outcome.err.find(method), std::string::npos) << outcome.err;
+    }
+  }
+  for (const char* option : {"--uncertainty=0.1", "--preload=2", "--linkage-amplitude=0.001"}) {
+    const Outcome outcome = tactus({"stability", "margins", arms, option});
+    EXPECT_EQ(outcome.status, 2) << option;
+    EXPECT_NE(outcome.err.find(std::string(option).substr(0, 9)), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(tactus({"stability", "map", arms, "--precision", "float"}).status, 2);
+  EXPECT_EQ(tactus({"stability", "map", tapping, "--hand", soft_hand}).status, 2);
+}
+
 TEST_F(Stability, what_cannot_be_judged_is_refused_at_its_place) {
   const std::string file =
       write("wave.toml", "[task]\nkind = \"tapping\"\n[control]\narchitecture = \"wave-variables\"\n");

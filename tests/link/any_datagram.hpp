@@ -3,7 +3,9 @@
 #include <tactus/link/datagram.hpp>
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include <rapidcheck.h>
 
@@ -40,6 +42,50 @@ inline rc::Gen<Datagram> any_datagram() {
     datagram.echo_hold_ns = time();
     return datagram;
   });
+}
+
+/// The same of so many joints.
+inline rc::Gen<JointDatagram> any_joint_datagram(std::size_t joints) {
+  return rc::gen::map(rc::gen::container<std::vector<Datagram>>(joints, any_datagram()),
+                      [](const std::vector<Datagram>& each) {
+                        const Datagram& first = each.front();
+                        JointDatagram datagram{.site = first.site,
+                                               .packet = {.session = first.packet.session,
+                                                          .sequence = first.packet.sequence,
+                                                          .state = first.packet.state,
+                                                          .armings = first.packet.armings,
+                                                          .message = Joints<control::Message>(each.size()),
+                                                          .agreement = first.packet.agreement},
+                                               .peer_session = first.peer_session,
+                                               .sent_ns = first.sent_ns,
+                                               .echo_sent_ns = first.echo_sent_ns,
+                                               .echo_hold_ns = first.echo_hold_ns};
+                        for (std::size_t i = 0; i < each.size(); ++i)
+                          datagram.packet.message[i] = each[i].packet.message;
+                        return datagram;
+                      });
+}
+/// Room for one of so many joints.
+inline JointDatagram room_for(std::size_t joints) {
+  JointDatagram datagram;
+  datagram.packet.message = Joints<control::Message>(joints);
+  return datagram;
+}
+
+/// One joint of a datagram, as that of one axis.
+inline Datagram joint_of(const JointDatagram& all, std::size_t joint) {
+  const control::JointPacket& packet = all.packet;
+  return {.site = all.site,
+          .packet = {.session = packet.session,
+                     .sequence = packet.sequence,
+                     .state = packet.state,
+                     .armings = packet.armings,
+                     .message = packet.message[joint],
+                     .agreement = packet.agreement},
+          .peer_session = all.peer_session,
+          .sent_ns = all.sent_ns,
+          .echo_sent_ns = all.echo_sent_ns,
+          .echo_hold_ns = all.echo_hold_ns};
 }
 
 /// Bit for bit.

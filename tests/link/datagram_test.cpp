@@ -1,6 +1,10 @@
 #include <tactus/link/datagram.hpp>
+#include <tactus/link/inbound.hpp>
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -12,6 +16,8 @@ namespace {
 
 using testing::alike;
 using testing::any_datagram;
+using testing::any_joint_datagram;
+using testing::room_for;
 
 TEST(Datagram, EveryDatagramIsReadAsItWasWritten) {
   EXPECT_TRUE(rc::check([] {
@@ -120,6 +126,144 @@ TEST(Datagram, WhatIsReadFromDamagedBytesIsWrittenBackAsThoseBytes) {
     if (decode(bytes, read) != Refusal::none) return;
     RC_ASSERT(encode(read) == bytes);
   }));
+}
+
+TEST(JointDatagram, IsReadAsItWasWrittenByOneOfAsManyJointsAlone) {
+  EXPECT_TRUE(rc::check([] {
+    const auto joints = *rc::gen::inRange<std::size_t>(1, most_joints + 1);
+    const JointDatagram written = *any_joint_datagram(joints);
+    const JointDatagramBytes bytes = encode(written);
+    RC_ASSERT(bytes.size == datagram_bytes_of(joints));
+    for (std::size_t other = 1; other <= most_joints; ++other) {
+      JointDatagram read = room_for(other);
+      const Refusal refusal = decode(bytes.bytes(), read);
+      if (other != joints) {
+        RC_ASSERT(refusal == Refusal::joints);
+        RC_ASSERT(joints_in(bytes.bytes()) == joints);
+        RC_ASSERT(read.packet.session == 0);  // untouched
+        continue;
+      }
+      RC_ASSERT(refusal == Refusal::none);
+      RC_ASSERT(read.packet.message.size() == joints);
+      for (std::size_t i = 0; i < joints; ++i)
+        RC_ASSERT(alike(testing::joint_of(read, i), testing::joint_of(written, i)));
+    }
+  }));
+}
+
+TEST(JointDatagram, OfOneJointHasTheBytesOfOneAxis) {
+  EXPECT_TRUE(rc::check([] {
+    const JointDatagram written = *any_joint_datagram(1);
+    const JointDatagramBytes bytes = encode(written);
+    const DatagramBytes of_axis = encode(testing::joint_of(written, 0));
+    RC_ASSERT(std::ranges::equal(bytes.bytes(), of_axis));
+  }));
+}
+
+TEST(JointDatagram, TheBytesAreThoseOfTheReferencePage) {
+  JointDatagram datagram = room_for(2);
+  datagram.packet.session = 1;
+  datagram.packet.sequence = 2;
+  datagram.packet.message[0].position_m = 1.0;
+  datagram.packet.message[1].energy_J = -2.0;
+  datagram.packet.agreement.digest = 0x7877767574737271;
+  const JointDatagramBytes bytes = encode(datagram);
+  ASSERT_EQ(bytes.size, 168U);
+  const auto at = [&bytes](std::size_t place) { return std::to_integer<unsigned>(bytes.data[place]); };
+  EXPECT_EQ(at(0), 'T');
+  EXPECT_EQ(at(3), '2');
+  EXPECT_EQ(at(4), 3U);
+  EXPECT_EQ(at(64 + 7), 0x3fU);            // position of joint 1
+  EXPECT_EQ(at(64 + 40 + 32 + 7), 0xc0U);  // energy of joint 2
+  EXPECT_EQ(at(64 + 80), 0x71U);           // digest
+  // The largest, in a record of DTLS and a packet of IPv6, is below the 1280 bytes that every network of IPv6 carries.
+  EXPECT_EQ(longest_datagram_bytes, 408U);
+  EXPECT_LE(longest_datagram_bytes + 29 + 48, 1280U);
+}
+
+TEST(JointDatagram, OfNoOrTooManyJointsAndOfEveryOtherSizeIsRefused) {
+  for (std::size_t joints = 1; joints <= most_joints; ++joints) {
+    JointDatagram whole = room_for(joints);
+    whole.packet.session = whole.packet.sequence = 1;
+    const JointDatagramBytes encoded = encode(whole);
+    std::vector<std::byte> bytes(encoded.bytes().begin(), encoded.bytes().end());
+    bytes.resize(1500);
+    JointDatagram read = room_for(joints);
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      EXPECT_EQ(decode({bytes.data(), size}, read), size == encoded.size ? Refusal::none : Refusal::size) << size;
+    }
+    for (const char digit : {'0', '9', '/', '\0', '\xff'}) {
+      bytes[3] = static_cast<std::byte>(digit);
+      for (std::size_t size = 6; size < bytes.size(); ++size) {
+        EXPECT_EQ(decode({bytes.data(), size}, read), Refusal::magic) << digit;
+      }
+    }
+  }
+}
+
+TEST(JointDatagram, WhatIsReadFromDamagedBytesIsWrittenBackAsThoseBytes) {
+  EXPECT_TRUE(rc::check([] {
+    const auto joints = *rc::gen::inRange<std::size_t>(1, most_joints + 1);
+    JointDatagramBytes bytes = encode(*any_joint_datagram(joints));
+    const auto flips = *rc::gen::container<std::vector<std::size_t>>(rc::gen::inRange<std::size_t>(0, 8 * bytes.size));
+    for (const std::size_t bit : flips) bytes.data[bit / 8] ^= static_cast<std::byte>(1U << (bit % 8));
+    JointDatagram read = room_for(joints);
+    if (decode(bytes.bytes(), read) != Refusal::none) return;
+    RC_ASSERT(std::ranges::equal(encode(read).bytes(), bytes.bytes()));
+  }));
+}
+
+/// Bytes of other sizes, of none, nine and other joints, cut short, damaged, and with numbers that are none: nothing of
+/// it is applied, and the genuine ones between are.
+TEST(JointDatagram, AFloodOfHostileOnesIsNeitherAppliedNorInTheWayOfGenuineOnes) {
+  constexpr std::int64_t own_session = 5, session = 7;
+  constexpr std::size_t joints = 7;
+  constexpr int packets = 100'000;
+  using Judge = control::PacketJudgeOf<Joints<control::Message>>;
+  auto judge = Judge::make(Joints<control::PacketJudgeParams>(joints), Seconds{1e-3}).value();
+  Inbound inbound(SiteRole::master, own_session);
+  std::mt19937 random(3);
+  const auto any = [&random](std::size_t below) { return random() % below; };
+  JointDatagram genuine = room_for(joints);
+  genuine.site = SiteRole::slave;
+  genuine.packet.session = session;
+  genuine.peer_session = own_session;
+  genuine.sent_ns = genuine.echo_sent_ns = 1000;
+  std::int64_t now_ns = 2000;
+  int applied = 0, hostile_applied = 0;
+  for (int i = 1; i <= packets; ++i) {
+    now_ns += 1000;
+    genuine.packet.sequence = i;
+    genuine.sent_ns += 1000;
+    genuine.echo_sent_ns += 1000;
+    JointDatagram sent = genuine;
+    const std::size_t kind = any(6);
+    const double none[]{std::nan(""), HUGE_VAL, -HUGE_VAL};
+    if (kind == 0) {
+      const std::size_t member = any(5);
+      std::size_t at = 0;
+      for_each_signal<control::Message>([&](const auto& each) {
+        if (at++ == member) sent.packet.message[any(joints)].*each.member = none[any(3)];
+      });
+    }
+    const JointDatagramBytes encoded = encode(sent);
+    std::vector<std::byte> bytes(encoded.bytes().begin(), encoded.bytes().end());
+    if (kind == 1) bytes.resize(any(bytes.size()));
+    if (kind == 2) bytes.resize(bytes.size() + 1 + any(1000));
+    if (kind == 3) bytes[3] = static_cast<std::byte>('0' + (any(2) == 0 ? 0 : 9));
+    if (kind == 4) bytes[3] = static_cast<std::byte>('1' + any(joints - 1));
+    JointDatagram read = room_for(joints);
+    if (decode(bytes, read) != Refusal::none) {
+      ASSERT_TRUE(kind >= 1 && kind <= 4) << kind;
+      continue;
+    }
+    ASSERT_TRUE(kind == 0 || kind == 5) << kind;
+    ASSERT_EQ(inbound.take(read, now_ns), Inbound::Verdict::counted);
+    if (judge.step(read.packet) != control::PacketVerdict::applied) continue;
+    kind == 5 ? ++applied : ++hostile_applied;
+  }
+  EXPECT_EQ(hostile_applied, 0);
+  EXPECT_GT(applied, packets / 7);
 }
 
 }  // namespace

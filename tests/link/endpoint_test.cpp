@@ -99,6 +99,80 @@ TEST_P(Link, ATickDoesNotAllocate) {
   EXPECT_GT(slave.counters().inbound.counted, 50U);
 }
 
+/// One end of several joints.
+JointEndpoint open_joints(SiteRole site, const Ports& ports, const std::optional<Key>& key, std::size_t joints) {
+  const bool master = site == SiteRole::master;
+  auto endpoint = JointEndpoint::make({.site = site,
+                                       .peer = loopback(master ? ports.slave : ports.master),
+                                       .listen = loopback(master ? ports.master : ports.slave),
+                                       .key = key},
+                                      joints);
+  if (!endpoint) throw std::runtime_error(describe(endpoint.error()));
+  return *std::move(endpoint);
+}
+
+/// One tick of a site whose joint number i tells `position_m` + i.
+std::optional<control::JointPacket> tick_joints(JointEndpoint& endpoint, double position_m, std::size_t joints) {
+  const std::int64_t now_ns = monotonic_ns();
+  const auto packets = endpoint.receive(now_ns);
+  const auto last = packets.empty() ? std::nullopt : std::optional(packets.back());
+  const auto counters = endpoint.counters();
+  control::JointPacket packet{.session = endpoint.session(),
+                              .sequence = static_cast<std::int64_t>(counters.sent + counters.unsent) + 1,
+                              .message = Joints<control::Message>(joints)};
+  for (std::size_t i = 0; i < joints; ++i) packet.message[i].position_m = position_m + static_cast<double>(i);
+  endpoint.send(packet, now_ns);
+  return last;
+}
+
+TEST_P(Link, TwoSitesOfEightJointsHearEachOther) {
+  constexpr std::size_t joints = 8;
+  JointEndpoint master = open_joints(SiteRole::master, ports, key(), joints);
+  JointEndpoint slave = open_joints(SiteRole::slave, ports, key(), joints);
+  std::optional<control::JointPacket> at_master, at_slave;
+  for (int i = 0; i < 20'000 && !(at_master && at_slave); ++i) {
+    if (auto came = tick_joints(master, 1.0, joints)) at_master = came;
+    if (auto came = tick_joints(slave, 2.0, joints)) at_slave = came;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  ASSERT_TRUE(at_master && at_slave);
+  ASSERT_EQ(at_master->message.size(), joints);
+  for (std::size_t i = 0; i < joints; ++i) {
+    EXPECT_EQ(at_master->message[i].position_m, 2.0 + static_cast<double>(i));
+    EXPECT_EQ(at_slave->message[i].position_m, 1.0 + static_cast<double>(i));
+  }
+  EXPECT_EQ(at_master->session, slave.session());
+  EXPECT_EQ(master.counters().other_joints, 0U);
+}
+
+TEST_P(Link, SitesOfOtherNumbersOfJointsNeverHearEachOtherAndKnowWhy) {
+  JointEndpoint master = open_joints(SiteRole::master, ports, key(), 3);
+  JointEndpoint slave = open_joints(SiteRole::slave, ports, key(), 2);
+  for (int i = 0; i < 2000 && (master.counters().other_joints == 0 || slave.counters().other_joints == 0); ++i) {
+    EXPECT_FALSE(tick_joints(master, 1.0, 3));
+    EXPECT_FALSE(tick_joints(slave, 2.0, 2));
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  EXPECT_EQ(slave.counters().other_joints, 3U);
+  EXPECT_EQ(master.counters().other_joints, 2U);
+  EXPECT_FALSE(master.condition(monotonic_ns()).heard);
+  EXPECT_FALSE(slave.condition(monotonic_ns()).heard);
+}
+
+TEST(Endpoint, HasOneToEightJoints) {
+  const Ports ports;
+  for (const std::size_t joints : {std::size_t{0}, most_joints + 1}) {
+    const auto endpoint = JointEndpoint::make({.site = SiteRole::master,
+                                               .peer = loopback(ports.slave),
+                                               .listen = loopback(ports.master),
+                                               .key = std::nullopt},
+                                              joints);
+    ASSERT_FALSE(endpoint);
+    EXPECT_EQ(endpoint.error().code, ErrorCode::out_of_bounds);
+    EXPECT_EQ(endpoint.error().parameter, "joints");
+  }
+}
+
 TEST(Endpoint, AWrongKeyIsNeverHeard) {
   const Ports ports;
   Endpoint master = open(SiteRole::master, ports, test_key(1));

@@ -48,7 +48,7 @@ TEST(Engine, AScriptedTapIsBitForBitThatOfATeleoperatorOnTheSamePath) {
   const ScriptedTap script{.wall_m = Settings::wall_m};
   for (std::size_t loop = 0; loop < loops; ++loop) {
     const std::vector<LoopTick> ticks = tap(*view, loop, 0.8);
-    auto alone = simulation::Teleoperator::make(sample_settings().of_loop(loop).value(), script.start_m()).value();
+    auto alone = simulation::Teleoperator::make(sample_params(loop), script.start_m()).value();
     const double loop_tick_s = alone.tick_s();
     bool touched = false;
     double time_s = 0.0;
@@ -180,7 +180,7 @@ TEST(Engine, EveryMethodOfTheContestCanBeServed) {
       ASSERT_FALSE(settings.set({"left.method", choice}));
       const auto params = settings.of_loop(0);
       ASSERT_TRUE(params) << choice << ": " << describe(params.error());
-      const auto made = simulation::Teleoperator::make(*params, 0.0);
+      const auto made = make_loop(*params, 0.0);
       EXPECT_TRUE(made) << choice << ": " << describe(made.error());
     }
   }

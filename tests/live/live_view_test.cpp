@@ -284,7 +284,7 @@ TEST(LiveView, TheHandStaysInItsWorkspaceAndComesToRestWhenItsClientLeaves) {
   const auto status = publish(*view, "/operator/hand", R"({"position_m":-7,"engaged":true})");
   ASSERT_TRUE(status.has_value());
   EXPECT_EQ(status->level, StatusLevel::warning);
-  EXPECT_EQ(position(), -LiveView::workspace_m);
+  EXPECT_EQ(position(), -sample_settings().workspace_m()[0]);
   view->leave(1);
   EXPECT_EQ(position(), 0.0);
 }

@@ -25,6 +25,11 @@ slave = { encoder = { resolution_m = 1e-5 }, force_sensor = { bandwidth_Hz = 100
   return Settings::make(configuration::Document::parse(text, "sample.toml").value()).value();
 }
 
+/// Of one of its loops.
+inline simulation::Teleoperator::Params sample_params(std::size_t loop) {
+  return std::get<simulation::Teleoperator::Params>(sample_settings().of_loop(loop).value());
+}
+
 inline std::unique_ptr<LiveView> sample_view(bool allow_tuning = true) {
   return LiveView::make(sample_settings(), {.allow_tuning = allow_tuning, .experiment = "sample"}).value();
 }

@@ -208,7 +208,7 @@ TEST(Server, MoreClientsThanAllowedAreTurnedAwayAndTheOthersServed) {
 
 /// Every tick of a loop is in the log, and is what the loop does alone, to the last bit: nobody moved the hand.
 void expect_the_log_of_a_loop_alone(const std::filesystem::path& file) {
-  auto alone = simulation::Teleoperator::make(sample_settings().of_loop(0).value(), 0.0).value();
+  auto alone = simulation::Teleoperator::make(sample_params(0), 0.0).value();
   const auto content = telemetry::read_log(file, "/left/teleoperator").value();
   ASSERT_EQ(content.tables.size(), 1U);
   const auto& table = content.tables.front();

@@ -85,6 +85,16 @@ TEST(Figure, MapsDataToPixelsLinearly) {
   }
 }
 
+TEST(Figure, DrawsAUnitAsLongOnBothAxesWhereThatIsAskedFor) {
+  const Line square{.name = "square", .x = {0, 10, 10}, .y = {5, 5, 15}};
+  Panel panel = panel_of(square, {.label = "x", .unit = "mm"}, {.label = "z", .unit = "mm"});
+  panel.equal_scales = true;
+  const auto found = strokes(attribute(tags(to_svg(single(panel)), "path", "colour-0").at(0), "d"));
+  ASSERT_EQ(found[0].size(), 3U);
+  EXPECT_GT(found[0][1].x - found[0][0].x, 50.0);
+  EXPECT_NEAR(found[0][1].x - found[0][0].x, found[0][1].y - found[0][2].y, 0.21);
+}
+
 TEST(Figure, MapsLogarithmicDataByDecadesAndBreaksWhereThereIsNoLogarithm) {
   const Line line{.name = "line", .x = {1, 10, 100, 300, 1000, 1000}, .y = {1, 1e-2, 1, 0, 1e-4, 1}};
   const std::string svg = to_svg(single(panel_of(line, axis("f", "Hz", 1, 1000, Axis::Scale::logarithmic),

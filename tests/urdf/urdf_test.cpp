@@ -106,6 +106,46 @@ TEST_F(Urdf, NamesLimitsAndFrictionAreTakenOver) {
   EXPECT_EQ(arm->params.joints[1].friction.coulomb_N_m, 0.25);
   EXPECT_EQ(arm->params.joints[2].axis.x, 1.0);  // URDF's own default
   EXPECT_EQ(arm->params.joints[2].body.mass_kg, 3.0);
+  ASSERT_EQ(arm->frames.size(), 3U);
+  EXPECT_EQ(arm->frames[0].size(), 1U);
+  ASSERT_EQ(arm->frames[2].size(), 3U);
+  EXPECT_EQ(arm->frames[2][1].name, "flange");
+  EXPECT_NEAR(arm->frames[2][1].origin_m.z(), 0.3, 1e-15);  // as `joint` places it
+}
+
+TEST_F(Urdf, OtherDynamicsReadBackAndAllElseStays) {
+  const std::string text = arm_text();
+  Result<Arm> arm = read_text(text);
+  ASSERT_TRUE(arm) << describe(arm.error());
+  arm::RandomArm random(9);
+  for (arm::JointParams& joint : arm->params.joints) {
+    joint.body = random.body();
+    joint.friction = {.coulomb_N_m = random.between(0.0, 1.0), .viscous_N_m_s_per_rad = random.between(0.0, 1.0)};
+  }
+  const Result<std::string> made = with_dynamics(file_, *arm, "of a test");
+  ASSERT_TRUE(made) << describe(made.error());
+  EXPECT_NE(made->find("<!-- of a test -->"), std::string::npos);
+  const Result<Arm> back = read_text(*made);
+  ASSERT_TRUE(back) << describe(back.error());
+  EXPECT_EQ(back->joints, arm->joints);
+  EXPECT_EQ(back->links, arm->links);
+  EXPECT_EQ(back->params.joints[0].limits.effort_N_m, 40.0);
+  const arm::Chain written = *arm::Chain::make(arm->params);
+  const arm::Chain read = *arm::Chain::make(back->params);
+  for (int i = 0; i < 20; ++i) {
+    const JointVector q = random.vector(3, 2.0);
+    const JointVector v = random.vector(3, 2.0);
+    const JointVector a = random.vector(3, 20.0);
+    EXPECT_LT(arm::apart(Eigen::VectorXd(read.motor_torque(q, v, a)), Eigen::VectorXd(written.motor_torque(q, v, a))),
+              1e-12);
+  }
+  const auto count = [](const std::string& in, std::string_view word) {
+    int found = 0;
+    for (std::size_t at = in.find(word); at != std::string::npos; at = in.find(word, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count(*made, "<mesh"), count(text, "<mesh"));
+  EXPECT_EQ(count(*made, "<inertial>"), 4);  // the base's, which does not move, and one for each joint
 }
 
 TEST_F(Urdf, AGripperIsLeftOutByTheNameOfTheTip) {

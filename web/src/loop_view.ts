@@ -1,8 +1,9 @@
-import { dragWithPointer, moveWithKeys, type Place } from './operator/inputs';
-import { highest_m, lowest_m, type Hand } from './operator/hand';
+import { armKeys, axisKeys, dragWithPointer, moveWithKeys, type Place } from './operator/inputs';
+import { axisReach, type Hand, type HandPoint } from './operator/hand';
 import { Plot, type PlotData } from './plots/plot';
 import * as descriptions from './plots/descriptions';
 import type { SignalName } from './protocol/messages';
+import type { ArmScene } from './scene/arm_scene';
 import { compact, drawScene, fitCanvas, roomy, type Layout } from './scene/scene';
 import { scaleFor } from './scene/scale';
 import { signalIndex, type Loop } from './state/loop';
@@ -25,6 +26,10 @@ const blur_s = 0.05;
 const forceMemory_s = 0.1;
 /** The meter reaches to this, or to half as much again as the motor displays. */
 const meterFull_N = 2;
+const armMeterFull_N = 20;
+/** Heights of the picture of arms, in pixels. */
+const armHeight = 320;
+const compactArmHeight = 170;
 const textEvery_s = 0.25;
 /** On a phone two loops are in sight together, so each gets less height. */
 const phone = matchMedia('(max-width: 600px)');
@@ -49,6 +54,7 @@ export class LoopView {
   private textIsDue = false;
   private peak_N = 0;
   private width = 0;
+  private arms: ArmScene | undefined;
 
   constructor(
     side: Side,
@@ -67,12 +73,14 @@ export class LoopView {
     this.handle = this.find('.handle');
     this.handle.id = `handle-${side}`;
     this.handle.setAttribute('aria-label', `Your handle, ${side} loop, in millimetres`);
-    this.handle.setAttribute('aria-valuemin', String(1e3 * lowest_m));
-    this.handle.setAttribute('aria-valuemax', String(1e3 * highest_m));
+    this.tellReach();
     const place: Place = {
-      millimetresPerPixel: () => 1 / scaleFor(this.width).pixelsPerMillimetre,
-      handle_m: () => loop.state.hand_position_m,
+      dragged_m: (right, down) => this.dragged_m(right, down),
+      handle_m: () => [loop.state.hand_position_m, 0, 0],
       wall_m: () => loop.state.wall_position_m,
+      get keySteps() {
+        return hand.reach === axisReach ? axisKeys : armKeys;
+      },
     };
     dragWithPointer(this.find('.scene'), hand, place);
     moveWithKeys(this.handle, hand, place, tap);
@@ -82,7 +90,8 @@ export class LoopView {
   /** Draws everything as it is now. */
   draw(now_s: number, { plotsToo, hint, connected }: Moment): void {
     const layout = phone.matches && document.body.dataset.mode === 'both' ? compact : roomy;
-    this.width = fitCanvas(this.canvas, this.context, layout);
+    const height = this.arms ? (layout === compact ? compactArmHeight : armHeight) : layout.height;
+    this.width = fitCanvas(this.canvas, this.context, height);
     const { trace } = this.loop;
     const handForce_N = connected ? magnitudes(trace.extremes(signalIndex('hand_force_n'), trace.latest - blur_s)) : none;
     this.textIsDue = now_s - this.textAt_s >= textEvery_s;
@@ -90,8 +99,14 @@ export class LoopView {
     this.drawVerdict({ atWall_N, onHand_N: handForce_N[1] }, connected);
     if (this.textIsDue) this.textAt_s = now_s;
     this.drawMeter(handForce_N);
-    this.drawHand(layout, hint, connected);
+    this.drawHand(layout, height, hint, connected);
     if (plotsToo) this.drawPlots(now_s);
+  }
+
+  /** Draws arms from now on; without any, one axis. */
+  drawArms(arms: ArmScene | undefined): void {
+    this.arms = arms;
+    this.tellReach();
   }
 
   rename(name: string): void {
@@ -101,6 +116,16 @@ export class LoopView {
   /** Shows or hides all of it. */
   show(visible: boolean): void {
     for (const element of [this.element, this.positions.element, this.forces.element]) element.hidden = !visible;
+  }
+
+  private tellReach(): void {
+    const [lowest_m, highest_m] = this.hand.reach[0];
+    this.handle.setAttribute('aria-valuemin', String(1e3 * lowest_m));
+    this.handle.setAttribute('aria-valuemax', String(1e3 * highest_m));
+  }
+
+  private dragged_m(right: number, down: number): HandPoint {
+    return this.arms?.dragged_m(right, down) ?? [(1e-3 * right) / scaleFor(this.width).pixelsPerMillimetre, 0, 0];
   }
 
   private find<Kind extends HTMLElement = HTMLElement>(selector: string): Kind {
@@ -129,7 +154,7 @@ export class LoopView {
   private drawMeter([low, high]: readonly [number, number]): void {
     const { trace, state } = this.loop;
     const { forceLimit_N } = state;
-    const full_N = Math.max(meterFull_N, 1.5 * forceLimit_N);
+    const full_N = Math.max(this.arms ? armMeterFull_N : meterFull_N, 1.5 * forceLimit_N);
     this.peak_N = Math.max(high, this.peak_N * 0.985);
     const share = (force_N: number): number => Math.min(1, force_N / full_N);
     this.find('.meter-level').style.transform = `scaleX(${share(low)})`;
@@ -151,28 +176,36 @@ export class LoopView {
       forceLimit_N <= 0 ? '' : atLimit ? `The motor is at its limit of ${limit}.` : `The motor’s limit is ${limit}.`;
   }
 
-  private drawHand(layout: Layout, hint: boolean, connected: boolean): void {
+  private drawHand(layout: Layout, height: number, hint: boolean, connected: boolean): void {
     const { state, trace } = this.loop;
     const hand_m = this.hand.engaged ? this.hand.position_m : state.hand_position_m;
     const recent = (name: SignalName, since_s: number): [number, number] =>
       trace.extremes(signalIndex(name), trace.latest - since_s);
     const master_mm = orElse(recent('master_position_m', blur_s), 1e3 * state.master_position_m);
-    const displayed_N = magnitudes(recent('displayed_force_n', forceMemory_s))[1];
+    const displayed_N = connected ? magnitudes(recent('displayed_force_n', forceMemory_s))[1] : 0;
+    const contact_N = connected ? Math.max(0, recent('slave_force_n', forceMemory_s)[1]) : 0;
+    const rings = this.element.dataset.verdict === 'rings';
+    if (this.textIsDue) this.describeHandle(hand_m);
+    if (this.arms) {
+      const content = { arms: this.loop.arms, engaged: this.hand.engaged, displayed_N, contact_N, rings, hint };
+      const [x, y] = this.arms.draw(this.context, this.width, height, content);
+      this.handle.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      return;
+    }
     drawScene(this.context, this.width, layout, {
       hand_mm: 1e3 * hand_m,
       engaged: this.hand.engaged,
       master_mm,
       slave_mm: orElse(recent('slave_position_m', blur_s), 1e3 * state.slave_position_m),
       wall_mm: 1e3 * state.wall_position_m,
-      displayed_N: connected ? displayed_N : 0,
-      clips: connected && clips(displayed_N, state.forceLimit_N),
-      contact_N: connected ? Math.max(0, recent('slave_force_n', forceMemory_s)[1]) : 0,
-      rings: this.element.dataset.verdict === 'rings',
+      displayed_N,
+      clips: clips(displayed_N, state.forceLimit_N),
+      contact_N,
+      rings,
       hint,
     });
     const x = scaleFor(this.width).x((master_mm[0] + master_mm[1]) / 2);
     this.handle.style.transform = `translate(${x.toFixed(1)}px, ${layout.master - roomy.master}px)`;
-    if (this.textIsDue) this.describeHandle(hand_m);
   }
 
   private describeHandle(hand_m: number): void {

@@ -8,7 +8,7 @@ import { keepLink } from './controls/link';
 import { buildControls, restoreWith } from './controls/parameters';
 import { element, HealthLine, showConnection, showIntroduction, showNotices, showSound } from './controls/status';
 import { LoopView } from './loop_view';
-import { Hand } from './operator/hand';
+import { armReach, axisReach, Hand } from './operator/hand';
 import { GamepadInput } from './operator/inputs';
 import * as descriptions from './plots/descriptions';
 import { Plot } from './plots/plot';
@@ -77,6 +77,26 @@ const showMode = (): void => {
 };
 showMode();
 session.on('parameters', showMode);
+
+let drawn = '';
+/** What draws arms is fetched where arms are served. */
+async function drawArms(): Promise<void> {
+  const { arms } = session;
+  const told = JSON.stringify(arms ?? null);
+  if (told === drawn) return;
+  drawn = told;
+  hand.release();
+  hand.reach = arms ? armReach : axisReach;
+  document.body.dataset.kind = arms ? 'arms' : 'axis';
+  if (!arms) {
+    for (const view of views) view.drawArms(undefined);
+    return;
+  }
+  const { ArmScene } = await import('./scene/arm_scene');
+  if (told !== drawn) return;
+  for (const view of views) view.drawArms(new ArmScene(arms));
+}
+session.on('server', () => void drawArms());
 
 let held = false;
 const pause = element('pause');

@@ -1,25 +1,26 @@
 #pragma once
 
+#include <tactus/control/supervised_site.hpp>
 #include <tactus/devices/rig/rig.hpp>
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
 #include <tactus/station/device.hpp>
 #include <tactus/station/site_pair.hpp>
 
+#include <cstdint>
+
 /// A pair of a rig as two arms, each driven by a site that knows all its joints (`tactus/arm_control/arm_sites.hpp`).
 /// What is believed of the arms is what `arm-tapping` simulates. Nothing here is real-time safe.
 namespace tactus::devices {
 
-/// The pair with its joints in the order of the arm's, from the base on, then those that the arm does not have, such as
-/// that of a gripper. They are told by their names.
+/// The pair, or the one side of it that the file has, with its joints in the order of the arm's, from the base on, then
+/// those that the arm does not have, such as that of a gripper. They are told by their names.
 ///
 /// Errors, whose parameters are those of the rig's file: `inconsistent` for a joint that the arm does not have where
 /// the experiment has no gains for it (`rig.gripper`), one that slides or gives no force, and limits below the gains
 /// that the sites ask of a drive; `missing` for a joint of the arm that the rig does not have.
 Result<RigPair> as_arms(const RigPair& pair, const experiments::ArmPairSetup& setup);
 
-/// The sites under supervision, before devices with these limits: their gates are within them, and so is the torque
-/// that the sites believe to have. Errors, whose parameters are those of `arm-tapping`'s file: a limit of a gate that
-/// nobody chose; `inconsistent` for four-channel control; those of the sites and of their supervision.
+/// Both sites under supervision, on one clock. Errors: those of `experiments::supervise_arms`.
 Result<station::JointSupervisedPair> arm_sites(const experiments::ArmPairSetup& setup,
                                                const Joints<station::DeviceLimits>& leader,
                                                const Joints<station::DeviceLimits>& follower);

@@ -110,23 +110,9 @@ bool RigLoop::operator()(const station::Tick& tick) noexcept {
 void RigLoop::note_troubles() noexcept {
   second_.leader_health = leader_->health();
   second_.follower_health = follower_->health();
-  const auto note = [](DeviceTrouble& worst, const DeviceTrouble& now) {
-    if (now.what > worst.what || (now.what == worst.what && now.age_s > worst.age_s)) worst = now;
-  };
   note(second_.leader_trouble, leader_->trouble());
   note(second_.follower_trouble, follower_->trouble());
-  switch (std::max(second_.leader_health, second_.follower_health)) {
-    case station::DeviceHealth::good:
-      return;
-    case station::DeviceHealth::degraded:
-      ++totals_.late_ticks;
-      return;
-    case station::DeviceHealth::silent:
-      ++totals_.silent_ticks;
-      return;
-    case station::DeviceHealth::lost:
-      ++totals_.lost_ticks;
-  }
+  count(totals_, std::max(second_.leader_health, second_.follower_health));
 }
 
 /// The first fault that a gate has latched.
@@ -147,13 +133,11 @@ void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) no
   const auto leader = static_cast<SiteState>(done.master.output.record.state);
   const auto follower = static_cast<SiteState>(done.slave.output.record.state);
   const auto cause = [](std::int64_t number) { return static_cast<control::SiteCause>(number); };
-  if (leader == SiteState::armed && second_.leader != SiteState::armed) ++totals_.armings;
-  if (leader == SiteState::hold && second_.leader != SiteState::hold) ++totals_.holds;
+  count(totals_, second_.leader, leader);
   second_.leader = leader;
   second_.follower = follower;
   // The one that only went with the other knows no cause.
-  const bool stopped = follower == SiteState::hold || follower == SiteState::fault;
-  const bool of_follower = stopped && cause(done.slave.output.record.cause) != control::SiteCause::peer;
+  const bool of_follower = stands(follower) && cause(done.slave.output.record.cause) != control::SiteCause::peer;
   second_.cause = cause(of_follower ? done.slave.output.record.cause : done.master.output.record.cause);
   note_troubles();
   note_fault();
@@ -165,17 +149,8 @@ void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) no
   if (active_) ++totals_.active_ticks;
   totals_.duration_s = second_.time_s = console_.time_s();
   if (!console_.ends_second()) return;
-  shared_->seconds.try_push(second_);
-  second_.most_torque = 0.0;
-  // What stopped them is told until they are armed again.
-  const auto stands = [](SiteState state) { return state == SiteState::hold || state == SiteState::fault; };
-  if (!stands(leader) && !stands(follower)) second_.leader_trouble = second_.follower_trouble = {};
-}
-
-std::optional<RigSecond> RigLoop::next_second() noexcept {
-  RigSecond second;
-  if (!shared_->seconds.try_pop(second)) return std::nullopt;
-  return second;
+  shared_->try_push(second_);
+  begin_anew(second_, stands(leader) || stands(follower));
 }
 
 }  // namespace tactus::devices

@@ -2,6 +2,7 @@
 
 #include <tactus/control/architecture.hpp>
 #include <tactus/devices/motor_bus_device.hpp>
+#include <tactus/devices/rig/rig_second.hpp>
 #include <tactus/runtime/joint_streams.hpp>
 #include <tactus/runtime/site_console.hpp>
 #include <tactus/station/local_teleoperator.hpp>
@@ -12,30 +13,6 @@
 #include <optional>
 
 namespace tactus::devices {
-
-/// One second of a pair, for the display. States and causes are those of its end.
-struct RigSecond {
-  double time_s = 0.0;
-  control::SiteState leader = control::SiteState::configure, follower = control::SiteState::configure;
-  control::SiteCause cause =
-      control::SiteCause::started;  ///< of the leader, or of the follower where that stopped by itself
-  station::DeviceHealth leader_health = station::DeviceHealth::good, follower_health = station::DeviceHealth::good;
-  DeviceTrouble leader_trouble, follower_trouble;       ///< the worst of the second, or since they stand
-  control::GateFault fault = control::GateFault::none;  ///< what a gate latched, of the leader first
-  bool fault_of_leader = false;
-  std::size_t fault_joint = 0;
-  double most_torque = 0.0;  ///< of any motor of the second, either way
-  double farthest = 0.0;     ///< of a joint from its leader
-  std::size_t joint = 0;     ///< which one
-  bool too_far = false;      ///< so that nobody can arm
-};
-
-/// What a pair went through.
-struct RigTotals {
-  double duration_s = 0.0;
-  std::int64_t ticks = 0, active_ticks = 0, armings = 0, holds = 0;
-  std::int64_t late_ticks = 0, silent_ticks = 0, lost_ticks = 0;  ///< of the worse device
-};
 
 /// A leader and a follower of several joints on one computer, supervised: the step of a servo thread. No motor has
 /// power until somebody arms, and nobody can while a joint of the follower is farther from its leader than it may be.
@@ -66,12 +43,9 @@ class RigLoop {
   /// After the last tick.
   [[nodiscard]] const RigTotals& totals() const noexcept { return totals_; }
   /// The seconds that ended, as they end. One other thread.
-  [[nodiscard]] std::optional<RigSecond> next_second() noexcept;
+  [[nodiscard]] std::optional<RigSecond> next_second() noexcept { return next_of(*shared_); }
 
  private:
-  struct Shared {
-    telemetry::Ring<RigSecond, 64> seconds;
-  };
   RigLoop(Seconds tick, const Params& params, runtime::SiteExchange& exchange, MotorBusDevice& leader,
           MotorBusDevice& follower, const Joints<double>& scales, station::JointLocalTeleoperator pair);
   [[nodiscard]] control::SiteRequests asked(const control::SiteRequests& pressed) noexcept;
@@ -86,7 +60,7 @@ class RigLoop {
   Joints<double> scales_;
   station::JointLocalTeleoperator pair_;
   runtime::JointStreams* streams_ = nullptr;
-  std::shared_ptr<Shared> shared_ = std::make_shared<Shared>();
+  std::shared_ptr<RigSeconds> shared_ = std::make_shared<RigSeconds>();
   Joints<station::DeviceReading> leader_read_, follower_read_;
   RigSecond second_;
   RigTotals totals_;

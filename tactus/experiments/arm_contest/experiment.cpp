@@ -53,7 +53,9 @@ report::Page arm_contest_page(const Request& request, const std::string& verdict
        {"felt",
         "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS, at gain 1 and at the limit; "
         "median. What does not grow with the gain does not display the contact, however large its limit."},
-       {"lag", "Farthest that the tools are apart in a reach of 200 mm in 0.75 s that meets nothing."},
+       {"lag",
+        "Farthest of the follower's tool from where the leader's joints would have it, in a reach of 200 mm in 0.75 s "
+        "that meets nothing."},
        {"effort", "Force of the hand's spring and damper along that reach, RMS."},
        {"use",
         "The method of which the hand that feels least feels most at its limit; nearly as much: within a factor √2."}});

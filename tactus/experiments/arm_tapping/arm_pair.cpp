@@ -1,14 +1,16 @@
 #include <tactus/arm_control/arm_sites.hpp>
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
-#include <tactus/experiments/arm_tapping/described_arm.hpp>
 #include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/random.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <string>
 #include <utility>
+
+#include <Eigen/Cholesky>
 
 namespace tactus::experiments {
 
@@ -37,10 +39,36 @@ Vector3 outward_of(TapDirection direction) {
   return Vector3::UnitZ();
 }
 
+using MovesTool = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, arm::most>;
+
+/// The part of the Jacobian that moves the tool's point.
+MovesTool moves_tool(const arm::Chain& chain, const JointVector& position, const Vector3& tool_m) {
+  return chain.jacobian(position, chain.joints() - 1, tool_m).topRows<3>();
+}
+
+Vector3 tool_at(const arm::Chain& chain, const JointVector& position, const Vector3& tool_m) {
+  const arm::LinkPose last = chain.poses(position)[static_cast<std::size_t>(chain.joints() - 1)];
+  return last.rotation * tool_m + last.position_m;
+}
+
+/// The force at the tool whose torques are nearest to these, by least squares; what no force at the tool does is left
+/// out.
+Vector3 force_nearest_to(const MovesTool& moves, const JointVector& torque) {
+  // A singular pose moves the tool nowhere along some axis: nothing of the torque is seen there.
+  constexpr double least_m2 = 1e-9;
+  const arm::Matrix3 squared = moves * moves.transpose() + least_m2 * arm::Matrix3::Identity();
+  return squared.ldlt().solve(moves * torque);
+}
+
 /// How slowly the tool moves at least, for one rad/s of all joints together: 0 where the pose is singular.
 double slowest_m_per_rad(const arm::Chain& chain, const JointVector& position, const Vector3& tool_m) {
-  const auto moving = chain.jacobian(position, chain.joints() - 1, tool_m).topRows<3>().eval();
+  const MovesTool moving = moves_tool(chain, position, tool_m);
   return std::sqrt(std::max(0.0, signal::symmetric_eigenvalues(moving * moving.transpose())[0]));
+}
+
+/// The same of an arm as it is described, where its chain is sound.
+double slowest_m_per_rad(const DescribedArm& of, const JointVector& position) {
+  return slowest_m_per_rad(*arm::Chain::make(of.arm.chain), position, of.arm.tool_m);
 }
 
 /// Puts the start of `setup` at the pose and the surface in the direction that its task asks for.
@@ -49,16 +77,16 @@ Check take_pose(ArmPairSetup& setup) {
   constexpr double least_share = 0.75;
   setup.outward = outward_of(setup.params.task.direction);
   if (setup.params.task.pose == 0) return std::nullopt;
-  const auto chain = arm::Chain::make(setup.arm.chain);
-  if (!chain) return chain.error();
-  const double least = least_share * slowest_m_per_rad(*chain, setup.start, setup.arm.tool_m);
+  const auto far_from_singular = [&](const DescribedArm& of, const JointVector& position) {
+    return slowest_m_per_rad(of, position) >= least_share * slowest_m_per_rad(of, of.start);
+  };
   signal::Random random = signal::Random(0).fork(static_cast<std::uint64_t>(setup.params.task.pose));
   constexpr int most_draws = 1000;
   for (int draw = 0; draw < most_draws; ++draw) {
-    JointVector drawn = setup.start;
+    JointVector drawn = setup.leader.start;
     for (double& joint : drawn) joint += random.uniform(-within_rad, within_rad);
-    if (slowest_m_per_rad(*chain, drawn, setup.arm.tool_m) < least) continue;
-    setup.start = drawn;
+    if (!far_from_singular(setup.leader, drawn) || !far_from_singular(setup.follower, drawn)) continue;
+    setup.leader.start = setup.follower.start = drawn;
     return std::nullopt;
   }
   return Error{.code = ErrorCode::inconsistent,
@@ -68,99 +96,147 @@ Check take_pose(ArmPairSetup& setup) {
                .place = {}};
 }
 
+/// `ArmPairSetup::tool_scale` of arms that differ: the leader's tool goes outward and keeps its attitude, by the least
+/// motion of its joints.
+Result<double> tool_scale(const ArmPairSetup& setup) {
+  const auto jacobian = [&](const DescribedArm& of) {
+    const arm::Chain chain = *arm::Chain::make(of.arm.chain);
+    return chain.jacobian(of.start, chain.joints() - 1, of.arm.tool_m);
+  };
+  constexpr double singular = 1e-6;  // below this, squared, a motion of the leader's tool is left out
+  const arm::Jacobian leader = jacobian(setup.leader);
+  Eigen::Matrix<double, 6, 1> outward = Eigen::Matrix<double, 6, 1>::Zero();
+  outward.head<3>() = setup.outward;
+  const Eigen::MatrixXd moves = leader * leader.transpose() + singular * Eigen::Matrix<double, 6, 6>::Identity();
+  const Vector3 follows =
+      (jacobian(setup.follower) * (leader.transpose() * signal::solve_definite(moves, outward))).head<3>();
+  const double along = follows.dot(setup.outward);
+  const double aside = (follows - along * setup.outward).norm();
+  if (along > 0.0 && aside <= along) return along;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "arm.follower.urdf",
+               .message = "as the leader's tool goes to the surface, the follower's goes at " +
+                          std::to_string(std::lround(std::atan2(aside, along) * 180.0 / std::numbers::pi)) +
+                          " degrees from there, and at most 45 do: both arms need the same zero and sense of each "
+                          "joint and bases turned alike, and a start_rad at which neither arm is stretched",
+               .place = {}};
+}
+
 }  // namespace
 
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder) {
-  const auto described = describe_arm(params.arm, folder);
+  auto described = describe_pair(params.arm, folder);
   if (!described) return described.error();
-  const std::size_t joints = described->arm.motors.size();
-  ArmPairSetup setup{
-      .params = params, .joints = described->joints, .arm = described->arm, .induced = {}, .start = described->start};
-  JointVector stiffness = setup.start;
-  JointVector damping = setup.start;
-  for (std::size_t i = 0; i < joints; ++i) {
-    const auto at = static_cast<Eigen::Index>(i);
-    stiffness[at] = setup.arm.motors[i].joint_stiffness_N_m_per_rad;
-    damping[at] = setup.arm.motors[i].joint_damping_N_m_s_per_rad;
+  ArmPairSetup setup{.params = params,
+                     .leader = std::move(described->leader),
+                     .follower = std::move(described->follower),
+                     .exact = {}};
+  for (DescribedArm* arm : {&setup.leader, &setup.follower}) {
+    if (const auto chain = arm::Chain::make(arm->arm.chain); !chain) return under("arm", chain.error());
+    arm->arm.step_s = 1.0 / (params.servo.rate_Hz * steps_in_a_tick(params.servo));
   }
-  setup.induced = {.chain = setup.arm.chain,
-                   .tool_m = setup.arm.tool_m,
-                   .joint_stiffness_N_m_per_rad = stiffness,
-                   .joint_damping_N_m_s_per_rad = damping};
+  setup.exact = {.induced = {.chain = setup.leader.arm.chain,
+                             .tool_m = setup.leader.arm.tool_m,
+                             .joint_stiffness_N_m_per_rad = setup.leader.joint_stiffness_N_m_per_rad(),
+                             .joint_damping_N_m_s_per_rad = setup.leader.joint_damping_N_m_s_per_rad()},
+                 .hand = params.control.model.hand,
+                 .follower_joint_stiffness_N_m_per_rad = setup.follower.joint_stiffness_N_m_per_rad()};
   if (Check wrong = take_pose(setup)) return *std::move(wrong);
-  setup.arm.step_s = 1.0 / (params.servo.rate_Hz * steps_in_a_tick(params.servo));
+  if (differs(params.arm)) {
+    const auto scale = tool_scale(setup);
+    if (!scale) return scale.error();
+    setup.tool_scale = *scale;
+  }
   return setup;
 }
 
-ArmPair::ArmPair(const ArmPairSetup& setup, ArmDevice leader, ArmDevice follower, arm_plants::Person person,
-                 station::JointBarePair sites, double wall_m)
+ArmPair::ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, ArmDevice leader, ArmDevice follower,
+                 const std::optional<arm::Chain>& other_follower, arm_plants::Person person,
+                 station::JointBarePair sites, double wall_m, const mechanics::Environment& contact)
     : tick_s_(1.0 / setup.params.servo.rate_Hz),
       steps_(steps_in_a_tick(setup.params.servo)),
-      step_s_(setup.arm.step_s),
+      step_s_(setup.leader.arm.step_s),
       leader_(std::move(leader)),
       follower_(std::move(follower)),
       person_(std::move(person)),
       sites_(std::move(sites)),
+      leader_chain_(leader_chain),
+      leader_tool_m_(setup.leader.arm.tool_m),
       outward_(setup.outward),
-      began_m_(follower_.plant().tool().position_m),
-      wall_{.point_m = began_m_ + wall_m * outward_,
-            .normal = outward_,
-            .stiffness_N_per_m = setup.params.wall.stiffness_N_per_m,
-            .damping_N_s_per_m = setup.params.wall.damping_N_s_per_m} {
+      tool_scale_(setup.tool_scale),
+      leader_began_m_(leader_.plant().tool().position_m),
+      follower_began_m_(follower_.plant().tool().position_m),
+      other_follower_(other_follower),
+      follower_tool_m_(setup.follower.arm.tool_m),
+      wall_{.point_m = follower_began_m_ + wall_m * outward_, .normal = outward_, .contact = contact} {
   // As long before: both sites at rest, and their commands on the buses.
   station::JointBarePair at_rest = sites_;
-  at_rest.step(leader_, follower_, {}, 1.0);
+  latest_ = at_rest.step(leader_, follower_, {}, 1.0);
 }
 
-Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const arm_control::InducedMotion::Arm& induced,
-                              const arm::HandImpedance& hand, double wall_m) {
+Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmBeliefs& beliefs, double wall_m) {
   const ArmTappingParams& params = setup.params;
+  const ArmPlant::Params &leads = setup.leader.arm, &follows = setup.follower.arm;
   const Seconds tick{1.0 / params.servo.rate_Hz};
-  ArmPlant::Params held = setup.arm;
+  ArmPlant::Params held = leads;
   held.carried_kg = params.person.hand.mass_kg;
-  auto leader = ArmPlant::make(held, setup.start);
+  auto leader = ArmPlant::make(held, setup.leader.start);
   if (!leader) return under("arm", leader.error());
-  auto follower = ArmPlant::make(setup.arm, setup.start);
-  if (!follower) return under("arm", follower.error());
+  auto follower = ArmPlant::make(follows, setup.follower.start);
+  if (!follower) return under(differs(params.arm) ? "arm.follower" : "arm", follower.error());
   auto person = arm_plants::Person::make(params.person, tick, leader->tool());
   if (!person) return under("operator", person.error());
-  const Joints<arm_control::DriveGains> gains = params.control.follower.gains.of(setup.arm.chain.joints.size());
+  const std::size_t joints = leads.chain.joints.size();
   arm_control::ArmLeader::Params control = params.control;
-  control.model.hand = hand;
-  const std::size_t joints = setup.arm.chain.joints.size();
+  control.model.hand = beliefs.hand;
   const Joints<control::SafetyGate::Params> gates(joints, arm_control::widest_gate());
-  auto leader_site =
-      arm_control::leader_site(control, {.carried = setup.arm.chain, .induced = induced, .gains = gains}, gates, tick);
+  auto leader_site = arm_control::leader_site(
+      control, {.carried = leads.chain, .induced = beliefs.induced, .gains = params.control.follower.gains.of(joints)},
+      gates, tick);
   if (!leader_site) return under("control", leader_site.error());
-  arm_control::ArmFollower::Arm follows{.chain = setup.arm.chain,
-                                        .tool_m = setup.arm.tool_m,
-                                        .joint_stiffness_N_m_per_rad = induced.joint_stiffness_N_m_per_rad};
+  arm_control::ArmFollower::Arm known{.chain = follows.chain,
+                                      .tool_m = follows.tool_m,
+                                      .joint_stiffness_N_m_per_rad = beliefs.follower_joint_stiffness_N_m_per_rad};
   if (params.control.method == arm_control::ArmMethod::four_channel) {
-    follows.four_channel =
+    known.four_channel =
         arm_control::FourChannelCoupling{.params = params.control.four_channel, .gain = params.control.force_gain};
   }
-  auto follower_site = arm_control::follower_site(params.control.follower, follows, gates, tick);
+  auto follower_site = arm_control::follower_site(params.control.follower, known, gates, tick);
   if (!follower_site) return under("control.follower", follower_site.error());
   Joints<double> start(joints);
-  for (std::size_t i = 0; i < joints; ++i) start[i] = setup.start[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < joints; ++i) start[i] = setup.leader.start[static_cast<Eigen::Index>(i)];
   auto sites = station::JointBarePair::around(*std::move(leader_site), *std::move(follower_site), {}, tick, start);
   if (!sites) return sites.error();
   const Joints<station::DeviceLimits> no_limits(joints);
-  return ArmPair(setup, {*std::move(leader), no_limits}, {*std::move(follower), no_limits}, *std::move(person),
-                 *std::move(sites), wall_m);
+  const auto contact = mechanics::Environment::make(params.wall.environment(), tick);
+  if (!contact) return under("wall", contact.error());
+  const auto leader_chain = arm::Chain::make(leads.chain);
+  if (!leader_chain) return under("arm", leader_chain.error());
+  std::optional<arm::Chain> other_follower;
+  if (differs(params.arm)) other_follower = *arm::Chain::make(follows.chain);
+  return ArmPair(setup, *leader_chain, {*std::move(leader), no_limits}, {*std::move(follower), no_limits},
+                 other_follower, *std::move(person), *std::move(sites), wall_m, *contact);
 }
 
-ArmRecord ArmPair::step(const Vector3& path_m, const Vector3& path_at_next_tick_m) {
+double ArmPair::apart_m(const ToolState& leader, const ToolState& follower) const {
+  const Vector3 wanted_m = other_follower_
+                               ? tool_at(*other_follower_, leader_.plant().link_position(), follower_tool_m_)
+                               : leader.position_m;
+  return (wanted_m - follower.position_m).norm();
+}
+
+ArmRecord ArmPair::step(const Vector3& path_m, const Vector3& path_at_next_tick_m, double share) {
   const ToolState at_leader = leader_.plant().tool();
   const ToolState at_follower = follower_.plant().tool();
   follower_.touches({.force_N = wall_.force_N(at_follower)});
-  sites_.step(leader_, follower_, {.number = tick_++}, 1.0);
-  person_.begin_tick(began_m_ + path_m, began_m_ + path_at_next_tick_m, at_leader);
+  latest_ = sites_.step(leader_, follower_, {.number = tick_++}, share);
+  person_.begin_tick(leader_began_m_ + path_m / tool_scale_, leader_began_m_ + path_at_next_tick_m / tool_scale_,
+                     at_leader);
 
   ArmRecord record{.hand_N = -person_.force(at_leader, 0.0).force_N.dot(outward_),
-                   .leader_m = (at_leader.position_m - began_m_).dot(outward_),
-                   .follower_m = (at_follower.position_m - began_m_).dot(outward_),
-                   .tools_apart_m = (at_leader.position_m - at_follower.position_m).norm()};
+                   .leader_m = (at_leader.position_m - leader_began_m_).dot(outward_),
+                   .follower_m = (at_follower.position_m - follower_began_m_).dot(outward_),
+                   .tools_apart_m = apart_m(at_leader, at_follower)};
   for (int i = 0; i < steps_; ++i) {
     leader_.step(person_.force(leader_.plant().tool(), i * step_s_));
     const ToolForce contact{.force_N = wall_.force_N(follower_.plant().tool())};
@@ -168,6 +244,42 @@ ArmRecord ArmPair::step(const Vector3& path_m, const Vector3& path_at_next_tick_
     follower_.step(contact);
   }
   return record;
+}
+
+ArmSight ArmPair::sight() const {
+  const auto joints = static_cast<std::size_t>(leader_chain_.joints());
+  JointVector displayed(leader_chain_.joints());
+  JointVector told = displayed;
+  JointVector induced = displayed;
+  JointVector commanded = displayed;
+  for (std::size_t i = 0; i < joints; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    const station::DeviceReading& read = latest_.master.reading[i];
+    const control::MasterOutput& site = latest_.master.output[i];
+    displayed[at] =
+        site.motor_force_N - site.support_N + site.law.force_N(read.position_m, read.motor_tells.velocity_m_per_s);
+    told[at] = -latest_.slave.output[i].message.force_N;
+    induced[at] = site.induced_position_m;
+    commanded[at] = site.message.position_m;
+  }
+  const arm::Chain& follower_chain = other_follower_ ? *other_follower_ : leader_chain_;
+  const JointVector leader_rad = leader_.plant().link_position();
+  const JointVector follower_rad = follower_.plant().link_position();
+  const MovesTool at_leader = moves_tool(leader_chain_, leader_rad, leader_tool_m_);
+  return {.leader_rad = leader_rad,
+          .follower_rad = follower_rad,
+          .leader_m = leader_.plant().tool().position_m,
+          .follower_m = follower_.plant().tool().position_m,
+          .displayed_N = force_nearest_to(at_leader, displayed),
+          .told_N = force_nearest_to(moves_tool(follower_chain, follower_rad, follower_tool_m_), told),
+          .induced_m = at_leader * induced,
+          .command_m = tool_at(follower_chain, commanded, follower_tool_m_)};
+}
+
+void ArmPair::exchange(ArmPair& made, const Parts& parts) noexcept {
+  if (parts.hand) person_.exchange_hand(made.person_);
+  if (parts.wall) std::swap(wall_, made.wall_);
+  if (parts.controllers) sites_.exchange_controllers(made.sites_);
 }
 
 bool ArmPair::healthy() const { return leader_.plant().healthy() && follower_.plant().healthy(); }

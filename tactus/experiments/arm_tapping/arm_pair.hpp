@@ -1,27 +1,36 @@
 #pragma once
 
 #include <tactus/arm_plants/arm_device.hpp>
-#include <tactus/experiments/arm_tapping/params.hpp>
+#include <tactus/experiments/arm_tapping/described_arm.hpp>
 #include <tactus/station/site_pair.hpp>
 
 #include <cstdint>
 #include <filesystem>
-#include <string>
-#include <vector>
+#include <optional>
 
 namespace tactus::experiments {
 
-/// All that a pair is made of, read and checked.
-struct ArmPairSetup {
-  ArmTappingParams params;
-  std::vector<std::string> joints;  ///< their names, from the base on
-  arm_plants::ArmPlant::Params arm;
-  arm_control::InducedMotion::Arm induced;  ///< the same arm, without error
-  arm::JointVector start;
-  arm::Vector3 outward = arm::Vector3::UnitZ();  ///< of the surface, in base axes
+/// What the sites believe of the arms and of the hand, as far as a tap draws errors of it.
+struct ArmBeliefs {
+  arm_control::InducedMotion::Arm induced;                ///< the leader, for the model of induced motion
+  arm::HandImpedance hand;                                ///< that holds it, for the same
+  arm::JointVector follower_joint_stiffness_N_m_per_rad;  ///< for an observer of elastic joints
 };
 
-/// Reads the URDF, from `folder` on. Errors: those of `urdf::read`; `missing` without a URDF; those of the parts.
+/// All that a pair is made of, read and checked. What the sites believe to carry and to resist the arms is exact.
+struct ArmPairSetup {
+  ArmTappingParams params;
+  DescribedArm leader;
+  DescribedArm follower;                         ///< the same as the leader, or another arm (`differs`)
+  ArmBeliefs exact;                              ///< beliefs without error, but that the hand is control.model.hand
+  arm::Vector3 outward = arm::Vector3::UnitZ();  ///< of the surface, along the axes of both bases
+  /// How far the follower's tool goes where the leader's goes outward, over that, at the start: 1 where they are alike,
+  /// 2 for a leader of half the follower's size. The task's speeds and depths are the follower's tool's.
+  double tool_scale = 1.0;
+};
+
+/// Reads the URDFs, from `folder` on. Errors: those of `describe_pair` and of the parts; `inconsistent` for a follower
+/// whose tool does not go where the leader's goes.
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder);
 
 /// What both tools did at a tick.
@@ -30,7 +39,23 @@ struct ArmRecord {
   double hand_N = 0.0;     ///< that the hand feels of its spring and damper, outward, at the tick's beginning
   double leader_m = 0.0;   ///< of the tools, outward from where they began
   double follower_m = 0.0;
-  double tools_apart_m = 0.0;  ///< between what the tools went from their starts
+  /// Between the follower's tool and where it would be with the leader's joints.
+  double tools_apart_m = 0.0;
+};
+
+/// What both arms are about, for who draws them: vectors along the axes of the bases, forces on the hand and the
+/// follower's tool. What a site says is that of the latest tick.
+struct ArmSight {
+  arm::JointVector leader_rad;  ///< of the links
+  arm::JointVector follower_rad;
+  arm::Vector3 leader_m;  ///< of the tools
+  arm::Vector3 follower_m;
+  /// What the leader's motors and their law do beside carrying the arm, as the force at the tool whose torques come
+  /// nearest to theirs.
+  arm::Vector3 displayed_N;
+  arm::Vector3 told_N;     ///< of what the follower's site tells of the torques that resist it, the same
+  arm::Vector3 induced_m;  ///< motion of the leader's tool that its site takes from the command
+  arm::Vector3 command_m;  ///< where the leader's site sends the follower's tool
 };
 
 /// Two simulated arms with their sites, the leader in a person's hand, in virtual time. The sites are bare, as the
@@ -41,19 +66,41 @@ struct ArmRecord {
 /// person aims; the arms step.
 class ArmPair {
  public:
-  /// `induced` is the arm that the model of induced motion believes in, in a hand as `hand`. The wall lies `wall_m`
-  /// outward from where the tools begin.
-  static Result<ArmPair> make(const ArmPairSetup& setup, const arm_control::InducedMotion::Arm& induced,
-                              const arm::HandImpedance& hand, double wall_m);
+  /// The wall lies `wall_m` outward from where the follower's tool begins.
+  static Result<ArmPair> make(const ArmPairSetup& setup, const ArmBeliefs& beliefs, double wall_m);
 
-  /// One tick, with where the person wants the tool now and a tick later, from where it began.
-  ArmRecord step(const arm::Vector3& path_m, const arm::Vector3& path_at_next_tick_m);
+  /// One tick, with where the person wants the follower's tool now and a tick later, from where it began; the hand goes
+  /// that over `ArmPairSetup::tool_scale`. `share` is that of what the controllers want, the arms' support with it; 0
+  /// lets go.
+  ArmRecord step(const arm::Vector3& path_m, const arm::Vector3& path_at_next_tick_m, double share = 1.0);
+  [[nodiscard]] ArmSight sight() const;
+
+  /// What `exchange` takes over.
+  struct Parts {
+    bool hand = false;         ///< spring and damper of the person; the mass is the arm's
+    bool wall = false;         ///< how hard it is; it stays where it is
+    bool controllers = false;  ///< of both sites
+    bool operator==(const Parts&) const = default;
+  };
+  /// Goes on with these parts of `made`, a pair of the same arms and clock that has not been stepped; `made` gets the
+  /// own ones. Arms stay where they are. Controllers are first brought to rest at this very instant
+  /// (`Site::exchange_controller`): as long as 1000 ticks of the sites. Between ticks; does not allocate.
+  void exchange(ArmPair& made, const Parts& parts) noexcept;
   [[nodiscard]] bool healthy() const;
+  /// Neither site commanded a torque at the latest tick.
+  [[nodiscard]] bool at_rest() const noexcept { return sites_.at_rest(); }
+  /// Where the tools began, along the axes of their bases.
+  [[nodiscard]] const arm::Vector3& leader_began_m() const noexcept { return leader_began_m_; }
+  [[nodiscard]] const arm::Vector3& follower_began_m() const noexcept { return follower_began_m_; }
+  /// `ArmPairSetup::tool_scale`.
+  [[nodiscard]] double tool_scale() const noexcept { return tool_scale_; }
   [[nodiscard]] double tick_s() const { return tick_s_; }
 
  private:
-  ArmPair(const ArmPairSetup& setup, arm_plants::ArmDevice leader, arm_plants::ArmDevice follower,
-          arm_plants::Person person, station::JointBarePair sites, double wall_m);
+  ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, arm_plants::ArmDevice leader,
+          arm_plants::ArmDevice follower, const std::optional<arm::Chain>& other_follower, arm_plants::Person person,
+          station::JointBarePair sites, double wall_m, const mechanics::Environment& contact);
+  [[nodiscard]] double apart_m(const arm_plants::ToolState& leader, const arm_plants::ToolState& follower) const;
 
   double tick_s_;
   int steps_;
@@ -62,9 +109,16 @@ class ArmPair {
   arm_plants::ArmDevice follower_;
   arm_plants::Person person_;
   station::JointBarePair sites_;
+  station::JointBarePair::Output latest_;
+  arm::Chain leader_chain_;  ///< to tell what joints do at the tool
+  arm::Vector3 leader_tool_m_;
   std::int64_t tick_ = 0;
   arm::Vector3 outward_;
-  arm::Vector3 began_m_;
+  double tool_scale_;
+  arm::Vector3 leader_began_m_;
+  arm::Vector3 follower_began_m_;
+  std::optional<arm::Chain> other_follower_;  ///< where it is another arm than the leader
+  arm::Vector3 follower_tool_m_;
   arm_plants::Wall wall_;
 };
 

@@ -19,7 +19,7 @@ constexpr double patience_s = 2.0;  ///< after the reach, for a follower that ha
 constexpr double given_time_s = 0.15;
 constexpr double window_s = 0.05;
 constexpr double end_s = 0.1;
-constexpr double farthest_m = 0.3;  ///< from where it began, for a tool that has not run away
+constexpr double farthest_m = 0.3;  ///< from where it began, for a follower's tool that has not run away
 
 std::size_t ticks_in(double duration_s, double tick_s) {
   return static_cast<std::size_t>(std::lround(duration_s / tick_s));
@@ -38,7 +38,7 @@ double drawn(double value, double error, signal::Random& random) {
 }
 
 void draw_errors(ArmTap& tap, double error, signal::Random& random) {
-  for (arm::JointParams& joint : tap.induced.chain.joints) {
+  for (arm::JointParams& joint : tap.beliefs.induced.chain.joints) {
     const double mass = drawn(1.0, error, random);
     arm::Body& body = joint.body;
     for (double arm::Body::*part :
@@ -50,10 +50,17 @@ void draw_errors(ArmTap& tap, double error, signal::Random& random) {
     joint.friction.coulomb_N_m = drawn(joint.friction.coulomb_N_m, error, random);
     joint.friction.viscous_N_m_s_per_rad = drawn(joint.friction.viscous_N_m_s_per_rad, error, random);
   }
-  for (double& stiffness : tap.induced.joint_stiffness_N_m_per_rad) stiffness = drawn(stiffness, error, random);
-  tap.hand.mass_kg = drawn(tap.hand.mass_kg, error, random);
-  tap.hand.stiffness_N_per_m = drawn(tap.hand.stiffness_N_per_m, error, random);
-  tap.hand.damping_N_s_per_m = drawn(tap.hand.damping_N_s_per_m, error, random);
+  auto& of_leader = tap.beliefs.induced.joint_stiffness_N_m_per_rad;
+  auto& of_follower = tap.beliefs.follower_joint_stiffness_N_m_per_rad;
+  for (Eigen::Index i = 0; i < of_leader.size(); ++i) {
+    const double share = drawn(1.0, error, random);
+    of_leader[i] *= share;
+    of_follower[i] *= share;
+  }
+  arm::HandImpedance& hand = tap.beliefs.hand;
+  hand.mass_kg = drawn(hand.mass_kg, error, random);
+  hand.stiffness_N_per_m = drawn(hand.stiffness_N_per_m, error, random);
+  hand.damping_N_s_per_m = drawn(hand.damping_N_s_per_m, error, random);
 }
 
 }  // namespace
@@ -101,18 +108,17 @@ Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const std::filesys
                         .start_time_s = rest_s,
                         .duration_s = mechanics::MinimumJerk::duration_for(2.0 * depth_m, speed_m_per_s)},
                .wall_m = -depth_m,
-               .induced = taps.setup_.induced,
-               .hand = params.control.model.hand};
+               .beliefs = taps.setup_.exact};
     draw_errors(tap, task.model_error, draw);
     taps.taps_.push_back(std::move(tap));
   }
   const ArmTap& first = taps.taps_.front();
-  if (const auto made = ArmPair::make(taps.setup_, first.induced, first.hand, first.wall_m); !made) return made.error();
+  if (const auto made = ArmPair::make(taps.setup_, first.beliefs, first.wall_m); !made) return made.error();
   return taps;
 }
 
-ArmTaps::Contact ArmTaps::run_once(const ArmPairSetup& setup, const ArmTap& tap, std::vector<ArmRecord>* trace) const {
-  ArmPair pair = *ArmPair::make(setup, tap.induced, tap.hand, tap.wall_m);
+ArmTaps::Contact ArmTaps::run_once(const ArmPairSetup& setup, const ArmTap& tap, ArmTrace* trace) const {
+  ArmPair pair = *ArmPair::make(setup, tap.beliefs, tap.wall_m);
   const double dt_s = pair.tick_s();
   std::vector<ArmRecord> records;
   std::size_t first_touch = 0;
@@ -129,16 +135,19 @@ ArmTaps::Contact ArmTaps::run_once(const ArmPairSetup& setup, const ArmTap& tap,
       first_touch = k;
       last = k + ticks_in(setup.params.task.observation_s, dt_s);
     }
-    diverged =
-        !pair.healthy() || !(std::fabs(record.leader_m) < farthest_m) || !(std::fabs(record.follower_m) < farthest_m);
+    if (trace != nullptr && touched && k == first_touch + ticks_in(pressing_after_s, dt_s)) {
+      trace->pressing = {record.contact_N, pair.sight()};
+    }
+    diverged = !pair.healthy() || !(std::fabs(record.leader_m) * setup.tool_scale < farthest_m) ||
+               !(std::fabs(record.follower_m) < farthest_m);
   }
   Contact found{.contact = {}, .diverged = diverged};
   if (touched) found.contact = judge_arm_contact(records, first_touch, dt_s);
-  if (trace != nullptr) trace->insert(trace->end(), records.begin(), records.end());
+  if (trace != nullptr) trace->records = std::move(records);
   return found;
 }
 
-ArmTapResult ArmTaps::run(std::size_t tap, std::vector<ArmRecord>* trace) const {
+ArmTapResult ArmTaps::run(std::size_t tap, ArmTrace* trace) const {
   return run_at(setup_.params.control.force_gain, tap, run_without_display(tap), trace);
 }
 
@@ -149,8 +158,7 @@ ArmContact ArmTaps::run_without_display(std::size_t tap) const {
   return run_once(without, taps_[tap], nullptr).contact;
 }
 
-ArmTapResult ArmTaps::run_at(double gain, std::size_t tap, const ArmContact& without_display,
-                             std::vector<ArmRecord>* trace) const {
+ArmTapResult ArmTaps::run_at(double gain, std::size_t tap, const ArmContact& without_display, ArmTrace* trace) const {
   ArmPairSetup setup = setup_;
   setup.params.control.force_gain = gain;
   const Contact at_gain = run_once(setup, taps_[tap], trace);
@@ -164,7 +172,7 @@ ArmReach ArmTaps::reach() const {
   constexpr double far_below_m = -10.0;
   const mechanics::MinimumJerk reach{.start_m = 0.0, .end_m = 0.2, .start_time_s = rest_s, .duration_s = 0.75};
   const ArmTap& tap = taps_.front();
-  ArmPair pair = *ArmPair::make(setup_, tap.induced, tap.hand, far_below_m);
+  ArmPair pair = *ArmPair::make(setup_, tap.beliefs, far_below_m);
   ArmReach found;
   std::vector<double> forces_N;
   for (std::size_t k = 0; k < ticks_in(rest_s + reach.duration_s, pair.tick_s()); ++k) {

@@ -4,6 +4,7 @@
 #include <tactus/mechanics/minimum_jerk.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -11,11 +12,22 @@ namespace tactus::experiments {
 
 /// One tap: how the person goes about it, and what the controller believes.
 struct ArmTap {
-  mechanics::MinimumJerk path;  ///< of the tool, outward from where it began
+  mechanics::MinimumJerk path;  ///< of the follower's tool, outward from where it began
   double wall_m = 0.0;
-  arm_control::InducedMotion::Arm induced;
-  arm::HandImpedance hand;
+  ArmBeliefs beliefs;
 };
+
+/// A tap as it went.
+struct ArmTrace {
+  struct Contact {
+    double force_N = 0.0;  ///< of the wall
+    ArmSight sight;
+  };
+  std::vector<ArmRecord> records;   ///< of each tick
+  std::optional<Contact> pressing;  ///< `pressing_after_s` after the first touch; none where it did not come to that
+};
+/// The impact is over by then, and what is displayed has moved the hand.
+inline constexpr double pressing_after_s = 0.05;
 
 /// A contact as it went, without comparison.
 struct ArmContact {
@@ -38,9 +50,9 @@ struct ArmTapResult {
   [[nodiscard]] bool settled() const { return contact.touched && !contact.rings && !ran_away && !diverged; }
 };
 
-/// A reach of 200 mm outward in 0.75 s that meets nothing.
+/// A reach of 200 mm outward in 0.75 s, of the follower's tool, that meets nothing.
 struct ArmReach {
-  double lag_m = 0.0;     ///< farthest that the tools are apart
+  double lag_m = 0.0;     ///< farthest of the follower's tool from where the leader's joints would have it
   double effort_N = 0.0;  ///< of the hand's spring and damper along the reach, RMS
 };
 
@@ -52,13 +64,14 @@ class ArmTaps {
 
   [[nodiscard]] std::size_t size() const { return taps_.size(); }
   [[nodiscard]] double tick_s() const { return 1.0 / setup_.params.servo.rate_Hz; }
-  /// Runs a tap twice, at the gain and at gain 0; with `trace`, appends every tick of the first.
-  ArmTapResult run(std::size_t tap, std::vector<ArmRecord>* trace = nullptr) const;
+  [[nodiscard]] const ArmPairSetup& setup() const { return setup_; }
+  [[nodiscard]] const ArmTap& tap(std::size_t at) const { return taps_[at]; }
+  /// Runs a tap twice, at the gain and at gain 0; with `trace`, leaves the first there.
+  ArmTapResult run(std::size_t tap, ArmTrace* trace = nullptr) const;
   /// A tap at gain 0: what one that may run away is compared with.
   [[nodiscard]] ArmContact run_without_display(std::size_t tap) const;
   /// Runs a tap at this gain.
-  ArmTapResult run_at(double gain, std::size_t tap, const ArmContact& without_display,
-                      std::vector<ArmRecord>* trace = nullptr) const;
+  ArmTapResult run_at(double gain, std::size_t tap, const ArmContact& without_display, ArmTrace* trace = nullptr) const;
   [[nodiscard]] ArmReach reach() const;
 
  private:
@@ -66,7 +79,7 @@ class ArmTaps {
     ArmContact contact;
     bool diverged = false;
   };
-  [[nodiscard]] Contact run_once(const ArmPairSetup& setup, const ArmTap& tap, std::vector<ArmRecord>* trace) const;
+  [[nodiscard]] Contact run_once(const ArmPairSetup& setup, const ArmTap& tap, ArmTrace* trace) const;
 
   ArmPairSetup setup_;
   std::vector<ArmTap> taps_;

@@ -1,26 +1,37 @@
+#include <tactus/configuration/toml_writer.hpp>
 #include <tactus/experiments/arm_tapping/described_arm.hpp>
 #include <tactus/urdf/urdf.hpp>
 
 #include <cstddef>
+#include <string>
+#include <utility>
 
 namespace tactus::experiments {
 
-Result<DescribedArm> describe_arm(const ArmPairParams& params, const std::filesystem::path& folder) {
-  if (params.urdf.empty()) {
-    return Error{.code = ErrorCode::missing,
-                 .parameter = "arm.urdf",
-                 .message = "which arm? Name its URDF file, such as arms/openarm-class.urdf",
-                 .place = {}};
+namespace {
+
+arm::JointVector of_each_motor(const DescribedArm& of, double arm_plants::MotorParams::*number) {
+  arm::JointVector found(of.start.size());
+  for (std::size_t i = 0; i < of.arm.motors.size(); ++i) {
+    found[static_cast<Eigen::Index>(i)] = of.arm.motors[i].*number;
   }
+  return found;
+}
+
+/// An arm whose joints all begin at 0. `key` is that of its URDF.
+template <class Joint>
+Result<DescribedArm> described(const ArmDescription<Joint>& params, const std::string& key,
+                               const std::filesystem::path& folder) {
   const auto read = urdf::read(folder / params.urdf);
-  if (!read) return Error{read.error().code, "arm.urdf", describe(read.error()), {}};
+  if (!read) return Error{read.error().code, key, describe(read.error()), {}};
   const std::size_t joints = read->joints.size();
-  const Joints<ArmJoint> described = params.joints.of(joints);
-  DescribedArm found{.joints = read->joints,
+  const Joints<Joint> of_file = params.joints.of(joints);
+  DescribedArm found{.urdf = params.urdf,
+                     .joints = read->joints,
                      .arm = {.chain = read->params, .motors = Joints<arm_plants::MotorParams>(joints)},
                      .start = arm::JointVector::Zero(static_cast<Eigen::Index>(joints))};
   for (std::size_t i = 0; i < joints; ++i) {
-    const ArmJoint& from = described[i];
+    const ArmJointDrive& from = of_file[i];
     arm::JointParams& joint = found.arm.chain.joints[i];
     joint.drive.armature_kg_m2 = from.armature_kg_m2;
     found.arm.motors[i] = {.torque_limit_N_m = joint.limits.effort_N_m,
@@ -29,10 +40,73 @@ Result<DescribedArm> describe_arm(const ArmPairParams& params, const std::filesy
                            .torque_step_N_m = from.torque_step_N_m,
                            .joint_stiffness_N_m_per_rad = from.stiffness_share * params.joint_stiffness_N_m_per_rad,
                            .joint_damping_N_m_s_per_rad = from.stiffness_share * params.joint_damping_N_m_s_per_rad};
-    found.start[static_cast<Eigen::Index>(i)] = from.start_rad;
   }
   found.arm.tool_m = arm::Vector3(params.tool.x_m, params.tool.y_m, params.tool.z_m);
   return found;
+}
+
+std::string listed(const DescribedArm& of) {
+  std::string all;
+  for (const std::string& name : of.joints) all += (all.empty() ? "" : ", ") + name;
+  return std::to_string(of.joints.size()) + " (" + all + ")";
+}
+
+}  // namespace
+
+arm::JointVector DescribedArm::joint_stiffness_N_m_per_rad() const {
+  return of_each_motor(*this, &arm_plants::MotorParams::joint_stiffness_N_m_per_rad);
+}
+arm::JointVector DescribedArm::joint_damping_N_m_s_per_rad() const {
+  return of_each_motor(*this, &arm_plants::MotorParams::joint_damping_N_m_s_per_rad);
+}
+
+Result<DescribedArm> describe_arm(const ArmParams& params, const std::filesystem::path& folder) {
+  if (params.urdf.empty()) {
+    return Error{.code = ErrorCode::missing,
+                 .parameter = "arm.urdf",
+                 .message = "which arm? Name its URDF file, such as arms/openarm-class.urdf",
+                 .place = {}};
+  }
+  auto found = described(params, "arm.urdf", folder);
+  if (!found) return found.error();
+  const Joints<ArmJoint> of_file = params.joints.of(found->joints.size());
+  for (std::size_t i = 0; i < of_file.size(); ++i) found->start[static_cast<Eigen::Index>(i)] = of_file[i].start_rad;
+  return found;
+}
+
+Result<DescribedPair> describe_pair(const ArmPairParams& params, const std::filesystem::path& folder) {
+  auto leader = describe_arm(params, folder);
+  if (!leader) return leader.error();
+  if (!differs(params)) {
+    if (configuration::to_toml(params.follower) != configuration::to_toml(FollowerArmParams{})) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = "arm.follower.urdf",
+                   .message =
+                       "none, so the follower is like the leader, and yet something is said of it: name its "
+                       "URDF here and say all of it below arm.follower, or nothing",
+                   .place = {}};
+    }
+    return DescribedPair{.leader = *leader, .follower = *leader};
+  }
+  auto follower = described(params.follower, "arm.follower.urdf", folder);
+  if (!follower) return follower.error();
+  if (follower->joints.size() != leader->joints.size()) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "arm.follower.urdf",
+                 .message =
+                     "joint i of the leader commands joint i of the follower, from the base on, so both need "
+                     "as many, but the leader has " +
+                     listed(*leader) + " and the follower " + listed(*follower) +
+                     ": take another arm, or make the joints fixed that have no counterpart",
+                 .place = {}};
+  }
+  follower->start = leader->start;
+  return DescribedPair{.leader = *std::move(leader), .follower = *std::move(follower)};
+}
+
+bool is_of_arms(const configuration::Document& document) {
+  const auto kind = document.text_at("task.kind");
+  return kind && *kind == name_of(ArmTappingKind::arm_tapping);
 }
 
 }  // namespace tactus::experiments

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/configuration/document.hpp>
 #include <tactus/experiments/arm_tapping/params.hpp>
 
 #include <filesystem>
@@ -10,13 +11,34 @@ namespace tactus::experiments {
 
 /// An arm as a file describes it, and where its joints begin.
 struct DescribedArm {
+  std::string urdf;                 ///< its name in the file
   std::vector<std::string> joints;  ///< their names, from the base on
   arm_plants::ArmPlant::Params arm;
   arm::JointVector start;
+
+  /// Of each joint's transmission; 0 is rigid.
+  [[nodiscard]] arm::JointVector joint_stiffness_N_m_per_rad() const;
+  [[nodiscard]] arm::JointVector joint_damping_N_m_s_per_rad() const;
+};
+
+/// A leader and the follower that it commands, joint by joint.
+struct DescribedPair {
+  DescribedArm leader;
+  DescribedArm follower;  ///< begins where the leader does
 };
 
 /// Reads the URDF, from `folder` on, and adds what it does not say. Errors: `missing` without a URDF; those of
 /// `urdf::read`.
-Result<DescribedArm> describe_arm(const ArmPairParams& params, const std::filesystem::path& folder);
+Result<DescribedArm> describe_arm(const ArmParams& params, const std::filesystem::path& folder);
+
+/// Both arms. Errors: those of `describe_arm`; `inconsistent` for arms of different numbers of joints, and where
+/// something is said of a follower that has no URDF of its own.
+Result<DescribedPair> describe_pair(const ArmPairParams& params, const std::filesystem::path& folder);
+
+/// Whether a document asks for two arms: its kind is arm-tapping.
+bool is_of_arms(const configuration::Document& document);
+
+/// Whether the follower is another arm than the leader.
+inline bool differs(const ArmPairParams& params) { return !params.follower.urdf.empty(); }
 
 }  // namespace tactus::experiments

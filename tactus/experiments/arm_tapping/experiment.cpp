@@ -1,4 +1,5 @@
 #include <tactus/experiments/arm_tapping/arm_taps.hpp>
+#include <tactus/experiments/arm_tapping/contact_figure.hpp>
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/simulation/parallel.hpp>
 
@@ -60,7 +61,7 @@ std::string arm_json(const Request& request, const std::vector<ArmTappingRun>& r
   });
 }
 
-report::Figure arm_figure(const ArmTappingRun& run, const std::vector<ArmRecord>& trace, double tick_s) {
+report::Figure first_tap_figure(const ArmTappingRun& run, const std::vector<ArmRecord>& trace, double tick_s) {
   const report::Axis time{.label = "time", .unit = "s"};
   report::Line contact{.name = "on the surface", .x = {}, .y = {}, .colour = 0};
   report::Line hand{.name = "on the hand", .x = {}, .y = {}, .colour = 1};
@@ -123,7 +124,9 @@ report::Page arm_page(const Request& request, const std::string& verdict, const 
         "or a tool left its place by 300 mm."},
        {"peak, steady", "Contact force, largest and mean of the last 100 ms; medians over the taps."},
        {"felt", "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS; median."},
-       {"lag", "Farthest that the tools are apart in a reach of 200 mm in 0.75 s that meets nothing."}});
+       {"lag",
+        "Farthest of the follower's tool from where the leader's joints would have it, in a reach of 200 mm in 0.75 s "
+        "that meets nothing."}});
   for (const report::Figure& figure : figures) page.figure(figure);
   return page;
 }
@@ -141,7 +144,7 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
   struct Results {
     std::vector<ArmTapResult> taps;
     double reach_lag_m = 0.0;
-    std::vector<ArmRecord> trace;  ///< of the first tap
+    ArmTrace trace;  ///< of the first tap
   };
   std::vector<Job> jobs;
   std::vector<Results> results;
@@ -168,7 +171,9 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto& [settings, taps] = cases->all[i];
     runs.push_back({settings, summarise(results[i].taps, results[i].reach_lag_m)});
-    figures.push_back(arm_figure(runs.back(), results[i].trace, taps.tick_s()));
+    const ArmTrace& first = results[i].trace;
+    figures.push_back(first_tap_figure(runs.back(), first.records, taps.tick_s()));
+    if (first.pressing) figures.push_back(contact_figure(taps.setup(), *first.pressing, settings_caption(settings)));
   }
   const report::Table table = arm_table(runs);
   const std::string verdict = arm_verdict(runs);

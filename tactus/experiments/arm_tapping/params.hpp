@@ -6,6 +6,8 @@
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/supervision.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/experiments/faults/harm_bounds.hpp>
+#include <tactus/mechanics/environment.hpp>
 
 #include <array>
 #include <cstdint>
@@ -14,28 +16,36 @@
 /// A person taps a stiff surface through two robot arms.
 namespace tactus::experiments {
 
-/// A joint of both arms: what its URDF does not say.
-struct ArmJoint {
-  double start_rad = 0.0;
+/// A joint and its drive: what its URDF does not say.
+struct ArmJointDrive {
   double armature_kg_m2 = 0.0;
   double stiffness_share = 1.0;
   double position_step_rad = 0.0;
   double velocity_step_rad_per_s = 0.0;
   double torque_step_N_m = 0.0;
   static constexpr auto fields() {
-    using J = ArmJoint;
+    using J = ArmJointDrive;
     namespace u = arm::units;
-    return List{field("start_rad", &J::start_rad, u::radian, any_finite, "Position at the start of a tap."),
-                field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
+    return List{field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
                       "Inertia of the rotor at the joint's side of the gear."),
                 field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
-                      "Stiffness of an elastic joint over arm.joint_stiffness_N_m_per_rad."),
+                      "Stiffness of an elastic joint over joint_stiffness_N_m_per_rad of its arm."),
                 field("position_step_rad", &J::position_step_rad, u::radian, between(0.0, 0.1),
                       "Step in which the drive tells position; 0 is exact."),
                 field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
                       "Step in which it tells velocity."),
                 field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
                       "Step in which it tells torque.")};
+  }
+};
+
+/// The same with where the joint begins.
+struct ArmJoint : ArmJointDrive {
+  double start_rad = 0.0;
+  static constexpr auto fields() {
+    return joined(List{field("start_rad", &ArmJoint::start_rad, arm::units::radian, any_finite,
+                             "Position at the start of a tap.")},
+                  ArmJointDrive::fields());
   }
 };
 
@@ -50,25 +60,44 @@ struct ToolPoint {
   }
 };
 
-/// Leader and follower, which are alike.
-struct ArmPairParams {
+/// An arm as its URDF and its file have it.
+template <Described Joint>
+struct ArmDescription {
   std::string urdf;
   ToolPoint tool;
   double joint_stiffness_N_m_per_rad = 0.0;
   double joint_damping_N_m_s_per_rad = 0.0;
-  arm_control::EachJoint<ArmJoint> joints;
+  arm_control::EachJoint<Joint> joints;
   static constexpr auto fields() {
-    using P = ArmPairParams;
+    using A = ArmDescription;
     return List{
-        field("urdf", &P::urdf,
-              "URDF of both arms, z up; its path counts from the experiment's file. Effort limits bound "
+        field("urdf", &A::urdf,
+              "URDF of the arm, z up; its path counts from the experiment's file. Effort limits bound "
               "the motors, damping and friction rub at them."),
-        field("tool", &P::tool, "The point that the person holds, and that touches."),
-        field("joint_stiffness_N_m_per_rad", &P::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
+        field("tool", &A::tool, "The point that the person holds, or that touches."),
+        field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
               between(0.0, 1e6), "Of the transmission between motor and link; 0 is rigid."),
-        field("joint_damping_N_m_s_per_rad", &P::joint_damping_N_m_s_per_rad,
+        field("joint_damping_N_m_s_per_rad", &A::joint_damping_N_m_s_per_rad,
               arm::units::newton_metre_second_per_radian, between(0.0, 100.0), "Damping beside that stiffness."),
-        field("joints", &P::joints, "What the URDF does not say of each joint.")};
+        field("joints", &A::joints, "What the URDF does not say of each joint.")};
+  }
+};
+
+/// The leader, and the follower too where nothing else is said of it.
+using ArmParams = ArmDescription<ArmJoint>;
+/// A follower that is another arm. It begins where the leader does.
+using FollowerArmParams = ArmDescription<ArmJointDrive>;
+
+/// Leader and follower. Joint i of the leader, counted from the base on, commands joint i of the follower, angle for
+/// angle, so both have as many joints, with the same zero and sense.
+struct ArmPairParams : ArmParams {
+  FollowerArmParams follower;
+  static constexpr auto fields() {
+    return joined(ArmParams::fields(),
+                  List{field("follower", &ArmPairParams::follower,
+                             "The follower where it is another arm than the leader: then all of it stands here. "
+                             "Without a urdf here it is like the leader. Joint i of the leader, counted from the base, "
+                             "commands joint i of the follower, angle for angle.")});
   }
 };
 
@@ -91,14 +120,39 @@ struct ArmClockParams {
   }
 };
 
+/// Which law the surface pushes back with: those of `mechanics::ContactLaw` that let go.
+enum class SurfaceLaw { kelvin_voigt, hunt_crossley };
+constexpr auto enumerators(SurfaceLaw) {
+  return std::array{Enumerator{SurfaceLaw::kelvin_voigt, "kelvin-voigt"},
+                    Enumerator{SurfaceLaw::hunt_crossley, "hunt-crossley"}};
+}
+
 struct ArmWallParams {
+  SurfaceLaw law = SurfaceLaw::kelvin_voigt;
   double stiffness_N_per_m = 20000.0;
   double damping_N_s_per_m = 20.0;
+  double exponent = 1.5;
+  double dissipation_s_per_m = 0.5;
   static constexpr auto fields() {
-    return List{field("stiffness_N_per_m", &ArmWallParams::stiffness_N_per_m, units::newton_per_metre,
-                      between(100.0, 1e6), "Stiffness of the flat surface that the follower's tool meets."),
-                field("damping_N_s_per_m", &ArmWallParams::damping_N_s_per_m, units::newton_second_per_metre,
-                      between(0.0, 1e4), "Its damping.")};
+    using W = ArmWallParams;
+    return List{field("law", &W::law, "Contact law of the flat surface that the follower's tool meets."),
+                field("stiffness_N_per_m", &W::stiffness_N_per_m, units::newton_per_metre, between(100.0, 1e6),
+                      "Stiffness of the surface; with Hunt-Crossley the secant stiffness at a depth of 0.1 mm."),
+                field("damping_N_s_per_m", &W::damping_N_s_per_m, units::newton_second_per_metre, between(0.0, 1e4),
+                      "Its damping (not with Hunt-Crossley)."),
+                field("exponent", &W::exponent, units::none, between(1.0, 2.5),
+                      "Growth of the force with depth (Hunt-Crossley only)."),
+                field("dissipation_s_per_m", &W::dissipation_s_per_m, units::second_per_metre, between(0.0, 100.0),
+                      "Relative growth of the force with the rate of depth (Hunt-Crossley only).")};
+  }
+  /// The law along the depth, its surface at 0.
+  [[nodiscard]] mechanics::Environment::Params environment() const noexcept {
+    return {.law = law == SurfaceLaw::kelvin_voigt ? mechanics::ContactLaw::kelvin_voigt
+                                                   : mechanics::ContactLaw::hunt_crossley,
+            .stiffness_N_per_m = stiffness_N_per_m,
+            .damping_N_s_per_m = damping_N_s_per_m,
+            .exponent = exponent,
+            .dissipation_s_per_m = dissipation_s_per_m};
   }
 };
 
@@ -121,7 +175,7 @@ struct GripperParams : arm_control::DriveGains {
   }
 };
 
-/// What stands between the sites and the motors of a rig. Virtual time has none of it.
+/// What stands between the sites and the motors of a rig, and in `tactus faults`. Taps in virtual time have none of it.
 struct ArmRigParams {
   control::SafetyGate::Params leader_gate;
   control::SafetyGate::Params follower_gate;
@@ -138,6 +192,35 @@ struct ArmRigParams {
         field("probe_torque", &P::probe_torque, "With which torque each motor's sign is tried on arming."),
         field("gripper", &P::gripper,
               "How joints of the rig are driven that the arm does not have; with no gains such a joint is refused.")};
+  }
+};
+
+/// What a fault in one of two arms may do to the person who holds the leader and to whoever is at the follower's tool.
+struct ArmHarmBounds : HarmBounds {
+  double sank_m = 0.025;
+  static constexpr auto fields() {
+    return joined(HarmBounds::fields(),
+                  List{field("sank_m", &ArmHarmBounds::sank_m, units::metre, positive,
+                             "How far a tool that nobody holds may sink while its site promises to carry the arm.")});
+  }
+};
+
+/// `tactus faults` on two arms.
+struct ArmFaultsParams {
+  std::int64_t seeds = 100;
+  std::string only;
+  ArmHarmBounds bounds{{.given_J = 0.5,
+                        .speed_m_per_s = 1.5,
+                        .strayed_m = 0.1,
+                        .hand_force_N = 140.0,
+                        .tool_force_N = 280.0,
+                        .pressing_N = 140.0,
+                        .release_s = 1.0}};
+  static constexpr auto fields() {
+    using P = ArmFaultsParams;
+    return List{field("seeds", &P::seeds, between(1, 1000000), "Runs of each fault; task.seed draws them."),
+                field("only", &P::only, "The id of one row, where not all are wanted; empty is all."),
+                field("bounds", &P::bounds, "What a fault may do to people, measured at the tools.")};
   }
 };
 
@@ -201,18 +284,21 @@ struct ArmTappingParams {
   ArmWallParams wall;
   ArmClockParams servo;
   ArmRigParams rig;
+  ArmFaultsParams faults;
   static constexpr auto fields() {
     using P = ArmTappingParams;
     return List{
         field("task", &P::task, "The taps."),
-        field("arm", &P::arm, "Leader and follower, which are alike."),
+        field("arm", &P::arm, "The leader; and the follower, which is like it unless arm.follower says otherwise."),
         field("operator", &P::person, "The person who holds the leader's tool."),
         field("control", &P::control, "The sites of both arms."),
         field("wall", &P::wall, "What the follower's tool meets."),
         field("servo", &P::servo, "The clocks."),
         field("rig", &P::rig,
-              "With --device alone: what stands between the sites and the motors of a rig. Where a key says N, m "
-              "or m/s, N m, rad or rad/s are meant.")};
+              "With --device and tactus faults alone: what stands between the sites and the motors of a rig. Where a "
+              "key says N, m "
+              "or m/s, N m, rad or rad/s are meant."),
+        field("faults", &P::faults, "With tactus faults alone: how often each is tried, and what it may do.")};
   }
 };
 

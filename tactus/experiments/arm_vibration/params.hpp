@@ -107,7 +107,7 @@ struct ArmVibrationParams {
   VibrationCauses cause;
   VibrationHost host;
   ReleasedLaw::Params control;
-  ArmPairParams arm;
+  ArmParams arm;
   arm_plants::Person::Params person;
   static constexpr auto fields() {
     using P = ArmVibrationParams;

@@ -19,8 +19,7 @@ constexpr std::string_view stopped_by_drift = "a small drift stopped the sites";
 
 /// A loop that misses the share `missed` passes the limit after so long, and half as long again, for what is drawn at
 /// random scatters. No duty where it does not miss enough for that.
-FaultDuty duty_of_overload(double missed, const FaultPlan& plan, const FaultsParams& params) {
-  const control::OverloadCheck::Params& overload = params.control.supervision.overload;
+FaultDuty duty_of_overload(double missed, const FaultPlan& plan, const control::OverloadCheck::Params& overload) {
   if (missed < 1.5 * overload.missed_share) return {};
   const double passes_s = -overload.window_s * std::log(1.0 - overload.missed_share / missed);
   return {.kind = Kind::latches,
@@ -30,9 +29,8 @@ FaultDuty duty_of_overload(double missed, const FaultPlan& plan, const FaultsPar
 }
 
 /// Where the clock is grossly slow: when `PaceCheck` must have seen it, and a little more.
-FaultDuty duty_of_drift(const FaultPlan& plan, const FaultsParams& params) {
+FaultDuty duty_of_drift(const FaultPlan& plan, const control::SupervisionParams& supervision) {
   if (plan.size <= tolerable_drift) return {.kind = Kind::goes_on};
-  const control::SupervisionParams& supervision = params.control.supervision;
   const double slack_s = supervision.packets.longest_age_s + supervision.watchdog.timeout_s;
   const double untolerated = plan.size - supervision.pace_share;
   if (untolerated < 0.15) return {};
@@ -89,8 +87,8 @@ FaultSite site_of(const FaultPlan& plan) {
 
 bool is_reading(FaultKind kind) { return kind == FaultKind::encoder_spike || kind == FaultKind::encoder_wrap; }
 
-double silence_s(const FaultsParams& params) {
-  return params.control.supervision.watchdog.timeout_s + grace_ticks / params.servo.rate_Hz;
+double silence_s(const control::SupervisionParams& supervision, double rate_Hz) {
+  return supervision.watchdog.timeout_s + grace_ticks / rate_Hz;
 }
 
 /// Until when, after `plan` began, the site `at` must have done the duty beside `other`; negative where the other
@@ -104,7 +102,8 @@ double allowed_s(const FaultDuty& duty, const FaultPlan& plan, const FaultPlan& 
   const bool handed_on = duty.seen == Seen::from_one_to_the_other, there = handed_on || other.site == at;
   // What one site tells the other may be late as well, or lost, and then it is silence that the other hears.
   by.late_s *= !duty.by_packets ? 0.0 : handed_on ? 2.0 : 1.0;
-  if (duty.by_packets && handed_on && by.silences) by.late_s = silence_s(params);
+  if (duty.by_packets && handed_on && by.silences)
+    by.late_s = silence_s(params.control.supervision, params.servo.rate_Hz);
   if (!there) by = {.late_s = by.late_s};
   const bool unread = other.start_s <= plan.start_s && (by.slow > 1.0 || by.stands_s > 0.0);
   // What waits before a site that stands is read when it steps again, and that is when silence begins.
@@ -114,12 +113,10 @@ double allowed_s(const FaultDuty& duty, const FaultPlan& plan, const FaultPlan& 
   return (duty.within_s + by.late_s) * by.slow + by.stands_s;
 }
 
-bool within(double value_s, double allowed_s, const FaultsParams& params) {
-  return value_s <= allowed_s + 0.5 / params.servo.rate_Hz;
-}
-double detected_s(const FaultOutcome& outcome, const FaultsParams& params) {
+bool within(double value_s, double allowed_s, double rate_Hz) { return value_s <= allowed_s + 0.5 / rate_Hz; }
+double detected_s(const FaultOutcome& outcome, double rate_Hz) {
   return outcome.detection_ticks < 0 ? std::numeric_limits<double>::infinity()
-                                     : static_cast<double>(outcome.detection_ticks) / params.servo.rate_Hz;
+                                     : static_cast<double>(outcome.detection_ticks) / rate_Hz;
 }
 
 /// Whether the duty of `plan`, which began `since_s` after the first, was done beside `other`.
@@ -134,23 +131,22 @@ std::string_view broken_beside(const FaultPlan& plan, const FaultPlan& other, do
   if (duty.kind == Kind::latches) {
     const double by_s = allowed_s(duty, plan, other, duty.seen == Seen::at_the_other ? across : own, params);
     // Who has stopped already has nothing left to stop for.
-    const double ended_s =
-        std::min(detected_s(outcome, params), std::max(outcome.master_followed_s, outcome.slave_followed_s));
-    return by_s < 0.0 || within(ended_s, since_s + by_s, params) ? "" : unseen;
+    const double ended_s = std::min(detected_s(outcome, params.servo.rate_Hz),
+                                    std::max(outcome.master_followed_s, outcome.slave_followed_s));
+    return by_s < 0.0 || within(ended_s, since_s + by_s, params.servo.rate_Hz) ? "" : unseen;
   }
   for (const FaultSite at : {FaultSite::master, FaultSite::slave}) {
     const double by_s = allowed_s(duty, plan, other, at, params);
     const double followed_s = at == FaultSite::master ? outcome.master_followed_s : outcome.slave_followed_s;
-    if (by_s >= 0.0 && !within(followed_s, since_s + by_s, params)) return late;
+    if (by_s >= 0.0 && !within(followed_s, since_s + by_s, params.servo.rate_Hz)) return late;
   }
   return {};
 }
 
 }  // namespace
 
-FaultDuty duty_of(const FaultPlan& plan, const FaultsParams& params) {
-  const control::SupervisionParams& supervision = params.control.supervision;
-  const double grace_s = grace_ticks / params.servo.rate_Hz, silent_s = silence_s(params);
+FaultDuty duty_of(const FaultPlan& plan, const control::SupervisionParams& supervision, double rate_Hz) {
+  const double grace_s = grace_ticks / rate_Hz, silent_s = silence_s(supervision, rate_Hz);
   switch (plan.kind) {
     case FaultKind::cut:
       if (plan.length_s <= silent_s) return {};
@@ -178,11 +174,12 @@ FaultDuty duty_of(const FaultPlan& plan, const FaultsParams& params) {
               .seen = Seen::at_the_other,
               .by_packets = true};
     case FaultKind::hand_lets_go:
+    case FaultKind::dead_man_released:
     case FaultKind::emergency_stop:
       return {.kind = Kind::stops, .within_s = grace_s, .seen = Seen::from_one_to_the_other, .by_packets = true};
     case FaultKind::encoder_spike:
     case FaultKind::encoder_wrap:
-      return {.kind = Kind::latches, .within_s = 1.0 / params.servo.rate_Hz};
+      return {.kind = Kind::latches, .within_s = 1.0 / rate_Hz};
     case FaultKind::force_bias:
       if (std::fabs(plan.size) < 2.0 * supervision.force_sensor.residual_limit_N) return {};
       return {.kind = Kind::latches, .within_s = plan.length_s};
@@ -193,30 +190,34 @@ FaultDuty duty_of(const FaultPlan& plan, const FaultsParams& params) {
               .lasts_s = plan.length_s,
               .needs_s = supervision.longest_stall_s};
     case FaultKind::overload:
-      return duty_of_overload(plan.size, plan, params);
+      return duty_of_overload(plan.size, plan, supervision.overload);
     case FaultKind::stop_and_go:  // it goes for no longer than it stands
-      return duty_of_overload(0.45, plan, params);
+      return duty_of_overload(0.45, plan, supervision.overload);
     case FaultKind::rate_drift:
-      return duty_of_drift(plan, params);
+      return duty_of_drift(plan, supervision);
     default:
       return {};
   }
 }
 
-std::string_view broken_duty(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  const FaultDuty duty = duty_of(plan, params);
+std::string_view broken_duty(const FaultDuty& duty, const FaultPlan& plan, const FaultOutcome& outcome,
+                             double rate_Hz) {
   switch (duty.kind) {
     case Kind::none:
       return {};
     case Kind::goes_on:
       return outcome.stopped ? stopped_by_drift : "";
     case Kind::latches:
-      if (within(detected_s(outcome, params), duty.within_s, params)) return {};
+      if (within(detected_s(outcome, rate_Hz), duty.within_s, rate_Hz)) return {};
       return plan.kind == FaultKind::suspend ? late : unseen;
     case Kind::stops:
-      return outcome.stopped && within(outcome.time_to_stop_s, duty.within_s, params) ? "" : late;
+      return outcome.stopped && within(outcome.time_to_stop_s, duty.within_s, rate_Hz) ? "" : late;
   }
   return {};
+}
+
+std::string_view broken_duty(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
+  return broken_duty(duty_of(plan, params), plan, outcome, params.servo.rate_Hz);
 }
 
 std::string_view broken_duty_of_two(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
@@ -251,9 +252,9 @@ std::string_view broken_duty_while_arming(const FaultPlan& plan, const FaultOutc
     case Kind::goes_on:
       return outcome.active_in_fault ? "" : "a small drift kept the sites from following";
     case Kind::latches:
-      return within(sooner_s, allowed_s, params) ? "" : unseen;
+      return within(sooner_s, allowed_s, params.servo.rate_Hz) ? "" : unseen;
     case Kind::stops:
-      return within(later_s, allowed_s, params) ? "" : late;
+      return within(later_s, allowed_s, params.servo.rate_Hz) ? "" : late;
   }
   return {};
 }

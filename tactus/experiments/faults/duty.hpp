@@ -29,10 +29,14 @@ struct FaultDuty {
   bool by_packets = false;  ///< what comes, or comes no more, tells of it
 };
 
-/// What must come of a fault that comes alone.
-FaultDuty duty_of(const FaultPlan& plan, const FaultsParams& params);
+/// What must come of a fault that comes alone, to sites that are supervised so and stepped so often.
+FaultDuty duty_of(const FaultPlan& plan, const control::SupervisionParams& supervision, double rate_Hz);
+inline FaultDuty duty_of(const FaultPlan& plan, const FaultsParams& params) {
+  return duty_of(plan, params.control.supervision, params.servo.rate_Hz);
+}
 
 /// The duty that was not done, in words; empty where it was. Of a fault that comes alone.
+std::string_view broken_duty(const FaultDuty& duty, const FaultPlan& plan, const FaultOutcome& outcome, double rate_Hz);
 std::string_view broken_duty(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params);
 /// Of two at once: the duty of either, put off by what the other takes from the sites to do it. docs/how-to/faults.md
 /// argues each term.

@@ -37,7 +37,8 @@ class FaultyPerson {
   [[nodiscard]] control::SiteRequests presses(control::SiteRequests pressed, FaultSite site,
                                               const FaultMoment& moment) const noexcept {
     // A dead-man switch in the handle goes with the hand, and is not pressed again by itself; of size 1 it is a pedal.
-    const bool in_handle = plan_.kind == FaultKind::hand_lets_go && plan_.size == 0.0;
+    const bool in_handle =
+        plan_.kind == FaultKind::dead_man_released || (plan_.kind == FaultKind::hand_lets_go && plan_.size == 0.0);
     const bool cleared = moment.since_s > plan_.length_s + fault_schedule::clear_after_s;
     if (in_handle && !moment.before && !cleared) pressed.dead_man = false;
     if (plan_.kind == FaultKind::emergency_stop && moment.during && plan_.site == site) pressed.emergency_stop = true;

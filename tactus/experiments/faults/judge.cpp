@@ -37,7 +37,7 @@ void FaultJudge::see_states(const SiteView& master, const SiteView& slave, const
 
 void FaultJudge::see(const SiteView& master, const SiteView& slave, const FaultMoment& moment, double end_s,
                      FaultOutcome& outcome) {
-  outcome.given_J = energy_.see(master.truth.drive_N, master.truth.motor_m);
+  outcome.given_J = master.truth.enter(energy_);
   const bool both = master.state == SiteState::active && slave.state == SiteState::active;
   if (moment.before) {
     outcome.became_active = both;

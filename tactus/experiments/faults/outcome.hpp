@@ -3,6 +3,7 @@
 #include <tactus/core/signals.hpp>
 
 #include <cstdint>
+#include <optional>
 
 /// What came of a run with a fault.
 namespace tactus::experiments {
@@ -35,6 +36,22 @@ struct SiteHarm {
   }
 };
 
+/// What a fault did to two arms besides: truths of both, from its first tick until the person clears it.
+struct ArmHarm {
+  double fastest_joint_share = 0.0;
+  double sank_m = 0.0;
+  double fell_m = 0.0;
+  static constexpr auto signals() {
+    return List{observed("fastest_joint_share", &ArmHarm::fastest_joint_share, units::none, "", "", "",
+                         "Fastest joint of an arm that has power, over the velocity limit of its gate."),
+                observed("sank_m", &ArmHarm::sank_m, units::metre, "", "", "down",
+                         "How far a tool that nobody holds sank while its site promised to carry the arm and did not "
+                         "follow."),
+                observed("fell_m", &ArmHarm::fell_m, units::metre, "", "", "down",
+                         "How far a tool went down once its drives had no power.")};
+  }
+};
+
 /// What a witness saw that stands outside of both sites: it reads what reaches the motors, and remembers when each
 /// packet was sent. It shares no code with what it judges.
 struct FaultOutcome {
@@ -58,6 +75,7 @@ struct FaultOutcome {
   double fault_N = 0.0;         ///< largest force, slowly, by which the fault made a motor or a force sensor wrong
   double winding_warmth = 0.0;  ///< of a motor without cooling; above 1 it is damaged
   SiteHarm master{}, slave{};
+  std::optional<ArmHarm> arms = std::nullopt;  ///< of two arms alone
 };
 
 }  // namespace tactus::experiments

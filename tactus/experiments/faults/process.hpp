@@ -10,17 +10,20 @@
 
 namespace tactus::experiments {
 
-/// How the process of one site fares: whether it lives and is stepped, how long it was not, and what waits for it.
-class FaultProcess {
+/// How the process of one site fares: whether it lives and is stepped, how long it was not, and what waits for it. What
+/// goes wrong is a vector of whatever injects it, into one axis (`FaultInjection`) or into arms.
+template <class Packet>
+class FaultProcessOf {
  public:
-  explicit FaultProcess(FaultSite site) : site_(site) { waiting_.reserve(4096); }
+  explicit FaultProcessOf(FaultSite site) : site_(site) { waiting_.reserve(4096); }
 
   /// One tick of the faults; `missed` where the machine itself steps no site. Returns whether the process must be
   /// started anew, under the next session.
-  bool fare(std::vector<FaultInjection>& injections, bool missed) noexcept {
+  template <class Injection>
+  bool fare(std::vector<Injection>& injections, bool missed) noexcept {
     using Beat = simulation::FaultyClock::Beat;
     bool dead = false, stands = missed, sleeps = false;
-    for (FaultInjection& injection : injections) {
+    for (Injection& injection : injections) {
       const Beat beat = injection.at(site_).clock.step(injection.moment(), sleeps);
       dead = dead || beat == Beat::dead;
       stands = stands || beat == Beat::stands;
@@ -47,11 +50,12 @@ class FaultProcess {
   }
 
   /// Takes what the relay delivers at `tick`. Each tick.
-  void collect(simulation::PacketRelay& relay, std::int64_t tick,
-               const std::vector<FaultInjection>& injections) noexcept {
-    relay.deliver(tick, [&](control::Packet packet) {
+  template <class Injection>
+  void collect(simulation::PacketRelayOf<Packet>& relay, std::int64_t tick,
+               const std::vector<Injection>& injections) noexcept {
+    relay.deliver(tick, [&](Packet packet) {
       if (killed_) return;
-      for (const FaultInjection& injection : injections) {
+      for (const Injection& injection : injections) {
         if (injection.sleeps()) return;
         packet.age_s = std::max(packet.age_s + injection.age_error_s(site_), 0.0);
         injection.spoil(site_, packet);
@@ -62,7 +66,7 @@ class FaultProcess {
   /// Gives all that waits to `take`. Where the site is stepped.
   template <class Take>
   void hand_over(double tick_s, Take&& take) noexcept {
-    for (control::Packet& packet : waiting_) {
+    for (Packet& packet : waiting_) {
       // What waited in the queue of a stalled site has aged there.
       packet.age_s += static_cast<double>(elapsed_ticks_ - 1) * tick_s;
       take(packet);
@@ -86,7 +90,8 @@ class FaultProcess {
   bool born_ = false;     ///< at this tick
   bool stalled_ = false;  ///< by a fault or, in real time, by the machine
   bool sleeps_ = false;   ///< and its clock with it
-  std::vector<control::Packet> waiting_;
+  std::vector<Packet> waiting_;
 };
+using FaultProcess = FaultProcessOf<control::Packet>;
 
 }  // namespace tactus::experiments

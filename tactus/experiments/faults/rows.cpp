@@ -10,32 +10,10 @@ using namespace fault_families;
 
 namespace {
 
-std::string_view broken_rule_of_all(const FaultOutcome& outcome) {
-  if (outcome.not_finite > 0) return "an output was not finite";
-  if (outcome.stale_applied > 0) return "a stale packet was applied";
-  if (outcome.steps_above_rate > 0) return "a force step above the rate limit";
-  if (outcome.forces_above_limit > 0) return "a force above the limit";
-  if (outcome.active_without_arming > 0) return "a site followed again without arming";
-  if (outcome.left_workspace) return "a device left its workspace";
-  return {};
-}
-
-std::string_view broken_bound(const FaultPlan& plan, const FaultOutcome& outcome, const FaultsParams& params) {
-  const HarmBounds& bounds = params.task.bounds;
-  const SiteHarm &master = outcome.master, &slave = outcome.slave;
-  if (std::max(master.given_J, slave.given_J) > bounds.given_J) return "a motor gave too much energy";
-  if (std::max(master.speed_m_per_s, slave.speed_m_per_s) > bounds.speed_m_per_s) return "handle or tool too fast";
-  if (std::max(master.strayed_m, slave.strayed_m) > bounds.strayed_m) return "handle or tool strayed too far";
-  if (master.peak_force_N > bounds.hand_force_N) return "too much force on the hand";
-  if (slave.peak_force_N > bounds.tool_force_N) return "too much force at the tool";
-  if (std::max(master.pressing_N, slave.pressing_N) > bounds.pressing_N) return "pressed too hard for long";
-  if (outcome.release_s > release_allowed_s(plan, params)) return "not released in time";
-  return {};
-}
-
 std::string_view clean(const FaultPlan&, const FaultOutcome& outcome, const FaultsParams&) {
-  return outcome.stopped || outcome.detection_ticks >= 0 ? "tripped on clean data" : "";
+  return tripped_on_clean_data(outcome);
 }
+
 std::vector<FaultRow> first_rows() {
   return {
       {FaultKind::none, "clean", "clean", "nothing", "no trip", clean},
@@ -71,6 +49,32 @@ std::vector<FaultRow> first_rows() {
 
 }  // namespace
 
+std::string_view broken_rule_of_all(const FaultOutcome& outcome) {
+  if (outcome.not_finite > 0) return "an output was not finite";
+  if (outcome.stale_applied > 0) return "a stale packet was applied";
+  if (outcome.steps_above_rate > 0) return "a force step above the rate limit";
+  if (outcome.forces_above_limit > 0) return "a force above the limit";
+  if (outcome.active_without_arming > 0) return "a site followed again without arming";
+  if (outcome.left_workspace) return "a device left its workspace";
+  return {};
+}
+
+std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bounds, double release_s) {
+  const SiteHarm &master = outcome.master, &slave = outcome.slave;
+  if (std::max(master.given_J, slave.given_J) > bounds.given_J) return "a motor gave too much energy";
+  if (std::max(master.speed_m_per_s, slave.speed_m_per_s) > bounds.speed_m_per_s) return "handle or tool too fast";
+  if (std::max(master.strayed_m, slave.strayed_m) > bounds.strayed_m) return "handle or tool strayed too far";
+  if (master.peak_force_N > bounds.hand_force_N) return "too much force on the hand";
+  if (slave.peak_force_N > bounds.tool_force_N) return "too much force at the tool";
+  if (std::max(master.pressing_N, slave.pressing_N) > bounds.pressing_N) return "pressed too hard for long";
+  if (outcome.release_s > release_s) return "not released in time";
+  return {};
+}
+
+std::string_view tripped_on_clean_data(const FaultOutcome& outcome) {
+  return outcome.stopped || outcome.detection_ticks >= 0 ? "tripped on clean data" : "";
+}
+
 std::vector<FaultRow> fault_rows(std::string_view only) {
   std::vector<FaultRow> rows = first_rows();
   for (const auto& family : {device_rows(), course_rows()}) rows.insert(rows.end(), family.begin(), family.end());
@@ -98,9 +102,11 @@ simulation::Teleoperator::Params params_of(const FaultRow& row, const FaultsPara
 std::string_view broken_rule(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome,
                              const FaultsParams& params) {
   if (const auto rule = broken_rule_of_all(outcome); !rule.empty()) return rule;
-  if (row.resumes && !outcome.active_at_end) return "not active again after clearing and arming";
+  if (row.resumes && !outcome.active_at_end) return not_resumed;
   if (outcome.given_J > params.task.diverged_above_J) return "diverged";
-  if (const auto bound = broken_bound(plan, outcome, params); !bound.empty()) return bound;
+  if (const auto bound = broken_bound(outcome, params.task.bounds, release_allowed_s(plan, params)); !bound.empty()) {
+    return bound;
+  }
   return row.rule ? row.rule(plan, outcome, params) : std::string_view{};
 }
 

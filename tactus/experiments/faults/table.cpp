@@ -33,6 +33,12 @@ void add(FaultOutcome& worst, const FaultOutcome& one) {
   worst.winding_warmth = std::max(worst.winding_warmth, one.winding_warmth);
   add(worst.master, one.master);
   add(worst.slave, one.slave);
+  if (!one.arms) return;
+  if (!worst.arms) worst.arms.emplace();
+  for_each_signal<ArmHarm>([&](const auto& signal) {
+    double& most = *worst.arms.*signal.member;
+    most = std::max(most, *one.arms.*signal.member);
+  });
 }
 
 }  // namespace
@@ -57,17 +63,26 @@ std::vector<FaultPlan> draw_control_plans(const FaultRow& row, const FaultsParam
 
 FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vector<FaultPlan>& plans,
                  const std::vector<FaultOutcome>& outcomes) {
+  std::vector<std::string_view> broken_rules;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    broken_rules.push_back(broken_rule(row, plans[i], outcomes[i], params));
+  }
+  return tally(row, plans, outcomes, broken_rules, params.task.diverged_above_J);
+}
+
+FaultTally tally(const FaultRow& row, const std::vector<FaultPlan>& plans, const std::vector<FaultOutcome>& outcomes,
+                 const std::vector<std::string_view>& broken_rules, double diverged_above_J) {
   FaultTally sum{.row = row, .failures = {}, .worst = {}};
   std::vector<double> stop_s, detection;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const FaultOutcome& one = outcomes[i];
     ++sum.tried;
-    if (const auto rule = broken_rule(row, plans[i], one, params); rule.empty()) {
+    if (const auto rule = broken_rules[i]; rule.empty()) {
       ++sum.survived;
     } else {
       sum.failures.push_back({plans[i].choice, rule});
     }
-    sum.diverged += one.given_J > params.task.diverged_above_J;
+    sum.diverged += one.given_J > diverged_above_J;
     sum.simulated_s += plans[i].start_s + plans[i].length_s;
     if (one.stopped) stop_s.push_back(one.time_to_stop_s);
     if (one.detection_ticks >= 0) detection.push_back(static_cast<double>(one.detection_ticks));
@@ -86,15 +101,19 @@ FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vec
   return sum;
 }
 
+Error unknown_row(const std::string& key, const std::string& id, const std::vector<FaultRow>& rows) {
+  std::string ids;
+  for (const FaultRow& row : rows) ids += (ids.empty() ? "" : ", ") + std::string(row.id);
+  return {.code = ErrorCode::out_of_bounds,
+          .parameter = key,
+          .message = "\"" + id + "\" is the id of no row: one of " + ids,
+          .place = {}};
+}
+
 Result<std::vector<FaultRow>> chosen_rows(const FaultsParams& params) {
   auto rows = fault_rows(params.task.only);
   if (!rows.empty()) return rows;
-  std::string ids;
-  for (const FaultRow& row : fault_rows()) ids += (ids.empty() ? "" : ", ") + std::string(row.id);
-  return Error{.code = ErrorCode::out_of_bounds,
-               .parameter = "task.only",
-               .message = "\"" + params.task.only + "\" is the id of no row: one of " + ids,
-               .place = {}};
+  return unknown_row("task.only", params.task.only, fault_rows());
 }
 
 Result<FaultTable> run_faults(const FaultsParams& params, const std::function<void(double)>& progress) {

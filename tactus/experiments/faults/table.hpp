@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,7 +42,11 @@ std::vector<FaultPlan> draw_plans(const FaultRow& row, const FaultsParams& param
 /// Those of its control: as many, the first that can show what is switched off.
 std::vector<FaultPlan> draw_control_plans(const FaultRow& row, const FaultsParams& params);
 
-/// What came of the runs of a row, one outcome for each plan.
+/// What came of the runs of a row, one outcome for each plan, and the rule that each broke, in words, empty where it
+/// survived. A run `diverged` in which the master gave more energy than this.
+FaultTally tally(const FaultRow& row, const std::vector<FaultPlan>& plans, const std::vector<FaultOutcome>& outcomes,
+                 const std::vector<std::string_view>& broken_rules, double diverged_above_J);
+/// The same of the rules of `params`.
 FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vector<FaultPlan>& plans,
                  const std::vector<FaultOutcome>& outcomes);
 
@@ -51,6 +56,8 @@ struct FaultTable {
   std::vector<FaultTally> controls;
 };
 
+/// The error for an `id` that none of the `rows` has, naming `key` and their ids.
+Error unknown_row(const std::string& key, const std::string& id, const std::vector<FaultRow>& rows);
 /// The rows that `params` ask for, or an error that names `task.only`.
 Result<std::vector<FaultRow>> chosen_rows(const FaultsParams& params);
 

@@ -1,10 +1,13 @@
 #pragma once
 
-#include <tactus/experiments/faults/run.hpp>
+#include <tactus/control/packet.hpp>
+#include <tactus/control/supervision.hpp>
+#include <tactus/experiments/faults/outcome.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace tactus::experiments {
@@ -48,7 +51,8 @@ class PacketWitness {
     starts_.resize(sessions);
     for (Session& one : starts_) one.ticks.reserve(static_cast<std::size_t>(packets));
   }
-  void sent(const control::Packet& packet, std::int64_t tick) {
+  template <class Payload = control::Message>
+  void sent(const control::PacketOf<Payload>& packet, std::int64_t tick) {
     if (packet.session != session_) {
       session_ = packet.session;
       if (begun_ == starts_.size()) starts_.emplace_back();
@@ -90,9 +94,14 @@ class EnergyWitness {
  public:
   /// `force_N` acts from now on, `position_m` is the true one of the motor now. Returns the largest rise so far in J.
   double see(double force_N, double position_m) {
-    given_J_ += force_N_ * (position_m - before_m_);
+    const double work_J = force_N_ * (position_m - before_m_);
     force_N_ = force_N;
     before_m_ = position_m;
+    return add(work_J);
+  }
+  /// The same of work in J that was done since the tick before.
+  double add(double work_J) {
+    given_J_ += work_J;
     least_J_ = std::min(least_J_, given_J_);
     return rise_J_ = std::max(rise_J_, given_J_ - least_J_);
   }
@@ -114,6 +123,12 @@ struct SiteTruth {
   double tip_m = 0.0;  ///< handle or tool
   double tip_m_per_s = 0.0;
   double outside_N = 0.0;  ///< hand on handle or wall on tool
+  /// Work in J since the tick before on whoever touches it, where that is no force times a way: of an arm, whose motors
+  /// lift its own weight too.
+  std::optional<double> worked_J = std::nullopt;
+
+  /// Enters it, and returns the largest rise so far in J.
+  double enter(EnergyWitness& energy) const { return worked_J ? energy.add(*worked_J) : energy.see(drive_N, motor_m); }
 };
 
 /// A low-pass of first order, for what lasts.
@@ -135,7 +150,7 @@ class HarmWitness {
       : middle_m_(middle_m), range_m_(range_m), released_N_(released_N), pressing_(0.1, tick_s) {}
 
   void see(const SiteTruth& truth, double now_s, SiteHarm& harm) {
-    harm.given_J = energy_.see(truth.drive_N, truth.motor_m);
+    harm.given_J = truth.enter(energy_);
     harm.speed_m_per_s = std::max(harm.speed_m_per_s, std::fabs(truth.tip_m_per_s));
     harm.strayed_m = std::max(harm.strayed_m, std::fabs(truth.tip_m - middle_m_) - range_m_);
     harm.peak_force_N = std::max(harm.peak_force_N, std::fabs(truth.outside_N));

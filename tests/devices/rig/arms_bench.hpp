@@ -160,13 +160,14 @@ struct Bench {
   }
   std::unique_ptr<VirtualLink> link(const RigSide& side, double off_rad, double gripper_rad, const Faults& of_it,
                                     std::function<ToolForce(const ToolState&)> touched) const {
-    arm::JointVector at = setup.start;
+    arm::JointVector at = setup.leader.start;
     at[3] += off_rad;
-    return std::make_unique<VirtualLink>(
-        side,
-        EmulatedArm::Settings{
-            .chain = setup.arm.chain, .held_at = at, .tool_m = setup.arm.tool_m, .touched = std::move(touched)},
-        gripper_rad, of_it);
+    return std::make_unique<VirtualLink>(side,
+                                         EmulatedArm::Settings{.chain = setup.leader.arm.chain,
+                                                               .held_at = at,
+                                                               .tool_m = setup.leader.arm.tool_m,
+                                                               .touched = std::move(touched)},
+                                         gripper_rad, of_it);
   }
   static std::unique_ptr<MotorBusDevice> device(VirtualLink& link, const RigSide& side) {
     return *MotorBusDevice::make(link, {.joints = side.motor_joints(), .silence_s = 0.05});

@@ -52,12 +52,12 @@ TEST(RigArms, TheFollowerFollowsAHandAndItsContactComesBack) {
   EXPECT_LT((Bench::tool_m(*bench.follower_link) - follower_m - went_m).norm(), 0.01);
 
   // Down onto a stiff surface, 10 mm below where the follower is now, and 15 mm beyond.
-  bench.wall = {.point_m = Bench::tool_m(*bench.follower_link) - 0.01 * arm::Vector3::UnitZ(),
-                .normal = arm::Vector3::UnitZ(),
-                .stiffness_N_per_m = 20'000.0,
-                .damping_N_s_per_m = 20.0};
+  bench.wall = arm_plants::Wall{.point_m = Bench::tool_m(*bench.follower_link) - 0.01 * arm::Vector3::UnitZ(),
+                                .normal = arm::Vector3::UnitZ(),
+                                .contact = *mechanics::Environment::make(
+                                    {.stiffness_N_per_m = 20'000.0, .damping_N_s_per_m = 20.0}, Seconds{1e-3})};
   const auto displayed = [&] {
-    const auto chain = *arm::Chain::make(bench.setup.arm.chain);
+    const auto chain = *arm::Chain::make(bench.setup.follower.arm.chain);
     return (Bench::torques(*bench.leader_link) - chain.gravity_torque(Bench::positions(*bench.leader_link))).eval();
   };
   const arm::JointVector before = displayed();
@@ -66,9 +66,11 @@ TEST(RigArms, TheFollowerFollowsAHandAndItsContactComesBack) {
   const double contact_N = bench.contact.force_N.z();
   EXPECT_GT(contact_N, 1.0);
   EXPECT_LT(contact_N, 20.0);
-  const auto chain = *arm::Chain::make(bench.setup.arm.chain);
+  const auto chain = *arm::Chain::make(bench.setup.follower.arm.chain);
   const arm::JointVector of_contact =
-      chain.jacobian(Bench::positions(*bench.follower_link), 6, bench.setup.arm.tool_m).topRows<3>().transpose() *
+      chain.jacobian(Bench::positions(*bench.follower_link), 6, bench.setup.follower.arm.tool_m)
+          .topRows<3>()
+          .transpose() *
       bench.contact.force_N;
   const double share = (displayed() - before).dot(of_contact) / of_contact.squaredNorm();
   // At a gain of 0.5, less what friction hides from the observer.
@@ -237,6 +239,28 @@ TEST(RigArms, JointsAreThoseOfTheArmByName) {
       std::string::npos)
       << problem_of(rig_text(stiff, 7, "gripper"),
                     setup_of({"rig.gripper.stiffness_N_m_per_rad=0", "rig.gripper.damping_N_m_s_per_rad=0"}));
+}
+
+TEST(RigArms, AFollowerThatIsAnotherArmHasItsOwnJointsAndItsOwnModel) {
+  ArmPairSetup setup = setup_of();
+  setup.follower.urdf = "other.urdf";
+  setup.follower.joints[2] = "elbow";
+  const std::string stiff = "stiffness_limit_Nm_per_rad = 240.0\n";
+  EXPECT_NE(problem_of(rig_text(stiff, 7), setup)
+                .find("arm.follower: the arm of other.urdf has a joint elbow, and the rig has none: write "
+                      "[arm.follower.elbow]"),
+            std::string::npos)
+      << problem_of(rig_text(stiff, 7), setup);
+  setup = setup_of();
+  setup.follower.arm.chain.joints[0].body.mass_kg = -1.0;
+  const Joints<station::DeviceLimits> limits = [] {
+    Joints<station::DeviceLimits> found(joints);
+    for (std::size_t i = 0; i < joints; ++i) found[i] = pair_of().leader->joints[i].joint.limits();
+    return found;
+  }();
+  const auto sites = arm_sites(setup, limits, limits);
+  ASSERT_FALSE(sites);
+  EXPECT_TRUE(sites.error().parameter.starts_with("control.follower")) << describe(sites.error());
 }
 
 TEST(RigArms, ALawBeyondWhatTheRigAllowsIsRefusedBeforeAnythingMoves) {

@@ -22,7 +22,7 @@ ArmContestParams shipped() {
 ArmContest glance() {
   ArmContestParams params = shipped();
   params.task.taps = 1;
-  params.pairs.pair_2.name = params.pairs.pair_3.name = params.hands.hand_2.name = "";
+  params.pairs.pair_2.name = params.pairs.pair_3.name = params.pairs.pair_4.name = params.hands.hand_2.name = "";
   return *make_arm_contest(params, folder);
 }
 
@@ -35,9 +35,9 @@ std::size_t method_named(std::string_view name) {
 
 TEST(ArmContest, RunsEveryMethodOnEachPairInEachHand) {
   const ArmContest contest = *make_arm_contest(shipped(), folder);
-  EXPECT_EQ(contest.pairs.size(), 3U);
+  EXPECT_EQ(contest.pairs.size(), 4U);
   EXPECT_EQ(contest.hands.size(), 2U);
-  EXPECT_EQ(contest.entries.size(), 6 * arm_contest_methods().size());
+  EXPECT_EQ(contest.entries.size(), 8 * arm_contest_methods().size());
   for (std::size_t i = 0; i < contest.entries.size(); ++i) {
     EXPECT_EQ(contest.entries[i].method, i % arm_contest_methods().size());
     EXPECT_EQ(contest.entries[i].taps.size(), 2U);
@@ -72,7 +72,7 @@ TEST(ArmContest, AGainThatIsTriedIsTheOneOfArmTapping) {
 
 TEST(ArmContest, TheMethodToUseLetsMostBeFeltInTheHandThatFeelsLeast) {
   ArmContestParams params = shipped();
-  params.pairs.pair_2.name = params.pairs.pair_3.name = "";
+  params.pairs.pair_2.name = params.pairs.pair_3.name = params.pairs.pair_4.name = "";
   const ArmContest contest = *make_arm_contest(params, folder);
   std::vector<ArmContestScore> scores(contest.entries.size());
   for (std::size_t i = 0; i < scores.size(); ++i) {

@@ -1,5 +1,6 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/arm_tapping/arm_taps.hpp>
+#include <tactus/experiments/arm_tapping/contact_figure.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -91,6 +92,22 @@ TEST(ArmTapping, AsShippedTapsSettleAtAGainAtWhichTheyRingWithoutItsDampingAndSo
   EXPECT_EQ(settled_share(params, 3), 0.0);
 }
 
+TEST(ArmTapping, OnASurfaceOfHuntAndCrossleyAsShippedTapsSettleAndItIsTheStifferTheHarder) {
+  ArmTappingParams params = shipped();
+  params.control.force_gain = 5.66;
+  params.wall.law = SurfaceLaw::hunt_crossley;
+  EXPECT_EQ(settled_share(params, 2), 1.0);
+  // As deep as the follower's tool goes is as the closed form of its force says.
+  params.task.taps = 1;
+  const ArmTaps taps = *ArmTaps::make(params, folder);
+  ArmTrace trace;
+  taps.run(0, &trace);
+  const double depth_m = taps.tap(0).wall_m - trace.records.back().follower_m;
+  const double force_N = trace.records.back().contact_N;
+  ASSERT_GT(depth_m, 0.0);
+  EXPECT_NEAR(20000.0 * depth_m * std::sqrt(depth_m / 1e-4), force_N, 0.05 * force_N);
+}
+
 TEST(ArmTapping, AlongTheArmTapsSettleBecauseOfTheLimitsAtTheTool) {
   ArmTappingParams params = shipped();
   params.control.force_gain = 5.66;
@@ -117,8 +134,22 @@ TEST(ArmTapping, OnElasticJointsTapsSettleWithAnObserverThatCountsWithThem) {
   ArmTappingParams params = document.read<ArmTappingParams>().value();
   params.control.force_gain = 4.0;
   EXPECT_EQ(settled_share(params, 3), 1.0);
+  params.control.method = arm_control::ArmMethod::position_force;
+  EXPECT_EQ(settled_share(params, 3), 1.0);
   params.control.follower.observer.joints = arm_control::JointModel::rigid;
   EXPECT_LT(settled_share(params, 3), 0.5);
+}
+
+TEST(ArmTapping, OnElasticJointsCancellationSettlesAcrossWherePositionForceRings) {
+  auto document = *configuration::Document::load(folder / "arm-tapping.toml");
+  ASSERT_EQ(document.merge(*configuration::Document::load(folder / "arms/elastic-joints.toml")), std::nullopt);
+  ArmTappingParams params = document.read<ArmTappingParams>().value();
+  params.control.force_gain = 2.83;
+  params.task.pose = 3;
+  params.task.direction = TapDirection::along_y;
+  EXPECT_EQ(settled_share(params, 4), 1.0);
+  params.control.method = arm_control::ArmMethod::position_force;
+  EXPECT_LT(settled_share(params, 4), 0.5);
 }
 
 TEST(ArmTapping, SixJointsOfTheYamClassSettleAsRecommendedAndNotWithoutIt) {
@@ -126,7 +157,7 @@ TEST(ArmTapping, SixJointsOfTheYamClassSettleAsRecommendedAndNotWithoutIt) {
   ASSERT_EQ(document.merge(*configuration::Document::load(folder / "arms/yam-pair.toml")), std::nullopt);
   ArmTappingParams params = document.read<ArmTappingParams>().value();
   params.control.force_gain = 5.66;
-  EXPECT_EQ(set_up_arm_pair(params, folder)->start.size(), 6);
+  EXPECT_EQ(set_up_arm_pair(params, folder)->leader.start.size(), 6);
   EXPECT_EQ(settled_share(params, 3), 1.0);
   ASSERT_EQ(document.merge(*configuration::Document::load(folder / "arms/bare.toml")), std::nullopt);
   params = document.read<ArmTappingParams>().value();
@@ -134,11 +165,94 @@ TEST(ArmTapping, SixJointsOfTheYamClassSettleAsRecommendedAndNotWithoutIt) {
   EXPECT_EQ(settled_share(params, 3), 0.0);
 }
 
+/// The shipped pair with the follower written out as another arm, which is the same.
+ArmTappingParams with_equal_follower() {
+  ArmTappingParams params = shipped();
+  FollowerArmParams& follower = params.arm.follower;
+  follower.urdf = params.arm.urdf;
+  follower.tool = params.arm.tool;
+  follower.joints = {
+      params.arm.joints.joint_1, params.arm.joints.joint_2, params.arm.joints.joint_3, params.arm.joints.joint_4,
+      params.arm.joints.joint_5, params.arm.joints.joint_6, params.arm.joints.joint_7, {}};
+  return params;
+}
+
+/// The geared pair as recommended, or with a file on top.
+ArmTappingParams geared(const char* on_top = nullptr) {
+  auto document = *configuration::Document::load(folder / "arm-tapping.toml");
+  EXPECT_EQ(document.merge(*configuration::Document::load(folder / "arms/geared-pair.toml")), std::nullopt);
+  if (on_top != nullptr) {
+    EXPECT_EQ(document.merge(*configuration::Document::load(folder / on_top)), std::nullopt);
+  }
+  return document.read<ArmTappingParams>().value();
+}
+
+TEST(ArmTapping, AFollowerThatIsWrittenOutIsTreatedAsOneThatIsLikeTheLeader) {
+  const ArmPairSetup setup = *set_up_arm_pair(with_equal_follower(), folder);
+  EXPECT_NEAR(setup.tool_scale, 1.0, 1e-3);
+  ArmTrace alike, written;
+  ArmTaps::make(shipped(), folder)->run(0, &alike);
+  const ArmTaps taps = *ArmTaps::make(with_equal_follower(), folder);
+  taps.run(0, &written);
+  ASSERT_EQ(alike.records.size(), written.records.size());
+  for (std::size_t k = 0; k < alike.records.size(); ++k) {
+    ASSERT_NEAR(alike.records[k].follower_m, written.records[k].follower_m, 1e-4) << k;
+  }
+  EXPECT_NEAR(taps.reach().lag_m, ArmTaps::make(shipped(), folder)->reach().lag_m, 1e-4);
+}
+
+TEST(ArmTapping, ALeaderOfHalfTheSizeMovesTheFollowersToolTwiceAsFar) {
+  ArmTappingParams params = geared();
+  params.control.force_gain = 0.0;
+  for (const std::int64_t pose : {0, 3}) {
+    params.task.pose = pose;
+    const ArmPairSetup setup = *set_up_arm_pair(params, folder);
+    EXPECT_NEAR(setup.tool_scale, 2.0, 0.01);
+    EXPECT_EQ(setup.leader.start, setup.follower.start);
+    ArmPair pair = *ArmPair::make(setup, setup.exact, -1.0);
+    ArmRecord record;
+    for (int k = 0; k < 1000; ++k) {
+      const double share = std::min(1.0, k / 500.0);
+      record = pair.step(-0.05 * share * setup.outward, -0.05 * share * setup.outward);
+    }
+    EXPECT_NEAR(record.leader_m, -0.025, 0.002);
+    EXPECT_NEAR(record.follower_m, -0.05, 0.004);
+    EXPECT_LT(record.tools_apart_m, 0.002) << "at rest the follower is where the leader's joints have it";
+  }
+}
+
+TEST(ArmTapping, TheGearedPairSettlesAsRecommendedInEitherHandAndPlainHardly) {
+  for (const char* hand : {"arms/geared-pair.toml", "arms/soft-hand.toml"}) {
+    EXPECT_EQ(settled_share(geared(hand), 3), 1.0) << hand;
+  }
+  ArmTappingParams plain = geared("arms/bare.toml");
+  EXPECT_EQ(settled_share(plain, 3), 0.0);
+}
+
+TEST(ArmTapping, AFollowerThatCannotBeCommandedJointByJointIsRefused) {
+  const auto problem = [](const ArmTappingParams& params) { return set_up_arm_pair(params, folder).error(); };
+  ArmTappingParams params = shipped();
+  params.arm.follower.urdf = "arms/yam-class.urdf";
+  EXPECT_EQ(problem(params).parameter, "arm.follower.urdf");
+  EXPECT_NE(problem(params).message.find("the leader has 7 (joint_1"), std::string::npos) << problem(params).message;
+  EXPECT_NE(problem(params).message.find("and the follower 6 ("), std::string::npos) << problem(params).message;
+  params.arm.follower.urdf = "arms/no-such.urdf";
+  EXPECT_EQ(problem(params).parameter, "arm.follower.urdf");
+  params = shipped();
+  params.arm.follower.joint_stiffness_N_m_per_rad = 3000.0;
+  EXPECT_EQ(problem(params).parameter, "arm.follower.urdf");
+  EXPECT_NE(problem(params).message.find("something is said of it"), std::string::npos);
+  params = shipped();  // whose tool this pose moves elsewhere
+  params.arm.follower.urdf = "arms/franka-class-follower.urdf";
+  EXPECT_EQ(problem(params).code, ErrorCode::inconsistent);
+  EXPECT_NE(problem(params).message.find("degrees from there"), std::string::npos) << problem(params).message;
+}
+
 TEST(ArmTapping, APoseIsTheSameForTheSameNumberAndAnotherForAnother) {
   ArmTappingParams params = shipped();
   const auto start = [&](std::int64_t pose) {
     params.task.pose = pose;
-    return set_up_arm_pair(params, folder)->start;
+    return set_up_arm_pair(params, folder)->leader.start;
   };
   const arm::JointVector shipped_start = start(0);
   EXPECT_EQ(shipped_start[3], 1.4);
@@ -153,31 +267,61 @@ TEST(ArmTapping, ASurfaceStandsInTheDirectionOfTheTap) {
   for (const TapDirection direction : {TapDirection::down, TapDirection::along_x, TapDirection::along_y}) {
     params.task.direction = direction;
     const ArmPairSetup setup = *set_up_arm_pair(params, folder);
-    std::vector<ArmRecord> trace;
+    ArmTrace trace;
     const ArmTapResult tap = ArmTaps::make(params, folder)->run(0, &trace);
     EXPECT_TRUE(tap.contact.touched);
     EXPECT_GT(tap.contact.peak_N, 1.0);
-    EXPECT_LT(trace.back().leader_m, -0.005) << "inward";
+    EXPECT_LT(trace.records.back().leader_m, -0.005) << "inward";
     EXPECT_EQ(setup.outward.norm(), 1.0);
+  }
+}
+
+TEST(ArmTapping, APictureShowsBothArmsOnTheSurface) {
+  for (const TapDirection direction : {TapDirection::down, TapDirection::along_x}) {
+    ArmTappingParams params = shipped();
+    params.task.direction = direction;
+    const ArmTaps taps = *ArmTaps::make(params, folder);
+    ArmTrace trace;
+    taps.run(0, &trace);
+    ASSERT_TRUE(trace.pressing);
+    const report::Figure figure = contact_figure(taps.setup(), *trace.pressing, "");
+    ASSERT_EQ(figure.panels.size(), 2U);
+    const report::Line& links = figure.panels[1].lines[1];
+    const report::Line& contact = figure.panels[1].lines[2];
+    ASSERT_EQ(links.x.size(), 9U) << "base, seven joints and tool";
+    EXPECT_EQ(contact.x[0], links.x[8]);
+    EXPECT_EQ(contact.y[0], links.y[8]);
+    const bool down = direction == TapDirection::down;
+    EXPECT_GT(down ? contact.y[1] - contact.y[0] : contact.x[1] - contact.x[0], 50.0) << "out of the surface";
+    EXPECT_NEAR(down ? contact.x[1] - contact.x[0] : contact.y[1] - contact.y[0], 0.0, 1e-9);
+    // A link is as long in space as in its picture, or longer.
+    const arm::Vector3 tool = trace.pressing->sight.follower_m;
+    EXPECT_LE(std::hypot(links.x[8], links.y[8]), 1e3 * tool.norm() + 1e-9);
+    EXPECT_NEAR(links.y[8], 1e3 * tool.z(), 1e-9);
+    const report::Line& induced = figure.panels[0].lines[2];
+    EXPECT_TRUE(induced.name.starts_with("induced motion × 10")) << induced.name;
+    const double drawn = std::hypot(induced.x[1] - induced.x[0], induced.y[1] - induced.y[0]);
+    EXPECT_GT(drawn, 1.0) << "can be seen";
+    EXPECT_LE(drawn, 300.0);
   }
 }
 
 TEST(ArmTapping, EqualParametersGiveEqualBits) {
   ArmTappingParams params = shipped();
   params.task.taps = 2;
-  std::vector<ArmRecord> once, again;
+  ArmTrace once, again;
   ArmTaps::make(params, folder)->run(1, &once);
   ArmTaps::make(params, folder)->run(1, &again);
-  ASSERT_EQ(once.size(), again.size());
-  for (std::size_t k = 0; k < once.size(); ++k) {
-    ASSERT_EQ(once[k].contact_N, again[k].contact_N) << k;
-    ASSERT_EQ(once[k].leader_m, again[k].leader_m) << k;
+  ASSERT_EQ(once.records.size(), again.records.size());
+  for (std::size_t k = 0; k < once.records.size(); ++k) {
+    ASSERT_EQ(once.records[k].contact_N, again.records[k].contact_N) << k;
+    ASSERT_EQ(once.records[k].leader_m, again.records[k].leader_m) << k;
   }
 }
 
 TEST(ArmTapping, WithoutAPersonsMotionNothingMoves) {
   const ArmPairSetup setup = *set_up_arm_pair(shipped(), folder);
-  ArmPair pair = *ArmPair::make(setup, setup.induced, setup.params.control.model.hand, -0.01);
+  ArmPair pair = *ArmPair::make(setup, setup.exact, -0.01);
   ArmRecord record;
   for (int k = 0; k < 1000; ++k) record = pair.step(arm::Vector3::Zero(), arm::Vector3::Zero());
   EXPECT_LT(std::fabs(record.leader_m), 5e-4);

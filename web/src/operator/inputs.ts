@@ -1,31 +1,35 @@
-import { highest_m, lowest_m, type Hand } from './hand';
+import type { Hand, HandPoint } from './hand';
 
 /** Mouse, touch and pen on a scene; keys on a handle; a gamepad. All move the one hand. */
 
 export interface Place {
-  /** Millimetres of the scene per pixel of the screen. */
-  millimetresPerPixel(): number;
+  /** How far a drag by so many pixels of the screen, right and down, moves the hand. */
+  dragged_m(right: number, down: number): HandPoint;
   /** Where the handle is now. */
-  handle_m(): number;
+  handle_m(): HandPoint;
   wall_m(): number;
+  /** How far each of the keys that move the hand moves it. */
+  readonly keySteps: KeySteps;
 }
 
-/** The scene is dragged anywhere: a finger need not cover the handle. Vertical moves scroll the page (`touch-action`). */
+/** The scene is dragged anywhere: a finger need not cover the handle. Where the hand has one axis, vertical moves scroll the page (`touch-action`). */
 export function dragWithPointer(scene: HTMLElement, hand: Hand, place: Place): void {
   let pointer: number | undefined;
   let startX = 0;
-  let start_m = 0;
+  let startY = 0;
+  let start_m: HandPoint = [0, 0, 0];
   scene.addEventListener('pointerdown', (event) => {
     if (pointer !== undefined || event.button !== 0) return;
     pointer = event.pointerId;
     scene.setPointerCapture(pointer);
     startX = event.clientX;
-    start_m = hand.engaged ? hand.position_m : place.handle_m();
+    startY = event.clientY;
+    start_m = hand.engaged ? hand.point_m : place.handle_m();
     hand.grasp(start_m);
   });
   scene.addEventListener('pointermove', (event) => {
     if (event.pointerId !== pointer) return;
-    hand.moveTo(start_m + 1e-3 * (event.clientX - startX) * place.millimetresPerPixel());
+    hand.moveTo(sum(start_m, place.dragged_m(event.clientX - startX, event.clientY - startY)));
   });
   const end = (event: PointerEvent): void => {
     if (event.pointerId !== pointer) return;
@@ -36,21 +40,38 @@ export function dragWithPointer(scene: HTMLElement, hand: Hand, place: Place): v
   scene.addEventListener('pointercancel', end);
 }
 
-const keySteps: Readonly<Record<string, number>> = {
-  ArrowLeft: -0.5e-3,
-  ArrowDown: -0.5e-3,
-  ArrowRight: 0.5e-3,
-  ArrowUp: 0.5e-3,
-  PageDown: -2e-3,
-  PageUp: 2e-3,
+export type KeySteps = Readonly<Record<string, HandPoint>>;
+
+/** Arrow keys move by 0.5 mm, page keys by 2 mm. */
+export const axisKeys: KeySteps = {
+  ArrowLeft: [-0.5e-3, 0, 0],
+  ArrowDown: [-0.5e-3, 0, 0],
+  ArrowRight: [0.5e-3, 0, 0],
+  ArrowUp: [0.5e-3, 0, 0],
+  PageDown: [-2e-3, 0, 0],
+  PageUp: [2e-3, 0, 0],
 };
 
-/** Arrow keys move by 0.5 mm, page keys by 2 mm; Home is rest, End presses 4 mm into the wall, Escape lets go. */
+/** Up and down move by 1 mm from the wall and to it, the others by 5 mm across. */
+export const armKeys: KeySteps = {
+  ArrowUp: [-1e-3, 0, 0],
+  ArrowDown: [1e-3, 0, 0],
+  ArrowLeft: [0, 0, -5e-3],
+  ArrowRight: [0, 0, 5e-3],
+  PageDown: [0, -5e-3, 0],
+  PageUp: [0, 5e-3, 0],
+};
+
+function sum([a, b, c]: HandPoint, [x, y, z]: HandPoint): HandPoint {
+  return [a + x, b + y, c + z];
+}
+
+/** Arrow and page keys move as the place has it; Home is rest, End presses 4 mm into the wall, Escape lets go. */
 export function moveWithKeys(handle: HTMLElement, hand: Hand, place: Place, tap: () => void): void {
   handle.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
-    const step = keySteps[event.key];
-    if (step !== undefined) hand.grasp((hand.engaged ? hand.position_m : place.handle_m()) + step);
+    const step = place.keySteps[event.key];
+    if (step !== undefined) hand.grasp(sum(hand.engaged ? hand.point_m : place.handle_m(), step));
     else if (event.key === 'Home') hand.grasp(0);
     else if (event.key === 'End') hand.grasp(place.wall_m() + 4e-3);
     else if (event.key === 'Escape') hand.release();
@@ -82,6 +103,7 @@ export class GamepadInput {
     const axis = gamepad.axes[0] ?? 0;
     if (Math.abs(axis) > deadZone) {
       const share = (Math.abs(axis) - deadZone) / (1 - deadZone);
+      const [lowest_m, highest_m] = this.hand.reach[0];
       this.hand.grasp(axis > 0 ? share * highest_m : share * lowest_m);
       this.held = true;
     } else if (this.held) {

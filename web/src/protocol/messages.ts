@@ -55,6 +55,16 @@ export interface HandForce {
   readonly force_N: NumberArray;
 }
 
+/** What the arms of a loop are about; vectors along the axes of the base. */
+export interface ArmsState {
+  readonly leader_rad: NumberArray;
+  readonly follower_rad: NumberArray;
+  readonly hand_m: NumberArray;
+  readonly displayed_N: NumberArray;
+  readonly contact_N: NumberArray;
+  readonly induced_m: NumberArray;
+}
+
 function number(value: Value | undefined): number {
   return typeof value === 'number' && Number.isFinite(value) ? value : 0;
 }
@@ -100,6 +110,20 @@ export function toLoopState(message: Message): LoopState {
     estimatedGrip: number(message.estimated_grip),
     gripDeviation: number(message.estimated_grip_deviation),
   };
+}
+
+/** Undefined where a vector is none. */
+export function toArms(message: Message): ArmsState | undefined {
+  const arms = {
+    leader_rad: numbers(message.leader_rad),
+    follower_rad: numbers(message.follower_rad),
+    hand_m: numbers(message.hand_m),
+    displayed_N: numbers(message.displayed_force_n),
+    contact_N: numbers(message.contact_force_n),
+    induced_m: numbers(message.induced_m),
+  };
+  const { hand_m, displayed_N, contact_N, induced_m } = arms;
+  return [hand_m, displayed_N, contact_N, induced_m].every(({ length }) => length === 3) ? arms : undefined;
 }
 
 export function toHandForce(message: Message): HandForce {

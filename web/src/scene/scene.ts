@@ -1,5 +1,6 @@
 import { palette } from './palette';
 import { first_mm, last_mm, scaleFor, type Scale } from './scale';
+import { arrow, font, label, line, type Context } from './strokes';
 
 /** What one scene shows; positions in mm, forces in N. A range is what was covered in the last moments. */
 export interface SceneContent {
@@ -28,11 +29,8 @@ export interface Layout {
 }
 export const roomy: Layout = { height: 236, master: 72, slave: 152, axis: 200, grow: 1 };
 export const compact: Layout = { height: 146, master: 40, slave: 93, axis: 119, grow: 0.6 };
-const font = '13px system-ui, sans-serif';
 const smallFont = '12px system-ui, sans-serif';
 const arrowPixelsPerNewton = 46;
-
-type Context = CanvasRenderingContext2D;
 
 /** Draws hand, master, slave and wall on one axis in mm. */
 export function drawScene(context: Context, width: number, layout: Layout, content: SceneContent): void {
@@ -49,7 +47,7 @@ export function drawScene(context: Context, width: number, layout: Layout, conte
 }
 
 /** Fits a canvas to its width on the page and returns that width. */
-export function fitCanvas(canvas: HTMLCanvasElement, context: Context, { height }: Layout): number {
+export function fitCanvas(canvas: HTMLCanvasElement, context: Context, height: number): number {
   const width = canvas.clientWidth;
   const ratio = window.devicePixelRatio;
   const pixels = Math.round(width * ratio);
@@ -62,23 +60,9 @@ export function fitCanvas(canvas: HTMLCanvasElement, context: Context, { height 
   return width;
 }
 
-function line(context: Context, x1: number, y1: number, x2: number, y2: number): void {
-  context.beginPath();
-  context.moveTo(x1, y1);
-  context.lineTo(x2, y2);
-  context.stroke();
-}
-
 function roundRect(context: Context, x: number, y: number, width: number, height: number, radius: number): void {
   context.beginPath();
   context.roundRect(x, y, width, height, radius);
-}
-
-function label(context: Context, text: string, x: number, y: number, colour: string, align: CanvasTextAlign): void {
-  context.font = font;
-  context.fillStyle = colour;
-  context.textAlign = align;
-  context.fillText(text, x, y);
 }
 
 function drawAxis(context: Context, width: number, { axis }: Layout, scale: Scale): void {
@@ -149,15 +133,7 @@ function drawRail(context: Context, width: number, y: number): void {
 function drawForce(context: Context, x: number, y: number, force_N: number, remark = ''): void {
   if (force_N < 0.05) return;
   const length = Math.min(90, 10 + force_N * arrowPixelsPerNewton);
-  context.strokeStyle = palette.force;
-  context.fillStyle = palette.force;
-  context.lineWidth = 5;
-  line(context, x, y, x - length + 8, y);
-  context.beginPath();
-  context.moveTo(x - length, y);
-  context.lineTo(x - length + 12, y - 8);
-  context.lineTo(x - length + 12, y + 8);
-  context.fill();
+  arrow(context, x, y, x - length, y, palette.force);
   label(context, `${force_N.toFixed(1)} N${remark}`, x - length - 6, y, palette.force, 'right');
 }
 

@@ -1,4 +1,4 @@
-import { signalNames, type Block, type HandForce, type LoopState, type SignalName } from '../protocol/messages';
+import { signalNames, type ArmsState, type Block, type HandForce, type LoopState, type SignalName } from '../protocol/messages';
 import { ContactCapture } from './contact';
 import { SlidingSeries } from './series';
 
@@ -31,6 +31,8 @@ const initial: LoopState = {
 /** What is known of one of the two loops. Positions are kept in mm and forces in N, as they are shown. */
 export class Loop {
   state: LoopState = initial;
+  /** Undefined of one axis, and until the first message. */
+  arms: ArmsState | undefined;
   /**
    * Two rows a column: the least value, then the greatest, so that a line through them fills what lies
    * between. A row where nothing is a number stands for a stretch that no block covered.
@@ -45,6 +47,7 @@ export class Loop {
 
   clear(): void {
     this.state = initial;
+    this.arms = undefined;
     this.trace.clear();
     this.handForce.clear();
     this.contact.clear();

@@ -1,6 +1,7 @@
 import type { Message } from '../protocol/cdr';
 import type { Connection, Handlers, ParameterValue, ServerInfo, StatusLevel } from '../protocol/foxglove';
-import { toBlock, toHandForce, toLoopState } from '../protocol/messages';
+import { toArms, toBlock, toHandForce, toLoopState } from '../protocol/messages';
+import { describedArms, type ArmPair } from './arms';
 import { Loop } from './loop';
 import { describedParameters, type ParameterDescription } from './parameters';
 import { SlidingSeries } from './series';
@@ -32,6 +33,8 @@ export class Session implements Handlers {
   readonly energy = new SlidingSeries(400, sides.length);
   connection: Connection = { state: 'connecting' };
   described: readonly ParameterDescription[] = [];
+  /** What is served, where that is a pair of arms. */
+  arms: ArmPair | undefined;
   readonly values = new Map<string, ParameterValue>();
   private readonly listeners: Listeners = { connection: [], server: [], parameters: [], notice: [], handForce: [] };
 
@@ -44,7 +47,7 @@ export class Session implements Handlers {
   }
 
   wants(topic: string): boolean {
-    return /^\/(left|right)\/(block|state|hand_force)$/.test(topic);
+    return /^\/(left|right)\/(block|state|hand_force|arms)$/.test(topic);
   }
 
   onConnection(connection: Connection): void {
@@ -56,6 +59,7 @@ export class Session implements Handlers {
     for (const side of sides) this.loops[side].clear();
     this.energy.clear();
     this.described = describedParameters(info);
+    this.arms = describedArms(info);
     this.tell('server', info);
   }
 
@@ -65,6 +69,8 @@ export class Session implements Handlers {
     if (kind === 'state') {
       loop.addState(toLoopState(message));
       if (side === 'left') this.addEnergy(loop.state.time_s);
+    } else if (kind === 'arms') {
+      loop.arms = toArms(message) ?? loop.arms;
     } else if (kind === 'block') {
       loop.addBlock(toBlock(message));
     } else {

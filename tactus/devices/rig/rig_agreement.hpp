@@ -1,0 +1,36 @@
+#pragma once
+
+#include <tactus/control/agreement.hpp>
+#include <tactus/control/architecture.hpp>
+#include <tactus/core/units.hpp>
+#include <tactus/devices/rig/rig.hpp>
+#include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/runtime/site_misfit.hpp>
+
+#include <memory>
+#include <string>
+
+namespace tactus::devices {
+
+/// What two programs that drive a side of a rig each must have in common before either arms: the kind of experiment;
+/// the joints by name, unit and order; and what both sites compute with. Ports, motors, offsets, gears and the limits
+/// of joints are each host's own affair. Not real-time safe.
+class RigAgreement {
+ public:
+  /// Of joints that are driven each by itself: with them, all that sites of one axis must agree on (`AgreedParams`).
+  static RigAgreement of(const RigSide& side, const control::ControlParams& control, Seconds tick);
+  /// Of two arms: with them the rate, all of `[control]`, the gates, both arms' dynamics, and what the sites do in
+  /// silence.
+  static RigAgreement of(const RigSide& side, const experiments::ArmPairSetup& setup);
+
+  [[nodiscard]] control::Agreement agreement() const;
+  /// What a person at the site of this role has to know of a misfit, in one sentence with the remedy.
+  [[nodiscard]] std::string describe(const runtime::SiteMisfit& misfit, control::SiteRole role) const;
+
+ private:
+  struct Values;
+  explicit RigAgreement(std::shared_ptr<const Values> values) : values_(std::move(values)) {}
+  std::shared_ptr<const Values> values_;
+};
+
+}  // namespace tactus::devices

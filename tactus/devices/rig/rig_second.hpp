@@ -1,0 +1,83 @@
+#pragma once
+
+#include <tactus/control/safety_gate.hpp>
+#include <tactus/control/site_supervisor.hpp>
+#include <tactus/devices/motor_bus_device.hpp>
+#include <tactus/runtime/site_link.hpp>
+#include <tactus/telemetry/ring.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace tactus::devices {
+
+/// One second of a pair, for the display. States and causes are those of its end.
+struct RigSecond {
+  double time_s = 0.0;
+  control::SiteState leader = control::SiteState::configure, follower = control::SiteState::configure;
+  control::SiteCause cause =
+      control::SiteCause::started;  ///< of the leader, or of the follower where that stopped by itself
+  station::DeviceHealth leader_health = station::DeviceHealth::good, follower_health = station::DeviceHealth::good;
+  DeviceTrouble leader_trouble, follower_trouble;       ///< the worst of the second, or since they stand
+  control::GateFault fault = control::GateFault::none;  ///< what a gate latched, of the leader first
+  bool fault_of_leader = false;
+  std::size_t fault_joint = 0;
+  double most_torque = 0.0;  ///< of any motor of the second, either way
+  double farthest = 0.0;     ///< of a joint from its leader
+  std::size_t joint = 0;     ///< which one
+  bool too_far = false;      ///< so that nobody can arm
+  runtime::LinkSecond link;  ///< where the other side is elsewhere
+};
+
+/// What a pair went through.
+struct RigTotals {
+  double duration_s = 0.0;
+  std::int64_t ticks = 0, active_ticks = 0, armings = 0, holds = 0;
+  std::int64_t late_ticks = 0, silent_ticks = 0, lost_ticks = 0;  ///< of the worse device
+};
+
+/// Seconds on their way from the servo thread to one other.
+using RigSeconds = telemetry::Ring<RigSecond, 64>;
+inline std::optional<RigSecond> next_of(RigSeconds& seconds) noexcept {
+  RigSecond second;
+  if (!seconds.try_pop(second)) return std::nullopt;
+  return second;
+}
+
+/// The worse of what kept a device from being good. Real-time safe, as what follows.
+inline void note(DeviceTrouble& worst, const DeviceTrouble& now) noexcept {
+  if (now.what > worst.what || (now.what == worst.what && now.age_s > worst.age_s)) worst = now;
+}
+/// A tick in which a device was so.
+inline void count(RigTotals& totals, station::DeviceHealth health) noexcept {
+  switch (health) {
+    case station::DeviceHealth::good:
+      return;
+    case station::DeviceHealth::degraded:
+      ++totals.late_ticks;
+      return;
+    case station::DeviceHealth::silent:
+      ++totals.silent_ticks;
+      return;
+    case station::DeviceHealth::lost:
+      ++totals.lost_ticks;
+  }
+}
+/// A tick after which the leader is in `now`, where it was in `before`.
+inline void count(RigTotals& totals, control::SiteState before, control::SiteState now) noexcept {
+  using control::SiteState;
+  if (now == SiteState::armed && before != SiteState::armed) ++totals.armings;
+  if (now == SiteState::hold && before != SiteState::hold) ++totals.holds;
+}
+/// Begins anew what a second gathers. What stopped the sites is told until they are armed again.
+inline void begin_anew(RigSecond& second, bool stands) noexcept {
+  second.most_torque = 0.0;
+  if (!stands) second.leader_trouble = second.follower_trouble = {};
+}
+inline bool stands(control::SiteState state) noexcept {
+  return state == control::SiteState::hold || state == control::SiteState::fault;
+}
+
+}  // namespace tactus::devices

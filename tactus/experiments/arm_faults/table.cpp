@@ -1,0 +1,154 @@
+#include <tactus/configuration/toml_writer.hpp>
+#include <tactus/experiments/arm_faults/arm_faults.hpp>
+#include <tactus/experiments/faults/presentation.hpp>
+#include <tactus/simulation/parallel.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tactus::experiments {
+
+namespace {
+
+Joints<station::DeviceLimits> limits_of(const DescribedArm& described) {
+  Joints<station::DeviceLimits> limits(described.joints.size());
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    const arm::JointLimits& joint = described.arm.chain.joints[i].limits;
+    limits[i].force_N = joint.effort_N_m;
+    limits[i].velocity_m_per_s = joint.velocity_rad_per_s;
+    limits[i].position_m = std::max(std::fabs(joint.lower_rad), std::fabs(joint.upper_rad));
+  }
+  return limits;
+}
+
+std::string_view broken_by_arms(const FaultPlan& plan, const FaultOutcome& outcome, const ArmTappingParams& params) {
+  const ArmHarm& arms = *outcome.arms;
+  if (arms.fastest_joint_share > control::SafetyGate::fault_factor) return "a joint faster than its gate lets it be";
+  if (arms.sank_m > params.faults.bounds.sank_m) return "an arm sank that was to be carried";
+  if (!is_wired_so(plan)) return {};
+  if (outcome.active_in_fault) return "followed though a joint was wired wrongly";
+  return outcome.detection_ticks < 0 ? "not detected" : "";
+}
+
+}  // namespace
+
+arm_plants::ArmPlant::Params ArmFaultBench::held_leader() const {
+  arm_plants::ArmPlant::Params held = setup.leader.arm;
+  held.carried_kg = setup.params.person.hand.mass_kg;
+  return held;
+}
+
+double ArmFaultBench::wired_s() const {
+  const control::SupervisionParams& supervision = setup.params.rig.supervision;
+  constexpr double begins_s = 0.5;
+  return begins_s + 2.0 * supervision.blend_s +
+         2.0 * static_cast<double>(leader_gates.size()) * (supervision.probe.duration_s + supervision.blend_s);
+}
+
+Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const std::filesystem::path& folder) {
+  auto setup = set_up_arm_pair(params, folder);
+  if (!setup) return setup.error();
+  const Joints<station::DeviceLimits> leader_limits = limits_of(setup->leader),
+                                      follower_limits = limits_of(setup->follower);
+  // What can be made once can be made always: a plan changes no parameter of the parts.
+  if (const auto sites = supervise_arms(*setup, leader_limits, follower_limits, {}); !sites) return sites.error();
+  arm_plants::ArmPlant::Params held = setup->leader.arm;
+  held.carried_kg = params.person.hand.mass_kg;
+  auto leader = arm_plants::ArmPlant::make(held, setup->leader.start);
+  if (!leader) return under("arm", leader.error());
+  auto follower = arm_plants::ArmPlant::make(setup->follower.arm, setup->follower.start);
+  if (!follower) return under(differs(params.arm) ? "arm.follower" : "arm", follower.error());
+  const Seconds tick{1.0 / params.servo.rate_Hz};
+  if (const auto contact = mechanics::Environment::make(params.wall.environment(), tick); !contact) {
+    return under("wall", contact.error());
+  }
+  if (const auto person = arm_plants::Person::make(params.person, tick, leader->tool()); !person) {
+    return under("operator", person.error());
+  }
+  return ArmFaultBench{.setup = *setup,
+                       .leader_limits = leader_limits,
+                       .follower_limits = follower_limits,
+                       .leader_gates = joint_gates(params.rig.leader_gate, leader_limits),
+                       .follower_gates = joint_gates(params.rig.follower_gate, follower_limits),
+                       .leader = {*std::move(leader), leader_limits},
+                       .follower = {*std::move(follower), follower_limits}};
+}
+
+std::vector<FaultPlan> draw_arm_plans(const FaultRow& row, const ArmFaultBench& bench) {
+  const ArmTappingParams& params = bench.setup.params;
+  control::SafetyGate::Params gate = params.rig.leader_gate;
+  gate.encoder.fastest_m_per_s =
+      std::max(gate.encoder.fastest_m_per_s, params.rig.follower_gate.encoder.fastest_m_per_s);
+  std::vector<FaultPlan> plans;
+  for (std::int64_t i = 0; i < params.faults.seeds; ++i) {
+    plans.push_back(draw_arm_plan(row.kind, i, params.task.seed, gate, params.servo.rate_Hz, bench.wired_s()));
+  }
+  return plans;
+}
+
+std::string_view broken_arm_rule(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome,
+                                 const ArmTappingParams& params) {
+  if (const auto rule = broken_rule_of_all(outcome); !rule.empty()) return rule;
+  if (!is_wired_so(plan) && !outcome.became_active) return "did not follow before";
+  if (row.resumes && !outcome.active_at_end) return not_resumed;
+  const auto& bounds = params.faults.bounds;
+  if (const auto bound = broken_bound(outcome, bounds, bounds.release_s); !bound.empty()) return bound;
+  if (const auto rule = broken_by_arms(plan, outcome, params); !rule.empty()) return rule;
+  if (row.kind == FaultKind::none) return tripped_on_clean_data(outcome);
+  const double rate_Hz = params.servo.rate_Hz;
+  return broken_duty(arm_duty_of(plan, params.rig.supervision, rate_Hz), plan, outcome, rate_Hz);
+}
+
+Result<FaultTable> run_arm_faults(const ArmFaultBench& bench, const Progress& progress) {
+  const ArmTappingParams& params = bench.setup.params;
+  const std::vector<FaultRow> rows = arm_fault_rows(params.faults.only);
+  if (rows.empty()) return unknown_row("faults.only", params.faults.only, arm_fault_rows());
+  const auto seeds = static_cast<std::size_t>(params.faults.seeds);
+  std::vector<std::vector<FaultPlan>> plans;
+  for (const FaultRow& row : rows) plans.push_back(draw_arm_plans(row, bench));
+  std::vector<std::vector<FaultOutcome>> outcomes(rows.size(), std::vector<FaultOutcome>(seeds));
+  simulation::for_each_in_parallel(
+      rows.size() * seeds,
+      [&](std::size_t index) {
+        outcomes[index / seeds][index % seeds] = run_arm_fault(bench, plans[index / seeds][index % seeds]);
+      },
+      progress);
+  FaultTable table;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    std::vector<std::string_view> broken;
+    for (std::size_t i = 0; i < seeds; ++i) {
+      broken.push_back(broken_arm_rule(rows[row], plans[row][i], outcomes[row][i], params));
+    }
+    table.rows.push_back(tally(rows[row], plans[row], outcomes[row], broken, params.faults.bounds.given_J));
+  }
+  return table;
+}
+
+Result<Outcome> arm_faults(const Request& request, const Progress& progress) {
+  if (auto error = refuse_variations(request)) return *std::move(error);
+  const auto params = request.document.read<ArmTappingParams>();
+  if (!params) return params.error();
+  const auto bench = make_arm_fault_bench(*params, std::filesystem::path(request.document.name()).parent_path());
+  if (!bench) return request.document.locate(bench.error());
+  const auto table = run_arm_faults(*bench, progress);
+  if (!table) return request.document.locate(table.error());
+  const FaultsShown shown{
+      .kind = std::string(name_of(params->task.kind)),
+      .subject =
+          "Two supervised arms, a person who taps a stiff surface through them, and one fault in each run, drawn by "
+          "its "
+          "seed, at a joint that is drawn too. A witness outside of the sites reads what reaches the motors, what was "
+          "sent when, and what becomes of both tools.",
+      .seeds = params->faults.seeds,
+      .rate_Hz = params->servo.rate_Hz,
+      .rate_limit_N_per_s = params->rig.leader_gate.rate_limit_N_per_s,
+      .configuration = configuration::to_toml(*params),
+      .motors_give = "N m"};
+  return present_faults(request, shown, *table, std::nullopt);
+}
+
+}  // namespace tactus::experiments

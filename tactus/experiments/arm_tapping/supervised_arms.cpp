@@ -1,0 +1,144 @@
+#include <tactus/arm_control/arm_sites.hpp>
+#include <tactus/control/protective_limits.hpp>
+#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
+#include <tactus/station/wall.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace tactus::experiments {
+
+namespace {
+
+using control::SafetyGate;
+
+Check check_arm_gate(const SafetyGate::Params& gate, const std::string& name, Seconds tick) {
+  if (Check error = control::refuse_default_limits(gate, name)) return error;
+  if (const auto made = SafetyGate::make(gate, tick); !made) return under(name, made.error());
+  return std::nullopt;
+}
+
+/// The arm with no more torque than its gates let through.
+arm::Chain::Params within(const arm::Chain::Params& chain, const Joints<SafetyGate::Params>& gates) {
+  arm::Chain::Params own = chain;
+  for (std::size_t i = 0; i < own.joints.size(); ++i) {
+    double& most_N_m = own.joints[i].limits.effort_N_m;
+    most_N_m = std::min(most_N_m, gates[i].force_limit_N);
+  }
+  return own;
+}
+
+Result<Joints<control::SupervisionParams>> joint_supervision(const ArmRigParams& rig, std::size_t joints) {
+  const auto torque = rig.probe_torque.of(joints);
+  Joints<control::SupervisionParams> each(joints, rig.supervision);
+  for (std::size_t i = 0; i < joints; ++i) {
+    double& force_N = each[i].probe.force_N;
+    if (torque[i].torque_N_m > 0.0) force_N = torque[i].torque_N_m;
+    if (force_N > 0.0) continue;
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "rig.supervision.probe.force_N",
+                 .message = "0 N m tries no motor, and joint " + std::to_string(i + 1) +
+                            " has no torque of its own below rig.probe_torque: write more than its friction",
+                 .place = {}};
+  }
+  return each;
+}
+
+/// What a site begins with.
+struct Begun {
+  std::size_t of_arm;  ///< joints
+  Seconds tick;
+  Joints<SafetyGate::Params> gates;
+  Joints<control::SupervisionParams> supervision;
+};
+
+Result<Begun> begin(const ArmPairSetup& setup, const SafetyGate::Params& gate, const std::string& name,
+                    const Joints<station::DeviceLimits>& limits, const ArmSiteStart& start) {
+  if (setup.params.control.method == arm_control::ArmMethod::four_channel) {
+    return Error{
+        .code = ErrorCode::inconsistent,
+        .parameter = "control.method",
+        .message = "four-channel control is tried in virtual time alone, without supervision: write another method",
+        .place = {}};
+  }
+  const std::size_t of_arm = setup.leader.joints.size(), joints = limits.size();
+  if (joints < of_arm || joints > most_joints) {
+    return out_of_bounds("joints", static_cast<double>(joints), between(static_cast<double>(of_arm), most_joints),
+                         units::none);
+  }
+  const Seconds tick{1.0 / setup.params.servo.rate_Hz};
+  if (Check error = check_arm_gate(gate, name, tick)) return *std::move(error);
+  auto supervised = joint_supervision(setup.params.rig, joints);
+  if (!supervised) return supervised.error();
+  if (!start.tries_motors) {
+    for (control::SupervisionParams& joint : *supervised) joint.probe.force_N = 0.0;
+  }
+  return Begun{
+      .of_arm = of_arm, .tick = tick, .gates = joint_gates(gate, limits), .supervision = *std::move(supervised)};
+}
+
+}  // namespace
+
+arm_control::DriveGains beside_the_arm(const ArmPairSetup& setup, bool leads) {
+  const GripperParams& gripper = setup.params.rig.gripper;
+  const double share = leads ? gripper.leader_share : 1.0;
+  return {.stiffness_N_m_per_rad = share * gripper.stiffness_N_m_per_rad,
+          .damping_N_m_s_per_rad = share * gripper.damping_N_m_s_per_rad};
+}
+
+Joints<SafetyGate::Params> joint_gates(const SafetyGate::Params& of_all, const Joints<station::DeviceLimits>& limits) {
+  Joints<SafetyGate::Params> each(limits.size());
+  for (std::size_t i = 0; i < limits.size(); ++i) each[i] = station::tightened(of_all, limits[i]);
+  return each;
+}
+
+Result<control::JointSupervisedMaster> arm_leader_site(const ArmPairSetup& setup,
+                                                       const Joints<station::DeviceLimits>& limits,
+                                                       const ArmSiteStart& start) {
+  const auto begun = begin(setup, setup.params.rig.leader_gate, "rig.leader_gate", limits, start);
+  if (!begun) return begun.error();
+  const auto& sites = setup.params.control;
+  const Joints<arm_control::DriveGains> beside(limits.size() - begun->of_arm, beside_the_arm(setup, true));
+  auto leads = arm_control::leader_site(sites,
+                                        {.carried = within(setup.leader.arm.chain, begun->gates),
+                                         .induced = setup.exact.induced,
+                                         .gains = sites.follower.gains.of(begun->of_arm)},
+                                        begun->gates, begun->tick, beside);
+  if (!leads) return under("control", leads.error());
+  auto master =
+      control::supervise_master(*std::move(leads), begun->supervision, start.session, begun->tick, start.agreement);
+  if (!master) return under("rig", master.error());
+  return master;
+}
+
+Result<control::JointSupervisedSlave> arm_follower_site(const ArmPairSetup& setup,
+                                                        const Joints<station::DeviceLimits>& limits,
+                                                        const ArmSiteStart& start) {
+  const auto begun = begin(setup, setup.params.rig.follower_gate, "rig.follower_gate", limits, start);
+  if (!begun) return begun.error();
+  const Joints<arm_control::DriveGains> beside(limits.size() - begun->of_arm, beside_the_arm(setup, false));
+  auto follows =
+      arm_control::follower_site(setup.params.control.follower,
+                                 {.chain = within(setup.follower.arm.chain, begun->gates),
+                                  .tool_m = setup.follower.arm.tool_m,
+                                  .joint_stiffness_N_m_per_rad = setup.exact.follower_joint_stiffness_N_m_per_rad},
+                                 begun->gates, begun->tick, beside);
+  if (!follows) return under("control.follower", follows.error());
+  auto slave =
+      control::supervise_slave(*std::move(follows), begun->supervision, start.session, begun->tick, start.agreement);
+  if (!slave) return under("rig", slave.error());
+  return slave;
+}
+
+Result<SupervisedArms> supervise_arms(const ArmPairSetup& setup, const Joints<station::DeviceLimits>& leader,
+                                      const Joints<station::DeviceLimits>& follower, const ArmStart& start) {
+  auto leads = arm_leader_site(setup, leader, {.session = start.leader_session, .tries_motors = start.tries_motors});
+  if (!leads) return leads.error();
+  auto follows =
+      arm_follower_site(setup, follower, {.session = start.follower_session, .tries_motors = start.tries_motors});
+  if (!follows) return follows.error();
+  return SupervisedArms{*std::move(leads), *std::move(follows)};
+}
+
+}  // namespace tactus::experiments

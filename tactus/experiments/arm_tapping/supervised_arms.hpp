@@ -1,0 +1,52 @@
+#pragma once
+
+#include <tactus/control/supervised_site.hpp>
+#include <tactus/experiments/arm_tapping/arm_pair.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+/// The sites of two arms as they run before motors: gates and supervision of `[rig]` around the controllers.
+namespace tactus::experiments {
+
+/// How a joint that the arm does not have is driven, as `[rig.gripper]` says.
+arm_control::DriveGains beside_the_arm(const ArmPairSetup& setup, bool leads);
+
+/// The gates of a site's joints: those of the file, within what each joint of its device allows.
+Joints<control::SafetyGate::Params> joint_gates(const control::SafetyGate::Params& of_all,
+                                                const Joints<station::DeviceLimits>& limits);
+
+/// One start of a site.
+struct ArmSiteStart {
+  std::int64_t session = 1;           ///< not 0, and of no start before
+  control::Agreement agreement = {};  ///< as in `control::supervise_master`
+  bool tries_motors = true;           ///< on arming
+};
+
+/// One site before a device of these limits, joint by joint, those of the arm first: its gates are within them, and so
+/// is the torque that the site believes to have. Errors: those of the controller, under `control`; of gates and
+/// supervision, under `rig`; `inconsistent` for gates that nobody chose, naming their keys, and for a method that is
+/// tried in virtual time alone.
+Result<control::JointSupervisedMaster> arm_leader_site(const ArmPairSetup& setup,
+                                                       const Joints<station::DeviceLimits>& limits,
+                                                       const ArmSiteStart& start);
+Result<control::JointSupervisedSlave> arm_follower_site(const ArmPairSetup& setup,
+                                                        const Joints<station::DeviceLimits>& limits,
+                                                        const ArmSiteStart& start);
+
+/// One start of both sites.
+struct ArmStart {
+  std::int64_t leader_session = 1;  ///< not 0, and of no start before
+  std::int64_t follower_session = 2;
+  bool tries_motors = true;  ///< on arming
+};
+struct SupervisedArms {
+  control::JointSupervisedMaster leader;
+  control::JointSupervisedSlave follower;
+};
+
+/// Both. Errors: those of either.
+Result<SupervisedArms> supervise_arms(const ArmPairSetup& setup, const Joints<station::DeviceLimits>& leader,
+                                      const Joints<station::DeviceLimits>& follower, const ArmStart& start);
+
+}  // namespace tactus::experiments
