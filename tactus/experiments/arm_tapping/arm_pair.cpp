@@ -226,10 +226,18 @@ double ArmPair::apart_m(const ToolState& leader, const ToolState& follower) cons
 }
 
 ArmRecord ArmPair::step(const Vector3& path_m, const Vector3& path_at_next_tick_m, double share) {
+  step_sites({.number = tick_++}, share);
+  return step_arms(path_m, path_at_next_tick_m);
+}
+
+void ArmPair::step_sites(const station::Tick& tick, double share) noexcept {
+  follower_.touches({.force_N = wall_.force_N(follower_.plant().tool())});
+  latest_ = sites_.step(leader_, follower_, tick, share);
+}
+
+ArmRecord ArmPair::step_arms(const Vector3& path_m, const Vector3& path_at_next_tick_m) {
   const ToolState at_leader = leader_.plant().tool();
   const ToolState at_follower = follower_.plant().tool();
-  follower_.touches({.force_N = wall_.force_N(at_follower)});
-  latest_ = sites_.step(leader_, follower_, {.number = tick_++}, share);
   person_.begin_tick(leader_began_m_ + path_m / tool_scale_, leader_began_m_ + path_at_next_tick_m / tool_scale_,
                      at_leader);
 

@@ -73,6 +73,14 @@ class ArmPair {
   /// that over `ArmPairSetup::tool_scale`. `share` is that of what the controllers want, the arms' support with it; 0
   /// lets go.
   ArmRecord step(const arm::Vector3& path_m, const arm::Vector3& path_at_next_tick_m, double share = 1.0);
+  /// The parts of a tick, for a clock that is not the pair's own: first what a servo thread owes the drives in time...
+  void step_sites(const station::Tick& tick, double share = 1.0) noexcept;
+  /// ...then person and arms, for as long as a tick takes; at a tick that the sites missed, these alone, under the
+  /// commands that the drives have. Real-time safe, as the other.
+  ArmRecord step_arms(const arm::Vector3& path_m, const arm::Vector3& path_at_next_tick_m);
+  /// What the sites did at the latest tick.
+  [[nodiscard]] const station::JointBarePair::Output& latest() const noexcept { return latest_; }
+  [[nodiscard]] const station::JointBarePair& sites() const noexcept { return sites_; }
   [[nodiscard]] ArmSight sight() const;
 
   /// What `exchange` takes over.

@@ -1,3 +1,4 @@
+#include <tactus/experiments/arm_tapping/arm_tap_run.hpp>
 #include <tactus/experiments/arm_tapping/arm_taps.hpp>
 #include <tactus/experiments/contact_metrics.hpp>
 #include <tactus/experiments/draws.hpp>
@@ -15,15 +16,9 @@ namespace tactus::experiments {
 namespace {
 
 constexpr double rest_s = 0.1;
-constexpr double patience_s = 2.0;  ///< after the reach, for a follower that has not touched
 constexpr double given_time_s = 0.15;
 constexpr double window_s = 0.05;
 constexpr double end_s = 0.1;
-constexpr double farthest_m = 0.3;  ///< from where it began, for a follower's tool that has not run away
-
-std::size_t ticks_in(double duration_s, double tick_s) {
-  return static_cast<std::size_t>(std::lround(duration_s / tick_s));
-}
 
 std::vector<double> transient(std::span<const ArmRecord> records, double ArmRecord::*force, double tick_s) {
   std::vector<double> forces;
@@ -86,6 +81,13 @@ ArmContact judge_arm_contact(std::span<const ArmRecord> records, std::size_t fir
   return found;
 }
 
+ArmTapResult judge_arm_tap(const ArmContact& contact, bool diverged, const ArmContact& without_display) {
+  return {.contact = contact,
+          .ran_away =
+              contact.peak_N > 1.6 * without_display.peak_N + 1.0 || contact.steady_N > 2.0 * without_display.steady_N,
+          .diverged = diverged};
+}
+
 Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const std::filesystem::path& folder) {
   const ArmTappingTask& task = params.task;
   if (auto error = check_range(task.slowest_m_per_s, task.fastest_m_per_s, "slowest_m_per_s", "fastest_m_per_s")) {
@@ -118,33 +120,13 @@ Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const std::filesys
 }
 
 ArmTaps::Contact ArmTaps::run_once(const ArmPairSetup& setup, const ArmTap& tap, ArmTrace* trace) const {
-  ArmPair pair = *ArmPair::make(setup, tap.beliefs, tap.wall_m);
-  const double dt_s = pair.tick_s();
-  std::vector<ArmRecord> records;
-  std::size_t first_touch = 0;
-  bool touched = false;
-  bool diverged = false;
-  std::size_t last = ticks_in(tap.path.start_time_s + tap.path.duration_s + patience_s, dt_s);
-  for (std::size_t k = 0; k < last && !diverged; ++k) {
-    const double now_s = static_cast<double>(k) * dt_s;
-    records.push_back(
-        pair.step(tap.path.position_m(now_s) * setup.outward, tap.path.position_m(now_s + dt_s) * setup.outward));
-    const ArmRecord& record = records.back();
-    if (!touched && record.contact_N > 0.0) {
-      touched = true;
-      first_touch = k;
-      last = k + ticks_in(setup.params.task.observation_s, dt_s);
-    }
-    if (trace != nullptr && touched && k == first_touch + ticks_in(pressing_after_s, dt_s)) {
-      trace->pressing = {record.contact_N, pair.sight()};
-    }
-    diverged = !pair.healthy() || !(std::fabs(record.leader_m) * setup.tool_scale < farthest_m) ||
-               !(std::fabs(record.follower_m) < farthest_m);
+  ArmTapRun run = *ArmTapRun::make(setup, tap);
+  for (std::int64_t tick = 0; !run.over(); ++tick) {
+    run.step_sites({.number = tick});
+    run.step_arms();
   }
-  Contact found{.contact = {}, .diverged = diverged};
-  if (touched) found.contact = judge_arm_contact(records, first_touch, dt_s);
-  if (trace != nullptr) trace->records = std::move(records);
-  return found;
+  if (trace != nullptr) *trace = run.trace();
+  return {.contact = run.contact(), .diverged = run.diverged()};
 }
 
 ArmTapResult ArmTaps::run(std::size_t tap, ArmTrace* trace) const {
@@ -162,10 +144,7 @@ ArmTapResult ArmTaps::run_at(double gain, std::size_t tap, const ArmContact& wit
   ArmPairSetup setup = setup_;
   setup.params.control.force_gain = gain;
   const Contact at_gain = run_once(setup, taps_[tap], trace);
-  return {.contact = at_gain.contact,
-          .ran_away = at_gain.contact.peak_N > 1.6 * without_display.peak_N + 1.0 ||
-                      at_gain.contact.steady_N > 2.0 * without_display.steady_N,
-          .diverged = at_gain.diverged};
+  return judge_arm_tap(at_gain.contact, at_gain.diverged, without_display);
 }
 
 ArmReach ArmTaps::reach() const {

@@ -3,12 +3,18 @@
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace tactus::experiments {
+
+/// How many ticks come nearest to a duration.
+inline std::size_t ticks_in(double duration_s, double tick_s) {
+  return static_cast<std::size_t>(std::lround(duration_s / tick_s));
+}
 
 /// One tap: how the person goes about it, and what the controller believes.
 struct ArmTap {
@@ -49,6 +55,9 @@ struct ArmTapResult {
   bool diverged = false;
   [[nodiscard]] bool settled() const { return contact.touched && !contact.rings && !ran_away && !diverged; }
 };
+
+/// Judges it beside the same tap at gain 0.
+ArmTapResult judge_arm_tap(const ArmContact& contact, bool diverged, const ArmContact& without_display);
 
 /// A reach of 200 mm outward in 0.75 s, of the follower's tool, that meets nothing.
 struct ArmReach {
