@@ -23,6 +23,7 @@ struct OnlookerOptions {
   std::optional<std::string> live;  ///< `[[HOST:]PORT]` of the live page; empty for any free port of the loopback
   bool ros2 = false;
   std::string name_space = "tactus";
+  [[nodiscard]] bool any() const { return live || ros2; }
 };
 
 /// Adds `--live`, `--ros2` and `--namespace` to a verb.
@@ -38,8 +39,8 @@ class Onlookers {
                                 const std::optional<control::SiteRole>& site = {},
                                 const std::vector<std::string>& joints = {});
 
-  /// Shows what goes into these streams from now on: `RealTimeStreams`, `SiteStreams` or `JointStreams`. Before
-  /// `begin`.
+  /// Shows what goes into these streams from now on: `RealTimeStreams`, `SiteStreams`, `JointStreams` or
+  /// `ArmTapStreams`. Before `begin`.
   template <class Streams>
   void watch(const Streams& streams) {
     if (view_) {

@@ -10,6 +10,7 @@
 #include <tactus/cli/supervised_run.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/experiments/experiment.hpp>
+#include <tactus/runtime/real_time_arm_tap.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
 
 #include <array>
@@ -74,14 +75,26 @@ Check run_in_real_time(const RunOptions& options, const experiments::Request& re
     real_time.log = output.log_folder() / "log.mcap";
     real_time.before_log = [&output] { return output.begin(); };
   }
-  auto onlookers = Onlookers::open(options.onlookers, request);
-  if (!onlookers) return onlookers.error();
   const auto say = [&output](const std::string& line) {
     if (!line.empty()) (output.json() ? std::cerr : std::cout) << line << std::flush;
   };
-  if (onlookers->any()) {
-    real_time.look_on = [&](const std::vector<runtime::RealTimeStreams>& all) {
+  std::optional<Onlookers> onlookers;
+  const auto open_onlookers = [&](const std::vector<std::string>& joints) -> Check {
+    auto opened = Onlookers::open(options.onlookers, request, {}, joints);
+    if (!opened) return opened.error();
+    onlookers.emplace(*std::move(opened));
+    return std::nullopt;
+  };
+  if (options.onlookers.any()) {
+    real_time.look_on = [&](const std::vector<runtime::RealTimeStreams>& all) -> Check {
+      if (auto error = open_onlookers({})) return error;
       for (const runtime::RealTimeStreams& streams : all) onlookers->watch(streams);
+      return onlookers->begin(say);
+    };
+    real_time.look_on_arms = [&](const runtime::ArmTapStreams& streams,
+                                 const std::vector<std::string>& joints) -> Check {
+      if (auto error = open_onlookers(joints)) return error;
+      onlookers->watch(streams);
       return onlookers->begin(say);
     };
   }
@@ -89,7 +102,7 @@ Check run_in_real_time(const RunOptions& options, const experiments::Request& re
     ProgressLine line(request.name);
     return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
   }();
-  say(onlookers->end());
+  if (onlookers) say(onlookers->end());
   if (!done) return done.error();
   if (done->interrupted) status = (*interruption)->exit_status();
   if (auto error = write_outcome(output, done->outcome)) return error;
@@ -222,8 +235,8 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   options->output.own_files = {recording_file};
   add_log_limit_option(*verb, options->log_limit);
   verb->add_flag("--realtime", options->real_time,
-                 "Run it at the real clock, on a servo thread, with simulated devices, those of a plant or "
-                 "your own");
+                 "Run taps of one axis or of two arms at the real clock, on a servo thread, with simulated devices, "
+                 "those of a plant or your own");
   CLI::Option* plant = verb->add_option("--plant", options->plant,
                                         "Drive the devices of the `tactus plant` of that name, not ones of its own")
                            ->type_name("NAME");

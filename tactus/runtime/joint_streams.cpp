@@ -37,6 +37,21 @@ void JointStreams::push(const station::Tick& tick, const control::SiteRequests& 
   servo_->push(due_ns, recorded(tick));
 }
 
+void JointStreams::push(const station::Tick& tick, const station::JointBarePair& sites,
+                        const station::JointBarePair::Output& done,
+                        const Joints<control::Message>& master_heard) noexcept {
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns_);
+  const auto& [master, slave] = sites_;
+  master.ticks->push(due_ns, recorded_bare(tick, sites.master(), done.master));
+  slave.ticks->push(due_ns, recorded_bare(tick, sites.slave(), done.slave));
+  for (std::size_t joint = 0; joint < joints_; ++joint) {
+    master.joints[joint]->push(due_ns, recorded_bare(tick, joint, sites.master(), done.master, master_heard[joint]));
+    slave.joints[joint]->push(due_ns,
+                              recorded_bare(tick, joint, sites.slave(), done.slave, done.master.output[joint].message));
+  }
+  servo_->push(due_ns, recorded(tick));
+}
+
 template <class Supervised>
 void JointStreams::push(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,
                         const station::Step<Supervised>& done, const link::LinkCondition& condition,

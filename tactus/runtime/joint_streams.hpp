@@ -27,6 +27,11 @@ class JointStreams {
   void push(const station::Tick& tick, const control::SiteRequests& pressed,
             const station::JointLocalTeleoperator& sites, const station::JointLocalTeleoperator::Output& done) noexcept;
 
+  /// The same of sites without supervision; `master_heard` is what the master was told. With nothing held back on the
+  /// way, so that the slave heard what the master tells.
+  void push(const station::Tick& tick, const station::JointBarePair& sites, const station::JointBarePair::Output& done,
+            const Joints<control::Message>& master_heard) noexcept;
+
   /// A tick of the one site, with what the link knew of the other and how many packets came. The same.
   template <class Supervised>
   void push(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,

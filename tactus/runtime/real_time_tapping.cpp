@@ -2,6 +2,7 @@
 #include <tactus/experiments/tapping/presentation.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/files.hpp>
+#include <tactus/runtime/internal/real_time_run.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 #include <tactus/runtime/shared_plant.hpp>
@@ -10,8 +11,6 @@
 #include <cstddef>
 #include <utility>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 namespace tactus::runtime {
 
@@ -30,27 +29,10 @@ struct Prepared {
 };
 using Cases = experiments::Cases<Prepared>;
 
-Check refuse_other_kinds(const experiments::Request& request) {
-  const auto experiment = experiments::choose_experiment(request.document);
-  if (!experiment) return experiment.error();
-  if ((*experiment)->kind() == "tapping") return std::nullopt;
-  return Error{.code = ErrorCode::inconsistent,
-               .parameter = "task.kind",
-               .message = "'" + std::string((*experiment)->kind()) +
-                          "' has no form in real time: run it in virtual time, without --realtime, or write tapping",
-               .place = {}};
-}
-
 Check refuse_long_runs(const Cases& cases) {
   std::size_t taps = 0;
   for (const auto& one : cases.all) taps += one.prepared.ensemble.size();
-  if (taps > most_real_time_taps) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = "task.taps",
-                 .message = std::to_string(taps) + " taps in real time are more than " +
-                            std::to_string(most_real_time_taps) + ": ask for fewer, or for virtual time",
-                 .place = {}};
-  }
+  if (auto error = refuse_many_taps(taps)) return error;
   if (cases.all.size() > most_real_time_runs) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = {},
@@ -193,45 +175,8 @@ Result<RealTimeRun> run_taps(const experiments::Case<Prepared>& one, SharedPlant
   return done;
 }
 
-/// How far a run came whose end was asked for.
-struct Interrupted {
-  std::size_t taps = 0;  ///< that came to their end
-  std::size_t of = 0;
-  [[nodiscard]] std::string text() const {
-    return "Interrupted: " + std::to_string(taps) + " of " + std::to_string(of) +
-           " taps had come to their end, and the table has no other.";
-  }
-};
-
-std::string json_of(const experiments::Request& request, const std::optional<PlantChoice>& plant,
-                    const std::vector<TappingRun>& runs, const std::vector<ServoReport>& servos,
-                    const std::optional<Interrupted>& interrupted) {
-  auto document = nlohmann::ordered_json::parse(experiments::tapping_json(request, runs));
-  document["clock"] = "real";
-  if (plant) document["plant"] = plant->name;
-  if (interrupted) document["interrupted"] = {{"taps", interrupted->taps}, {"of", interrupted->of}};
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    document["runs"][i]["servo"] = nlohmann::ordered_json::parse(servo_json(servos[i]));
-  }
-  return document.dump(2) + "\n";
-}
-
-/// What the system refused, in words.
-std::string losses_of(const ServoReport& report) {
-  std::string text;
-  for (const Right& right : report.rights) {
-    if (right.held) continue;
-    text +=
-        "Not granted: " + right.what + " (" + right.why + "): " + right.means + ".\n    remedy: " + right.remedy + "\n";
-  }
-  return text;
-}
-
-}  // namespace
-
-Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, const RealTimeOptions& options,
-                                         const experiments::Progress& progress) {
-  if (auto error = refuse_other_kinds(request)) return *std::move(error);
+Result<RealTimeOutcome> run_axis_in_real_time(const experiments::Request& request, const RealTimeOptions& options,
+                                              const experiments::Progress& progress) {
   const auto cases = experiments::prepare_cases<TappingParams, Prepared>(
       request, [&options](const TappingParams& params) -> Result<Prepared> {
         ServoThreadParams servo = options.servo;
@@ -274,51 +219,51 @@ Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, co
   const EndRequest never;
   const EndRequest& end = options.end != nullptr ? *options.end : never;
   std::vector<TappingRun> runs;
-  std::vector<ServoReport> servos;
-  ServoReport all;
+  KeptTime kept;
   for (std::size_t i = 0; i < cases->all.size() && !end.asked(); ++i) {
     auto done = run_taps(cases->all[i], plant.get(), outlets ? outlets->all()[i] : RealTimeStreams{}, end, tap_done);
     if (!done) {
       if (log) (void)close_log(*log, *options.log);  // it shows how it came to that
       return done.error();
     }
-    all.add(done->servo);
+    kept.all.add(done->servo);
     if (!done->run) break;
     runs.push_back(*std::move(done->run));
-    servos.push_back(std::move(done->servo));
+    kept.runs.push_back(std::move(done->servo));
   }
-  Check log_error;
-  if (log) log_error = close_log(*log, *options.log);
-  std::optional<Interrupted> interrupted;
-  if (taps_done < taps) interrupted = Interrupted{.taps = taps_done, .of = taps};
+  if (log) kept.log = close_log(*log, *options.log);
+  if (taps_done < taps) kept.interrupted = Interrupted{.taps = taps_done, .of = taps};
 
   const report::Table table = experiments::tapping_table(runs);
   const std::string verdict = experiments::tapping_verdict(runs);
-  const report::Table timing = timing_table(all);
-  const report::Table late = late_ticks_table(all);
   std::vector<report::Figure> figures;
   if (!runs.empty()) figures = experiments::tapping_figures(runs);
-  figures.push_back(timing_figure(all));
-  report::Page page = experiments::tapping_page(request, verdict, table, figures);
-  if (interrupted) page.paragraph(interrupted->text());
-  page.heading("How time was kept");
-  page.paragraph(
-      std::string("The sites ran on a servo thread at deadlines of the real clock, the devices were simulated ") +
-      (options.plant ? "in the process of the plant '" + options.plant->name + "'." : "beside them."));
-  page.table(timing);
-  page.table(late);
-  page.table(rights_table(all));
-  experiments::add_provenance(page, request, cases->first_configuration);
-  std::string text = verdict + "\n\n" + (interrupted ? interrupted->text() + "\n\n" : "") + table.to_text() + "\n" +
-                     timing.to_text() + "\n" + late.to_text() + losses_of(all);
-  return RealTimeOutcome{.outcome = {.text = std::move(text),
-                                     .json = json_of(request, options.plant, runs, servos, interrupted),
-                                     .html = page.to_html(),
-                                     .figures = std::move(figures),
-                                     .traces = {},
-                                     .configuration = cases->first_configuration},
-                         .log = std::move(log_error),
-                         .interrupted = interrupted.has_value()};
+  figures.push_back(timing_figure(kept.all));
+  const report::Page page = experiments::tapping_page(request, verdict, table, figures);
+  return real_time_outcome(request, cases->first_configuration, options.plant,
+                           {.verdict = verdict,
+                            .table = table,
+                            .json = experiments::tapping_json(request, runs),
+                            .page = page,
+                            .figures = std::move(figures)},
+                           std::move(kept));
+}
+
+}  // namespace
+
+Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, const RealTimeOptions& options,
+                                         const experiments::Progress& progress) {
+  const auto experiment = experiments::choose_experiment(request.document);
+  if (!experiment) return experiment.error();
+  const std::string_view kind = (*experiment)->kind();
+  if (kind == "tapping") return run_axis_in_real_time(request, options, progress);
+  if (kind == "arm-tapping") return run_arms_in_real_time(request, options, progress);
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "task.kind",
+               .message = "'" + std::string(kind) +
+                          "' has no form in real time: run it in virtual time, without --realtime, or write tapping or "
+                          "arm-tapping",
+               .place = {}};
 }
 
 }  // namespace tactus::runtime

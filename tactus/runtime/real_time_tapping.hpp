@@ -17,6 +17,8 @@
 
 namespace tactus::runtime {
 
+class ArmTapStreams;
+
 /// A plant that another process owns.
 struct PlantChoice {
   std::string name;
@@ -34,6 +36,8 @@ struct RealTimeOptions {
   const EndRequest* end = nullptr;           ///< that somebody may make while it runs; outlives the run
   /// Told of the streams of each run before the first tick, for who looks on beside the log.
   std::function<Check(const std::vector<RealTimeStreams>&)> look_on{};
+  /// The same of taps of two arms, with the names of the leader's joints.
+  std::function<Check(const ArmTapStreams&, const std::vector<std::string>&)> look_on_arms{};
 };
 
 /// What came out, and what became of the log.
@@ -47,14 +51,15 @@ struct RealTimeOutcome {
 inline constexpr std::size_t most_real_time_taps = 1000;
 inline constexpr std::size_t most_real_time_runs = 64;
 
-/// The experiment `tapping` in real time, through a servo thread and simulated devices: the table and report that
-/// virtual time makes, and how time was kept. The outcome has no traces: the log has every tick of every tap, on the
-/// topics
-/// `/teleoperator`, `/sites` and `/servo`, with several runs `/run_1/teleoperator` and so on. Where its end was asked
-/// for, the outcome is that of the taps that had run by then, and says so.
+/// The experiments `tapping` and `arm-tapping` in real time, through a servo thread and simulated devices: the table
+/// and report that virtual time makes, and how time was kept. The outcome has no traces: the log has every tick of
+/// every tap, of one axis on the topics `/teleoperator`, `/sites` and `/servo`, with several runs `/run_1/teleoperator`
+/// and so on; of two arms on those of `ArmTapStreams`. Where its end was asked for, the outcome is that of the taps
+/// that had run by then, and says so.
 ///
 /// Errors: another kind of experiment, more taps or runs than the limits, those of the experiment, of the log and of
-/// the plant. A log that fails on the way stops nothing; a plant that is lost ends the run, and the log has all of it.
+/// the plant; arms with a plant or with several combinations. A log that fails on the way stops nothing; a plant that
+/// is lost ends the run, and the log has all of it.
 Result<RealTimeOutcome> run_in_real_time(const experiments::Request& request, const RealTimeOptions& options,
                                          const experiments::Progress& progress);
 

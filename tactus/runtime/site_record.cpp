@@ -56,6 +56,24 @@ SiteLogRecord of_one_axis(const station::Tick& tick, const control::SiteRequests
   return record;
 }
 
+/// One joint of a site of several.
+template <class Output>
+JointLogRecord of_joint(const station::Tick& tick, const control::SafetyGate& gate,
+                        const station::DeviceReading& reading, const Output& output, const control::Message& heard,
+                        const control::Message& told) noexcept {
+  JointLogRecord record;
+  record.tick = tick.number;
+  record.limit = static_cast<std::int64_t>(gate.limit());
+  record.fault = static_cast<std::int64_t>(gate.fault());
+  record.given_J = gate.given_J();
+  record.position_age_s = reading.age_s;
+  record.drive_velocity_m_per_s = reading.motor_tells.velocity_m_per_s;
+  record.drive_force_N = reading.motor_tells.force_N;
+  record.drive_stiffness_N_per_m = output.law.stiffness_N_per_m;
+  fill(record, reading, output, heard, told);
+  return record;
+}
+
 }  // namespace
 
 control::Packet PacketRecord::packet() const noexcept {
@@ -126,19 +144,33 @@ SiteTickRecord recorded(const station::Tick& tick, const control::SiteRequests& 
 template <class Site>
 JointLogRecord recorded(const station::Tick& tick, std::size_t joint, const Site& site,
                         const station::Step<Site>& done) noexcept {
-  JointLogRecord record;
-  const control::SafetyGate& gate = site.site().gates()[joint].motor();
+  return of_joint(tick, site.site().gates()[joint].motor(), done.reading[joint], done.output.site[joint],
+                  site.heard().message[joint], done.output.packet.message[joint]);
+}
+
+template <class Site>
+SiteTickRecord recorded_bare(const station::Tick& tick, const Site& site, const station::Step<Site>& done) noexcept {
+  SiteTickRecord record;
+  record.state = static_cast<std::int64_t>(control::SiteState::active);
+  for (const auto& gates : site.gates()) {
+    if (record.limit == 0) record.limit = static_cast<std::int64_t>(gates.motor().limit());
+    if (record.fault == 0) record.fault = static_cast<std::int64_t>(gates.motor().fault());
+    record.given_J += gates.motor().given_J();
+  }
+  record.enabled = true;
+  record.fresh = true;
+  record.share = 1.0;
   record.tick = tick.number;
-  record.limit = static_cast<std::int64_t>(gate.limit());
-  record.fault = static_cast<std::int64_t>(gate.fault());
-  record.given_J = gate.given_J();
-  record.position_age_s = done.reading[joint].age_s;
-  record.drive_velocity_m_per_s = done.reading[joint].motor_tells.velocity_m_per_s;
-  record.drive_force_N = done.reading[joint].motor_tells.force_N;
-  record.drive_stiffness_N_per_m = done.output.site[joint].law.stiffness_N_per_m;
-  fill(record, done.reading[joint], done.output.site[joint], site.heard().message[joint],
-       done.output.packet.message[joint]);
+  record.missed = tick.missed;
+  record.health = static_cast<std::int64_t>(done.health);
   return record;
+}
+
+template <class Site>
+JointLogRecord recorded_bare(const station::Tick& tick, std::size_t joint, const Site& site,
+                             const station::Step<Site>& done, const control::Message& heard) noexcept {
+  return of_joint(tick, site.gates()[joint].motor(), done.reading[joint], done.output[joint], heard,
+                  done.output[joint].message);
 }
 
 using Master = control::JointSupervisedMaster;
@@ -150,5 +182,15 @@ template SiteTickRecord recorded(const station::Tick&, const control::SiteReques
 template JointLogRecord recorded(const station::Tick&, std::size_t, const Master&,
                                  const station::Step<Master>&) noexcept;
 template JointLogRecord recorded(const station::Tick&, std::size_t, const Slave&, const station::Step<Slave>&) noexcept;
+
+using BareMaster = control::JointMasterSite;
+using BareSlave = control::JointSlaveSite;
+template SiteTickRecord recorded_bare(const station::Tick&, const BareMaster&,
+                                      const station::Step<BareMaster>&) noexcept;
+template SiteTickRecord recorded_bare(const station::Tick&, const BareSlave&, const station::Step<BareSlave>&) noexcept;
+template JointLogRecord recorded_bare(const station::Tick&, std::size_t, const BareMaster&,
+                                      const station::Step<BareMaster>&, const control::Message&) noexcept;
+template JointLogRecord recorded_bare(const station::Tick&, std::size_t, const BareSlave&,
+                                      const station::Step<BareSlave>&, const control::Message&) noexcept;
 
 }  // namespace tactus::runtime

@@ -178,4 +178,12 @@ template <class Site>
 JointLogRecord recorded(const station::Tick& tick, std::size_t joint, const Site& site,
                         const station::Step<Site>& done) noexcept;
 
+/// The same of sites without supervision, `JointMasterSite` or `JointSlaveSite`, which are active from the first tick
+/// on: `heard` is what the other one told them.
+template <class Site>
+SiteTickRecord recorded_bare(const station::Tick& tick, const Site& site, const station::Step<Site>& done) noexcept;
+template <class Site>
+JointLogRecord recorded_bare(const station::Tick& tick, std::size_t joint, const Site& site,
+                             const station::Step<Site>& done, const control::Message& heard) noexcept;
+
 }  // namespace tactus::runtime

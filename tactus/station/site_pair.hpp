@@ -102,6 +102,8 @@ class SitePair {
 
   [[nodiscard]] const Master& master() const noexcept { return master_; }
   [[nodiscard]] const Slave& slave() const noexcept { return slave_; }
+  /// What has come for the master, which it hears at its next tick.
+  [[nodiscard]] const Payload& at_master() const noexcept { return at_master_.message; }
   /// Neither site commands a force.
   [[nodiscard]] bool at_rest() const noexcept {
     return !gated(master_).passes_a_force() && !gated(slave_).passes_a_force();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/arm_plants/arm_device.hpp>
+#include <tactus/core/signals.hpp>
 #include <tactus/experiments/arm_tapping/described_arm.hpp>
 #include <tactus/station/site_pair.hpp>
 
@@ -41,6 +42,19 @@ struct ArmRecord {
   double follower_m = 0.0;
   /// Between the follower's tool and where it would be with the leader's joints.
   double tools_apart_m = 0.0;
+  static constexpr auto signals() {
+    using R = ArmRecord;
+    return List{observed("contact_N", &R::contact_N, units::newton, "slave", "tool", "out of the surface",
+                         "Of the surface on the follower's tool, mean over the tick."),
+                observed("hand_N", &R::hand_N, units::newton, "master", "tool", "into the surface",
+                         "Of the hand's spring and damper on the leader's tool."),
+                observed("leader_m", &R::leader_m, units::metre, "master", "tool", "out of the surface",
+                         "From where it began."),
+                observed("follower_m", &R::follower_m, units::metre, "slave", "tool", "out of the surface",
+                         "From where it began."),
+                observed("tools_apart_m", &R::tools_apart_m, units::metre, "", "tool", "",
+                         "Between the follower's tool and where it would be with the leader's joints.")};
+  }
 };
 
 /// What both arms are about, for who draws them: vectors along the axes of the bases, forces on the hand and the
