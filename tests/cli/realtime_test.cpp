@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,49 @@ TEST_F(RealTime, OnlyTappingAndOnlyAShortOneRunsInRealTime) {
   EXPECT_EQ(endless.status, 2);
   EXPECT_NE(endless.err.find("task.taps"), std::string::npos) << endless.err;
   EXPECT_EQ(files(), Words{"quick.toml"});
+}
+
+TEST_F(RealTime, TwoArmsTapAtTheRealClockAndLeaveBothSitesAndBothToolsInTheLog) {
+  const std::string arms = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arm-tapping.toml";
+  const Outcome outcome = tactus({"run", arms, "--realtime", "--set", "task.taps=2", "--out", "results", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json document = Json::parse(outcome.out);
+  EXPECT_EQ(document["clock"], "real");
+  EXPECT_EQ(document["runs"][0]["metrics"]["taps"], 2);
+  const int ticks = document["runs"][0]["servo"]["ticks"].get<int>();
+  EXPECT_GT(ticks, 1000);
+  EXPECT_NE(content("results/report.html").find("How time was kept"), std::string::npos);
+  const Outcome log = tactus({"export", "results/log", "--to", "mat", "--json"});
+  ASSERT_EQ(log.status, 0) << log.err;
+  const Json told = Json::parse(log.out);
+  int topics = 0;
+  for (const Json& topic : told["topics"]) {
+    EXPECT_EQ(topic["missing"], 0) << topic;
+    const std::string name = topic["topic"];
+    if (name != "/tools") {
+      EXPECT_EQ(topic["messages"].get<int>(), ticks) << name;
+    }
+    ++topics;
+  }
+  EXPECT_EQ(topics, 2 * (1 + 7) + 2) << "of each site one and one for each joint, /servo and /tools";
+}
+
+TEST_F(RealTime, WhatArmsDoNotTakeInRealTimeIsRefusedWithWhatToWriteInstead) {
+  const std::string arms = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arm-tapping.toml";
+  const auto refusal = [&](const Words& more) {
+    Words all{"run", arms, "--realtime", "--out", "results"};
+    all.insert(all.end(), more.begin(), more.end());
+    const Outcome outcome = tactus(all);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder() / "results"));
+    return outcome.err;
+  };
+  EXPECT_NE(refusal({"--plant", "bench"}).find("--plant: a plant has devices of one axis"), std::string::npos);
+  EXPECT_NE(refusal({"--vary", "control.force_gain=1,2"}).find("--vary: arms in real time run one combination"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--set", "task.taps=1001"}).find("task.taps: 1001 taps in real time are more than 1000"),
+            std::string::npos);
+  EXPECT_NE(refusal({"--set", "servo.rate_Hz=9"}).find("servo.rate_Hz"), std::string::npos);
 }
 
 TEST_F(RealTime, ALogReplaysBitForBit) {

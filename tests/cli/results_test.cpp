@@ -75,6 +75,7 @@ TEST_F(Results, OfARunAreOfItsSchemaWhateverItsKindAndClock) {
   expect_valid("run", {"run", quick, "--ros2", "--namespace", "results_" + std::to_string(getpid())});
   const Json arms = expect_valid("run", {"run", experiments_folder + "/arm-tapping.toml", "--set", "task.taps=1"});
   EXPECT_EQ(arms["runs"][0]["metrics"]["taps"], 1);
+  expect_valid("run", {"run", experiments_folder + "/arm-tapping.toml", "--set", "task.taps=1", "--realtime"});
   const Json coupled = expect_valid("run", {"run", experiments_folder + "/arm-vibration.toml"});
   EXPECT_EQ(coupled["runs"][0]["metrics"]["vibrates"], 0);
   const Json arm_contest = expect_valid(

@@ -28,7 +28,7 @@ std::optional<ArmTaps> short_taps() {
 }
 
 /// A tick at its deadline, as a clock that is never late gives it.
-station::Tick tick(std::int64_t number, std::int64_t missed = 0) {
+station::Tick arm_tick(std::int64_t number, std::int64_t missed = 0) {
   const std::int64_t deadline_ns = 1'000'000 * number;
   return {.number = number, .missed = missed, .deadline_ns = deadline_ns, .began_ns = deadline_ns};
 }
@@ -49,7 +49,7 @@ TEST(RealTimeArmTap, WithoutAMissedTickItIsBitForBitTheTapInVirtualTime) {
     auto real_time = RealTimeArmTap::make(taps->setup(), taps->tap(tap));
     ASSERT_TRUE(real_time);
     // The thread would count from anywhere.
-    for (std::int64_t number = 17; real_time->step(tick(number)); ++number) {
+    for (std::int64_t number = 17; real_time->step(arm_tick(number)); ++number) {
     }
     const auto& records = real_time->run().trace().records;
     ASSERT_EQ(records.size(), expected.records.size());
@@ -70,9 +70,9 @@ TEST(RealTimeArmTap, WhileTicksAreMissedTheArmsGoOnAndTheSitesDoNot) {
   auto tap = RealTimeArmTap::make(taps->setup(), taps->tap(0), &streams);
   ASSERT_TRUE(tap);
   constexpr std::int64_t before = 200, missed = 20;
-  for (std::int64_t number = 0; number < before; ++number) ASSERT_TRUE(tap->step(tick(number)));
+  for (std::int64_t number = 0; number < before; ++number) ASSERT_TRUE(tap->step(arm_tick(number)));
   const ArmRecord last = tap->run().trace().records.back();
-  ASSERT_TRUE(tap->step(tick(before + missed, missed)));
+  ASSERT_TRUE(tap->step(arm_tick(before + missed, missed)));
   EXPECT_EQ(tap->run().trace().records.size(), before + missed + 1);
   EXPECT_GT(std::fabs(tap->run().trace().records.back().leader_m - last.leader_m), 1e-4) << "the arms stood still";
   JointStreams::Site::Entry entry;
@@ -91,11 +91,12 @@ TEST(RealTimeArmTap, ItLeavesWhatBothSitesHeardToldAndReadOfEachJoint) {
   auto site = streams.site(SiteRole::slave).watch();
   auto tap = RealTimeArmTap::make(taps->setup(), taps->tap(0), &streams);
   ASSERT_TRUE(tap);
-  for (std::int64_t number = 0; number < 400; ++number) ASSERT_TRUE(tap->step(tick(number)));
+  std::int64_t ticks = 1;
+  while (tap->step(arm_tick(ticks - 1))) ++ticks;
   JointStreams::Joint::Entry of_master, of_slave;
   JointStreams::Site::Entry of_site;
   double slave_told_N = 0.0, moved_rad = 0.0;
-  for (std::int64_t number = 0; number < 400; ++number) {
+  for (std::int64_t number = 0; number < ticks; ++number) {
     ASSERT_TRUE(master.next(of_master));
     ASSERT_TRUE(slave.next(of_slave));
     ASSERT_TRUE(site.next(of_site));
@@ -122,7 +123,7 @@ TEST(RealTimeArmTap, ATickDoesNotAllocate) {
   auto tap = RealTimeArmTap::make(taps->setup(), taps->tap(0), &streams);
   ASSERT_TRUE(tap);
   const std::uint64_t before = laws::own_allocation_count();
-  for (std::int64_t number = 0; tap->step(tick(number + number / 50, number % 50 == 0 && number > 0 ? 1 : 0));
+  for (std::int64_t number = 0; tap->step(arm_tick(number + number / 50, number % 50 == 0 && number > 0 ? 1 : 0));
        ++number) {
   }
   EXPECT_EQ(laws::own_allocation_count() - before, 0U);
