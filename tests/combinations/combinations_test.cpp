@@ -84,7 +84,7 @@ constexpr std::array rows{
         "kill $plant; wait $plant; (exit $status)",
         true},
     Row{"real", "two simulated arms",
-        "$TACTUS run $RIGS/../../experiments/arm-tapping.toml --set task.taps=2 --realtime $MORE"},
+        "$TACTUS run $RIGS/../../experiments/arm-tapping.toml --set task.taps=4 --realtime $MORE"},
     Row{"real", "a rig's",
         "mkfifo leader follower; emulate='emulate damiao --motors 7 --model DM4340,DM4340,DM4340,DM4310'\n"
         "$TACTUS $emulate >leader & peers=$!\n"
