@@ -106,7 +106,7 @@ Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Co
                             ": take another arm, make the joints fixed that have no counterpart, or, for a handle "
                             "that slides along three axes, write control.follower.coupling = \"tool\"");
   }
-  if (follower->start.any()) {
+  if (follower->start.any() && follower->start != leader->start) {
     return inconsistent("arm.follower.joints",
                         "the follower begins where the leader does, joint by joint: leave start_rad out, or lead its "
                         "tool (control.follower.coupling)");

@@ -33,7 +33,7 @@ struct DescribedPair {
 Result<DescribedArm> describe_arm(const ArmParams& params, const std::filesystem::path& folder);
 
 /// Both arms. Errors: those of `describe_arm`; `inconsistent` where something is said of a follower that has no URDF of
-/// its own; of arms that are led joint by joint, for different numbers of joints and for a start of the follower's own;
+/// its own; of arms that are led joint by joint, for different numbers of joints and for another start of the follower;
 /// of one that leads the tool, for a follower without a URDF and for a leader that is no handle.
 Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Coupling coupling,
                                     const std::filesystem::path& folder);
