@@ -125,7 +125,8 @@ ArmMessage ToolCoupling::wanted(const ArmMessage& leader, const JointVector& pos
   towards += turn_m_per_rad * turn_m_per_rad * map.turning().transpose().lazyProduct(missing_rad);
   const JointVector step = map.inverse.lazyProduct(towards);
   from.reference += dt_s_ * slowed(step / dt_s_);
-  from.reference = from.reference.cwiseMax(lower_).cwiseMin(upper_);
+  // A joint that is engaged beyond its range stays where it is, or comes back.
+  from.reference = from.reference.cwiseMax(lower_.cwiseMin(from.position)).cwiseMin(upper_.cwiseMax(from.position));
 
   const arm::Vector3 velocity_m_per_s = leads_ * leader.velocity.head<3>();
   const JointVector moved = map.moving().transpose().lazyProduct(velocity_m_per_s);

@@ -24,7 +24,7 @@ constexpr auto enumerators(Coupling) {
 /// Engaged at its first tick, it leads the tool by `scale` times what the handle has moved since, along the axes of the
 /// base, keeps the tool's attitude, and of what motion is left that of least speed towards the joints' first position.
 /// Joint references q follow by one damped step of Newton a tick, never faster than the URDF lets a joint be, and never
-/// beyond its range:
+/// beyond its range, or where it was engaged beyond that:
 ///
 ///     H·dq = Jᵀ·(p_wanted − p(q)) + l²·J_turnᵀ·(turn that is missing) + λ²·(share of the way to the first position),
 ///     H = JᵀJ + l²·J_turnᵀJ_turn + λ²·1,     reference velocity H⁻¹Jᵀ·scale·A·ẋ

@@ -40,7 +40,6 @@ std::optional<ArmMode> mode_beyond(std::span<const ArmLoop> loops, const experim
 
 Result<ArmPoint> make_arm_point(const experiments::ArmTappingParams& params, const std::filesystem::path& folder,
                                 const ArmLinearisation& linearisation) {
-  if (Check wrong = experiments::refuse_tool_coupling(params, "tactus stability")) return *std::move(wrong);
   experiments::ArmTappingParams drawing = params;
   drawing.task.taps = models_drawn;
   const auto taps = experiments::ArmTaps::make(drawing, folder);

@@ -146,6 +146,16 @@ TEST(ToolCoupling, OutOfReachNoJointLeavesItsRangeOrItsSpeedAndTheToolComesBack)
   EXPECT_LT((in_mujoco(before).position_m - in_mujoco(arm_plants::bent()).position_m).norm(), 1e-3);
 }
 
+TEST(ToolCoupling, EngagedBeyondTheRangeOfAJointItDoesNotJump) {
+  ArmPlant::Params plant = arm_plants::openarm_class();
+  plant.chain.joints[3].limits.upper_rad = arm_plants::bent()[3] - 0.2;
+  const arm::Chain chain = *arm::Chain::make(plant.chain);
+  ToolCoupling leads = ToolCoupling::make(1.0, Matrix3::Identity(), {plant.chain, chain, plant.tool_m}, tick).value();
+  for (int k = 0; k < 100; ++k) {
+    EXPECT_EQ(leads.wanted(at(Vector3::Zero()), arm_plants::bent()).position, arm_plants::bent());
+  }
+}
+
 TEST(ToolCoupling, WantsThreeJointsThatSlideAlongThreeDirections) {
   arm::Chain::Params turning = handle();
   turning.joints[1].kind = arm::JointKind::revolute;

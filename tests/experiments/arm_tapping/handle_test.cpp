@@ -1,6 +1,6 @@
 #include <tactus/configuration/document.hpp>
+#include <tactus/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/experiments/arm_tapping/arm_taps.hpp>
-#include <tactus/experiments/experiment.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -121,7 +121,7 @@ TEST(Handle, WhatCouplesJointsOrHasNoHandleIsRefusedByItsKey) {
   params.arm.follower.joints.joint_1.start_rad = 0.3;
   EXPECT_EQ(problem(params).parameter, "arm.follower.joints") << "led joint by joint it begins where the leader does";
   EXPECT_EQ(refuse_tool_coupling(params, "tactus faults"), std::nullopt);
-  EXPECT_EQ(refuse_tool_coupling(shipped(), "tactus faults")->parameter, "control.follower.coupling");
+  EXPECT_EQ(make_arm_fault_bench(shipped(), folder).error().parameter, "control.follower.coupling");
 }
 
 }  // namespace tactus::experiments::handle_test
