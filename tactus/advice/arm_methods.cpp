@@ -75,7 +75,7 @@ Choice observer(const char* joints, double cutoff_Hz, std::string words) {
 }  // namespace
 
 bool has_elastic_follower(const ArmTappingParams& params) {
-  const experiments::FollowerArmParams& other = params.arm.follower;
+  const experiments::ArmParams& other = params.arm.follower;
   return other.urdf.empty() ? elastic(params) : other.joint_stiffness_N_m_per_rad > 0.0;
 }
 

@@ -17,11 +17,12 @@ JointVector of_each(const ArmFollower::Params& params, std::size_t joints, doubl
 }  // namespace
 
 ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
-                         Seconds dt)
+                         const std::optional<ToolCoupling>& coupling, Seconds dt)
     : chain_(chain),
       tool_m_(arm.tool_m),
       feed_forward_(params.feed_forward, arm.chain, chain),
       observer_(observer),
+      tool_coupling_(coupling),
       most_(effort_limits(arm.chain)),
       observes_(params.torque == TorqueSource::observer),
       dead_band_(JointVector::Zero(chain.joints())),
@@ -53,13 +54,33 @@ Result<ArmFollower::Observer> ArmFollower::make_observer(const TorqueObserverPar
   return Observer(*elastic);
 }
 
+Result<std::optional<ToolCoupling>> ArmFollower::make_coupling(const Params& params, const Arm& arm,
+                                                               const arm::Chain& chain, Seconds dt) {
+  if (params.coupling == Coupling::joints) return std::optional<ToolCoupling>();
+  const auto refused = [](ErrorCode code, const char* why) {
+    return Error{.code = code, .parameter = "coupling", .message = why, .place = {}};
+  };
+  if (arm.four_channel) {
+    return refused(ErrorCode::inconsistent,
+                   "tool: four-channel couples each joint with its own: write position-force or cancellation");
+  }
+  if (!arm.leader_axes) {
+    return refused(ErrorCode::missing, "tool: where do the leader's joints slide? State them, or couple joints");
+  }
+  const auto made = ToolCoupling::make(params.tool_scale, *arm.leader_axes, {arm.chain, chain, arm.tool_m}, dt);
+  if (!made) return under("coupling", made.error());
+  return std::optional<ToolCoupling>(*made);
+}
+
 Result<ArmFollower> ArmFollower::make(const Params& params, const Arm& arm, Seconds dt) {
   if (Check wrong = signal::check(params, dt)) return *std::move(wrong);
   const auto chain = arm::Chain::make(arm.chain);
   if (!chain) return chain.error();
   const auto observer = make_observer(params.observer, arm, *chain, dt);
   if (!observer) return under("observer", observer.error());
-  return ArmFollower(params, arm, *chain, *observer, dt);
+  const auto coupling = make_coupling(params, arm, *chain, dt);
+  if (!coupling) return coupling.error();
+  return ArmFollower(params, arm, *chain, *observer, *coupling, dt);
 }
 
 JointVector ArmFollower::excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept {
@@ -81,7 +102,8 @@ JointVector ArmFollower::observed(const ArmReading& reading) noexcept {
 }
 
 ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVector& sensed,
-                                      const ArmMessage& leader) noexcept {
+                                      const ArmMessage& heard) noexcept {
+  const ArmMessage leader = tool_coupling_ ? tool_coupling_->wanted(heard, reading.position) : heard;
   Output output;
   output.support = feed_forward_.torque(reading);
   output.command = {.position = leader.position,
@@ -99,6 +121,7 @@ ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVect
     output.message.external_torque = observed(reading);
   }
   saturate(output.command.torque, most_);
+  if (tool_coupling_) output.message = tool_coupling_->told(reading, output.message.external_torque);
   return output;
 }
 

@@ -5,6 +5,7 @@
 #include <tactus/arm_control/elastic_torque_observer.hpp>
 #include <tactus/arm_control/external_torque_observer.hpp>
 #include <tactus/arm_control/feed_forward.hpp>
+#include <tactus/arm_control/tool_coupling.hpp>
 #include <tactus/arm_control/tool_limit.hpp>
 
 #include <array>
@@ -42,10 +43,12 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
 /// tells the torque from outside. What their gains come to at the tool beyond its limits is taken away over the bus
 /// (`ToolLimit`). What the bus carries saturates at each joint's effort limit, at 100 N m at most. Gates stand behind
 /// it
-/// (`follower_site`).
+/// (`follower_site`). With the coupling `tool` it hears and tells three numbers, those of the leader's handle.
 class ArmFollower {
  public:
   struct Params {
+    Coupling coupling = Coupling::joints;
+    double tool_scale = 1.0;
     EachJoint<DriveGains> gains = {};
     double stiffness_share = 1.0;
     double tool_stiffness_limit_N_per_m = 0.0;
@@ -56,6 +59,12 @@ class ArmFollower {
     static constexpr auto fields() {
       using P = Params;
       return List{
+          field("coupling", &P::coupling,
+                "What the leader commands: joints, each one that of the same number; tool, with a leader of three "
+                "joints that slide, where the follower's tool is."),
+          field("tool_scale", &P::tool_scale, tactus::units::none, between(0.01, 100.0),
+                "With the coupling tool alone: metres of the follower's tool for one of the leader's handle, and "
+                "newtons at the handle for one at the tool at a force_gain of 1."),
           field("gains", &P::gains, "Of the drives."),
           field("stiffness_share", &P::stiffness_share, tactus::units::none, between(0.0, 2.0),
                 "Share of the stiffness in gains that the drives are given; their damping stays."),
@@ -76,6 +85,8 @@ class ArmFollower {
     arm::Vector3 tool_m = arm::Vector3::Zero();  ///< on its last link
     /// Of the transmissions, for an observer that takes them for elastic.
     JointVector joint_stiffness_N_m_per_rad = {};
+    /// Of a leader that leads the tool (`ToolCoupling::axes_of`); not looked at where it leads joints.
+    std::optional<arm::Matrix3> leader_axes = std::nullopt;
     /// Where the leader couples so: in place of the drives' gains and of `torque`.
     std::optional<FourChannelCoupling> four_channel = std::nullopt;
   };
@@ -85,18 +96,22 @@ class ArmFollower {
     ArmMessage message;
   };
 
-  /// Errors: a number out of bounds; those of the parts.
+  /// Errors: a number out of bounds; those of the parts; `missing` for the coupling `tool` without `leader_axes`, and
+  /// `inconsistent` for it with four-channel, which couples joints.
   static Result<ArmFollower> make(const Params& params, const Arm& arm, Seconds dt);
 
-  /// One tick. `sensed` is external torque as sensors in the joints tell it; not looked at where an observer is.
-  /// Real-time safe.
-  Output step(const ArmReading& reading, const JointVector& sensed, const ArmMessage& leader) noexcept;
+  /// One tick. `heard` is what the leader told; `sensed` is external torque as sensors in the joints tell it; not
+  /// looked at where an observer is. Real-time safe.
+  Output step(const ArmReading& reading, const JointVector& sensed, const ArmMessage& heard) noexcept;
 
  private:
   using Observer = std::variant<ExternalTorqueObserver, ElasticTorqueObserver>;
   static Result<Observer> make_observer(const TorqueObserverParams& params, const Arm& arm, const arm::Chain& chain,
                                         Seconds dt);
-  ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer, Seconds dt);
+  static Result<std::optional<ToolCoupling>> make_coupling(const Params& params, const Arm& arm,
+                                                           const arm::Chain& chain, Seconds dt);
+  ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
+              const std::optional<ToolCoupling>& coupling, Seconds dt);
   [[nodiscard]] JointVector excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept;
   [[nodiscard]] JointVector observed(const ArmReading& reading) noexcept;
 
@@ -104,6 +119,7 @@ class ArmFollower {
   arm::Vector3 tool_m_;
   FeedForward feed_forward_;
   Observer observer_;
+  std::optional<ToolCoupling> tool_coupling_;
   std::optional<FourChannel> four_channel_;
   JointVector most_;  ///< torque of the bus
   bool observes_;

@@ -48,6 +48,10 @@ void put(const ArmCommand& command, const JointVector& support, const ArmMessage
                  .velocity_m_per_s = command.velocity[at],
                  .stiffness_N_per_m = command.stiffness[at],
                  .damping_N_s_per_m = command.damping[at]};
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(message.position.size()); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    Output& joint = output[i];
     joint.message.position_m = message.position[at];
     joint.message.velocity_m_per_s = message.velocity[at];
     joint.message.force_N = -message.external_torque[at];

@@ -7,7 +7,8 @@
 /// The controllers of two arms as sites of several joints, like any other: gates stand behind them, supervision around
 /// them, and `station::step` steps them. Of a joint's message the force is the torque from outside that resists it, and
 /// its device tells velocity and torque of its motors and takes a law (`control::DriveLaw`). What the site believes to
-/// carry the arm is its support: it stays while the coupling comes and goes.
+/// carry the arm is its support: it stays while the coupling comes and goes. Where the leader leads the tool
+/// (`ToolCoupling`) the follower's first three joints carry the messages of the leader's three; its others say nothing.
 namespace tactus::arm_control {
 
 /// The last limits before the drive of each joint, for an arm in virtual time: as wide as a gate can be, so that

@@ -229,6 +229,9 @@ Result<Drive> as_two_arms(const experiments::Request& request, const Rig& rig, c
                           RigLoop::Params settings, std::optional<SiteRole> only) {
   const auto params = request.document.read<experiments::ArmTappingParams>();
   if (!params) return params.error();
+  if (Check wrong = experiments::refuse_tool_coupling(*params, "a rig of two arms")) {
+    return request.document.locate(*std::move(wrong));
+  }
   const std::filesystem::path folder = std::filesystem::path(request.document.name()).parent_path();
   const auto setup = experiments::set_up_arm_pair(*params, folder);
   if (!setup) return request.document.locate(setup.error());

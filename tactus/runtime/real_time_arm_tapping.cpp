@@ -1,4 +1,5 @@
 #include <tactus/experiments/arm_tapping/arm_tap_run.hpp>
+#include <tactus/experiments/arm_tapping/described_arm.hpp>
 #include <tactus/experiments/arm_tapping/presentation.hpp>
 #include <tactus/runtime/internal/real_time_run.hpp>
 #include <tactus/runtime/real_time_arm_tap.hpp>
@@ -81,6 +82,7 @@ Result<RealTimeOutcome> run_arms_in_real_time(const experiments::Request& reques
       request, [&](const experiments::ArmTappingParams& params) -> Result<ArmTaps> {
         servo.rate_Hz = params.servo.rate_Hz;
         if (auto error = check_servo_thread(servo)) return *std::move(error);
+        if (auto error = experiments::refuse_tool_coupling(params, "run --realtime")) return *std::move(error);
         return ArmTaps::make(params, folder);
       });
   if (!cases) return cases.error();

@@ -3,7 +3,9 @@
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/station/device.hpp>
 
+#include <algorithm>
 #include <concepts>
+#include <cstddef>
 #include <limits>
 
 namespace tactus::station {
@@ -100,8 +102,10 @@ Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const ty
     device.write(command_of(done.output.site, done.output.record.enabled));
     way.send(done.output.packet, tick);
   } else {
-    for_each_joint([](JointOf<Sensors>& joint, const control::Arrival& arrival) noexcept { joint.arrival = arrival; },
-                   sensors, way.arrival());
+    // A side of fewer joints, as a handle that leads a tool, says fewer numbers: those of the first joints.
+    const auto arrivals = way.arrival();
+    const std::size_t heard = std::min(joints_of(sensors), joints_of(arrivals));
+    for (std::size_t joint = 0; joint < heard; ++joint) joint_of(sensors, joint).arrival = joint_of(arrivals, joint);
     done.output = site.step(sensors, wish, elapsed_ticks);
     device.write(command_of(done.output));
     way.send(member_of_each(done.output, &JointOf<typename Site::Output>::message));

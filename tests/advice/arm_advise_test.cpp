@@ -52,6 +52,16 @@ std::string value_of(const experiments::Settings& settings, const std::string& k
   return "none";
 }
 
+TEST(ArmAdvise, RefusesAHandleThatLeadsTheToolByItsKey) {
+  const std::string folder = TACTUS_EXPERIMENT_FOLDER;
+  auto document = *configuration::Document::load(folder + "/arm-tapping.toml");
+  ASSERT_FALSE(document.merge(*configuration::Document::load(folder + "/arms/inverse3-arm.toml")));
+  const auto bench = make_arm_bench(document, {});
+  ASSERT_FALSE(bench);
+  EXPECT_EQ(bench.error().parameter, "control.follower.coupling");
+  EXPECT_NE(bench.error().message.find("tactus advise"), std::string::npos) << bench.error().message;
+}
+
 TEST(ArmMethods, EachChoiceOfADimensionSetsTheSameKeysAndTheFirstIsBare) {
   for (const char* with : {"arms/soft-hand.toml", "arms/yam-pair.toml", "arms/elastic-joints.toml"}) {
     const ArmBench bench = arm_bench({}, {with});

@@ -2,6 +2,7 @@
 #include <tactus/arm_plants/person.hpp>
 
 #include <cmath>
+#include <complex>
 
 #include "tests/arm_plants/openarm.hpp"
 
@@ -77,6 +78,32 @@ TEST(InducedMotion, IsWhatASimulatedArmInAHandDoesUnderTorque) {
   const InducedMotion::Params params{.hand = firm, .washout_Hz = 0.0};
   EXPECT_LT(apart(burst({.viscous_N_m_s_per_rad = 0.3}, params, 1.0)), 0.05);
   EXPECT_LT(apart(burst({.coulomb_N_m = 0.1, .viscous_N_m_s_per_rad = 0.1}, params, 1.5)), 0.15);
+}
+
+TEST(InducedMotion, OfAHandleThatSlidesIsWhatAMassOnASpringDoes) {
+  arm::Chain::Params handle{.joints = Joints<arm::JointParams>(3)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    handle.joints[i].kind = arm::JointKind::prismatic;
+    handle.joints[i].axis = {.x = i == 0 ? 1.0 : 0.0, .y = i == 1 ? 1.0 : 0.0, .z = i == 2 ? 1.0 : 0.0};
+    handle.joints[i].body = {.mass_kg = i == 2 ? 0.2 : 0.001, .xx_kg_m2 = 1e-6, .yy_kg_m2 = 1e-6, .zz_kg_m2 = 1e-6};
+  }
+  auto model = *InducedMotion::make({.hand = firm, .washout_Hz = 0.0}, {}, {.chain = handle}, Seconds{tick_s});
+  // m·w'' + B·w' + K·w = f from rest, underdamped or not, by its two poles.
+  const double f = 2.0;
+  const JointVector rest = JointVector::Zero(3);
+  const JointVector force = (JointVector(3) << 0.0, f, 0.0).finished();
+  const double mass = 0.201 + firm.mass_kg, damping = firm.damping_N_s_per_m, stiffness = firm.stiffness_N_per_m;
+  const std::complex<double> root = std::sqrt(std::complex<double>(damping * damping - 4.0 * mass * stiffness, 0.0));
+  const std::complex<double> fast = (-damping - root) / (2.0 * mass), slow = (-damping + root) / (2.0 * mass);
+  for (int k = 0; k < 200; ++k) {
+    const double t = k * tick_s;
+    const double told =
+        f / stiffness * (1.0 + (fast * std::exp(slow * t) - slow * std::exp(fast * t)) / (slow - fast)).real();
+    EXPECT_NEAR(model.position()[1], told, 2e-3 * f / stiffness) << k;
+    EXPECT_NEAR(model.position()[0], 0.0, 1e-12);
+    EXPECT_NEAR(model.position()[2], 0.0, 1e-12);
+    model.step(force, rest, rest);
+  }
 }
 
 TEST(InducedMotion, OfElasticJointsIsWhatTheMotorsDo) {

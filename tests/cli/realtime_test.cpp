@@ -103,6 +103,9 @@ TEST_F(RealTime, WhatArmsDoNotTakeInRealTimeIsRefusedWithWhatToWriteInstead) {
             std::string::npos);
   EXPECT_NE(refusal({"--set", "task.taps=1001"}).find("task.taps: 1001 taps in real time are more than 1000"),
             std::string::npos);
+  EXPECT_NE(refusal({"--with", std::string(TACTUS_EXPERIMENT_FOLDER) + "/arms/inverse3-arm.toml"})
+                .find("control.follower.coupling: tool: run --realtime knows arms alone"),
+            std::string::npos);
   EXPECT_NE(refusal({"--set", "servo.rate_Hz=9"}).find("servo.rate_Hz"), std::string::npos);
 }
 

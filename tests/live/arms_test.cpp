@@ -25,6 +25,13 @@ Settings arm_settings() {
   return Settings::make(document).value();
 }
 
+TEST(LiveArms, OfAHandleThatLeadsTheToolAreRefusedByTheirKey) {
+  const std::filesystem::path folder = TACTUS_EXPERIMENT_FOLDER;
+  auto document = configuration::Document::load(folder / "arm-tapping.toml").value();
+  ASSERT_FALSE(document.merge(*configuration::Document::load(folder / "arms/inverse3-arm.toml")));
+  EXPECT_EQ(Settings::make(document).error().parameter, "control.follower.coupling");
+}
+
 std::unique_ptr<LiveView> arm_view() {
   return LiveView::make(arm_settings(), {.allow_tuning = true, .experiment = "arms"}).value();
 }

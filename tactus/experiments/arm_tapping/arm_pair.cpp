@@ -71,22 +71,44 @@ double slowest_m_per_rad(const DescribedArm& of, const JointVector& position) {
   return slowest_m_per_rad(*arm::Chain::make(of.arm.chain), position, of.arm.tool_m);
 }
 
+bool leads_joints(const ArmTappingParams& params) {
+  return params.control.follower.coupling == arm_control::Coupling::joints;
+}
+
+/// A handle that leads the tool hears the follower's force and tells where it is: what else there is couples joints.
+Check refuse_method(const ArmTappingParams& params) {
+  using arm_control::ArmMethod;
+  const ArmMethod method = params.control.method;
+  if (leads_joints(params) || method == ArmMethod::position_force || method == ArmMethod::cancellation) {
+    return std::nullopt;
+  }
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "control.method",
+               .message = std::string(name_of(method)) +
+                          " couples each joint with its own, and with control.follower.coupling = \"tool\" there are "
+                          "none: write position-force or cancellation",
+               .place = {}};
+}
+
 /// Puts the start of `setup` at the pose and the surface in the direction that its task asks for.
 Check take_pose(ArmPairSetup& setup) {
   constexpr double within_rad = 0.6;
   constexpr double least_share = 0.75;
   setup.outward = outward_of(setup.params.task.direction);
   if (setup.params.task.pose == 0) return std::nullopt;
+  const bool by_joints = leads_joints(setup.params);
   const auto far_from_singular = [&](const DescribedArm& of, const JointVector& position) {
     return slowest_m_per_rad(of, position) >= least_share * slowest_m_per_rad(of, of.start);
   };
   signal::Random random = signal::Random(0).fork(static_cast<std::uint64_t>(setup.params.task.pose));
   constexpr int most_draws = 1000;
   for (int draw = 0; draw < most_draws; ++draw) {
-    JointVector drawn = setup.leader.start;
+    JointVector drawn = setup.follower.start;
     for (double& joint : drawn) joint += random.uniform(-within_rad, within_rad);
-    if (!far_from_singular(setup.leader, drawn) || !far_from_singular(setup.follower, drawn)) continue;
-    setup.leader.start = setup.follower.start = drawn;
+    if (by_joints && !far_from_singular(setup.leader, drawn)) continue;
+    if (!far_from_singular(setup.follower, drawn)) continue;
+    setup.follower.start = drawn;
+    if (by_joints) setup.leader.start = drawn;
     return std::nullopt;
   }
   return Error{.code = ErrorCode::inconsistent,
@@ -125,7 +147,8 @@ Result<double> tool_scale(const ArmPairSetup& setup) {
 }  // namespace
 
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder) {
-  auto described = describe_pair(params.arm, folder);
+  if (Check wrong = refuse_method(params)) return *std::move(wrong);
+  auto described = describe_pair(params.arm, params.control.follower.coupling, folder);
   if (!described) return described.error();
   ArmPairSetup setup{.params = params,
                      .leader = std::move(described->leader),
@@ -142,7 +165,9 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::
                  .hand = params.control.model.hand,
                  .follower_joint_stiffness_N_m_per_rad = setup.follower.joint_stiffness_N_m_per_rad()};
   if (Check wrong = take_pose(setup)) return *std::move(wrong);
-  if (differs(params.arm)) {
+  if (!leads_joints(params)) {
+    setup.tool_scale = params.control.follower.tool_scale;
+  } else if (differs(params.arm)) {
     const auto scale = tool_scale(setup);
     if (!scale) return scale.error();
     setup.tool_scale = *scale;
@@ -167,6 +192,7 @@ ArmPair::ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, ArmD
       leader_began_m_(leader_.plant().tool().position_m),
       follower_began_m_(follower_.plant().tool().position_m),
       other_follower_(other_follower),
+      leads_joints_(leads_joints(setup.params)),
       follower_tool_m_(setup.follower.arm.tool_m),
       wall_{.point_m = follower_began_m_ + wall_m * outward_, .normal = outward_, .contact = contact} {
   // As long before: both sites at rest, and their commands on the buses.
@@ -190,6 +216,7 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmBeliefs& belie
   arm_control::ArmLeader::Params control = params.control;
   control.model.hand = beliefs.hand;
   const Joints<control::SafetyGate::Params> gates(joints, arm_control::widest_gate());
+  const Joints<control::SafetyGate::Params> follower_gates(follows.chain.joints.size(), arm_control::widest_gate());
   auto leader_site = arm_control::leader_site(
       control, {.carried = leads.chain, .induced = beliefs.induced, .gains = params.control.follower.gains.of(joints)},
       gates, tick);
@@ -201,27 +228,35 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmBeliefs& belie
     known.four_channel =
         arm_control::FourChannelCoupling{.params = params.control.four_channel, .gain = params.control.force_gain};
   }
-  auto follower_site = arm_control::follower_site(params.control.follower, known, gates, tick);
+  if (!leads_joints(params)) {
+    const auto axes = arm_control::ToolCoupling::axes_of(leads.chain);
+    if (!axes) return under("arm", axes.error());
+    known.leader_axes = *axes;
+  }
+  auto follower_site = arm_control::follower_site(params.control.follower, known, follower_gates, tick);
   if (!follower_site) return under("control.follower", follower_site.error());
   Joints<double> start(joints);
   for (std::size_t i = 0; i < joints; ++i) start[i] = setup.leader.start[static_cast<Eigen::Index>(i)];
   auto sites = station::JointBarePair::around(*std::move(leader_site), *std::move(follower_site), {}, tick, start);
   if (!sites) return sites.error();
-  const Joints<station::DeviceLimits> no_limits(joints);
+  const Joints<station::DeviceLimits> no_limits(joints), no_follower_limits(follows.chain.joints.size());
   const auto contact = mechanics::Environment::make(params.wall.environment(), tick);
   if (!contact) return under("wall", contact.error());
   const auto leader_chain = arm::Chain::make(leads.chain);
   if (!leader_chain) return under("arm", leader_chain.error());
   std::optional<arm::Chain> other_follower;
   if (differs(params.arm)) other_follower = *arm::Chain::make(follows.chain);
-  return ArmPair(setup, *leader_chain, {*std::move(leader), no_limits}, {*std::move(follower), no_limits},
+  return ArmPair(setup, *leader_chain, {*std::move(leader), no_limits}, {*std::move(follower), no_follower_limits},
                  other_follower, *std::move(person), *std::move(sites), wall_m, *contact);
 }
 
+Vector3 ArmPair::led_to_m(const JointVector& leader) const {
+  if (leads_joints_) return tool_at(other_follower_ ? *other_follower_ : leader_chain_, leader, follower_tool_m_);
+  return follower_began_m_ + tool_scale_ * (tool_at(leader_chain_, leader, leader_tool_m_) - leader_began_m_);
+}
+
 double ArmPair::apart_m(const ToolState& leader, const ToolState& follower) const {
-  const Vector3 wanted_m = other_follower_
-                               ? tool_at(*other_follower_, leader_.plant().link_position(), follower_tool_m_)
-                               : leader.position_m;
+  const Vector3 wanted_m = other_follower_ ? led_to_m(leader_.plant().link_position()) : leader.position_m;
   return (wanted_m - follower.position_m).norm();
 }
 
@@ -279,9 +314,10 @@ ArmSight ArmPair::sight() const {
           .leader_m = leader_.plant().tool().position_m,
           .follower_m = follower_.plant().tool().position_m,
           .displayed_N = force_nearest_to(at_leader, displayed),
-          .told_N = force_nearest_to(moves_tool(follower_chain, follower_rad, follower_tool_m_), told),
+          .told_N = leads_joints_ ? force_nearest_to(moves_tool(follower_chain, follower_rad, follower_tool_m_), told)
+                                  : Vector3(force_nearest_to(at_leader, told) / tool_scale_),
           .induced_m = at_leader * induced,
-          .command_m = tool_at(follower_chain, commanded, follower_tool_m_)};
+          .command_m = led_to_m(commanded)};
 }
 
 void ArmPair::exchange(ArmPair& made, const Parts& parts) noexcept {

@@ -26,12 +26,13 @@ struct ArmPairSetup {
   ArmBeliefs exact;                              ///< beliefs without error, but that the hand is control.model.hand
   arm::Vector3 outward = arm::Vector3::UnitZ();  ///< of the surface, along the axes of both bases
   /// How far the follower's tool goes where the leader's goes outward, over that, at the start: 1 where they are alike,
-  /// 2 for a leader of half the follower's size. The task's speeds and depths are the follower's tool's.
+  /// 2 for a leader of half the follower's size; of a handle that leads the tool it is control.follower.tool_scale. The
+  /// task's speeds and depths are the follower's tool's.
   double tool_scale = 1.0;
 };
 
 /// Reads the URDFs, from `folder` on. Errors: those of `describe_pair` and of the parts; `inconsistent` for a follower
-/// whose tool does not go where the leader's goes.
+/// whose tool does not go where the leader's goes, and for a method that couples joints where a handle leads the tool.
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder);
 
 /// What both tools did at a tick.
@@ -40,7 +41,8 @@ struct ArmRecord {
   double hand_N = 0.0;     ///< that the hand feels of its spring and damper, outward, at the tick's beginning
   double leader_m = 0.0;   ///< of the tools, outward from where they began
   double follower_m = 0.0;
-  /// Between the follower's tool and where it would be with the leader's joints.
+  /// Between the follower's tool and where the leader leads it: where it would be with the leader's joints, or where a
+  /// handle has it.
   double tools_apart_m = 0.0;
   static constexpr auto signals() {
     using R = ArmRecord;
@@ -122,6 +124,8 @@ class ArmPair {
   ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, arm_plants::ArmDevice leader,
           arm_plants::ArmDevice follower, const std::optional<arm::Chain>& other_follower, arm_plants::Person person,
           station::JointBarePair sites, double wall_m, const mechanics::Environment& contact);
+  /// Where the leader leads the follower's tool, along the axes of its base, by its joints.
+  [[nodiscard]] arm::Vector3 led_to_m(const arm::JointVector& leader) const;
   [[nodiscard]] double apart_m(const arm_plants::ToolState& leader, const arm_plants::ToolState& follower) const;
 
   double tick_s_;
@@ -140,6 +144,7 @@ class ArmPair {
   arm::Vector3 leader_began_m_;
   arm::Vector3 follower_began_m_;
   std::optional<arm::Chain> other_follower_;  ///< where it is another arm than the leader
+  bool leads_joints_;                         ///< and not the tool
   arm::Vector3 follower_tool_m_;
   arm_plants::Wall wall_;
 };

@@ -47,10 +47,10 @@ void draw_errors(ArmTap& tap, double error, signal::Random& random) {
   }
   auto& of_leader = tap.beliefs.induced.joint_stiffness_N_m_per_rad;
   auto& of_follower = tap.beliefs.follower_joint_stiffness_N_m_per_rad;
-  for (Eigen::Index i = 0; i < of_leader.size(); ++i) {
+  for (Eigen::Index i = 0; i < std::max(of_leader.size(), of_follower.size()); ++i) {
     const double share = drawn(1.0, error, random);
-    of_leader[i] *= share;
-    of_follower[i] *= share;
+    if (i < of_leader.size()) of_leader[i] *= share;
+    if (i < of_follower.size()) of_follower[i] *= share;
   }
   arm::HandImpedance& hand = tap.beliefs.hand;
   hand.mass_kg = drawn(hand.mass_kg, error, random);

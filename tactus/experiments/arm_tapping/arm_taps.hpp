@@ -61,7 +61,7 @@ ArmTapResult judge_arm_tap(const ArmContact& contact, bool diverged, const ArmCo
 
 /// A reach of 200 mm outward in 0.75 s, of the follower's tool, that meets nothing.
 struct ArmReach {
-  double lag_m = 0.0;     ///< farthest of the follower's tool from where the leader's joints would have it
+  double lag_m = 0.0;     ///< farthest of the follower's tool from where the leader leads it
   double effort_N = 0.0;  ///< of the hand's spring and damper along the reach, RMS
 };
 

@@ -18,20 +18,19 @@ arm::JointVector of_each_motor(const DescribedArm& of, double arm_plants::MotorP
   return found;
 }
 
-/// An arm whose joints all begin at 0. `key` is that of its URDF.
-template <class Joint>
-Result<DescribedArm> described(const ArmDescription<Joint>& params, const std::string& key,
-                               const std::filesystem::path& folder) {
+/// `key` is that of its URDF.
+Result<DescribedArm> described(const ArmParams& params, const std::string& key, const std::filesystem::path& folder) {
   const auto read = urdf::read(folder / params.urdf);
   if (!read) return Error{read.error().code, key, describe(read.error()), {}};
   const std::size_t joints = read->joints.size();
-  const Joints<Joint> of_file = params.joints.of(joints);
+  const Joints<ArmJoint> of_file = params.joints.of(joints);
   DescribedArm found{.urdf = params.urdf,
                      .joints = read->joints,
                      .arm = {.chain = read->params, .motors = Joints<arm_plants::MotorParams>(joints)},
                      .start = arm::JointVector::Zero(static_cast<Eigen::Index>(joints))};
   for (std::size_t i = 0; i < joints; ++i) {
-    const ArmJointDrive& from = of_file[i];
+    const ArmJoint& from = of_file[i];
+    found.start[static_cast<Eigen::Index>(i)] = from.start_rad;
     arm::JointParams& joint = found.arm.chain.joints[i];
     joint.drive.armature_kg_m2 = from.armature_kg_m2;
     found.arm.motors[i] = {.torque_limit_N_m = joint.limits.effort_N_m,
@@ -51,6 +50,10 @@ std::string listed(const DescribedArm& of) {
   return std::to_string(of.joints.size()) + " (" + all + ")";
 }
 
+Error inconsistent(std::string key, std::string why) {
+  return {.code = ErrorCode::inconsistent, .parameter = std::move(key), .message = std::move(why), .place = {}};
+}
+
 }  // namespace
 
 arm::JointVector DescribedArm::joint_stiffness_N_m_per_rad() const {
@@ -67,41 +70,57 @@ Result<DescribedArm> describe_arm(const ArmParams& params, const std::filesystem
                  .message = "which arm? Name its URDF file, such as arms/openarm-class.urdf",
                  .place = {}};
   }
-  auto found = described(params, "arm.urdf", folder);
-  if (!found) return found.error();
-  const Joints<ArmJoint> of_file = params.joints.of(found->joints.size());
-  for (std::size_t i = 0; i < of_file.size(); ++i) found->start[static_cast<Eigen::Index>(i)] = of_file[i].start_rad;
-  return found;
+  return described(params, "arm.urdf", folder);
 }
 
-Result<DescribedPair> describe_pair(const ArmPairParams& params, const std::filesystem::path& folder) {
+Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Coupling coupling,
+                                    const std::filesystem::path& folder) {
   auto leader = describe_arm(params, folder);
   if (!leader) return leader.error();
   if (!differs(params)) {
-    if (configuration::to_toml(params.follower) != configuration::to_toml(FollowerArmParams{})) {
-      return Error{.code = ErrorCode::inconsistent,
-                   .parameter = "arm.follower.urdf",
-                   .message =
-                       "none, so the follower is like the leader, and yet something is said of it: name its "
-                       "URDF here and say all of it below arm.follower, or nothing",
-                   .place = {}};
+    if (configuration::to_toml(params.follower) != configuration::to_toml(ArmParams{})) {
+      return inconsistent("arm.follower.urdf",
+                          "none, so the follower is like the leader, and yet something is said of it: name its "
+                          "URDF here and say all of it below arm.follower, or nothing");
+    }
+    if (coupling == arm_control::Coupling::tool) {
+      return inconsistent("arm.follower.urdf",
+                          "none, and control.follower.coupling is tool: name the URDF of the arm whose tool the leader "
+                          "leads, such as arms/openarm-class.urdf, and say all of it below arm.follower");
     }
     return DescribedPair{.leader = *leader, .follower = *leader};
   }
   auto follower = described(params.follower, "arm.follower.urdf", folder);
   if (!follower) return follower.error();
+  if (coupling == arm_control::Coupling::tool) {
+    if (const auto axes = arm_control::ToolCoupling::axes_of(leader->arm.chain); !axes) {
+      return Error{axes.error().code, "arm.urdf", axes.error().message, {}};
+    }
+    return DescribedPair{.leader = *std::move(leader), .follower = *std::move(follower)};
+  }
   if (follower->joints.size() != leader->joints.size()) {
-    return Error{.code = ErrorCode::inconsistent,
-                 .parameter = "arm.follower.urdf",
-                 .message =
-                     "joint i of the leader commands joint i of the follower, from the base on, so both need "
-                     "as many, but the leader has " +
-                     listed(*leader) + " and the follower " + listed(*follower) +
-                     ": take another arm, or make the joints fixed that have no counterpart",
-                 .place = {}};
+    return inconsistent("arm.follower.urdf",
+                        "joint i of the leader commands joint i of the follower, from the base on, so both need "
+                        "as many, but the leader has " +
+                            listed(*leader) + " and the follower " + listed(*follower) +
+                            ": take another arm, make the joints fixed that have no counterpart, or, for a handle "
+                            "that slides along three axes, write control.follower.coupling = \"tool\"");
+  }
+  if (follower->start.any() && follower->start != leader->start) {
+    return inconsistent("arm.follower.joints",
+                        "the follower begins where the leader does, joint by joint: leave start_rad out, or lead its "
+                        "tool (control.follower.coupling)");
   }
   follower->start = leader->start;
   return DescribedPair{.leader = *std::move(leader), .follower = *std::move(follower)};
+}
+
+Check refuse_tool_coupling(const ArmTappingParams& params, std::string_view what) {
+  if (params.control.follower.coupling == arm_control::Coupling::joints) return std::nullopt;
+  return inconsistent("control.follower.coupling",
+                      "tool: " + std::string(what) +
+                          " knows arms alone that command one another joint by joint: look at taps in virtual time, "
+                          "or write joints and take a leader that has the follower's joints");
 }
 
 bool is_of_arms(const configuration::Document& document) {

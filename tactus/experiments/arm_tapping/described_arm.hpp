@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus::experiments {
@@ -21,19 +22,25 @@ struct DescribedArm {
   [[nodiscard]] arm::JointVector joint_damping_N_m_s_per_rad() const;
 };
 
-/// A leader and the follower that it commands, joint by joint.
+/// A leader and the follower that it commands.
 struct DescribedPair {
   DescribedArm leader;
-  DescribedArm follower;  ///< begins where the leader does
+  DescribedArm follower;  ///< led joint by joint, it begins where the leader does
 };
 
 /// Reads the URDF, from `folder` on, and adds what it does not say. Errors: `missing` without a URDF; those of
 /// `urdf::read`.
 Result<DescribedArm> describe_arm(const ArmParams& params, const std::filesystem::path& folder);
 
-/// Both arms. Errors: those of `describe_arm`; `inconsistent` for arms of different numbers of joints, and where
-/// something is said of a follower that has no URDF of its own.
-Result<DescribedPair> describe_pair(const ArmPairParams& params, const std::filesystem::path& folder);
+/// Both arms. Errors: those of `describe_arm`; `inconsistent` where something is said of a follower that has no URDF of
+/// its own; of arms that are led joint by joint, for different numbers of joints and for another start of the follower;
+/// of one that leads the tool, for a follower without a URDF and for a leader that is no handle.
+Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Coupling coupling,
+                                    const std::filesystem::path& folder);
+
+/// Errors: `inconsistent`, under `control.follower.coupling`, for a leader that leads the tool: `what` ("tactus
+/// faults") knows arms that are led joint by joint alone.
+Check refuse_tool_coupling(const ArmTappingParams& params, std::string_view what);
 
 /// Whether a document asks for two arms: its kind is arm-tapping.
 bool is_of_arms(const configuration::Document& document);

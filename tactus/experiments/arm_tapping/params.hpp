@@ -16,17 +16,20 @@
 /// A person taps a stiff surface through two robot arms.
 namespace tactus::experiments {
 
-/// A joint and its drive: what its URDF does not say.
-struct ArmJointDrive {
+/// A joint and its drive: what its URDF does not say, and where it begins.
+struct ArmJoint {
+  double start_rad = 0.0;
   double armature_kg_m2 = 0.0;
   double stiffness_share = 1.0;
   double position_step_rad = 0.0;
   double velocity_step_rad_per_s = 0.0;
   double torque_step_N_m = 0.0;
   static constexpr auto fields() {
-    using J = ArmJointDrive;
+    using J = ArmJoint;
     namespace u = arm::units;
-    return List{field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
+    return List{field("start_rad", &J::start_rad, u::radian, any_finite,
+                      "Position at the start of a tap; of a follower that is led joint by joint it is the leader's."),
+                field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
                       "Inertia of the rotor at the joint's side of the gear."),
                 field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
                       "Stiffness of an elastic joint over joint_stiffness_N_m_per_rad of its arm."),
@@ -36,16 +39,6 @@ struct ArmJointDrive {
                       "Step in which it tells velocity."),
                 field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
                       "Step in which it tells torque.")};
-  }
-};
-
-/// The same with where the joint begins.
-struct ArmJoint : ArmJointDrive {
-  double start_rad = 0.0;
-  static constexpr auto fields() {
-    return joined(List{field("start_rad", &ArmJoint::start_rad, arm::units::radian, any_finite,
-                             "Position at the start of a tap.")},
-                  ArmJointDrive::fields());
   }
 };
 
@@ -60,16 +53,15 @@ struct ToolPoint {
   }
 };
 
-/// An arm as its URDF and its file have it.
-template <Described Joint>
-struct ArmDescription {
+/// An arm as its URDF and its file have it. Of joints that slide rad stands for m, and N m for N.
+struct ArmParams {
   std::string urdf;
   ToolPoint tool;
   double joint_stiffness_N_m_per_rad = 0.0;
   double joint_damping_N_m_s_per_rad = 0.0;
-  arm_control::EachJoint<Joint> joints;
+  arm_control::EachJoint<ArmJoint> joints;
   static constexpr auto fields() {
-    using A = ArmDescription;
+    using A = ArmParams;
     return List{
         field("urdf", &A::urdf,
               "URDF of the arm, z up; its path counts from the experiment's file. Effort limits bound "
@@ -83,21 +75,18 @@ struct ArmDescription {
   }
 };
 
-/// The leader, and the follower too where nothing else is said of it.
-using ArmParams = ArmDescription<ArmJoint>;
-/// A follower that is another arm. It begins where the leader does.
-using FollowerArmParams = ArmDescription<ArmJointDrive>;
-
 /// Leader and follower. Joint i of the leader, counted from the base on, commands joint i of the follower, angle for
-/// angle, so both have as many joints, with the same zero and sense.
+/// angle, so both have as many joints, with the same zero and sense; or it leads the follower's tool
+/// (`arm_control::Coupling`), and both are what they are.
 struct ArmPairParams : ArmParams {
-  FollowerArmParams follower;
+  ArmParams follower;
   static constexpr auto fields() {
     return joined(ArmParams::fields(),
                   List{field("follower", &ArmPairParams::follower,
                              "The follower where it is another arm than the leader: then all of it stands here. "
                              "Without a urdf here it is like the leader. Joint i of the leader, counted from the base, "
-                             "commands joint i of the follower, angle for angle.")});
+                             "commands joint i of the follower, angle for angle, unless control.follower.coupling "
+                             "says tool.")});
   }
 };
 

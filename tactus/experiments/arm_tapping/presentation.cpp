@@ -121,8 +121,8 @@ report::Page arm_page(const Request& request, const std::string& verdict, const 
        {"peak, steady", "Contact force, largest and mean of the last 100 ms; medians over the taps."},
        {"felt", "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS; median."},
        {"lag",
-        "Farthest of the follower's tool from where the leader's joints would have it, in a reach of 200 mm in 0.75 s "
-        "that meets nothing."}});
+        "Farthest of the follower's tool from where the leader leads it, in a reach of 200 mm in 0.75 s that meets "
+        "nothing."}});
   for (const report::Figure& figure : figures) page.figure(figure);
   return page;
 }

@@ -62,6 +62,9 @@ Result<Begun> begin(const ArmPairSetup& setup, const SafetyGate::Params& gate, c
         .message = "four-channel control is tried in virtual time alone, without supervision: write another method",
         .place = {}};
   }
+  if (Check wrong = refuse_tool_coupling(setup.params, "supervision, of tactus faults and of a rig,")) {
+    return *std::move(wrong);
+  }
   const std::size_t of_arm = setup.leader.joints.size(), joints = limits.size();
   if (joints < of_arm || joints > most_joints) {
     return out_of_bounds("joints", static_cast<double>(joints), between(static_cast<double>(of_arm), most_joints),

@@ -168,7 +168,7 @@ TEST(ArmTapping, SixJointsOfTheYamClassSettleAsRecommendedAndNotWithoutIt) {
 /// The shipped pair with the follower written out as another arm, which is the same.
 ArmTappingParams with_equal_follower() {
   ArmTappingParams params = shipped();
-  FollowerArmParams& follower = params.arm.follower;
+  ArmParams& follower = params.arm.follower;
   follower.urdf = params.arm.urdf;
   follower.tool = params.arm.tool;
   follower.joints = {
