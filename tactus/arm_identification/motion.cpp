@@ -152,9 +152,12 @@ Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_H
     };
     const std::vector<double> position = fast(recording.position[j]);
     std::vector<double> velocity = by_velocity[j] ? fast(recording.velocity[j]) : slope_of(position, dt);
+    // Slopes are taken after the thinning: before it they would raise noise far above the cutoff, which thinning then
+    // folds to below it.
     all[j].position = every(position, motion.fast_stride_);
-    all[j].velocity = every(velocity, motion.fast_stride_);
-    all[j].acceleration = every(slope_of(velocity, dt), motion.fast_stride_);
+    all[j].velocity =
+        by_velocity[j] ? every(velocity, motion.fast_stride_) : slope_of(all[j].position, motion.fast_step_);
+    all[j].acceleration = slope_of(all[j].velocity, motion.fast_step_);
     all[j].effort = every(fast(recording.effort[j]), motion.fast_stride_);
     motion.sampled_velocity_.push_back(std::move(velocity));
   }
