@@ -1,13 +1,13 @@
-// arm_coverage FIRST LAST [integrated]: identifies simulated arms, a case for each seed, and prints a line for each
-// parameter: case, joint, name, whether it is told, the simulation's value, the found one, and both ends of its
-// interval.
+// arm_coverage FIRST LAST: identifies simulated arms (tests/arm_identification/exact_arm.hpp), one for each seed from
+// FIRST to LAST, and prints how many of the 95 % intervals hold what the simulation has, for each kind of parameter.
 
 #include <tactus/arm_identification/fit.hpp>
 
 #include <array>
-#include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,75 +18,49 @@ namespace {
 using namespace tactus;
 using namespace tactus::arm_identification;
 
-ArmRecording recorded(const Samples& samples, const std::vector<std::string>& names) {
-  ArmRecording recording{.file = "simulated.csv",
-                         .position_names = names,
-                         .effort_names = names,
-                         .sample_time = Seconds{samples.time_s[1]}};
-  recording.position = samples.position;
-  recording.velocity = samples.velocity;
-  recording.effort = samples.torque;
-  return recording;
+struct Count {
+  int all = 0;
+  int held = 0;
+};
+
+void print(const std::string& what, const Count& count) {
+  std::printf("%-24s %5d of %5d: %.1f %%\n", what.c_str(), count.held, count.all,
+              100.0 * count.held / (count.all > 0 ? count.all : 1));
 }
 
 }  // namespace
 
 int main(int count, char** words) {
-  const std::uint64_t first = std::strtoull(words[1], nullptr, 10);
+  if (count != 3) {
+    std::fprintf(stderr, "use: arm_coverage FIRST LAST\n");
+    return 2;
+  }
   const std::uint64_t last = std::strtoull(words[2], nullptr, 10);
-  const bool integrated = count > 3;
-  for (std::uint64_t seed = first; seed <= last; ++seed) {
-    const std::size_t joints = std::array<std::size_t, 4>{7, 6, 7, 4}[seed % 4];
-    const arm::Chain::Params truth = seed % 4 == 0 ? open_arm() : drawn_arm(seed, joints);
-    std::vector<std::string> names;
-    for (std::size_t j = 1; j <= joints; ++j) names.push_back("j" + std::to_string(j));
-    signal::Random random(seed + 77);
-    const double quick = 0.7 + 0.6 * random.uniform();
-    const double noise = 0.01 * std::pow(5.0, random.uniform());
-    const double fine = seed % 3 == 0 ? 1e-4 : 1e-5;
-    const double rate = seed % 5 == 0 ? 1000.0 : 500.0;
-    Samples samples;
-    if (integrated) {
-      samples = simulate(truth, {.duration_s = 20.0,
-                                 .seed = seed,
-                                 .noise_N_m = noise,
-                                 .resolution_rad = fine,
-                                 .step_s = 1.0 / 32000.0,
-                                 .steps_between = 64});
-    } else {
-      samples = exact_motion(truth, {.duration_s = 20.0,
-                                     .seed = seed,
-                                     .rate_Hz = rate,
-                                     .noise_N_m = noise,
-                                     .resolution_rad = fine,
-                                     .slowest_Hz = 0.1 * quick,
-                                     .step_Hz = 0.35 * quick});
-    }
-    const auto start = std::chrono::steady_clock::now();
-    const auto found = identify_arm(std::array{recorded(samples, names)}, names, believed(truth, 100 + seed));
+  Count all;
+  Count told;
+  std::map<std::string, Count> kinds;
+  for (std::uint64_t seed = std::strtoull(words[1], nullptr, 10); seed <= last; ++seed) {
+    const IntervalCase made = interval_case(seed);
+    const auto found = identify_arm(std::array{made.recording}, made.names, made.urdf);
     if (!found) {
-      std::fprintf(stderr, "%llu: %s\n", static_cast<unsigned long long>(seed), describe(found.error()).c_str());
-      continue;
+      std::fprintf(stderr, "seed %s: %s\n", std::to_string(seed).c_str(), describe(found.error()).c_str());
+      return 1;
     }
-    std::fprintf(stderr, "%llu %.1f s scaled %d", static_cast<unsigned long long>(seed),
-                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-                 found->scaled_efforts);
-    for (const ArmJointFit& joint : found->joints) std::fprintf(stderr, " %.2f", 100.0 * joint.held_out_relative);
-    for (const ArmJointFit& joint : found->joints) std::fprintf(stderr, " (%.4f)", joint.residual_rms);
-    std::fprintf(stderr, "\n");
-    for (std::size_t j = 0; j < joints; ++j) {
-      const arm::JointParams& joint = truth.joints[j];
-      const arm::BodyVector body = arm::linear_parameters(joint.body);
-      std::vector<double> values(body.begin(), body.end());
-      values.insert(values.end(), {joint.drive.armature_kg_m2, joint.friction.coulomb_N_m,
-                                   joint.friction.viscous_N_m_s_per_rad, joint.friction.offset_N_m});
+    for (std::size_t j = 0; j < made.names.size(); ++j) {
+      const std::vector<double> values = true_parameters(made.truth.joints[j]);
       for (std::size_t k = 0; k < values.size(); ++k) {
         const ArmParameter& p = found->joints[j].parameters[k];
-        std::printf("%llu %zu %s %d %.9g %.9g %.9g %.9g\n", static_cast<unsigned long long>(seed), j + 1,
-                    p.name.c_str(), p.told, values[k], p.value, p.lower, p.upper);
+        const int holds = values[k] >= p.lower && values[k] <= p.upper ? 1 : 0;
+        for (Count* to : {&all, p.told ? &told : nullptr, p.told ? &kinds[p.name] : nullptr}) {
+          if (to == nullptr) continue;
+          ++to->all;
+          to->held += holds;
+        }
       }
     }
-    std::fflush(stdout);
   }
+  print("all", all);
+  print("told by the recording", told);
+  for (const auto& [name, kind] : kinds) print("  " + name, kind);
   return 0;
 }

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <tactus/arm/chain.hpp>
+#include <tactus/arm_identification/recording.hpp>
 #include <tactus/signal/random.hpp>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "tests/arm_identification/kdl_arm.hpp"
@@ -121,6 +123,50 @@ inline arm::Chain::Params drawn_arm(std::uint64_t seed, std::size_t joints) {
                       .velocity_scale_rad_per_s = between(0.01, 0.1)};
   }
   return params;
+}
+
+/// A simulated arm with a recording of it and what its URDF would say: for each seed another arm of 4, 6 or 7 joints,
+/// another motion, noise, resolution and rate.
+struct IntervalCase {
+  arm::Chain::Params truth;
+  arm::Chain::Params urdf;
+  std::vector<std::string> names;
+  ArmRecording recording;
+};
+
+inline IntervalCase interval_case(std::uint64_t seed) {
+  const std::size_t joints = std::array<std::size_t, 4>{7, 6, 7, 4}[seed % 4];
+  IntervalCase made{
+      .truth = seed % 4 == 0 ? open_arm() : drawn_arm(seed, joints), .urdf = {}, .names = {}, .recording = {}};
+  made.urdf = believed(made.truth, 100 + seed);
+  for (std::size_t j = 1; j <= joints; ++j) made.names.push_back("j" + std::to_string(j));
+  signal::Random random(seed + 77);
+  const double quick = 0.7 + 0.6 * random.uniform();
+  const Samples samples = exact_motion(made.truth, {.duration_s = 20.0,
+                                                    .seed = seed,
+                                                    .rate_Hz = seed % 5 == 0 ? 1000.0 : 500.0,
+                                                    .noise_N_m = 0.01 * std::pow(5.0, random.uniform()),
+                                                    .resolution_rad = seed % 3 == 0 ? 1e-4 : 1e-5,
+                                                    .slowest_Hz = 0.1 * quick,
+                                                    .step_Hz = 0.35 * quick});
+  made.recording = {.file = "simulated.csv",
+                    .position_names = made.names,
+                    .effort_names = made.names,
+                    .sample_time = Seconds{samples.time_s[1]}};
+  made.recording.position = samples.position;
+  made.recording.velocity = samples.velocity;
+  made.recording.effort = samples.torque;
+  return made;
+}
+
+/// What the simulation has where `ArmJointFit::parameters` begins: body, armature, Coulomb and viscous friction,
+/// offset.
+inline std::vector<double> true_parameters(const arm::JointParams& joint) {
+  const arm::BodyVector body = arm::linear_parameters(joint.body);
+  std::vector<double> values(body.begin(), body.end());
+  values.insert(values.end(), {joint.drive.armature_kg_m2, joint.friction.coulomb_N_m,
+                               joint.friction.viscous_N_m_s_per_rad, joint.friction.offset_N_m});
+  return values;
 }
 
 }  // namespace tactus::arm_identification
