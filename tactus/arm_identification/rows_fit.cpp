@@ -14,9 +14,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int choosing_rounds = 2;  ///< in which the shape of friction is chosen
-constexpr int least_rounds = 4;
-constexpr int most_rounds = 10;
+constexpr int choosing_rounds = 2;  ///< in which it is chosen where to look for v0
+constexpr int terms_round = 3;      ///< after which it is chosen what friction has beside
+constexpr int least_rounds = 6;
+constexpr int most_rounds = 12;
 constexpr double longest_turn = 0.7;    ///< of log(v0) in a round
 constexpr double turned_enough = 0.02;  ///< of log(v0)
 constexpr double usual_turning = 0.03;  ///< v0 as a share of the rms speed
@@ -69,37 +70,50 @@ double cross_validated(const MatrixXd& columns, const VectorXd& right) {
   return std::sqrt(squares / static_cast<double>(rows));
 }
 
-FrictionShape choose_shape(const ArmData& data, int joint, const ConsistentFit& fit, RowSpan span) {
+/// What a shape of friction leaves of what the bodies leave, cross-validated.
+double shape_error(const ArmData& data, int joint, const ConsistentFit& fit, RowSpan span, const FrictionShape& shape) {
   const VectorXd rigid = data.rigid_torque(joint, fit);
   const VectorXd left =
       (data.effort.col(joint) / fit.scales[static_cast<std::size_t>(joint)] - rigid).segment(span.first, span.count);
-  const auto error_of = [&](const FrictionShape& shape) {
-    const MatrixXd all =
-        data.local(joint, data.friction(joint, shape, false), rigid, {}).middleRows(span.first, span.count);
-    std::vector<Index> used{1, 2, 3};
-    if (shape.load) used.push_back(4);
-    if (shape.stribeck >= 0) used.push_back(5);
-    MatrixXd columns(span.count, static_cast<Index>(used.size()));
-    for (std::size_t i = 0; i < used.size(); ++i) columns.col(static_cast<Index>(i)) = all.col(used[i]);
-    return cross_validated(columns, left);
-  };
+  const MatrixXd all =
+      data.local(joint, data.friction(joint, shape, false), rigid, {}).middleRows(span.first, span.count);
+  std::vector<Index> used{1, 2, 3};
+  if (shape.load) used.push_back(4);
+  if (shape.stribeck >= 0) used.push_back(5);
+  MatrixXd columns(span.count, static_cast<Index>(used.size()));
+  for (std::size_t i = 0; i < used.size(); ++i) columns.col(static_cast<Index>(i)) = all.col(used[i]);
+  return cross_validated(columns, left);
+}
+
+/// Where to begin to look for v0.
+FrictionShape choose_direction(const ArmData& data, int joint, const ConsistentFit& fit, RowSpan span) {
   FrictionShape best;
-  double least = error_of(best);
-  const auto consider = [&](const FrictionShape& shape, double margin) {
-    const double error = error_of(shape);
-    if (error >= margin * least) return;
+  double least = shape_error(data, joint, fit, span, best);
+  for (std::size_t d = 0; d < ArmData::directions.size(); ++d) {
+    const double error = shape_error(data, joint, fit, span, {.direction = d});
+    if (error >= least) continue;
+    least = error;
+    best.direction = d;
+  }
+  return best;
+}
+
+/// The shape with what is worth having beside, once v0 is about right: a wrong one looks like an excess.
+FrictionShape choose_terms(const ArmData& data, int joint, const ConsistentFit& fit, RowSpan span, FrictionShape best) {
+  double least = shape_error(data, joint, fit, span, best);
+  const auto consider = [&](const FrictionShape& shape) {
+    const double error = shape_error(data, joint, fit, span, shape);
+    if (error >= worthwhile * least) return;
     least = error;
     best = shape;
   };
-  for (std::size_t d = 0; d < ArmData::directions.size(); ++d) consider({.direction = d}, 1.0);
   FrictionShape with_load = best;
   with_load.load = true;
-  consider(with_load, worthwhile);
-  const FrictionShape so_far = best;
+  consider(with_load);
+  FrictionShape with_excess = best;
   for (int s = 0; s < static_cast<int>(ArmData::slownesses.size()); ++s) {
-    FrictionShape with_excess = so_far;
     with_excess.stribeck = s;
-    consider(with_excess, worthwhile);
+    consider(with_excess);
   }
   return best;
 }
@@ -157,7 +171,8 @@ RowsFit fit_rows(const ArmData& data, RowSpan span, std::vector<JointPrior> prio
       noise[at] = std::max(rms(left), 1e-6 * rms(data.effort.col(j)) + 1e-12);
       correlation[at] = correlation_of(left);
       if (choosing) {
-        fit.friction[at] = data.friction(j, choose_shape(data, j, fit.found, span), round + 1 == choosing_rounds);
+        const FrictionShape shape = choose_direction(data, j, fit.found, span);
+        fit.friction[at] = data.friction(j, shape, round + 1 == choosing_rounds);
       }
     }
     if (choosing) continue;
@@ -166,6 +181,11 @@ RowsFit fit_rows(const ArmData& data, RowSpan span, std::vector<JointPrior> prio
     for (const auto& own : fit.found.local) most = std::max(most, std::fabs(own[6]));
     if ((round + 1 >= least_rounds && most < turned_enough) || round + 1 == most_rounds) break;
     turn(data, fit);
+    if (round != terms_round) continue;
+    for (int j = 0; j < count; ++j) {
+      FrictionColumns& friction = fit.friction[static_cast<std::size_t>(j)];
+      friction = data.friction(j, choose_terms(data, j, fit.found, span, friction.shape), true);
+    }
   }
   return fit;
 }
