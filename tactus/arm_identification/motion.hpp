@@ -22,9 +22,8 @@ inline constexpr double default_arm_cutoff_Hz = 10.0;
 /// low-passed motion is not the low-passed law, for gravity, Coriolis torque and friction are not linear. Velocity and
 /// acceleration are slopes of the positions; of the measured velocity where that has less than half of the noise of the
 /// positions' slope, as on servos with coarse encoders. As far as the filter has to guess, 1/cutoff at either end,
-/// there are no rows. Source of parallel filtering: Slotine and Li, On the adaptive control of robot manipulators, Int.
-/// J. Robotics Research 6(3), 1987 (filtered torque); Swevers et al., Dynamic model identification for industrial
-/// robots, IEEE Control Systems 27(5), 2007.
+/// there are no rows. Source of parallel filtering: Gautier, Dynamic identification of robots with power model,
+/// IEEE Int. Conf. Robotics and Automation, 1997.
 class ArmMotion {
  public:
   /// `rows_per_s`: at most as many, and at least 2 of them for each period of the cutoff.
