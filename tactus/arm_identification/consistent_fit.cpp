@@ -25,6 +25,7 @@ constexpr double centre_deviation = 1.5;
 constexpr double least_gyration_m = 0.01;
 constexpr double log_armature_deviation = 1.5;
 constexpr double log_friction_deviation = 2.0;
+constexpr double log_turning_deviation = 1.5;
 constexpr double usual_load_share = 0.02;
 constexpr double known = 1e-9;
 constexpr int most_steps = 1000;
@@ -125,7 +126,8 @@ VectorXd parameters_of(const Problem& problem, const VectorXd& x) {
     const JointPrior& prior = problem.priors[static_cast<std::size_t>(j)];
     const auto local = x.segment<local_parameters>(at + body_parameters);
     found.segment<local_parameters>(problem.bodies() + local_parameters * j) << std::exp(local[0]), std::exp(local[1]),
-        std::exp(local[2]), local[3], prior.load ? std::exp(local[4]) : 0.0, prior.stribeck ? local[5] : 0.0;
+        std::exp(local[2]), local[3], prior.load ? std::exp(local[4]) : 0.0, prior.stribeck ? local[5] : 0.0,
+        prior.turning ? local[6] : 0.0;
   }
   return found;
 }
@@ -140,6 +142,7 @@ MatrixXd slope_of(const Problem& problem, const VectorXd& x, const VectorXd& par
     for (const int k : {0, 1, 2, 4}) slope(row + k, at + body_parameters + k) = parameters[row + k];
     slope(row + 3, at + body_parameters + 3) = 1.0;
     slope(row + 5, at + body_parameters + 5) = problem.priors[static_cast<std::size_t>(j)].stribeck ? 1.0 : 0.0;
+    slope(row + 6, at + body_parameters + 6) = problem.priors[static_cast<std::size_t>(j)].turning ? 1.0 : 0.0;
   }
   return slope;
 }
@@ -233,10 +236,10 @@ Problem problem_of(const std::vector<JointSums>& sums, const std::vector<JointPr
     deviations.segment<3>(at_shear).setConstant(gyration_deviation * gyration);
     deviations.segment<3>(at_centre).setConstant(centre_deviation * gyration);
     problem.centre.segment<local_parameters>(at + body_parameters) << std::log(prior.armature), std::log(prior.coulomb),
-        std::log(prior.viscous), 0.0, std::log(usual_load_share), 0.0;
+        std::log(prior.viscous), 0.0, std::log(usual_load_share), 0.0, prior.turning ? prior.turning_log : 0.0;
     problem.deviations.segment<local_parameters>(at + body_parameters) << log_armature_deviation,
         log_friction_deviation, log_friction_deviation, prior.torque, prior.load ? log_friction_deviation : known,
-        prior.stribeck ? prior.torque : known;
+        prior.stribeck ? prior.torque : known, prior.turning ? log_turning_deviation : known;
     problem.centre[joint_coordinates * problem.joints + j] = std::log(prior.scale);
     problem.deviations[joint_coordinates * problem.joints + j] = std::max(known, prior.scale_deviation);
   }
@@ -248,10 +251,10 @@ Problem problem_of(const std::vector<JointSums>& sums, const std::vector<JointPr
 double ConsistentFit::deviation(int joint, int k) const {
   const Index at = joint_coordinates * joint;
   if (k >= body_parameters) {
-    // Exponentials but for offset and excess.
+    // Exponentials but for offset, excess and the turning round.
     const int own = k - body_parameters;
     const double steepness =
-        own == 3 || own == 5 ? 1.0 : local[static_cast<std::size_t>(joint)][static_cast<std::size_t>(own)];
+        own == 3 || own >= 5 ? 1.0 : local[static_cast<std::size_t>(joint)][static_cast<std::size_t>(own)];
     return std::fabs(steepness) * std::sqrt(covariance(at + k, at + k));
   }
   const VectorXd by_coordinate = body_slope(coordinates.segment<body_parameters>(at)).row(k);

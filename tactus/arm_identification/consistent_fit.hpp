@@ -11,8 +11,8 @@
 namespace tactus::arm_identification {
 
 /// Of a joint beside its body: armature, Coulomb friction, viscous friction, offset, load-dependent friction,
-/// Stribeck's excess.
-inline constexpr int local_parameters = 6;
+/// Stribeck's excess, and by how much the logarithm of the velocity within which friction turns round is off.
+inline constexpr int local_parameters = 7;
 /// What is found for a joint: its body as a logarithm of a Cholesky factor (10), then those of the joint.
 inline constexpr int joint_coordinates = arm::body_parameters + local_parameters;
 
@@ -36,6 +36,8 @@ struct JointPrior {
   double scale_deviation = 0.0;  ///< of its logarithm; 0: known
   bool load = false;             ///< whether there is load-dependent friction
   bool stribeck = false;         ///< whether there is Stribeck's excess
+  bool turning = false;          ///< whether the velocity within which friction turns round is sought
+  double turning_log = 0.0;      ///< what its logarithm was believed to be, less the one that the columns are made with
 };
 
 struct ConsistentFit {
@@ -64,11 +66,11 @@ struct ConsistentFit {
 /// A body is a heap of masses of any density but negative, however far the data pull: its pseudo-inertia is U·Uᵀ with U
 /// upper triangular and its diagonal exponentials, and everything that cannot be negative is an exponential. Prior
 /// deviations: mass a factor of 4.5, lengths of gyration one of 3.3, centre 1.5 lengths of gyration; armature a factor
-/// of 4.5, friction one of e². Where data say nothing the prior stays, and `covariance` is that of the prior.
-/// Levenberg-Marquardt on the sums, in steps of at most one prior deviation: a longer one can make an exponential so
-/// small that nothing pulls it back. Deterministic; not real-time safe. Sources: Rucker and Wensing, Smooth
-/// parameterization of rigid-body inertia, IEEE RA-L 7(2), 2022; Traversaro et al., Identification of fully physical
-/// consistent inertial parameters using optimization on manifolds, IROS 2016.
+/// of 4.5, friction one of e², the velocity within which it turns round one of 4.5. Where data say nothing the prior
+/// stays, and `covariance` is that of the prior. Levenberg-Marquardt on the sums, in steps of at most one prior
+/// deviation: a longer one can make an exponential so small that nothing pulls it back. Deterministic; not real-time
+/// safe. Sources: Rucker and Wensing, Smooth parameterization of rigid-body inertia, IEEE RA-L 7(2), 2022; Traversaro
+/// et al., Identification of fully physical consistent inertial parameters using optimization on manifolds, IROS 2016.
 ConsistentFit fit_consistently(const std::vector<JointSums>& sums, const std::vector<JointPrior>& priors,
                                const std::vector<double>& noise, const std::vector<double>& correlation);
 

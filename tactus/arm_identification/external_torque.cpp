@@ -59,12 +59,11 @@ Result<ExternalTorque> estimate_external_torque(const ArmModel& model, const Arm
   const Index count = motion->joints();
   ExternalTorque result;
   result.torque_N_m.resize(rows, count);
-  MatrixXd rigid(rows, count);
-  for (Index i = 0; i < rows; ++i) {
-    result.time_s.push_back(recording.start_s + motion->time_s[static_cast<std::size_t>(i)]);
-    rigid.row(i) =
-        chain->inverse_dynamics(motion->position.row(i), motion->velocity.row(i), motion->acceleration.row(i));
-  }
+  for (const double time_s : motion->time_s) result.time_s.push_back(recording.start_s + time_s);
+  const MatrixXd rigid = motion->of_motion(
+      count, [&](const VectorXd& position, const VectorXd& velocity, const VectorXd& acceleration, auto torque) {
+        torque = chain->inverse_dynamics(position, velocity, acceleration);
+      });
   for (Index j = 0; j < count; ++j) {
     const ArmJointModel& joint = model.joints[static_cast<std::size_t>(j)];
     const arm::JointFriction& friction = joint.arm.friction;

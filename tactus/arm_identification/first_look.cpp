@@ -31,7 +31,7 @@ FirstLook look(const ArmData& data, const VectorXd& bodies, int joint, int effor
   const VectorXd torque = data.bodies[at] * bodies;
   const VectorXd effort = data.effort.col(effort_of);
   MatrixXd columns(data.rows(), 5);
-  columns << torque, data.local(joint, {}, torque).leftCols(4);
+  columns << torque, data.local(joint, data.friction(joint, {}, false), torque, {}).leftCols(4);
   const VectorXd found = signal::solve_least_squares(columns, effort);
   FirstLook result;
   const double size = rms(effort);

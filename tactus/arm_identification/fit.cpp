@@ -56,7 +56,7 @@ ArmModel model_of(const ArmData& data, const RowsFit& fit, const std::vector<std
       .joints = Joints<ArmJointModel>(joints.size())};
   for (std::size_t j = 0; j < joints.size(); ++j) {
     ArmJointModel& joint = model.joints[j];
-    const FrictionShape& shape = fit.shapes[j];
+    const FrictionShape& shape = fit.friction[j].shape;
     const auto& local = fit.found.local[j];
     joint.name = joints[j];
     joint.effort_per_N_m = fit.found.scales[j];
@@ -66,12 +66,13 @@ ArmModel model_of(const ArmData& data, const RowsFit& fit, const std::vector<std
     joint.arm.body =
         arm::body_of(fit.found.bodies.segment<arm::body_parameters>(arm::body_parameters * static_cast<Index>(j)));
     joint.arm.drive = {.armature_kg_m2 = local[0], .rotor_inertia_kg_m2 = 0.0, .gear_ratio = 1.0};
-    joint.arm.friction = {.coulomb_N_m = local[1],
-                          .viscous_N_m_s_per_rad = local[2],
-                          .offset_N_m = local[3],
-                          .load = shape.load ? local[4] : 0.0,
-                          .stribeck_N_m = shape.stribeck >= 0 ? local[5] : 0.0,
-                          .velocity_scale_rad_per_s = ArmData::directions[shape.direction] * data.speed[j]};
+    joint.arm.friction = {
+        .coulomb_N_m = local[1],
+        .viscous_N_m_s_per_rad = local[2],
+        .offset_N_m = local[3],
+        .load = shape.load ? local[4] : 0.0,
+        .stribeck_N_m = shape.stribeck >= 0 ? local[5] : 0.0,
+        .velocity_scale_rad_per_s = data.turning_velocity(static_cast<int>(j), shape) * std::exp(local[6])};
     if (shape.stribeck >= 0) {
       joint.arm.friction.stribeck_velocity_rad_per_s =
           ArmData::slownesses[static_cast<std::size_t>(shape.stribeck)] * data.speed[j];
@@ -100,7 +101,7 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
     if (!motion) return motion.error();
     motions.push_back(*std::move(motion));
   }
-  const ArmData data(*chain, motions);
+  const ArmData data(*chain, std::move(motions));
   result.base_parameters = base_parameters_of(*chain);
   const auto in_file = [&](Error error) {
     error.place = recordings.front().file.string();
@@ -142,8 +143,8 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
   const std::vector<double> ordinary = ordinary_least_squares(data, seen, judged);
   std::vector<JointPrior> used = priors;
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    used[j].load = whole.shapes[j].load;
-    used[j].stribeck = whole.shapes[j].stribeck >= 0;
+    used[j].load = whole.friction[j].shape.load;
+    used[j].stribeck = whole.friction[j].shape.stribeck >= 0;
   }
   const ConsistentFit nothing = fit_of_nothing(used);
 
@@ -160,7 +161,8 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
     fit.least_squares_relative = ordinary[at];
     MatrixXd seen_by(judged.count, data.bodies[at].cols() + local_parameters);
     seen_by << data.bodies[at].middleRows(judged.first, judged.count),
-        data.local(j, half.shapes[at], data.rigid_torque(j, half.found)).middleRows(judged.first, judged.count);
+        data.local(j, half.friction[at], data.rigid_torque(j, half.found), half.found.local[at])
+            .middleRows(judged.first, judged.count);
     const Eigen::ArrayXd uncertain = half.found.prediction_deviation(j, seen_by);
     const double left_alone = half.found.residual_rms[at];
     const Eigen::ArrayXd bound = normal_95 * (uncertain.square() + left_alone * left_alone).sqrt();
@@ -172,7 +174,7 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
                         joints[at] + "' (column '" + recordings.front().effort_names[at] +
                         "'): are columns swapped, was something touched, or is this the URDF of another arm?"));
     }
-    fit.parameters = parameters_of(whole.found, nothing, j, whole.shapes[at]);
+    fit.parameters = parameters_of(whole.found, nothing, j, whole.friction[at].shape);
     thresholds.push_back(threshold_margin * std::max(left.cwiseAbs().maxCoeff(), held_out.cwiseAbs().maxCoeff()));
     result.joints.push_back(std::move(fit));
   }

@@ -43,10 +43,10 @@ struct ArmIdentification {
 ///
 /// Effort = scale · (rigid bodies + armature + friction). Bodies, armatures and friction are the most probable ones
 /// given the recordings and, where these say nothing, `urdf`; they are such that bodies can have them
-/// (`fit_consistently`). Each joint counts by what is left of it, and by how long that stays correlated. The form of
-/// friction (how fast it turns round, whether it grows with load or in slow motion) is chosen for each joint by
-/// cross-validation over four blocks. The scales are 1 where efforts are torques; if a joint's cannot be, or if it fits
-/// 3 % better, they are found too.
+/// (`fit_consistently`). Each joint counts by what is left of it, and by how long that stays correlated. The velocity
+/// within which friction turns round is an unknown like the others, so its doubt is in every interval. Whether friction
+/// grows with load or in slow motion is chosen for each joint by cross-validation over four blocks. The scales are 1
+/// where efforts are torques; if a joint's cannot be, or if it fits 3 % better, they are found too.
 ///
 /// Errors, in place of a model that nobody should trust: those of `ArmMotion::make`; `inconsistent` for too little
 /// data, efforts that look swapped, an effort of the wrong sign, and a joint of which the model leaves more than three

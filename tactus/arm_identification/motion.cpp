@@ -20,6 +20,8 @@ using identification::zero_phase_low_pass;
 constexpr double shortest_periods = 10.0;
 constexpr double fast_factor = 4.0;         ///< of the cutoff: what friction's turning round is seen with
 constexpr double fast_rate_factor = 16.0;   ///< of the cutoff: rate at which that is kept
+constexpr Eigen::Index window_rows = 4096;  ///< of a law of the whole motion, for its memory
+constexpr double window_margin = 3.0;       ///< periods of the cutoff, in which a filter forgets how it began
 constexpr double slowest_rad_per_s = 0.01;  ///< rms below which a joint tells nothing
 constexpr double most_disagreement = 0.5;   ///< of a velocity with the slope of its position
 
@@ -48,9 +50,21 @@ std::vector<double> every(const std::vector<double>& values, std::size_t stride)
   return kept;
 }
 
-/// What one joint did, at the rate of the fast signals.
+/// The slope by central differences of sixth order, of second at the ends: that of second alone makes a slope at a
+/// tenth of the sample rate 6 % too small.
+std::vector<double> slope_of(const std::vector<double>& samples, Seconds dt) {
+  std::vector<double> slope = central_difference(samples, dt);
+  for (std::size_t i = 3; i + 3 < samples.size(); ++i) {
+    slope[i] = (45.0 * (samples[i + 1] - samples[i - 1]) - 9.0 * (samples[i + 2] - samples[i - 2]) + samples[i + 3] -
+                samples[i - 3]) /
+               (60.0 * dt.value);
+  }
+  return slope;
+}
+
+/// What one joint did, below the fast cutoff and at its rate.
 struct Filtered {
-  std::vector<double> position, velocity, acceleration, fast_velocity, effort;
+  std::vector<double> position, velocity, acceleration, effort;
 };
 
 /// How far a measured velocity lies from a slope, as a share of the slope.
@@ -95,12 +109,13 @@ Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_H
                                               short_number(1.0 / dt.value) +
                                               " samples a second; take at most a fifth of that with --cutoff-Hz"));
   }
-  const auto fast_stride =
-      static_cast<std::size_t>(std::max(1.0, std::floor(1.0 / (fast_rate_factor * cutoff_Hz * dt.value))));
-  const double fast_cutoff_Hz = std::min(fast_factor * cutoff_Hz, 0.4 / dt.value);
   ArmMotion motion;
+  motion.fast_stride_ =
+      static_cast<std::size_t>(std::max(1.0, std::floor(1.0 / (fast_rate_factor * cutoff_Hz * dt.value))));
+  motion.fast_cutoff_Hz_ = std::min(fast_factor * cutoff_Hz, 0.4 / dt.value);
   motion.cutoff_Hz_ = cutoff_Hz;
-  motion.fast_step_ = Seconds{dt.value * static_cast<double>(fast_stride)};
+  motion.sample_time_ = dt;
+  motion.fast_step_ = Seconds{dt.value * static_cast<double>(motion.fast_stride_)};
 
   std::vector<Filtered> all(recording.joints());
   std::vector<std::vector<double>> slopes;
@@ -109,9 +124,6 @@ Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_H
   for (std::size_t j = 0; j < recording.joints(); ++j) {
     const auto smooth = zero_phase_low_pass(recording.position[j], cutoff_Hz, dt);
     if (!smooth) return fail(smooth.error());
-    const auto fast = zero_phase_low_pass(recording.position[j], fast_cutoff_Hz, dt);
-    const auto effort = zero_phase_low_pass(recording.effort[j], cutoff_Hz, dt);
-    if (!fast || !effort) return fail(fast ? effort.error() : fast.error());
     slopes.push_back(central_difference(*smooth, dt));
     if (rms(slopes.back()) < slowest_rad_per_s) {
       return fail(inconsistent("position", "joint '" + joints[j] + "' (column '" + recording.position_names[j] +
@@ -129,18 +141,25 @@ Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_H
       use_velocity = 2.0 * rms_apart(recording.velocity[j], *filtered) < of_position;
     }
     by_velocity.push_back(use_velocity);
-    Filtered& f = all[j];
-    f.position = every(*smooth, fast_stride);
-    f.effort = every(*effort, fast_stride);
-    f.fast_velocity = every(central_difference(*fast, dt), fast_stride);
   }
   for (std::size_t j = 0; j < recording.joints(); ++j) {
     if (!measured.empty() && disagreement(measured[j], slopes[j]) > most_disagreement) {
       return fail(wrong_velocity(recording, j, joints[j], measured[j], slopes));
     }
-    const std::vector<double>& velocity = by_velocity[j] ? measured[j] : slopes[j];
-    all[j].velocity = every(velocity, fast_stride);
-    all[j].acceleration = every(central_difference(velocity, dt), fast_stride);
+    // The fast cutoff is less than half of the rate, so the filter takes it.
+    const auto fast = [&](const std::vector<double>& samples) {
+      return *zero_phase_low_pass(samples, motion.fast_cutoff_Hz_, dt);
+    };
+    const std::vector<double> position = fast(recording.position[j]);
+    std::vector<double> velocity = by_velocity[j] ? fast(recording.velocity[j]) : slope_of(position, dt);
+    // Slopes are taken after the thinning: before it they would raise noise far above the cutoff, which thinning then
+    // folds to below it.
+    all[j].position = every(position, motion.fast_stride_);
+    all[j].velocity =
+        by_velocity[j] ? every(velocity, motion.fast_stride_) : slope_of(all[j].position, motion.fast_step_);
+    all[j].acceleration = slope_of(all[j].velocity, motion.fast_step_);
+    all[j].effort = every(fast(recording.effort[j]), motion.fast_stride_);
+    motion.sampled_velocity_.push_back(std::move(velocity));
   }
 
   const double fast_rate = 1.0 / motion.fast_step_.value;
@@ -153,17 +172,21 @@ Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_H
   motion.count_ = (available - 2 * cut - 1) / motion.stride_ + 1;
   const auto rows = static_cast<Eigen::Index>(motion.count_);
   const auto columns = static_cast<Eigen::Index>(recording.joints());
-  motion.position.resize(rows, columns);
-  motion.velocity.resize(rows, columns);
-  motion.acceleration.resize(rows, columns);
-  motion.effort.resize(rows, columns);
+  for (Eigen::MatrixXd* matrix : {&motion.velocity, &motion.acceleration, &motion.effort}) {
+    matrix->resize(rows, columns);
+  }
+  const auto fast_rows = static_cast<Eigen::Index>(available);
+  for (Eigen::MatrixXd* matrix : {&motion.fast_position_, &motion.fast_velocity_, &motion.fast_acceleration_}) {
+    matrix->resize(fast_rows, columns);
+  }
   for (std::size_t j = 0; j < recording.joints(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
-    motion.position.col(column) = motion.thinned(all[j].position);
-    motion.velocity.col(column) = motion.thinned(all[j].velocity);
-    motion.acceleration.col(column) = motion.thinned(all[j].acceleration);
-    motion.effort.col(column) = motion.thinned(all[j].effort);
-    motion.fast_velocity_.push_back(std::move(all[j].fast_velocity));
+    motion.velocity.col(column) = motion.low_passed(all[j].velocity);
+    motion.acceleration.col(column) = motion.low_passed(all[j].acceleration);
+    motion.effort.col(column) = motion.low_passed(all[j].effort);
+    motion.fast_position_.col(column) = Eigen::Map<const Eigen::VectorXd>(all[j].position.data(), fast_rows);
+    motion.fast_velocity_.col(column) = Eigen::Map<const Eigen::VectorXd>(all[j].velocity.data(), fast_rows);
+    motion.fast_acceleration_.col(column) = Eigen::Map<const Eigen::VectorXd>(all[j].acceleration.data(), fast_rows);
   }
   for (std::size_t i = 0; i < motion.count_; ++i) {
     motion.time_s.push_back(static_cast<double>(motion.first_ + i * motion.stride_) * motion.fast_step_.value);
@@ -171,20 +194,50 @@ Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_H
   return motion;
 }
 
-Eigen::VectorXd ArmMotion::thinned(const std::vector<double>& values) const {
+Eigen::VectorXd ArmMotion::low_passed(std::span<const double> fast) const {
+  // The cutoff is at most a fifth of the rate, so the filter takes it.
+  const std::vector<double> smooth = *zero_phase_low_pass(fast, cutoff_Hz_, fast_step_);
   Eigen::VectorXd kept(static_cast<Eigen::Index>(count_));
-  for (std::size_t i = 0; i < count_; ++i) kept[static_cast<Eigen::Index>(i)] = values[first_ + i * stride_];
+  for (std::size_t i = 0; i < count_; ++i) kept[static_cast<Eigen::Index>(i)] = smooth[first_ + i * stride_];
   return kept;
 }
 
 Eigen::VectorXd ArmMotion::of_velocity(int joint, const std::function<double(double)>& law) const {
-  const std::vector<double>& fast = fast_velocity_[static_cast<std::size_t>(joint)];
-  std::vector<double> values(fast.size());
-  std::transform(fast.begin(), fast.end(), values.begin(), law);
-  // The cutoff is at most a fifth of the rate, so the filter takes it.
-  return thinned(*zero_phase_low_pass(values, cutoff_Hz_, fast_step_));
+  const std::vector<double>& sampled = sampled_velocity_[static_cast<std::size_t>(joint)];
+  std::vector<double> values(sampled.size());
+  std::transform(sampled.begin(), sampled.end(), values.begin(), law);
+  return low_passed(every(*zero_phase_low_pass(values, fast_cutoff_Hz_, sample_time_), fast_stride_));
 }
 
-double ArmMotion::speed(int joint) const { return rms(fast_velocity_[static_cast<std::size_t>(joint)]); }
+Eigen::MatrixXd ArmMotion::of_motion(Eigen::Index columns, const Law& law) const {
+  using Eigen::Index;
+  const Index available = fast_position_.rows();
+  const auto first_row = static_cast<Index>(first_);
+  const auto stride = static_cast<Index>(stride_);
+  const auto margin = static_cast<Index>(std::ceil(window_margin / (cutoff_Hz_ * fast_step_.value)));
+  const Index in_window = std::max<Index>(1, window_rows / stride);
+  Eigen::MatrixXd found(rows(), columns);
+  Eigen::VectorXd values(columns);
+  for (Index row = 0; row < rows(); row += in_window) {
+    const Index count = std::min(in_window, rows() - row);
+    const Index from = std::max<Index>(0, first_row + row * stride - margin);
+    const Index end = std::min(available, first_row + (row + count - 1) * stride + 1 + margin);
+    Eigen::MatrixXd window(end - from, columns);
+    for (Index i = from; i < end; ++i) {
+      law(fast_position_.row(i), fast_velocity_.row(i), fast_acceleration_.row(i), values);
+      window.row(i - from) = values;
+    }
+    for (Index c = 0; c < columns; ++c) {
+      const std::span<const double> column(window.col(c).data(), static_cast<std::size_t>(end - from));
+      const std::vector<double> smooth = *zero_phase_low_pass(column, cutoff_Hz_, fast_step_);
+      for (Index i = 0; i < count; ++i) {
+        found(row + i, c) = smooth[static_cast<std::size_t>(first_row + (row + i) * stride - from)];
+      }
+    }
+  }
+  return found;
+}
+
+double ArmMotion::speed(int joint) const { return rms(sampled_velocity_[static_cast<std::size_t>(joint)]); }
 
 }  // namespace tactus::arm_identification

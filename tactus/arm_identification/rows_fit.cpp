@@ -14,7 +14,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int rounds = 4;
+constexpr int choosing_rounds = 2;  ///< in which it is chosen where to look for v0
+constexpr int terms_round = 3;      ///< after which it is chosen what friction has beside
+constexpr int least_rounds = 6;
+constexpr int most_rounds = 12;
+constexpr double longest_turn = 0.7;    ///< of log(v0) in a round
+constexpr double turned_enough = 0.02;  ///< of log(v0)
+constexpr double usual_turning = 0.03;  ///< v0 as a share of the rms speed
+constexpr double least_turning = 0.001;
+constexpr double most_turning = 1.0;
 constexpr int folds = 4;
 constexpr double worthwhile = 0.98;  ///< of the error: what a further friction term must bring it to
 
@@ -62,38 +70,64 @@ double cross_validated(const MatrixXd& columns, const VectorXd& right) {
   return std::sqrt(squares / static_cast<double>(rows));
 }
 
-FrictionShape choose_shape(const ArmData& data, int joint, const ConsistentFit& fit, RowSpan span) {
+/// What a shape of friction leaves of what the bodies leave, cross-validated.
+double shape_error(const ArmData& data, int joint, const ConsistentFit& fit, RowSpan span, const FrictionShape& shape) {
   const VectorXd rigid = data.rigid_torque(joint, fit);
   const VectorXd left =
       (data.effort.col(joint) / fit.scales[static_cast<std::size_t>(joint)] - rigid).segment(span.first, span.count);
-  const auto error_of = [&](const FrictionShape& shape) {
-    const MatrixXd all = data.local(joint, shape, rigid).middleRows(span.first, span.count);
-    std::vector<Index> used{1, 2, 3};
-    if (shape.load) used.push_back(4);
-    if (shape.stribeck >= 0) used.push_back(5);
-    MatrixXd columns(span.count, static_cast<Index>(used.size()));
-    for (std::size_t i = 0; i < used.size(); ++i) columns.col(static_cast<Index>(i)) = all.col(used[i]);
-    return cross_validated(columns, left);
-  };
+  const MatrixXd all =
+      data.local(joint, data.friction(joint, shape, false), rigid, {}).middleRows(span.first, span.count);
+  std::vector<Index> used{1, 2, 3};
+  if (shape.load) used.push_back(4);
+  if (shape.stribeck >= 0) used.push_back(5);
+  MatrixXd columns(span.count, static_cast<Index>(used.size()));
+  for (std::size_t i = 0; i < used.size(); ++i) columns.col(static_cast<Index>(i)) = all.col(used[i]);
+  return cross_validated(columns, left);
+}
+
+/// Where to begin to look for v0.
+FrictionShape choose_direction(const ArmData& data, int joint, const ConsistentFit& fit, RowSpan span) {
   FrictionShape best;
-  double least = error_of(best);
-  const auto consider = [&](const FrictionShape& shape, double margin) {
-    const double error = error_of(shape);
-    if (error >= margin * least) return;
+  double least = shape_error(data, joint, fit, span, best);
+  for (std::size_t d = 0; d < ArmData::directions.size(); ++d) {
+    const double error = shape_error(data, joint, fit, span, {.direction = d});
+    if (error >= least) continue;
+    least = error;
+    best.direction = d;
+  }
+  return best;
+}
+
+/// The shape with what is worth having beside, once v0 is about right: a wrong one looks like an excess.
+FrictionShape choose_terms(const ArmData& data, int joint, const ConsistentFit& fit, RowSpan span, FrictionShape best) {
+  double least = shape_error(data, joint, fit, span, best);
+  const auto consider = [&](const FrictionShape& shape) {
+    const double error = shape_error(data, joint, fit, span, shape);
+    if (error >= worthwhile * least) return;
     least = error;
     best = shape;
   };
-  for (std::size_t d = 0; d < ArmData::directions.size(); ++d) consider({.direction = d}, 1.0);
   FrictionShape with_load = best;
   with_load.load = true;
-  consider(with_load, worthwhile);
-  const FrictionShape so_far = best;
+  consider(with_load);
+  FrictionShape with_excess = best;
   for (int s = 0; s < static_cast<int>(ArmData::slownesses.size()); ++s) {
-    FrictionShape with_excess = so_far;
     with_excess.stribeck = s;
-    consider(with_excess, worthwhile);
+    consider(with_excess);
   }
   return best;
+}
+
+/// Moves v0 of every joint by what the fit says that it is off.
+void turn(const ArmData& data, RowsFit& fit) {
+  for (std::size_t j = 0; j < fit.friction.size(); ++j) {
+    FrictionShape shape = fit.friction[j].shape;
+    const double chosen = std::log(ArmData::directions[shape.direction]);
+    const double step = std::clamp(fit.found.local[j][6], -longest_turn, longest_turn);
+    shape.log_change =
+        std::clamp(shape.log_change + step, std::log(least_turning) - chosen, std::log(most_turning) - chosen);
+    fit.friction[j] = data.friction(static_cast<int>(j), shape, true);
+  }
 }
 
 }  // namespace
@@ -102,23 +136,29 @@ double rms(const VectorXd& values) { return std::sqrt(values.squaredNorm() / sta
 
 RowsFit fit_rows(const ArmData& data, RowSpan span, std::vector<JointPrior> priors, bool scales_known) {
   const int count = data.joints();
-  RowsFit fit{.found = {}, .shapes = std::vector<FrictionShape>(static_cast<std::size_t>(count))};
+  RowsFit fit;
   std::vector<double> noise;
   std::vector<double> correlation(static_cast<std::size_t>(count), 1.0);
   for (int j = 0; j < count; ++j) {
     noise.push_back(0.1 * rms(data.effort.col(j).segment(span.first, span.count)) + 1e-12);
+    fit.friction.push_back(data.friction(j, {}, false));
   }
   if (scales_known) {
     for (JointPrior& prior : priors) prior.scale_deviation = 0.0;
   }
   std::vector<VectorXd> rigid(static_cast<std::size_t>(count), VectorXd::Zero(data.rows()));
-  for (int round = 0; round < rounds; ++round) {
+  fit.found.local.resize(static_cast<std::size_t>(count));
+  for (int round = 0; round < most_rounds; ++round) {
+    const bool choosing = round < choosing_rounds;
     std::vector<JointSums> sums;
     for (int j = 0; j < count; ++j) {
       const auto at = static_cast<std::size_t>(j);
-      const MatrixXd local = data.local(j, fit.shapes[at], rigid[at]);
-      priors[at].load = fit.shapes[at].load;
-      priors[at].stribeck = fit.shapes[at].stribeck >= 0;
+      const FrictionShape& shape = fit.friction[at].shape;
+      const MatrixXd local = data.local(j, fit.friction[at], rigid[at], fit.found.local[at]);
+      priors[at].load = shape.load;
+      priors[at].stribeck = shape.stribeck >= 0;
+      priors[at].turning = !choosing;
+      priors[at].turning_log = std::log(usual_turning / ArmData::directions[shape.direction]) - shape.log_change;
       sums.push_back(sums_of(data.bodies[at].middleRows(span.first, span.count),
                              local.middleRows(span.first, span.count),
                              data.effort.col(j).segment(span.first, span.count)));
@@ -127,18 +167,31 @@ RowsFit fit_rows(const ArmData& data, RowSpan span, std::vector<JointPrior> prio
     for (int j = 0; j < count; ++j) {
       const auto at = static_cast<std::size_t>(j);
       rigid[at] = data.rigid_torque(j, fit.found);
-      const VectorXd left =
-          (data.effort.col(j) - data.predicted(j, fit.found, fit.shapes[at])).segment(span.first, span.count);
+      const VectorXd left = residual_of(data, fit, j, span);
       noise[at] = std::max(rms(left), 1e-6 * rms(data.effort.col(j)) + 1e-12);
       correlation[at] = correlation_of(left);
-      if (round < 2) fit.shapes[at] = choose_shape(data, j, fit.found, span);
+      if (choosing) {
+        const FrictionShape shape = choose_direction(data, j, fit.found, span);
+        fit.friction[at] = data.friction(j, shape, round + 1 == choosing_rounds);
+      }
+    }
+    if (choosing) continue;
+    // The last round's own step stays a number beside the columns, small enough to be linear.
+    double most = 0.0;
+    for (const auto& own : fit.found.local) most = std::max(most, std::fabs(own[6]));
+    if ((round + 1 >= least_rounds && most < turned_enough) || round + 1 == most_rounds) break;
+    turn(data, fit);
+    if (round != terms_round) continue;
+    for (int j = 0; j < count; ++j) {
+      FrictionColumns& friction = fit.friction[static_cast<std::size_t>(j)];
+      friction = data.friction(j, choose_terms(data, j, fit.found, span, friction.shape), true);
     }
   }
   return fit;
 }
 
 VectorXd residual_of(const ArmData& data, const RowsFit& fit, int joint, RowSpan span) {
-  return (data.effort.col(joint) - data.predicted(joint, fit.found, fit.shapes[static_cast<std::size_t>(joint)]))
+  return (data.effort.col(joint) - data.predicted(joint, fit.found, fit.friction[static_cast<std::size_t>(joint)]))
       .segment(span.first, span.count);
 }
 
@@ -152,7 +205,9 @@ std::vector<double> ordinary_least_squares(const ArmData& data, RowSpan seen, Ro
   std::vector<MatrixXd> locals;
   for (Index j = 0; j < count; ++j) {
     const auto at = static_cast<std::size_t>(j);
-    locals.push_back(data.local(static_cast<int>(j), shape, VectorXd::Zero(data.rows())).leftCols(own));
+    locals.push_back(data.local(static_cast<int>(j), data.friction(static_cast<int>(j), shape, false),
+                                VectorXd::Zero(data.rows()), {})
+                         .leftCols(own));
     const JointSums sums =
         sums_of(data.bodies[at].middleRows(seen.first, seen.count), locals.back().middleRows(seen.first, seen.count),
                 data.effort.col(j).segment(seen.first, seen.count));

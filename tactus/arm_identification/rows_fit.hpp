@@ -19,7 +19,7 @@ struct RowSpan {
 /// Parameters, and the form of friction of each joint.
 struct RowsFit {
   ConsistentFit found;
-  std::vector<FrictionShape> shapes;
+  std::vector<FrictionColumns> friction;
 };
 
 /// The whole fit, with the forms of friction, on some of the rows; nothing of it sees the others.
