@@ -20,7 +20,6 @@ constexpr int least_rounds = 6;
 constexpr int most_rounds = 12;
 constexpr double longest_turn = 0.7;    ///< of log(v0) in a round
 constexpr double turned_enough = 0.02;  ///< of log(v0)
-constexpr double settling = 0.1;        ///< of log(v0), small enough to be linear
 constexpr double usual_turning = 0.03;  ///< v0 as a share of the rms speed
 constexpr double least_turning = 0.001;
 constexpr double most_turning = 1.0;
@@ -158,9 +157,7 @@ RowsFit fit_rows(const ArmData& data, RowSpan span, std::vector<JointPrior> prio
       const MatrixXd local = data.local(j, fit.friction[at], rigid[at], fit.found.local[at]);
       priors[at].load = shape.load;
       priors[at].stribeck = shape.stribeck >= 0;
-      // A v0 that does not settle, as one that pulls beyond its bounds, is left where it is: known, in the last round.
-      const bool settles = std::fabs(fit.found.local[at][6]) < settling;
-      priors[at].turning = !choosing && (settles || round + 1 < most_rounds);
+      priors[at].turning = !choosing;
       priors[at].turning_log = std::log(usual_turning / ArmData::directions[shape.direction]) - shape.log_change;
       sums.push_back(sums_of(data.bodies[at].middleRows(span.first, span.count),
                              local.middleRows(span.first, span.count),
