@@ -2,30 +2,18 @@
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/person.hpp>
+#include <tactus/cli/rig_drive.hpp>
 #include <tactus/cli/rig_guard.hpp>
 #include <tactus/cli/rig_report.hpp>
 #include <tactus/cli/rig_run.hpp>
 #include <tactus/cli/run_log.hpp>
-#include <tactus/configuration/document.hpp>
-#include <tactus/configuration/toml_writer.hpp>
-#include <tactus/devices/motor_bus_device.hpp>
 #include <tactus/devices/rig/examination.hpp>
-#include <tactus/devices/rig/rig_agreement.hpp>
-#include <tactus/devices/rig/rig_arms.hpp>
-#include <tactus/devices/rig/rig_loop.hpp>
-#include <tactus/devices/rig/rig_site_loop.hpp>
 #include <tactus/experiments/arm_tapping/params.hpp>
-#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/site_log.hpp>
-#include <tactus/runtime/site_parts.hpp>
-#include <tactus/station/wall.hpp>
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -147,129 +135,12 @@ Result<Driven> drive(const Rig& rig, const RigSide& side) {
   return driven;
 }
 
-/// The pair as the experiment drives it.
-struct Drive {
-  Drive(RigPair pair_, double rate, std::string configuration_)
-      : pair(std::move(pair_)), rate_Hz(rate), configuration(std::move(configuration_)) {}
-
-  RigPair pair;
-  double rate_Hz;
-  std::string configuration;
-  /// What a servo thread steps where both sides are here, before devices that outlive it. Errors are those of the
-  /// experiment's file.
-  std::function<Result<RigLoop>(runtime::SiteExchange&, MotorBusDevice& leader, MotorBusDevice& follower)> loop;
-
-  // Where only one is:
-  std::optional<devices::RigAgreement> agreement;
-  std::function<Result<JointSite>(std::int64_t session)> site;  ///< errors as those of `loop`
-  RigSiteLoop::Params settings;
-  std::optional<Joints<control::ControlParams>> control;  ///< of joints that are driven each by itself
-};
-
-Joints<station::DeviceLimits> limits_of(const RigSide& side) {
-  Joints<station::DeviceLimits> limits(side.joints.size());
-  for (std::size_t i = 0; i < limits.size(); ++i) limits[i] = side.joints[i].joint.limits();
-  return limits;
-}
-
-const RigSide& side_of(const RigPair& pair, SiteRole role) {
-  return role == SiteRole::master ? *pair.leader : *pair.follower;
-}
-
-/// A site of either role, or what is wrong with it.
-template <class Site>
-Result<JointSite> as_site(Result<Site> made, const char* group) {
-  if (!made) return under(group, made.error());
-  return JointSite(*std::move(made));
-}
-
-/// Each joint by itself.
-Result<Drive> joint_by_joint(const experiments::Request& request, const RigPair& pair, RigLoop::Params settings,
-                             std::optional<SiteRole> only) {
-  const auto params = request.document.read<experiments::TappingParams>();
-  if (!params) return params.error();
-  const RigSide& side = side_of(pair, only.value_or(SiteRole::master));
-  const Joints<control::ControlParams> joints(side.joints.size(), runtime::control_of(*params));
-  const Seconds tick{1.0 / params->servo.rate_Hz};
-  const control::SupervisionParams& supervision = joints[0].supervision;
-  settings.listen_before_arming_s = supervision.watchdog.timeout_s;
-  Drive drive(pair, params->servo.rate_Hz, configuration::to_toml(*params));
-  if (!only) {
-    drive.loop = [joints, settings, tick, channel = params->channel](auto& exchange, auto& leader, auto& follower) {
-      return RigLoop::make(joints, channel, tick, settings, exchange, leader, follower);
-    };
-    return drive;
-  }
-  if (!devices::tells_its_place(joints, tick)) {
-    return request.document.locate(
-        {.code = ErrorCode::inconsistent,
-         .parameter = "control.architecture",
-         .message = "a follower of " + joints[0].architecture +
-                    " does not tell where it is, so its leader on another host cannot see how far it is: write "
-                    "position-position or four-channel, or drive both in one program",
-         .place = {}});
-  }
-  drive.agreement = devices::RigAgreement::of(side, joints[0], tick);
-  const bool leads = *only == SiteRole::master;
-  drive.settings = {.pair = settings,
-                    .scales = Joints<double>(joints.size(), leads ? joints[0].position_scale : 1.0),
-                    .longest_age_s = supervision.packets.longest_age_s,
-                    .timeout_s = supervision.watchdog.timeout_s};
-  drive.control = joints;
-  drive.site = [own = station::tightened(joints, *only, limits_of(side)), tick, leads,
-                agreement = drive.agreement->agreement()](std::int64_t session) {
-    return leads ? as_site(control::make_supervised_master(own, session, tick, agreement), "control")
-                 : as_site(control::make_supervised_slave(own, session, tick, agreement), "control");
-  };
-  return drive;
-}
-
-/// Two arms, each with all its joints.
-Result<Drive> as_two_arms(const experiments::Request& request, const Rig& rig, const RigPair& pair,
-                          RigLoop::Params settings, std::optional<SiteRole> only) {
-  const auto params = request.document.read<experiments::ArmTappingParams>();
-  if (!params) return params.error();
-  if (Check wrong = experiments::refuse_tool_coupling(*params, "a rig of two arms")) {
-    return request.document.locate(*std::move(wrong));
-  }
-  const std::filesystem::path folder = std::filesystem::path(request.document.name()).parent_path();
-  const auto setup = experiments::set_up_arm_pair(*params, folder);
-  if (!setup) return request.document.locate(setup.error());
-  auto arms = devices::as_arms(pair, *setup);
-  if (!arms) return rig.locate(arms.error());
-  const control::SupervisionParams& supervision = params->rig.supervision;
-  settings.listen_before_arming_s = supervision.watchdog.timeout_s;
-  Drive drive(*std::move(arms), params->servo.rate_Hz, configuration::to_toml(*params));
-  if (!only) {
-    auto sites = devices::arm_sites(*setup, limits_of(*drive.pair.leader), limits_of(*drive.pair.follower));
-    if (!sites) return request.document.locate(sites.error());
-    drive.loop = [settings, sites = *std::move(sites), tick = Seconds{1.0 / params->servo.rate_Hz}](
-                     auto& exchange, auto& leader, auto& follower) {
-      return RigLoop::around(sites, tick, settings, exchange, leader, follower);
-    };
-    return drive;
-  }
-  const RigSide& side = side_of(drive.pair, *only);
-  drive.agreement = devices::RigAgreement::of(side, *setup);
-  drive.settings = {.pair = settings,
-                    .scales = Joints<double>(side.joints.size(), 1.0),
-                    .longest_age_s = supervision.packets.longest_age_s,
-                    .timeout_s = supervision.watchdog.timeout_s};
-  drive.site = [setup = *setup, limits = limits_of(side), leads = *only == SiteRole::master,
-                agreement = drive.agreement->agreement()](std::int64_t session) {
-    const experiments::ArmSiteStart start{.session = session, .agreement = agreement};
-    return leads ? as_site(experiments::arm_leader_site(setup, limits, start), "")
-                 : as_site(experiments::arm_follower_site(setup, limits, start), "");
-  };
-  return drive;
-}
-
 /// What is there before the loop, and outlives it.
 struct RigSurroundings {
   const experiments::Request& request;
   OutputFolder& folder;
   std::uint64_t log_limit_bytes;
-  const Drive& drive;
+  const RigDrive& drive;
   std::optional<SiteRole> only;
   runtime::ServoThreadParams servo;
   runtime::SiteExchange& exchange;
