@@ -179,7 +179,11 @@ RowsFit fit_rows(const ArmData& data, RowSpan span, std::vector<JointPrior> prio
     // The last round's own step stays a number beside the columns, small enough to be linear.
     double most = 0.0;
     for (const auto& own : fit.found.local) most = std::max(most, std::fabs(own[6]));
-    if ((round + 1 >= least_rounds && most < turned_enough) || round + 1 == most_rounds) break;
+    if ((round + 1 >= least_rounds && most < turned_enough) || round + 1 == most_rounds) {
+      // Of one that does not settle no more is believed than a round may move it.
+      for (auto& own : fit.found.local) own[6] = std::clamp(own[6], -longest_turn, longest_turn);
+      break;
+    }
     turn(data, fit);
     if (round != terms_round) continue;
     for (int j = 0; j < count; ++j) {
