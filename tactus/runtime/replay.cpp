@@ -122,6 +122,10 @@ Result<bool> replay_taps(const telemetry::LogContent& content, Replay& replay) {
 
 Check replay_all(const telemetry::LogContent& content, Replay& replay) {
   replay.version = about(content, "tactus", "version");
+  if (find_table(content, "/master/joint_1") != nullptr || find_table(content, "/slave/joint_1") != nullptr) {
+    return refuse_replay(ErrorCode::inconsistent,
+                         "the log is of several joints, which is not replayed: `tactus export` has all of it");
+  }
   auto replayed = replay_taps(content, replay);
   if (replayed && !*replayed && !about(content, "tactus", "configuration").empty()) {
     const auto params = params_of(content, {});

@@ -86,6 +86,10 @@ TEST_F(RealTime, TwoArmsTapAtTheRealClockAndLeaveBothSitesAndBothToolsInTheLog) 
     ++topics;
   }
   EXPECT_EQ(topics, 2 * (1 + 7) + 2) << "of each site one and one for each joint, /servo and /tools";
+  const Outcome replayed = tactus({"replay", "results/log", "--check"});
+  EXPECT_EQ(replayed.status, 2);
+  EXPECT_NE(replayed.err.find("the log is of several joints, which is not replayed"), std::string::npos)
+      << replayed.err;
 }
 
 TEST_F(RealTime, WhatArmsDoNotTakeInRealTimeIsRefusedWithWhatToWriteInstead) {

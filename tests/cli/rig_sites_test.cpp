@@ -57,7 +57,8 @@ class RigSites : public Command {
       exec 9<>person
       $TACTUS emulate damiao --motors 3 >said1 2>emulate.err </dev/null & peers=$!
       $TACTUS emulate damiao --motors 3 >said2 2>emulate.err </dev/null & peers="$peers $!"
-      trap 'kill -KILL $peers 2>/dev/null' EXIT
+      master= slave= relay=
+      trap 'kill -KILL $peers $master $slave $relay 2>/dev/null' EXIT
       read -r at_leader <said1; read -r at_follower <said2
     )sh" << script;
     return std::system(
