@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "tests/arm_identification/kdl_arm.hpp"
-#include <kdl/chain.hpp>
 #include <kdl/chaindynparam.hpp>
 
 namespace tactus::arm_identification {
@@ -33,18 +32,8 @@ struct ExactSession {
 /// An arm that moves along sums of sines without any fault of following, and the torques that this takes by KDL's
 /// dynamics and the law of friction: exact at every sample, unlike what an integrator of steps says.
 inline Samples exact_motion(const arm::Chain::Params& truth, const ExactSession& session) {
-  KDL::Chain chain;
+  const KDL::Chain chain = kdl_chain(truth);
   const auto n = static_cast<unsigned>(truth.joints.size());
-  for (const arm::JointParams& j : truth.joints) {
-    const KDL::Vector at(j.origin.x_m, j.origin.y_m, j.origin.z_m);
-    chain.addSegment(KDL::Segment(
-        KDL::Joint(at, KDL::Vector(j.axis.x, j.axis.y, j.axis.z), KDL::Joint::RotAxis, 1.0, 0.0,
-                   j.drive.armature_kg_m2),
-        KDL::Frame(at),
-        KDL::RigidBodyInertia(j.body.mass_kg, KDL::Vector(j.body.centre_x_m, j.body.centre_y_m, j.body.centre_z_m),
-                              KDL::RotationalInertia(j.body.xx_kg_m2, j.body.yy_kg_m2, j.body.zz_kg_m2, j.body.xy_kg_m2,
-                                                     j.body.xz_kg_m2, j.body.yz_kg_m2))));
-  }
   KDL::ChainDynParam dynamics(
       chain, KDL::Vector(truth.gravity.x_m_per_s2, truth.gravity.y_m_per_s2, truth.gravity.z_m_per_s2));
   signal::Random random(session.seed);

@@ -146,11 +146,9 @@ struct Samples {
   std::vector<std::vector<double>> position, velocity, torque;  ///< by joint
 };
 
-/// Integrates the arm under a controller that follows a path, with KDL's mass matrix, Coriolis torque and
-/// gravity: none of this project's dynamics is in it.
-inline Samples simulate(const arm::Chain::Params& truth, const Session& session) {
+/// The arm as KDL has it: joints, bodies and armatures, no friction.
+inline KDL::Chain kdl_chain(const arm::Chain::Params& truth) {
   KDL::Chain chain;
-  const auto n = static_cast<unsigned>(truth.joints.size());
   for (const arm::JointParams& j : truth.joints) {
     const KDL::Vector at(j.origin.x_m, j.origin.y_m, j.origin.z_m);
     chain.addSegment(KDL::Segment(
@@ -161,6 +159,14 @@ inline Samples simulate(const arm::Chain::Params& truth, const Session& session)
                               KDL::RotationalInertia(j.body.xx_kg_m2, j.body.yy_kg_m2, j.body.zz_kg_m2, j.body.xy_kg_m2,
                                                      j.body.xz_kg_m2, j.body.yz_kg_m2))));
   }
+  return chain;
+}
+
+/// Integrates the arm under a controller that follows a path, with KDL's mass matrix, Coriolis torque and
+/// gravity: none of this project's dynamics is in it.
+inline Samples simulate(const arm::Chain::Params& truth, const Session& session) {
+  const KDL::Chain chain = kdl_chain(truth);
+  const auto n = static_cast<unsigned>(truth.joints.size());
   KDL::ChainDynParam dynamics(
       chain, KDL::Vector(truth.gravity.x_m_per_s2, truth.gravity.y_m_per_s2, truth.gravity.z_m_per_s2));
   KDL::ChainJntToJacSolver jacobians(chain);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/experiments/arm_tapping/shipped_taps.hpp"
 #include <gtest/gtest.h>
 
 namespace tactus::experiments {
@@ -17,28 +18,15 @@ namespace arm_tapping_test {
 using arm_control::ArmMethod;
 using arm_control::TorqueSource;
 
-const std::filesystem::path folder = TACTUS_EXPERIMENT_FOLDER;
+const std::filesystem::path& folder = shipped_folder;
 
-ArmTappingParams shipped() {
-  const auto document = configuration::Document::load(folder / "arm-tapping.toml");
-  return document->read<ArmTappingParams>().value();
-}
+ArmTappingParams shipped() { return shipped_with({}); }
 
 /// Without what is recommended beside it.
 ArmTappingParams bare(ArmMethod method) {
-  auto document = *configuration::Document::load(folder / "arm-tapping.toml");
-  EXPECT_EQ(document.merge(*configuration::Document::load(folder / "arms/bare.toml")), std::nullopt);
-  ArmTappingParams params = document.read<ArmTappingParams>().value();
+  ArmTappingParams params = shipped_with({"arms/bare.toml"});
   params.control.method = method;
   return params;
-}
-
-double settled_share(ArmTappingParams params, std::int64_t taps) {
-  params.task.taps = taps;
-  const ArmTaps made = *ArmTaps::make(params, folder);
-  std::size_t settled = 0;
-  for (std::size_t tap = 0; tap < made.size(); ++tap) settled += made.run(tap).settled() ? 1U : 0U;
-  return static_cast<double>(settled) / static_cast<double>(taps);
 }
 
 /// A push of 10 N that rings at 40 Hz, by so much of it, from 0.3 s on.
@@ -68,9 +56,9 @@ TEST(ArmTapping, AContactRingsWhereASineOfMoreThanATenthOfItsPeakStays) {
 TEST(ArmTapping, TapsSettleAtASmallGainAndNotAtALargeOne) {
   ArmTappingParams params = bare(ArmMethod::position_force);
   params.control.force_gain = 0.5;
-  EXPECT_EQ(settled_share(params, 3), 1.0);
+  EXPECT_EQ(share_that_settles(params, 3), 1.0);
   params.control.force_gain = 8.0;
-  EXPECT_EQ(settled_share(params, 3), 0.0);
+  EXPECT_EQ(share_that_settles(params, 3), 0.0);
 }
 
 TEST(ArmTapping, WithExactTorqueAndAFirmHandCancellationSettlesWherePlainRings) {
@@ -78,25 +66,25 @@ TEST(ArmTapping, WithExactTorqueAndAFirmHandCancellationSettlesWherePlainRings) 
   params.task.model_error = 0.0;
   params.control.follower.torque = TorqueSource::sensor;
   params.control.force_gain = 4.0;
-  EXPECT_EQ(settled_share(params, 4), 0.0);
+  EXPECT_EQ(share_that_settles(params, 4), 0.0);
   params.control.method = ArmMethod::cancellation;
-  EXPECT_EQ(settled_share(params, 4), 1.0);
+  EXPECT_EQ(share_that_settles(params, 4), 1.0);
 }
 
 TEST(ArmTapping, AsShippedTapsSettleAtAGainAtWhichTheyRingWithoutItsDampingAndSoftness) {
   ArmTappingParams params = shipped();
   params.control.force_gain = 5.66;
-  EXPECT_EQ(settled_share(params, 3), 1.0);
+  EXPECT_EQ(share_that_settles(params, 3), 1.0);
   params = bare(ArmMethod::position_force);
   params.control.force_gain = 5.66;
-  EXPECT_EQ(settled_share(params, 3), 0.0);
+  EXPECT_EQ(share_that_settles(params, 3), 0.0);
 }
 
 TEST(ArmTapping, OnASurfaceOfHuntAndCrossleyAsShippedTapsSettleAndItIsTheStifferTheHarder) {
   ArmTappingParams params = shipped();
   params.control.force_gain = 5.66;
   params.wall.law = SurfaceLaw::hunt_crossley;
-  EXPECT_EQ(settled_share(params, 2), 1.0);
+  EXPECT_EQ(share_that_settles(params, 2), 1.0);
   // As deep as the follower's tool goes is as the closed form of its force says.
   params.task.taps = 1;
   const ArmTaps taps = *ArmTaps::make(params, folder);
@@ -112,10 +100,10 @@ TEST(ArmTapping, AlongTheArmTapsSettleBecauseOfTheLimitsAtTheTool) {
   ArmTappingParams params = shipped();
   params.control.force_gain = 5.66;
   params.task.direction = TapDirection::along_x;
-  EXPECT_EQ(settled_share(params, 3), 1.0);
+  EXPECT_EQ(share_that_settles(params, 3), 1.0);
   params.control.follower.tool_stiffness_limit_N_per_m = 0.0;
   params.control.follower.tool_damping_limit_N_s_per_m = 0.0;
-  EXPECT_EQ(settled_share(params, 3), 0.0);
+  EXPECT_EQ(share_that_settles(params, 3), 0.0);
 }
 
 TEST(ArmTapping, ASoftHandReachesASurfaceAlongTheArmBecauseOfTheDeadBand) {
@@ -123,9 +111,9 @@ TEST(ArmTapping, ASoftHandReachesASurfaceAlongTheArmBecauseOfTheDeadBand) {
   params.control.force_gain = 5.66;
   params.task.direction = TapDirection::along_x;
   params.person.hand = {.mass_kg = 0.1, .stiffness_N_per_m = 60.0, .damping_N_s_per_m = 10.0, .lever_m = 0.05};
-  EXPECT_EQ(settled_share(params, 3), 1.0);
+  EXPECT_EQ(share_that_settles(params, 3), 1.0);
   params.control.follower.observer.dead_band_share = 0.0;
-  EXPECT_EQ(settled_share(params, 3), 0.0);
+  EXPECT_EQ(share_that_settles(params, 3), 0.0);
 }
 
 TEST(ArmTapping, OnElasticJointsTapsSettleWithAnObserverThatCountsWithThem) {
@@ -133,11 +121,11 @@ TEST(ArmTapping, OnElasticJointsTapsSettleWithAnObserverThatCountsWithThem) {
   ASSERT_EQ(document.merge(*configuration::Document::load(folder / "arms/elastic-joints.toml")), std::nullopt);
   ArmTappingParams params = document.read<ArmTappingParams>().value();
   params.control.force_gain = 4.0;
-  EXPECT_EQ(settled_share(params, 3), 1.0);
+  EXPECT_EQ(share_that_settles(params, 3), 1.0);
   params.control.method = arm_control::ArmMethod::position_force;
-  EXPECT_EQ(settled_share(params, 3), 1.0);
+  EXPECT_EQ(share_that_settles(params, 3), 1.0);
   params.control.follower.observer.joints = arm_control::JointModel::rigid;
-  EXPECT_LT(settled_share(params, 3), 0.5);
+  EXPECT_LT(share_that_settles(params, 3), 0.5);
 }
 
 TEST(ArmTapping, OnElasticJointsCancellationSettlesAcrossWherePositionForceRings) {
@@ -147,9 +135,9 @@ TEST(ArmTapping, OnElasticJointsCancellationSettlesAcrossWherePositionForceRings
   params.control.force_gain = 2.83;
   params.task.pose = 3;
   params.task.direction = TapDirection::along_y;
-  EXPECT_EQ(settled_share(params, 4), 1.0);
+  EXPECT_EQ(share_that_settles(params, 4), 1.0);
   params.control.method = arm_control::ArmMethod::position_force;
-  EXPECT_LT(settled_share(params, 4), 0.5);
+  EXPECT_LT(share_that_settles(params, 4), 0.5);
 }
 
 TEST(ArmTapping, SixJointsOfTheYamClassSettleAsRecommendedAndNotWithoutIt) {
@@ -158,11 +146,11 @@ TEST(ArmTapping, SixJointsOfTheYamClassSettleAsRecommendedAndNotWithoutIt) {
   ArmTappingParams params = document.read<ArmTappingParams>().value();
   params.control.force_gain = 5.66;
   EXPECT_EQ(set_up_arm_pair(params, folder)->leader.start.size(), 6);
-  EXPECT_EQ(settled_share(params, 3), 1.0);
+  EXPECT_EQ(share_that_settles(params, 3), 1.0);
   ASSERT_EQ(document.merge(*configuration::Document::load(folder / "arms/bare.toml")), std::nullopt);
   params = document.read<ArmTappingParams>().value();
   params.control.force_gain = 5.66;
-  EXPECT_EQ(settled_share(params, 3), 0.0);
+  EXPECT_EQ(share_that_settles(params, 3), 0.0);
 }
 
 /// The shipped pair with the follower written out as another arm, which is the same.
@@ -179,12 +167,7 @@ ArmTappingParams with_equal_follower() {
 
 /// The geared pair as recommended, or with a file on top.
 ArmTappingParams geared(const char* on_top = nullptr) {
-  auto document = *configuration::Document::load(folder / "arm-tapping.toml");
-  EXPECT_EQ(document.merge(*configuration::Document::load(folder / "arms/geared-pair.toml")), std::nullopt);
-  if (on_top != nullptr) {
-    EXPECT_EQ(document.merge(*configuration::Document::load(folder / on_top)), std::nullopt);
-  }
-  return document.read<ArmTappingParams>().value();
+  return on_top == nullptr ? shipped_with({"arms/geared-pair.toml"}) : shipped_with({"arms/geared-pair.toml", on_top});
 }
 
 TEST(ArmTapping, AFollowerThatIsWrittenOutIsTreatedAsOneThatIsLikeTheLeader) {
@@ -223,10 +206,10 @@ TEST(ArmTapping, ALeaderOfHalfTheSizeMovesTheFollowersToolTwiceAsFar) {
 
 TEST(ArmTapping, TheGearedPairSettlesAsRecommendedInEitherHandAndPlainHardly) {
   for (const char* hand : {"arms/geared-pair.toml", "arms/soft-hand.toml"}) {
-    EXPECT_EQ(settled_share(geared(hand), 3), 1.0) << hand;
+    EXPECT_EQ(share_that_settles(geared(hand), 3), 1.0) << hand;
   }
   ArmTappingParams plain = geared("arms/bare.toml");
-  EXPECT_EQ(settled_share(plain, 3), 0.0);
+  EXPECT_EQ(share_that_settles(plain, 3), 0.0);
 }
 
 TEST(ArmTapping, AFollowerThatCannotBeCommandedJointByJointIsRefused) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/experiments/arm_tapping/shipped_taps.hpp"
 #include <gtest/gtest.h>
 
 /// A handle that slides along three axes leads the tool of an arm of seven joints.
@@ -15,23 +16,11 @@ using arm::Vector3;
 using arm_control::ArmMethod;
 using arm_control::Coupling;
 
-const std::filesystem::path folder = TACTUS_EXPERIMENT_FOLDER;
+const std::filesystem::path& folder = shipped_folder;
 
 ArmTappingParams shipped(const char* on_top = nullptr) {
-  auto document = *configuration::Document::load(folder / "arm-tapping.toml");
-  EXPECT_EQ(document.merge(*configuration::Document::load(folder / "arms/inverse3-arm.toml")), std::nullopt);
-  if (on_top != nullptr) {
-    EXPECT_EQ(document.merge(*configuration::Document::load(folder / on_top)), std::nullopt);
-  }
-  return document.read<ArmTappingParams>().value();
-}
-
-double settled_share(ArmTappingParams params, std::int64_t taps) {
-  params.task.taps = taps;
-  const ArmTaps made = *ArmTaps::make(params, folder);
-  std::size_t settled = 0;
-  for (std::size_t tap = 0; tap < made.size(); ++tap) settled += made.run(tap).settled() ? 1U : 0U;
-  return static_cast<double>(settled) / static_cast<double>(taps);
+  return on_top == nullptr ? shipped_with({"arms/inverse3-arm.toml"})
+                           : shipped_with({"arms/inverse3-arm.toml", on_top});
 }
 
 TEST(Handle, LeadsTheToolWhereItGoesTimesTheScaleInEveryDirectionAndPose) {
@@ -83,12 +72,12 @@ TEST(Handle, FeelsTheForceOnTheToolTimesScaleAndGain) {
 
 TEST(Handle, TapsSettleAsRecommendedInEitherHandWherePlainRings) {
   for (const char* hand : {"arms/inverse3-arm.toml", "arms/soft-hand.toml"}) {
-    EXPECT_EQ(settled_share(shipped(hand), 3), 1.0) << hand;
+    EXPECT_EQ(share_that_settles(shipped(hand), 3), 1.0) << hand;
     ArmTappingParams plain = shipped(hand);
     plain.control.method = ArmMethod::position_force;
     plain.control.damping_N_s_per_m = 0.0;
     plain.control.force_gain = 2.0;
-    EXPECT_EQ(settled_share(plain, 3), 0.0) << hand;
+    EXPECT_EQ(share_that_settles(plain, 3), 0.0) << hand;
   }
 }
 
