@@ -3,8 +3,7 @@
 // joint and as two arms.
 
 #include <tactus/configuration/document.hpp>
-#include <tactus/devices/rig/rig_arms.hpp>
-#include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/runtime/site_parts.hpp>
 #include <tactus/station/local_teleoperator.hpp>
@@ -142,7 +141,7 @@ void measure_pairs() {
   const Joints<control::ControlParams> control(joints, runtime::control_of(*by_joint));
   report_pair("a tick, joint by joint",
               station::JointLocalTeleoperator::make(control, {}, tick, Joints<double>(joints, 0.0), leader, follower));
-  auto sites = devices::arm_sites(*setup, leader.limits(), follower.limits());
+  auto sites = experiments::arm_sites(*setup, leader.limits(), follower.limits());
   if (!sites) return static_cast<void>(std::fprintf(stderr, "%s\n", describe(sites.error()).c_str()));
   report_pair("a tick, as two arms", station::JointLocalTeleoperator::around(*std::move(sites), leader, follower));
 }

@@ -96,7 +96,7 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
   settings.listen_before_arming_s = supervision.watchdog.timeout_s;
   RigDrive drive(*std::move(arms), params->servo.rate_Hz, configuration::to_toml(*params));
   if (!only) {
-    auto sites = devices::arm_sites(*setup, limits_of(*drive.pair.leader), limits_of(*drive.pair.follower));
+    auto sites = experiments::arm_sites(*setup, limits_of(*drive.pair.leader), limits_of(*drive.pair.follower));
     if (!sites) return request.document.locate(sites.error());
     drive.loop = [settings, sites = *std::move(sites), tick = Seconds{1.0 / params->servo.rate_Hz}](
                      auto& exchange, auto& leader, auto& follower) {

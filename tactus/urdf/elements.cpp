@@ -1,6 +1,7 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/recording/file_bytes.hpp>
 #include <tactus/urdf/elements.hpp>
+#include <tactus/urdf/urdf.hpp>
 
 #include <algorithm>
 #include <array>
@@ -220,7 +221,7 @@ std::string place(const std::filesystem::path& file, int line) {
   return line > 0 ? file.string() + ":" + std::to_string(line) : file.string();
 }
 
-Check load(const std::filesystem::path& file, tinyxml2::XMLDocument& into) {
+Result<std::string> text_of(const std::filesystem::path& file) {
   std::error_code failure;
   if (!std::filesystem::exists(file, failure)) {
     return Error{ErrorCode::missing, {}, "does not exist; name a URDF file", file.string()};
@@ -228,18 +229,22 @@ Check load(const std::filesystem::path& file, tinyxml2::XMLDocument& into) {
   if (!std::filesystem::is_regular_file(file, failure)) {
     return Error{ErrorCode::wrong_type, {}, "is not a file; name a URDF file", file.string()};
   }
-  const Result<std::string> bytes = recording::file_bytes(file, most_bytes);
+  Result<std::string> bytes = recording::file_bytes(file, most_bytes);
   if (!bytes) {
     Error error = bytes.error();
     error.place = file.string();
     return error;
   }
-  if (into.Parse(bytes->data(), bytes->size()) != tinyxml2::XML_SUCCESS) return not_xml(file, into);
+  return bytes;
+}
+
+Check load(const std::string& text, const std::filesystem::path& file, tinyxml2::XMLDocument& into) {
+  if (into.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) return not_xml(file, into);
   const XMLElement* root = into.RootElement();
   if (root == nullptr || std::string_view(root->Name()) != "robot") {
     return Error{ErrorCode::syntax, {}, "is no URDF: its outermost element must be <robot>", file.string()};
   }
-  if (bytes->find("<xacro:") != std::string::npos) {
+  if (text.find("<xacro:") != std::string::npos) {
     return Error{ErrorCode::syntax,
                  {},
                  "is xacro, from which URDF is made: run `xacro FILE > arm.urdf` of ROS first",
@@ -248,9 +253,9 @@ Check load(const std::filesystem::path& file, tinyxml2::XMLDocument& into) {
   return {};
 }
 
-Result<Robot> read_elements(const std::filesystem::path& file) {
+Result<Robot> read_elements(const std::string& text, const std::filesystem::path& file) {
   tinyxml2::XMLDocument document;
-  if (Check wrong = load(file, document)) return *std::move(wrong);
+  if (Check wrong = load(text, file, document)) return *std::move(wrong);
   const XMLElement* root = document.RootElement();
   Reader reader(file);
   Robot robot;

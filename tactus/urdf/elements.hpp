@@ -53,11 +53,12 @@ struct Robot {
   std::map<std::string, std::size_t> link_by_name;
 };
 
-/// Reads the elements; `read` in urdf.hpp tells the errors. A joint's links are known to be there.
-Result<Robot> read_elements(const std::filesystem::path& file);
+/// Reads the elements of the text; `read` in urdf.hpp tells the errors, which name `file`. A joint's links are known to
+/// be there.
+Result<Robot> read_elements(const std::string& text, const std::filesystem::path& file);
 
-/// Reads a file whose outermost element is <robot>; `read` in urdf.hpp tells the errors.
-Check load(const std::filesystem::path& file, tinyxml2::XMLDocument& into);
+/// Reads text whose outermost element is <robot>; the same.
+Check load(const std::string& text, const std::filesystem::path& file, tinyxml2::XMLDocument& into);
 
 /// `file:line`.
 std::string place(const std::filesystem::path& file, int line);

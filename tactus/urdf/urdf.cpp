@@ -189,7 +189,12 @@ arm::JointParams params_of(const Joint& joint, const LinkPose& frame, const arm:
 }  // namespace
 
 Result<Arm> read(const std::filesystem::path& file, const std::string& tip) {
-  const Result<Robot> robot = read_elements(file);
+  const Result<std::string> text = text_of(file);
+  return text ? parse(*text, file, tip) : text.error();
+}
+
+Result<Arm> parse(const std::string& text, const std::filesystem::path& file, const std::string& tip) {
+  const Result<Robot> robot = read_elements(text, file);
   if (!robot) return robot.error();
   const Walk walk(*robot, file);
   const Result<std::string> root = walk.root();

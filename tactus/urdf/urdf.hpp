@@ -44,6 +44,10 @@ struct Arm {
 /// 1,000 links or 1,000 joints. Not real-time safe. Source: the URDF specification, http://wiki.ros.org/urdf/XML.
 Result<Arm> read(const std::filesystem::path& file, const std::string& tip = {});
 
+/// The same in two parts: the text of the file, and the chain of the text, where errors name `file`.
+Result<std::string> text_of(const std::filesystem::path& file);
+Result<Arm> parse(const std::string& text, const std::filesystem::path& file, const std::string& tip = {});
+
 /// The text of the file with other bodies, damping and Coulomb friction, and all else as it is: names, limits, meshes,
 /// what stands off the chain. `arm`: as `read` made it of this file, its `params` with the new numbers. A body is
 /// written to the link behind its joint; links that are fixed to that lose theirs, since it is in there. `comment` is

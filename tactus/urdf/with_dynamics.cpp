@@ -43,7 +43,9 @@ void put_body(XMLElement& link, const arm::Body& body) {
 
 Result<std::string> with_dynamics(const std::filesystem::path& file, const Arm& arm, const std::string& comment) {
   tinyxml2::XMLDocument document;
-  if (Check wrong = load(file, document)) return *std::move(wrong);
+  const auto text = text_of(file);
+  if (!text) return text.error();
+  if (Check wrong = load(*text, file, document)) return *std::move(wrong);
   XMLElement* robot = document.RootElement();
   for (XMLElement* link = robot->FirstChildElement("link"); link != nullptr; link = link->NextSiblingElement("link")) {
     const std::string name = link->Attribute("name") != nullptr ? link->Attribute("name") : "";

@@ -122,13 +122,4 @@ Result<RigPair> as_arms(const RigPair& pair, const ArmPairSetup& setup) {
   return arms;
 }
 
-Result<station::JointSupervisedPair> arm_sites(const ArmPairSetup& setup, const Joints<station::DeviceLimits>& leader,
-                                               const Joints<station::DeviceLimits>& follower) {
-  auto sites = experiments::supervise_arms(setup, leader, follower, {});
-  if (!sites) return sites.error();
-  return station::JointSupervisedPair::around(std::move(sites->leader), std::move(sites->follower), {},
-                                              Seconds{1.0 / setup.params.servo.rate_Hz},
-                                              Joints<double>(leader.size(), 0.0));
-}
-
 }  // namespace tactus::devices

@@ -1,12 +1,7 @@
 #pragma once
 
-#include <tactus/control/supervised_site.hpp>
 #include <tactus/devices/rig/rig.hpp>
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
-#include <tactus/station/device.hpp>
-#include <tactus/station/site_pair.hpp>
-
-#include <cstdint>
 
 /// A pair of a rig as two arms, each driven by a site that knows all its joints (`tactus/arm_control/arm_sites.hpp`).
 /// What is believed of the arms is what `arm-tapping` simulates. Nothing here is real-time safe.
@@ -19,10 +14,5 @@ namespace tactus::devices {
 /// the experiment has no gains for it (`rig.gripper`), one that slides or gives no force, and limits below the gains
 /// that the sites ask of a drive; `missing` for a joint of the arm that the rig does not have.
 Result<RigPair> as_arms(const RigPair& pair, const experiments::ArmPairSetup& setup);
-
-/// Both sites under supervision, on one clock. Errors: those of `experiments::supervise_arms`.
-Result<station::JointSupervisedPair> arm_sites(const experiments::ArmPairSetup& setup,
-                                               const Joints<station::DeviceLimits>& leader,
-                                               const Joints<station::DeviceLimits>& follower);
 
 }  // namespace tactus::devices

@@ -147,8 +147,12 @@ Result<double> tool_scale(const ArmPairSetup& setup) {
 }  // namespace
 
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder) {
+  return set_up_arm_pair(params, urdfs_below(folder));
+}
+
+Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const Urdfs& urdfs) {
   if (Check wrong = refuse_method(params)) return *std::move(wrong);
-  auto described = describe_pair(params.arm, params.control.follower.coupling, folder);
+  auto described = describe_pair(params.arm, params.control.follower.coupling, urdfs);
   if (!described) return described.error();
   ArmPairSetup setup{.params = params,
                      .leader = std::move(described->leader),
@@ -200,18 +204,10 @@ ArmPair::ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, ArmD
   latest_ = at_rest.step(leader_, follower_, {}, 1.0);
 }
 
-Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmBeliefs& beliefs, double wall_m) {
+Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmBeliefs& beliefs) {
   const ArmTappingParams& params = setup.params;
   const ArmPlant::Params &leads = setup.leader.arm, &follows = setup.follower.arm;
   const Seconds tick{1.0 / params.servo.rate_Hz};
-  ArmPlant::Params held = leads;
-  held.carried_kg = params.person.hand.mass_kg;
-  auto leader = ArmPlant::make(held, setup.leader.start);
-  if (!leader) return under("arm", leader.error());
-  auto follower = ArmPlant::make(follows, setup.follower.start);
-  if (!follower) return under(differs(params.arm) ? "arm.follower" : "arm", follower.error());
-  auto person = arm_plants::Person::make(params.person, tick, leader->tool());
-  if (!person) return under("operator", person.error());
   const std::size_t joints = leads.chain.joints.size();
   arm_control::ArmLeader::Params control = params.control;
   control.model.hand = beliefs.hand;
@@ -237,9 +233,25 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmBeliefs& belie
   if (!follower_site) return under("control.follower", follower_site.error());
   Joints<double> start(joints);
   for (std::size_t i = 0; i < joints; ++i) start[i] = setup.leader.start[static_cast<Eigen::Index>(i)];
-  auto sites = station::JointBarePair::around(*std::move(leader_site), *std::move(follower_site), {}, tick, start);
+  return station::JointBarePair::around(*std::move(leader_site), *std::move(follower_site), {}, tick, start);
+}
+
+Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmBeliefs& beliefs, double wall_m) {
+  const ArmTappingParams& params = setup.params;
+  const ArmPlant::Params &leads = setup.leader.arm, &follows = setup.follower.arm;
+  const Seconds tick{1.0 / params.servo.rate_Hz};
+  ArmPlant::Params held = leads;
+  held.carried_kg = params.person.hand.mass_kg;
+  auto leader = ArmPlant::make(held, setup.leader.start);
+  if (!leader) return under("arm", leader.error());
+  auto follower = ArmPlant::make(follows, setup.follower.start);
+  if (!follower) return under(differs(params.arm) ? "arm.follower" : "arm", follower.error());
+  auto person = arm_plants::Person::make(params.person, tick, leader->tool());
+  if (!person) return under("operator", person.error());
+  auto sites = bare_arm_sites(setup, beliefs);
   if (!sites) return sites.error();
-  const Joints<station::DeviceLimits> no_limits(joints), no_follower_limits(follows.chain.joints.size());
+  const Joints<station::DeviceLimits> no_limits(leads.chain.joints.size()),
+      no_follower_limits(follows.chain.joints.size());
   const auto contact = mechanics::Environment::make(params.wall.environment(), tick);
   if (!contact) return under("wall", contact.error());
   const auto leader_chain = arm::Chain::make(leads.chain);

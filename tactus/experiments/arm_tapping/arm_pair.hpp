@@ -34,6 +34,11 @@ struct ArmPairSetup {
 /// Reads the URDFs, from `folder` on. Errors: those of `describe_pair` and of the parts; `inconsistent` for a follower
 /// whose tool does not go where the leader's goes, and for a method that couples joints where a handle leads the tool.
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder);
+/// The same of URDFs that are elsewhere.
+Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const Urdfs& urdfs);
+
+/// The sites of a tap, without supervision, behind the widest gates. Errors: those of the controllers, under `control`.
+Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmBeliefs& beliefs);
 
 /// What both tools did at a tick.
 struct ArmRecord {

@@ -89,6 +89,10 @@ ArmTapResult judge_arm_tap(const ArmContact& contact, bool diverged, const ArmCo
 }
 
 Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const std::filesystem::path& folder) {
+  return make(params, urdfs_below(folder));
+}
+
+Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const Urdfs& urdfs) {
   const ArmTappingTask& task = params.task;
   if (auto error = check_range(task.slowest_m_per_s, task.fastest_m_per_s, "slowest_m_per_s", "fastest_m_per_s")) {
     return *std::move(error);
@@ -96,7 +100,7 @@ Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const std::filesys
   if (auto error = check_range(task.shallowest_m, task.deepest_m, "shallowest_m", "deepest_m")) {
     return *std::move(error);
   }
-  auto setup = set_up_arm_pair(params, folder);
+  auto setup = set_up_arm_pair(params, urdfs);
   if (!setup) return setup.error();
   ArmTaps taps;
   taps.setup_ = *std::move(setup);

@@ -19,12 +19,16 @@ arm::JointVector of_each_motor(const DescribedArm& of, double arm_plants::MotorP
 }
 
 /// `key` is that of its URDF.
-Result<DescribedArm> described(const ArmParams& params, const std::string& key, const std::filesystem::path& folder) {
-  const auto read = urdf::read(folder / params.urdf);
-  if (!read) return Error{read.error().code, key, describe(read.error()), {}};
+Result<DescribedArm> described(const ArmParams& params, const std::string& key, const Urdfs& urdfs) {
+  const auto refused = [&key](const Error& error) { return Error{error.code, key, describe(error), {}}; };
+  auto urdf = urdfs(params.urdf);
+  if (!urdf) return refused(urdf.error());
+  const auto read = urdf::parse(urdf->text, urdf->file);
+  if (!read) return refused(read.error());
   const std::size_t joints = read->joints.size();
   const Joints<ArmJoint> of_file = params.joints.of(joints);
   DescribedArm found{.urdf = params.urdf,
+                     .urdf_text = std::move(urdf->text),
                      .joints = read->joints,
                      .arm = {.chain = read->params, .motors = Joints<arm_plants::MotorParams>(joints)},
                      .start = arm::JointVector::Zero(static_cast<Eigen::Index>(joints))};
@@ -63,19 +67,27 @@ arm::JointVector DescribedArm::joint_damping_N_m_s_per_rad() const {
   return of_each_motor(*this, &arm_plants::MotorParams::joint_damping_N_m_s_per_rad);
 }
 
-Result<DescribedArm> describe_arm(const ArmParams& params, const std::filesystem::path& folder) {
+Urdfs urdfs_below(const std::filesystem::path& folder) {
+  return [folder](const std::string& name) -> Result<UrdfText> {
+    const std::filesystem::path file = folder / name;
+    auto text = urdf::text_of(file);
+    if (!text) return text.error();
+    return UrdfText{*std::move(text), file};
+  };
+}
+
+Result<DescribedArm> describe_arm(const ArmParams& params, const Urdfs& urdfs) {
   if (params.urdf.empty()) {
     return Error{.code = ErrorCode::missing,
                  .parameter = "arm.urdf",
                  .message = "which arm? Name its URDF file, such as arms/openarm-class.urdf",
                  .place = {}};
   }
-  return described(params, "arm.urdf", folder);
+  return described(params, "arm.urdf", urdfs);
 }
 
-Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Coupling coupling,
-                                    const std::filesystem::path& folder) {
-  auto leader = describe_arm(params, folder);
+Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Coupling coupling, const Urdfs& urdfs) {
+  auto leader = describe_arm(params, urdfs);
   if (!leader) return leader.error();
   if (!differs(params)) {
     if (configuration::to_toml(params.follower) != configuration::to_toml(ArmParams{})) {
@@ -90,7 +102,7 @@ Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Co
     }
     return DescribedPair{.leader = *leader, .follower = *leader};
   }
-  auto follower = described(params.follower, "arm.follower.urdf", folder);
+  auto follower = described(params.follower, "arm.follower.urdf", urdfs);
   if (!follower) return follower.error();
   if (coupling == arm_control::Coupling::tool) {
     if (const auto axes = arm_control::ToolCoupling::axes_of(leader->arm.chain); !axes) {

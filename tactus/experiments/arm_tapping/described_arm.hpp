@@ -4,6 +4,7 @@
 #include <tactus/experiments/arm_tapping/params.hpp>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,7 @@ namespace tactus::experiments {
 /// An arm as a file describes it, and where its joints begin.
 struct DescribedArm {
   std::string urdf;                 ///< its name in the file
+  std::string urdf_text;            ///< what that says
   std::vector<std::string> joints;  ///< their names, from the base on
   arm_plants::ArmPlant::Params arm;
   arm::JointVector start;
@@ -28,15 +30,24 @@ struct DescribedPair {
   DescribedArm follower;  ///< led joint by joint, it begins where the leader does
 };
 
-/// Reads the URDF, from `folder` on, and adds what it does not say. Errors: `missing` without a URDF; those of
-/// `urdf::read`.
-Result<DescribedArm> describe_arm(const ArmParams& params, const std::filesystem::path& folder);
+/// What a URDF says, and the file that errors name.
+struct UrdfText {
+  std::string text;
+  std::filesystem::path file;
+};
+/// Where the URDFs are that an experiment names.
+using Urdfs = std::function<Result<UrdfText>(const std::string& name)>;
+/// Files, from `folder` on. Errors: those of `urdf::text_of`.
+Urdfs urdfs_below(const std::filesystem::path& folder);
+
+/// Reads the URDF and adds what it does not say. Errors: `missing` without a URDF; those of its text and of
+/// `urdf::parse`.
+Result<DescribedArm> describe_arm(const ArmParams& params, const Urdfs& urdfs);
 
 /// Both arms. Errors: those of `describe_arm`; `inconsistent` where something is said of a follower that has no URDF of
 /// its own; of arms that are led joint by joint, for different numbers of joints and for another start of the follower;
 /// of one that leads the tool, for a follower without a URDF and for a leader that is no handle.
-Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Coupling coupling,
-                                    const std::filesystem::path& folder);
+Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Coupling coupling, const Urdfs& urdfs);
 
 /// Errors: `inconsistent`, under `control.follower.coupling`, for a leader that leads the tool: `what` ("tactus
 /// faults") knows arms that are led joint by joint alone.

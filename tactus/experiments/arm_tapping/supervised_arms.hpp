@@ -49,4 +49,8 @@ struct SupervisedArms {
 Result<SupervisedArms> supervise_arms(const ArmPairSetup& setup, const Joints<station::DeviceLimits>& leader,
                                       const Joints<station::DeviceLimits>& follower, const ArmStart& start);
 
+/// Both on one clock, with no channel between them. The same.
+Result<station::JointSupervisedPair> arm_sites(const ArmPairSetup& setup, const Joints<station::DeviceLimits>& leader,
+                                               const Joints<station::DeviceLimits>& follower);
+
 }  // namespace tactus::experiments

@@ -7,6 +7,7 @@
 #include <tactus/devices/rig/rig_loop.hpp>
 #include <tactus/emulation/damiao/damiao_peer.hpp>
 #include <tactus/emulation/emulated_arm.hpp>
+#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
 #include <tactus/wire/join.hpp>
 
 #include <cmath>
