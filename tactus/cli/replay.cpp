@@ -3,6 +3,7 @@
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
+#include <tactus/report/text.hpp>
 #include <tactus/runtime/replay.hpp>
 
 #include <array>
@@ -36,8 +37,8 @@ std::string text_of(const runtime::Replay& replay) {
   if (const auto& found = replay.difference) {
     const std::string tap = replay.taps > 0 ? " of tap " + std::to_string(found->tap) : "";
     text += "the first difference is at tick " + std::to_string(found->tick) + tap + ", topic " + found->topic +
-            ", signal " + found->signal + ": recorded " + exact(found->recorded) + ", replayed " +
-            exact(found->replayed) + ".\n";
+            (found->joint.empty() ? "" : " (" + report::printable(found->joint) + ")") + ", signal " + found->signal +
+            ": recorded " + exact(found->recorded) + ", replayed " + exact(found->replayed) + ".\n";
     if (replay.version != version()) {
       text += "The log was written by version " + replay.version + ", this is " + std::string(version()) + ".\n";
     }
@@ -53,8 +54,9 @@ std::string json_of(const runtime::Replay& replay) {
                                   {"equal", !replay.difference.has_value()},
                                   {"log_version", replay.version}};
   if (const auto& found = replay.difference) {
-    document["difference"] = {{"topic", found->topic},   {"tap", found->tap},           {"tick", found->tick},
-                              {"signal", found->signal}, {"recorded", found->recorded}, {"replayed", found->replayed}};
+    document["difference"] = {{"topic", found->topic},      {"joint", found->joint},   {"tap", found->tap},
+                              {"tick", found->tick},        {"signal", found->signal}, {"recorded", found->recorded},
+                              {"replayed", found->replayed}};
   }
   return json_text(document);
 }
@@ -64,7 +66,8 @@ std::string json_of(const runtime::Replay& replay) {
 void add_replay(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* verb = app.add_subcommand("replay", "Step the sites of a logged run in real time again, on what they read");
-  verb->add_option("LOG", options->log, "Log (.mcap) of `run --realtime --out` or `run --site --out`, or its folder")
+  verb->add_option("LOG", options->log,
+                   "Log (.mcap) of `run --realtime --out` or `run --site --out`, of a rig too, or its folder")
       ->required();
   verb->add_flag("--check", options->check, "End with status 1 where anything differs from the log");
   add_json_option(*verb, options->json, command);

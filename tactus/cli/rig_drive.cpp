@@ -6,14 +6,14 @@
 #include <tactus/experiments/arm_tapping/supervised_arms.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/site_parts.hpp>
-#include <tactus/station/wall.hpp>
 
+#include <array>
+#include <charconv>
 #include <filesystem>
 
 namespace tactus::cli {
 
 using control::SiteRole;
-using devices::JointSite;
 using devices::Rig;
 using devices::RigLoop;
 using devices::RigPair;
@@ -27,11 +27,19 @@ Joints<station::DeviceLimits> limits_of(const RigSide& side) {
   return limits;
 }
 
-/// A site of either role, or what is wrong with it.
-template <class Site>
-Result<JointSite> as_site(Result<Site> made, const char* group) {
-  if (!made) return under(group, made.error());
-  return JointSite(*std::move(made));
+/// Leaves the limits of the devices that are driven for a log.
+void tell_devices(RigDrive& drive, std::optional<SiteRole> only) {
+  for (const auto& [role, name] : enumerators(SiteRole{})) {
+    if (only && *only != role) continue;
+    drive.about[std::string("device_of_").append(name)] = runtime::in_words(limits_of(side_of(drive.pair, role)));
+  }
+}
+/// The same of what a site that is alone has in common with the other.
+void tell_agreement(RigDrive& drive) {
+  std::array<char, 20> digits{};
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), drive.agreement->agreement().digest(), 16).ptr;
+  drive.about["tactus"]["agreement"] = std::string(digits.data(), end);
 }
 
 }  // namespace
@@ -50,6 +58,7 @@ Result<RigDrive> joint_by_joint(const experiments::Request& request, const RigPa
   const control::SupervisionParams& supervision = joints[0].supervision;
   settings.listen_before_arming_s = supervision.watchdog.timeout_s;
   RigDrive drive(pair, params->servo.rate_Hz, configuration::to_toml(*params));
+  tell_devices(drive, only);
   if (!only) {
     drive.loop = [joints, settings, tick, channel = params->channel](auto& exchange, auto& leader, auto& follower) {
       return RigLoop::make(joints, channel, tick, settings, exchange, leader, follower);
@@ -66,16 +75,16 @@ Result<RigDrive> joint_by_joint(const experiments::Request& request, const RigPa
          .place = {}});
   }
   drive.agreement = devices::RigAgreement::of(side, joints[0], tick);
+  tell_agreement(drive);
   const bool leads = *only == SiteRole::master;
   drive.settings = {.pair = settings,
                     .scales = Joints<double>(joints.size(), leads ? joints[0].position_scale : 1.0),
                     .longest_age_s = supervision.packets.longest_age_s,
                     .timeout_s = supervision.watchdog.timeout_s};
   drive.control = joints;
-  drive.site = [own = station::tightened(joints, *only, limits_of(side)), tick, leads,
+  drive.site = [params = *params, limits = limits_of(side), role = *only,
                 agreement = drive.agreement->agreement()](std::int64_t session) {
-    return leads ? as_site(control::make_supervised_master(own, session, tick, agreement), "control")
-                 : as_site(control::make_supervised_slave(own, session, tick, agreement), "control");
+    return runtime::make_supervised_site(params, role, limits, session, agreement);
   };
   return drive;
 }
@@ -95,6 +104,8 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
   const control::SupervisionParams& supervision = params->rig.supervision;
   settings.listen_before_arming_s = supervision.watchdog.timeout_s;
   RigDrive drive(*std::move(arms), params->servo.rate_Hz, configuration::to_toml(*params));
+  tell_devices(drive, only);
+  drive.about["urdf"] = runtime::urdfs_of(*setup);
   if (!only) {
     auto sites = experiments::arm_sites(*setup, limits_of(*drive.pair.leader), limits_of(*drive.pair.follower));
     if (!sites) return request.document.locate(sites.error());
@@ -106,15 +117,14 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
   }
   const RigSide& side = side_of(drive.pair, *only);
   drive.agreement = devices::RigAgreement::of(side, *setup);
+  tell_agreement(drive);
   drive.settings = {.pair = settings,
                     .scales = Joints<double>(side.joints.size(), 1.0),
                     .longest_age_s = supervision.packets.longest_age_s,
                     .timeout_s = supervision.watchdog.timeout_s};
-  drive.site = [setup = *setup, limits = limits_of(side), leads = *only == SiteRole::master,
+  drive.site = [setup = *setup, limits = limits_of(side), role = *only,
                 agreement = drive.agreement->agreement()](std::int64_t session) {
-    const experiments::ArmSiteStart start{.session = session, .agreement = agreement};
-    return leads ? as_site(experiments::arm_leader_site(setup, limits, start), "")
-                 : as_site(experiments::arm_follower_site(setup, limits, start), "");
+    return runtime::make_supervised_site(setup, role, limits, session, agreement);
   };
   return drive;
 }

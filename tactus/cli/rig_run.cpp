@@ -166,7 +166,8 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
   std::optional<runtime::SiteLog> log;
   if (folder.wanted()) {
     if (Check error = folder.begin()) return error;
-    runtime::LogMetadata about{{"tactus", log_origin()}};
+    runtime::LogMetadata about = around.drive.about;
+    about["tactus"].merge(log_origin());
     about["tactus"]["experiment"] = around.request.name;
     about["tactus"]["configuration"] = around.drive.configuration;
     about["tactus"]["rig"] = pair.name;

@@ -21,6 +21,10 @@ class Agreement {
  public:
   static constexpr std::size_t most_cells = 128;
 
+  Agreement() = default;
+  /// One that is known by its digest alone: it decides as the whole one does.
+  explicit Agreement(std::uint64_t digest) noexcept : digest_(digest) {}
+
   /// Adds a cell, and both to the digest. What has no room is in the digest alone.
   void add(std::string_view key, std::uint64_t value) noexcept {
     add_to_digest(key);

@@ -13,6 +13,19 @@ JointStreams::JointStreams(std::size_t joints, std::optional<control::SiteRole> 
       site.joints.push_back(std::make_shared<Joint>());
     }
   }
+  if (!only) return;
+  packets_ = std::make_shared<telemetry::RecordStream<PacketHeadRecord>>();
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    joint_packets_.push_back(std::make_shared<telemetry::RecordStream<PacketJointRecord>>());
+  }
+}
+
+void JointStreams::push(const station::Tick& tick, const control::JointPacket& packet) noexcept {
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns_);
+  packets_->push(due_ns, recorded(tick, packet));
+  for (std::size_t joint = 0; joint < joints_; ++joint) {
+    joint_packets_[joint]->push(due_ns, {packet.message[joint], tick.number});
+  }
 }
 
 template <class Supervised>

@@ -37,6 +37,8 @@ class JointStreams {
   void push(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,
             const station::Step<Supervised>& done, const link::LinkCondition& condition,
             std::int64_t arrivals) noexcept;
+  /// A packet that came to it at this tick, before that. The same.
+  void push(const station::Tick& tick, const control::JointPacket& packet) noexcept;
 
   using Site = telemetry::RecordStream<SiteTickRecord>;
   using Joint = telemetry::RecordStream<JointLogRecord>;
@@ -52,7 +54,7 @@ class JointStreams {
   [[nodiscard]] std::int64_t origin_ns() const noexcept { return origin_ns_; }
 
   /// Calls `visit(topic, type_name, stream)` for each stream there is: `/master/site`, `/master/joint_1` and on, the
-  /// slave's, `/servo`.
+  /// slave's; of a site that is alone `/packets`, `/packets/joint_1` and on, what came over the link; `/servo`.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const auto& [role, name] : enumerators(control::SiteRole{})) {
@@ -64,6 +66,11 @@ class JointStreams {
         visit(std::string(place).append("/joint_").append(std::to_string(joint + 1)), "tactus_msgs/msg/JointRecord",
               *site.joints[joint]);
       }
+    }
+    if (packets_) visit(std::string("/packets"), "tactus_msgs/msg/PacketHeadRecord", *packets_);
+    for (std::size_t joint = 0; joint < joint_packets_.size(); ++joint) {
+      visit(std::string("/packets/joint_").append(std::to_string(joint + 1)), "tactus_msgs/msg/PacketJointRecord",
+            *joint_packets_[joint]);
     }
     visit(std::string("/servo"), "tactus_msgs/msg/ServoRecord", *servo_);
   }
@@ -84,6 +91,8 @@ class JointStreams {
 
   std::size_t joints_;
   std::array<OfSite, 2> sites_;  ///< by role; without streams where it is elsewhere
+  std::shared_ptr<telemetry::RecordStream<PacketHeadRecord>> packets_;  ///< of a site that is alone
+  std::vector<std::shared_ptr<telemetry::RecordStream<PacketJointRecord>>> joint_packets_;
   std::shared_ptr<telemetry::RecordStream<ServoRecord>> servo_;
   std::int64_t origin_ns_;
 };

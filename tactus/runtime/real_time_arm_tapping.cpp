@@ -5,6 +5,7 @@
 #include <tactus/runtime/real_time_arm_tap.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 #include <tactus/runtime/site_log.hpp>
+#include <tactus/runtime/site_parts.hpp>
 
 #include <utility>
 
@@ -33,7 +34,8 @@ Check refuse_what_arms_lack(const experiments::Request& request, const RealTimeO
 
 /// Opens the log of what goes into the streams from now on.
 Result<SiteLog> open_arm_log(const experiments::Request& request, const RealTimeOptions& options,
-                             const ArmTapStreams& streams, const std::string& configuration) {
+                             const ArmTapStreams& streams, const std::string& configuration,
+                             const experiments::ArmPairSetup& setup) {
   if (options.before_log) {
     if (auto error = options.before_log()) return *std::move(error);
   }
@@ -41,6 +43,10 @@ Result<SiteLog> open_arm_log(const experiments::Request& request, const RealTime
   about["tactus"]["experiment"] = request.name;
   about["tactus"]["configuration"] = configuration;
   about["tactus"]["clock"] = "real";
+  for (const std::string& joint : setup.leader.joints) {
+    about["tactus"]["joints"] += (joint == setup.leader.joints.front() ? "" : ",") + joint;
+  }
+  about["urdf"] = urdfs_of(setup);
   return SiteLog::create(options.log->parent_path(), streams, about, options.log_limit_bytes);
 }
 
@@ -97,7 +103,7 @@ Result<RealTimeOutcome> run_arms_in_real_time(const experiments::Request& reques
   }
   std::optional<SiteLog> log;
   if (options.log) {
-    auto opened = open_arm_log(request, options, *streams, cases->first_configuration);
+    auto opened = open_arm_log(request, options, *streams, cases->first_configuration, taps.setup());
     if (!opened) return opened.error();
     log.emplace(*std::move(opened));
   }

@@ -1,4 +1,5 @@
 #include <tactus/configuration/document.hpp>
+#include <tactus/experiments/arm_tapping/described_arm.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/internal/replay_rows.hpp>
 #include <tactus/runtime/replay.hpp>
@@ -20,6 +21,8 @@ namespace {
 using experiments::TappingEnsemble;
 using experiments::TappingParams;
 using telemetry::LogTable;
+
+using RecordedDevice = RecordedDeviceOf<station::DeviceReading>;
 
 constexpr std::string_view sites_topic = "/sites";
 
@@ -82,17 +85,13 @@ Check replay_run(const LogTable& table, const TappingParams& params, Replay& rep
   return std::nullopt;
 }
 
-/// A value of what the log says about itself; empty where it does not.
-std::string about(const telemetry::LogContent& content, const std::string& name, const char* key) {
-  const auto found = content.summary.metadata.find(name);
-  if (found == content.summary.metadata.end()) return {};
-  const auto value = found->second.find(key);
-  return value == found->second.end() ? std::string() : value->second;
+Result<configuration::Document> configuration_of(const telemetry::LogContent& content) {
+  return configuration::Document::parse(about(content, "tactus", "configuration"), "configuration of the log");
 }
 
 /// The parameters of a run, by its name among several.
 Result<TappingParams> params_of(const telemetry::LogContent& content, const std::string& run) {
-  auto document = configuration::Document::parse(about(content, "tactus", "configuration"), "configuration of the log");
+  auto document = configuration_of(content);
   if (!document) return document.error();
   if (const auto settings = content.summary.metadata.find(run); settings != content.summary.metadata.end()) {
     for (const auto& [key, value] : settings->second) {
@@ -100,6 +99,18 @@ Result<TappingParams> params_of(const telemetry::LogContent& content, const std:
     }
   }
   return document->read<TappingParams>();
+}
+
+/// Sites that are no taps of one axis.
+Result<bool> replay_others(const telemetry::LogContent& content, Replay& replay) {
+  const auto document = configuration_of(content);
+  if (!document) return document.error();
+  if (!experiments::is_of_arms(*document)) {
+    const auto params = document->read<TappingParams>();
+    return params ? replay_sites(content, *params, replay) : params.error();
+  }
+  const auto params = document->read<experiments::ArmTappingParams>();
+  return params ? replay_arms(content, *params, replay) : params.error();
 }
 
 /// The topics `/sites`; false where there is none.
@@ -122,24 +133,26 @@ Result<bool> replay_taps(const telemetry::LogContent& content, Replay& replay) {
 
 Check replay_all(const telemetry::LogContent& content, Replay& replay) {
   replay.version = about(content, "tactus", "version");
-  if (find_table(content, "/master/joint_1") != nullptr || find_table(content, "/slave/joint_1") != nullptr) {
-    return refuse_replay(ErrorCode::inconsistent,
-                         "the log is of several joints, which is not replayed: `tactus export` has all of it");
-  }
   auto replayed = replay_taps(content, replay);
   if (replayed && !*replayed && !about(content, "tactus", "configuration").empty()) {
-    const auto params = params_of(content, {});
-    if (!params) return params.error();
-    replayed = replay_sites(content, *params, replay);
+    replayed = replay_others(content, replay);
   }
   if (!replayed) return replayed.error();
   if (*replayed) return std::nullopt;
   return refuse_replay(ErrorCode::missing,
-                       "the log has no topic /sites, /site or /master/site: only what `tactus run --realtime --out` or "
+                       "the log has no topic /sites, /site, /master/site or /slave/site with a configuration: only "
+                       "what `tactus run --realtime --out` or "
                        "`tactus run --site --out` wrote can be replayed");
 }
 
 }  // namespace
+
+std::string about(const telemetry::LogContent& content, const std::string& name, const std::string& key) {
+  const auto found = content.summary.metadata.find(name);
+  if (found == content.summary.metadata.end()) return {};
+  const auto value = found->second.find(key);
+  return value == found->second.end() ? std::string() : value->second;
+}
 
 Result<Replay> replay(const std::filesystem::path& log) {
   const auto content = telemetry::read_log(log);

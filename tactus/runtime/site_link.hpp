@@ -99,6 +99,21 @@ class SiteLinkOf {
   std::uint16_t told_version_ = 0;
   std::size_t told_joints_ = 0;
 };
+/// A link, and `see(tick, packet)` for each packet that comes on it: the way of a site that leaves a log.
+template <class Payload, class See>
+struct SeenLink {
+  SiteLinkOf<Payload>& link;
+  See see;
+
+  template <class Take>
+  void receive(const station::Tick& tick, Take&& take) noexcept {
+    link.receive(tick, take, [&](const control::PacketOf<Payload>& packet) noexcept { see(tick, packet); });
+  }
+  void send(const control::PacketOf<Payload>& packet, const station::Tick& tick) noexcept { link.send(packet, tick); }
+};
+template <class Payload, class See>
+SeenLink(SiteLinkOf<Payload>&, See) -> SeenLink<Payload, See>;
+
 using SiteLink = SiteLinkOf<control::Message>;
 using JointSiteLink = SiteLinkOf<Joints<control::Message>>;
 

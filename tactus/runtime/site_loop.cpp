@@ -40,24 +40,6 @@ SiteLoop::SiteLoop(const SiteConsole& console, const SiteBooks& books, control::
       wall_(std::move(wall)),
       driven_(wall_ ? wall_.get() : device_.device.get()) {}
 
-namespace {
-
-/// The link, and the log of what came on it.
-struct LoggedLink {
-  SiteLink& link;
-  const SiteStreams& streams;
-  template <class Take>
-  void receive(const station::Tick& tick, Take&& take) noexcept {
-    SiteStreams::Packets* const stream = streams.packets.get();
-    link.receive(tick, take, [&](const control::Packet& packet) noexcept {
-      if (stream != nullptr) stream->push(streams.time_ns(tick.deadline_ns), recorded(tick, packet));
-    });
-  }
-  void send(const control::Packet& packet, const station::Tick& tick) noexcept { link.send(packet, tick); }
-};
-
-}  // namespace
-
 bool SiteLoop::operator()(const station::Tick& tick) noexcept {
   if (console_.insisted()) {
     driven_->write({.enabled = false});
@@ -66,7 +48,10 @@ bool SiteLoop::operator()(const station::Tick& tick) noexcept {
   const control::SiteRequests pressed = console_.step(tick, books_.state(), link_.heard());
   SiteLogRecord record = std::visit(
       [&](auto& site) noexcept {
-        LoggedLink way{link_, streams_};
+        SeenLink way{link_, [this](const station::Tick& now, const control::Packet& packet) noexcept {
+                       if (streams_.packets == nullptr) return;
+                       streams_.packets->push(streams_.time_ns(now.deadline_ns), recorded(now, packet));
+                     }};
         const auto done = station::step(site, *driven_, way, tick, pressed);
         SiteLogRecord made = recorded(tick, pressed, site, done);
         made.arrivals = link_.arrivals();

@@ -4,6 +4,8 @@
 #include <tactus/station/wall.hpp>
 
 #include <charconv>
+#include <string>
+#include <system_error>
 #include <utility>
 
 namespace tactus::runtime {
@@ -19,6 +21,35 @@ constexpr std::pair<const char*, double DeviceLimits::*> limit_names[]{
     {"velocity_m_per_s", &DeviceLimits::velocity_m_per_s},
     {"position_m", &DeviceLimits::position_m}};
 
+std::string joint_key(std::size_t joint, const char* name) { return "joint_" + std::to_string(joint + 1) + "." + name; }
+
+/// Whether a word is a number, which it then is.
+bool take_number(const Words& words, const std::string& key, double& number) {
+  const auto found = words.find(key);
+  if (found == words.end()) return false;
+  const std::string& text = found->second;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  return read.ec == std::errc() && read.ptr == text.data() + text.size();
+}
+
+/// A site of either role, or what is wrong with it.
+template <class Sites, class Site>
+Result<Sites> as_site(Result<Site> made, const char* group) {
+  if (!made) return under(group, made.error());
+  return Sites(*std::move(made));
+}
+
+/// `Limits` of one axis or of several joints.
+template <class Sites, class Limits>
+Result<Sites> make_site(const experiments::TappingParams& params, control::SiteRole role, const Limits& limits,
+                        std::int64_t session, const control::Agreement& agreement) {
+  const Seconds tick{1.0 / params.servo.rate_Hz};
+  const auto own = station::tightened(same_for_each(limits, control_of(params)), role, limits);
+  return role == control::SiteRole::master
+             ? as_site<Sites>(control::make_supervised_master(own, session, tick, agreement), "control")
+             : as_site<Sites>(control::make_supervised_slave(own, session, tick, agreement), "control");
+}
+
 }  // namespace
 
 control::ControlParams control_of(const experiments::TappingParams& params) {
@@ -30,17 +61,22 @@ control::ControlParams control_of(const experiments::TappingParams& params) {
 Result<SupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
                                             const DeviceLimits& limits, std::int64_t session) {
   const Seconds tick{1.0 / params.servo.rate_Hz};
-  const control::ControlParams control = control_of(params);
-  const control::ControlParams own = station::tightened(control, role, limits);
-  const control::Agreement agreement = control::agreement_of(control, tick);
-  if (role == control::SiteRole::master) {
-    auto made = control::make_supervised_master(own, session, tick, agreement);
-    if (!made) return under("control", made.error());
-    return SupervisedSite(*std::move(made));
-  }
-  auto made = control::make_supervised_slave(own, session, tick, agreement);
-  if (!made) return under("control", made.error());
-  return SupervisedSite(*std::move(made));
+  return make_site<SupervisedSite>(params, role, limits, session, control::agreement_of(control_of(params), tick));
+}
+
+Result<JointSupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
+                                                 const Joints<DeviceLimits>& limits, std::int64_t session,
+                                                 const control::Agreement& agreement) {
+  return make_site<JointSupervisedSite>(params, role, limits, session, agreement);
+}
+
+Result<JointSupervisedSite> make_supervised_site(const experiments::ArmPairSetup& setup, control::SiteRole role,
+                                                 const Joints<DeviceLimits>& limits, std::int64_t session,
+                                                 const control::Agreement& agreement) {
+  const experiments::ArmSiteStart start{.session = session, .agreement = agreement};
+  return role == control::SiteRole::master
+             ? as_site<JointSupervisedSite>(experiments::arm_leader_site(setup, limits, start), "")
+             : as_site<JointSupervisedSite>(experiments::arm_follower_site(setup, limits, start), "");
 }
 
 double force_step_limit_N(const experiments::TappingParams& params, control::SiteRole role,
@@ -50,21 +86,52 @@ double force_step_limit_N(const experiments::TappingParams& params, control::Sit
   return gate.rate_limit_N_per_s * (1.0 / params.servo.rate_Hz);
 }
 
-std::map<std::string, std::string> in_words(const DeviceLimits& limits) {
-  std::map<std::string, std::string> words;
+Words in_words(const DeviceLimits& limits) {
+  Words words;
   for (const auto& [name, member] : limit_names) words[name] = format_number(limits.*member);
   return words;
 }
 
-DeviceLimits limits_in(const std::map<std::string, std::string>& words) {
+DeviceLimits limits_in(const Words& words) {
   DeviceLimits limits;
   for (const auto& [name, member] : limit_names) {
-    const auto found = words.find(name);
-    if (found == words.end()) continue;
-    const std::string& text = found->second;
-    std::from_chars(text.data(), text.data() + text.size(), limits.*member);
+    if (!take_number(words, name, limits.*member)) limits.*member = 0.0;
   }
   return limits;
+}
+
+Words in_words(const Joints<DeviceLimits>& limits) {
+  Words words;
+  for (std::size_t joint = 0; joint < limits.size(); ++joint) {
+    for (const auto& [name, member] : limit_names) {
+      words[joint_key(joint, name)] = format_number(limits[joint].*member);
+    }
+  }
+  return words;
+}
+
+Result<Joints<DeviceLimits>> limits_in(const Words& words, std::size_t joints) {
+  Joints<DeviceLimits> limits(joints);
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    for (const auto& [name, member] : limit_names) {
+      const std::string key = joint_key(joint, name);
+      if (take_number(words, key, limits[joint].*member)) continue;
+      return Error{.code = ErrorCode::missing, .parameter = key, .message = "is no number there", .place = {}};
+    }
+  }
+  return limits;
+}
+
+Words urdfs_of(const experiments::ArmPairSetup& setup) {
+  return {{setup.leader.urdf, setup.leader.urdf_text}, {setup.follower.urdf, setup.follower.urdf_text}};
+}
+
+experiments::Urdfs urdfs_in(const Words& words) {
+  return [words](const std::string& name) -> Result<experiments::UrdfText> {
+    const auto found = words.find(name);
+    if (found != words.end()) return experiments::UrdfText{found->second, name};
+    return Error{.code = ErrorCode::missing, .parameter = {}, .message = "is not in the log", .place = name};
+  };
 }
 
 }  // namespace tactus::runtime

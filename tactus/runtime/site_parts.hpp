@@ -2,9 +2,12 @@
 
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/station/device.hpp>
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <variant>
@@ -13,6 +16,8 @@
 namespace tactus::runtime {
 
 using SupervisedSite = std::variant<control::SupervisedMaster, control::SupervisedSlave>;
+/// Of several joints.
+using JointSupervisedSite = std::variant<control::JointSupervisedMaster, control::JointSupervisedSlave>;
 
 /// What the controllers of an experiment work by, the mismatch of its task included.
 control::ControlParams control_of(const experiments::TappingParams& params);
@@ -21,13 +26,32 @@ control::ControlParams control_of(const experiments::TappingParams& params);
 /// What the device allows is this site's own affair and no part of its agreement with the other. Errors name `control`.
 Result<SupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
                                             const station::DeviceLimits& limits, std::int64_t session);
+/// The same of joints that are driven each by itself, and of an arm. `agreement` as in
+/// `control::make_supervised_master`. Errors of an arm are those of `experiments::arm_leader_site`.
+Result<JointSupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
+                                                 const Joints<station::DeviceLimits>& limits, std::int64_t session,
+                                                 const control::Agreement& agreement);
+Result<JointSupervisedSite> make_supervised_site(const experiments::ArmPairSetup& setup, control::SiteRole role,
+                                                 const Joints<station::DeviceLimits>& limits, std::int64_t session,
+                                                 const control::Agreement& agreement);
 
 /// The force step that the gate of a site allows in a tick, in N.
 double force_step_limit_N(const experiments::TappingParams& params, control::SiteRole role,
                           const station::DeviceLimits& limits);
 
+/// What a log says of a thing: values by their keys.
+using Words = std::map<std::string, std::string>;
+
 /// Limits of a device as a log carries them, and back; what is no number there is 0.
-std::map<std::string, std::string> in_words(const station::DeviceLimits& limits);
-station::DeviceLimits limits_in(const std::map<std::string, std::string>& words);
+Words in_words(const station::DeviceLimits& limits);
+station::DeviceLimits limits_in(const Words& words);
+/// The same of several joints, under `joint_1` and on. Errors: `missing` where a limit of one of them is no number.
+Words in_words(const Joints<station::DeviceLimits>& limits);
+Result<Joints<station::DeviceLimits>> limits_in(const Words& words, std::size_t joints);
+
+/// The URDFs of arms by their names, as a log carries them, so that it replays wherever the files are by then.
+Words urdfs_of(const experiments::ArmPairSetup& setup);
+/// And back. Errors: `missing` for one that is not among them.
+experiments::Urdfs urdfs_in(const Words& words);
 
 }  // namespace tactus::runtime

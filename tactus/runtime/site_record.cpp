@@ -11,6 +11,21 @@ std::uint64_t bits_of(std::int64_t high, std::int64_t low) noexcept {
   return static_cast<std::uint64_t>(high) << 32 | static_cast<std::uint64_t>(low);
 }
 
+template <class Payload>
+PacketHeadRecord head_of(const station::Tick& tick, const control::PacketOf<Payload>& packet) noexcept {
+  return {.tick = tick.number,
+          .session = packet.session,
+          .sequence = packet.sequence,
+          .age_s = packet.age_s,
+          .state = static_cast<std::int64_t>(packet.state),
+          .armings = packet.armings,
+          .digest_high = high_of(packet.agreement.digest),
+          .digest_low = low_of(packet.agreement.digest),
+          .cell = static_cast<std::int64_t>(packet.agreement.cell),
+          .value_high = high_of(packet.agreement.value),
+          .value_low = low_of(packet.agreement.value)};
+}
+
 /// Each with the bit that stands for it, in the order of the bits.
 constexpr bool control::SiteRequests::*buttons[]{&control::SiteRequests::align,  &control::SiteRequests::arm,
                                                  &control::SiteRequests::clear,  &control::SiteRequests::dead_man,
@@ -70,39 +85,37 @@ JointLogRecord of_joint(const station::Tick& tick, const control::SafetyGate& ga
   record.drive_velocity_m_per_s = reading.motor_tells.velocity_m_per_s;
   record.drive_force_N = reading.motor_tells.force_N;
   record.drive_stiffness_N_per_m = output.law.stiffness_N_per_m;
+  record.drive_damping_N_s_per_m = output.law.damping_N_s_per_m;
+  record.law_position_m = output.law.position_m;
+  record.law_velocity_m_per_s = output.law.velocity_m_per_s;
   fill(record, reading, output, heard, told);
   return record;
 }
 
 }  // namespace
 
-control::Packet PacketRecord::packet() const noexcept {
-  return {.session = session,
-          .sequence = sequence,
-          .age_s = age_s,
-          .state = static_cast<control::SiteState>(state),
-          .armings = armings,
-          .message = *this,
-          .agreement = {.digest = bits_of(digest_high, digest_low),
-                        .cell = static_cast<std::uint64_t>(cell),
-                        .value = bits_of(value_high, value_low)}};
+PacketRecord recorded(const station::Tick& tick, const control::Packet& packet) noexcept {
+  return {head_of(tick, packet), packet.message};
 }
 
-PacketRecord recorded(const station::Tick& tick, const control::Packet& packet) noexcept {
-  PacketRecord record{packet.message};
-  record.tick = tick.number;
-  record.session = packet.session;
-  record.sequence = packet.sequence;
-  record.age_s = packet.age_s;
-  record.state = static_cast<std::int64_t>(packet.state);
-  record.armings = packet.armings;
-  record.digest_high = high_of(packet.agreement.digest);
-  record.digest_low = low_of(packet.agreement.digest);
-  record.cell = static_cast<std::int64_t>(packet.agreement.cell);
-  record.value_high = high_of(packet.agreement.value);
-  record.value_low = low_of(packet.agreement.value);
-  return record;
+PacketHeadRecord recorded(const station::Tick& tick, const control::JointPacket& packet) noexcept {
+  return head_of(tick, packet);
 }
+
+template <class Payload>
+control::PacketOf<Payload> packet_of(const PacketHeadRecord& head, const Payload& message) noexcept {
+  return {.session = head.session,
+          .sequence = head.sequence,
+          .age_s = head.age_s,
+          .state = static_cast<control::SiteState>(head.state),
+          .armings = head.armings,
+          .message = message,
+          .agreement = {.digest = bits_of(head.digest_high, head.digest_low),
+                        .cell = static_cast<std::uint64_t>(head.cell),
+                        .value = bits_of(head.value_high, head.value_low)}};
+}
+template control::Packet packet_of(const PacketHeadRecord&, const control::Message&) noexcept;
+template control::JointPacket packet_of(const PacketHeadRecord&, const Joints<control::Message>&) noexcept;
 
 std::int64_t number_of(const control::SiteRequests& pressed) noexcept {
   std::int64_t number = 0, bit = 1;

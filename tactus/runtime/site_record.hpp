@@ -100,6 +100,9 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
   double drive_velocity_m_per_s = 0.0;
   double drive_force_N = 0.0;
   double drive_stiffness_N_per_m = 0.0;
+  double drive_damping_N_s_per_m = 0.0;
+  double law_position_m = 0.0;
+  double law_velocity_m_per_s = 0.0;
   static constexpr auto signals() {
     using R = JointLogRecord;
     return joined(
@@ -115,13 +118,19 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
              observed("drive_force_N", &R::drive_force_N, units::newton, "", "", "toward the environment",
                       "Of the motor, as the drive tells it, measured with the position; 0 of one that tells none."),
              observed("drive_stiffness_N_per_m", &R::drive_stiffness_N_per_m, units::newton_per_metre, "", "", "",
-                      "Commanded: of the law that the drive runs by itself.")},
+                      "Commanded: of the law that the drive runs by itself."),
+             observed("drive_damping_N_s_per_m", &R::drive_damping_N_s_per_m, units::newton_second_per_metre, "", "",
+                      "", "Commanded: of that law."),
+             observed("law_position_m", &R::law_position_m, units::metre, "", "", "toward the environment",
+                      "Commanded: to which that law pulls."),
+             observed("law_velocity_m_per_s", &R::law_velocity_m_per_s, units::metre_per_second, "", "",
+                      "toward the environment", "Commanded: the same.")},
         AxisRecord::signals(), Heard::signals(), Told::signals());
   }
 };
 
-/// A packet that came over the link, as the supervision of the site was handed it.
-struct PacketRecord : control::Message {
+/// A packet that came over the link, as the supervision of the site was handed it, but for its message.
+struct PacketHeadRecord {
   std::int64_t tick = 0;
   std::int64_t session = 0;
   std::int64_t sequence = 0;
@@ -134,28 +143,44 @@ struct PacketRecord : control::Message {
   std::int64_t value_high = 0;
   std::int64_t value_low = 0;
 
-  [[nodiscard]] control::Packet packet() const noexcept;
-
   static constexpr auto signals() {
-    using R = PacketRecord;
-    return joined(List{observed("tick", &R::tick, units::none, "", "", "", "At which it came."),
-                       observed("session", &R::session, units::none, "", "", "", "Of the other site."),
-                       observed("sequence", &R::sequence, units::none, "", "", "", "Its number in that session."),
-                       observed("age_s", &R::age_s, units::second, "", "", "", "On arrival, as well as is known."),
-                       observed("state", &R::state, units::none, "", "", "", control::state_legend.text),
-                       observed("armings", &R::armings, units::none, "", "", "", "The arming that is followed there."),
-                       observed("digest_high", &R::digest_high, units::none, "", "", "",
-                                "Upper 32 bits of the digest of what both sites must have in common."),
-                       observed("digest_low", &R::digest_low, units::none, "", "", "", "Its lower 32 bits."),
-                       observed("cell", &R::cell, units::none, "", "", "", "Number of the cell of it that is told."),
-                       observed("value_high", &R::value_high, units::none, "", "", "", "Upper 32 bits of that cell."),
-                       observed("value_low", &R::value_low, units::none, "", "", "", "Its lower 32 bits.")},
+    using R = PacketHeadRecord;
+    return List{observed("tick", &R::tick, units::none, "", "", "", "At which it came."),
+                observed("session", &R::session, units::none, "", "", "", "Of the other site."),
+                observed("sequence", &R::sequence, units::none, "", "", "", "Its number in that session."),
+                observed("age_s", &R::age_s, units::second, "", "", "", "On arrival, as well as is known."),
+                observed("state", &R::state, units::none, "", "", "", control::state_legend.text),
+                observed("armings", &R::armings, units::none, "", "", "", "The arming that is followed there."),
+                observed("digest_high", &R::digest_high, units::none, "", "", "",
+                         "Upper 32 bits of the digest of what both sites must have in common."),
+                observed("digest_low", &R::digest_low, units::none, "", "", "", "Its lower 32 bits."),
+                observed("cell", &R::cell, units::none, "", "", "", "Number of the cell of it that is told."),
+                observed("value_high", &R::value_high, units::none, "", "", "", "Upper 32 bits of that cell."),
+                observed("value_low", &R::value_low, units::none, "", "", "", "Its lower 32 bits.")};
+  }
+};
+
+/// A packet of one axis.
+struct PacketRecord : PacketHeadRecord, control::Message {
+  static constexpr auto signals() { return joined(PacketHeadRecord::signals(), control::Message::signals()); }
+};
+
+/// What a packet says of one joint of several. What all joints share is in the `PacketHeadRecord`.
+struct PacketJointRecord : control::Message {
+  std::int64_t tick = 0;
+  static constexpr auto signals() {
+    return joined(List{observed("tick", &PacketJointRecord::tick, units::none, "", "", "", "At which it came.")},
                   control::Message::signals());
   }
 };
 
 /// The record of a packet that came at this tick. Real-time safe, as is all below.
 PacketRecord recorded(const station::Tick& tick, const control::Packet& packet) noexcept;
+/// Of several joints what they share.
+PacketHeadRecord recorded(const station::Tick& tick, const control::JointPacket& packet) noexcept;
+/// The packet again.
+template <class Payload>
+control::PacketOf<Payload> packet_of(const PacketHeadRecord& head, const Payload& message) noexcept;
 
 /// What was pressed, as a number of `SiteLogRecord`, and back.
 std::int64_t number_of(const control::SiteRequests& pressed) noexcept;

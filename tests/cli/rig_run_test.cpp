@@ -76,14 +76,17 @@ TEST_F(RigRun, APairOfSevenJointsAlignsAndTeleoperatesWithALogThatIsWhole) {
   const std::string said =
       shell_until({"; armed 1 times, held 0 times, ", ", silent in 0, lost in 0 ticks; "}, "damiao --motors 7",
                   "damiao --motors 7", pair("damiao", "DM4310", 7, "offset_rad = 0.2\n"),
-                  "$RUN --arm --duration-s 6 --out run --overwrite <&9; echo status $?");
+                  "$RUN --arm --duration-s 6 --out run --overwrite <&9; echo status $?\n"
+                  "$TACTUS replay run/log --check; echo replayed $?");
   EXPECT_NE(said.find("; armed 1 times, held 0 times, a device late in "), std::string::npos) << said;
   EXPECT_NE(said.find(", silent in 0, lost in 0 ticks; "), std::string::npos) << said;
   EXPECT_NE(said.find("5 s: leader active, follower active (none), "), std::string::npos) << said;
   EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)
       << said;
   EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
-  EXPECT_TRUE(std::filesystem::exists(folder() / "run/log/log.mcap"));
+  EXPECT_NE(said.find(" ticks of both sites of 7 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
+            std::string::npos)
+      << said;
   // It stood 0.2 rad away; what is left holds against the friction of the joint, less than 0.02 rad at 4 N m/rad.
   EXPECT_LT(apart(said, "5"), 0.02) << said;
 }
@@ -135,8 +138,10 @@ TEST_F(RigRun, ArmsThatAreTooFarApartAreNotArmedAndWhatToDoIsSaid) {
 TEST_F(RigRun, AMotorThatFallsSilentHoldsBothWithoutForceAndIsSaid) {
   const std::string said =
       shell_until({"follower active"}, "damiao", "damiao --fault silence:2@4", pair("damiao", "DM4310", 2, ""),
-                  "$RUN --arm --duration-s 6 <&9; echo status $?");
+                  "$RUN --arm --duration-s 6 --out run --overwrite <&9; echo status $?\n"
+                  "$TACTUS replay run/log --check; echo replayed $?");
   EXPECT_NE(said.find("follower active"), std::string::npos) << said;
+  EXPECT_NE(said.find("bit for bit.\nreplayed 0\n"), std::string::npos) << said;
   EXPECT_NE(said.find("leader hold, follower hold (device), "), std::string::npos) << said;
   EXPECT_NE(said.find("; follower: joint_2 unheard for "), std::string::npos) << said;
   EXPECT_NE(said.find("; the follower is silent: look at 'tactus device check'\n"), std::string::npos) << said;
@@ -219,13 +224,17 @@ class ArmRun : public RigRun {
 
 TEST_F(ArmRun, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
   const std::string said = arms_until({"; armed 1 times, held 0 times, ", ", silent in 0, lost in 0 ticks; "},
-                                      "$ARMS --arm --duration-s 12 --out run --overwrite <&9; echo status $?");
+                                      "$ARMS --arm --duration-s 12 --out run --overwrite <&9; echo status $?\n"
+                                      "$TACTUS replay run/log --check; echo replayed $?");
   EXPECT_NE(said.find(", silent in 0, lost in 0 ticks; "), std::string::npos) << said;
   EXPECT_NE(said.find("11 s: leader active, follower active (none), "), std::string::npos) << said;
   EXPECT_NE(said.find("; armed 1 times, held 0 times, "), std::string::npos) << said;
   EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)
       << said;
   EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
+  EXPECT_NE(said.find(" ticks of both sites of 8 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
+            std::string::npos)
+      << said;
   EXPECT_LT(apart(said, "11"), 0.06) << said;
 }
 

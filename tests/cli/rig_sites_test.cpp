@@ -115,6 +115,12 @@ TEST_F(RigSites, TheFollowerGoesToItsLeaderAndBothHoldWhereTheLinkIsCut) {
     EXPECT_NE(told.out.find(topic), std::string::npos) << told.out;
     const char* other = topic[1] == 'm' ? "/slave/site" : "/master/site";
     EXPECT_EQ(told.out.find(other), std::string::npos) << told.out;
+    const auto replayed = tactus({"replay", std::string(log) + "/log", "--check"});
+    EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
+    EXPECT_NE(replayed.out.find(topic[1] == 'm' ? "ticks of the master of 3 joints: every output is the recorded one"
+                                                : "ticks of the slave of 3 joints: every output is the recorded one"),
+              std::string::npos)
+        << replayed.out;
   }
 }
 

@@ -84,7 +84,7 @@ constexpr std::array rows{
         "kill $plant; wait $plant; (exit $status)",
         true},
     Row{"real", "two simulated arms",
-        "$TACTUS run $RIGS/../../experiments/arm-tapping.toml --set task.taps=4 --realtime $MORE"},
+        "$TACTUS run $RIGS/../../experiments/arm-tapping.toml --set task.taps=4 --realtime $MORE", true},
     Row{"real", "a rig's",
         "mkfifo leader follower; emulate='emulate damiao --motors 7 --model DM4340,DM4340,DM4340,DM4310'\n"
         "$TACTUS $emulate >leader & peers=$!\n"
@@ -93,7 +93,8 @@ constexpr std::array rows{
         "sed \"s|/dev/serial/by-id/LEADER|$leader|; s|/dev/serial/by-id/FOLLOWER|$follower|\" $RIGS/yam.toml "
         ">yam.toml\n"
         "$TACTUS run $RIGS/joints.toml --realtime --device yam.toml --arm --duration-s 3 $MORE <&9; status=$?\n"
-        "kill $peers; (exit $status)"},
+        "kill $peers; (exit $status)",
+        true},
     Row{"real", "two sites",
         "$TACTUS run quick.toml $slow --site slave --peer 127.0.0.1:$P0 --listen 127.0.0.1:$P1 --unencrypted "
         "--duration-s 6 <&9 >slave 2>&1 & slave=$!\n"
@@ -111,7 +112,8 @@ constexpr std::array rows{
         "site=\"$TACTUS run $RIGS/joints.toml --device yam.toml --unencrypted\"\n"
         "$site --site slave --peer 127.0.0.1:$P0 --listen 127.0.0.1:$P1 --duration-s 6 <&9 >slave 2>&1 & slave=$!\n"
         "$site --site master --peer 127.0.0.1:$P1 --listen 127.0.0.1:$P0 --arm --duration-s 3 $MORE <&9; status=$?\n"
-        "kill $slave; wait $slave; kill $peers; (exit $status)"}};
+        "kill $slave; wait $slave; kill $peers; (exit $status)",
+        true}};
 
 /// What a cell adds to its row.
 struct Column {

@@ -1,14 +1,23 @@
+#include <tactus/configuration/toml_writer.hpp>
 #include <tactus/experiments/arm_tapping/arm_taps.hpp>
 #include <tactus/runtime/real_time_arm_tap.hpp>
+#include <tactus/runtime/replay.hpp>
+#include <tactus/runtime/rights.hpp>
+#include <tactus/runtime/site_log.hpp>
+#include <tactus/runtime/site_parts.hpp>
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "tests/allocation_counter.hpp"
 #include <gtest/gtest.h>
+#include <tests/runtime/changed_log.hpp>
+#include <tests/scratch_path.hpp>
 
 namespace tactus::runtime {
 namespace {
@@ -114,6 +123,46 @@ TEST(RealTimeArmTap, ItLeavesWhatBothSitesHeardToldAndReadOfEachJoint) {
   }
   EXPECT_NE(slave_told_N, 0.0);
   EXPECT_GT(moved_rad, 1e-3);
+}
+
+TEST(RealTimeArmTap, ItsLogReplaysBitForBitTapAfterTap) {
+  const auto taps = short_taps();
+  ASSERT_TRUE(taps);
+  const std::filesystem::path folder = scratch_path();
+  ArmTapStreams streams(7);
+  auto about = LogMetadata{{"tactus", {{"configuration", configuration::to_toml(taps->setup().params)}}}};
+  about["urdf"] = urdfs_of(taps->setup());
+  auto log = SiteLog::create(folder / "log", streams, about);
+  ASSERT_TRUE(log) << describe(log.error());
+  std::int64_t steps = 0;
+  {
+    const FlushedDenormals as_a_servo_thread;
+    for (std::size_t tap = 0; tap < taps->size(); ++tap) {
+      auto run = RealTimeArmTap::make(taps->setup(), taps->tap(tap), &streams);
+      ASSERT_TRUE(run);
+      // Some ticks are missed.
+      for (std::int64_t number = 0, next = 0;; ++number) {
+        const std::int64_t missed = number > 0 && number % 50 == 0 ? 2 : 0;
+        next += missed;
+        const bool more = run->step(arm_tick(next++, missed));
+        ++steps;
+        if (!more) break;
+      }
+    }
+  }
+  ASSERT_FALSE(log->close());
+  ASSERT_EQ(log->dropped(), 0U);
+  const auto replayed = replay(folder / "log");
+  ASSERT_TRUE(replayed) << describe(replayed.error());
+  EXPECT_EQ(replayed->of, std::to_string(taps->size()) + " taps of two arms");
+  EXPECT_GE(replayed->ticks, steps - static_cast<std::int64_t>(taps->size()));
+  EXPECT_FALSE(replayed->difference) << replayed->difference->topic << " " << replayed->difference->signal << " at "
+                                     << replayed->difference->tick;
+  const auto found = replay(tampered(folder / "log", "/slave/joint_5", "position_m", 700));
+  ASSERT_TRUE(found) << describe(found.error());
+  ASSERT_TRUE(found->difference);
+  EXPECT_TRUE(found->difference->topic.starts_with("/slave/joint_")) << found->difference->topic;
+  std::filesystem::remove_all(folder);
 }
 
 TEST(RealTimeArmTap, ATickDoesNotAllocate) {

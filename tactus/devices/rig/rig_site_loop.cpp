@@ -101,7 +101,10 @@ control::SiteRequests RigSiteLoop::asked(const control::SiteRequests& pressed) n
 
 template <class Site>
 void RigSiteLoop::step(Site& site, const station::Tick& tick, const control::SiteRequests& pressed) noexcept {
-  const auto done = station::step(site, *driven_, link_, tick, pressed);
+  runtime::SeenLink way{link_, [this](const station::Tick& now, const control::JointPacket& packet) noexcept {
+                          if (streams_ != nullptr) streams_->push(now, packet);
+                        }};
+  const auto done = station::step(site, *driven_, way, tick, pressed);
   seen_ = std::all_of(done.reading.begin(), done.reading.end(),
                       [](const DeviceReading& joint) { return std::isfinite(joint.position_m); });
   if (seen_) read_ = done.reading;

@@ -1,18 +1,17 @@
 #pragma once
 
-#include <tactus/control/supervised_site.hpp>
 #include <tactus/devices/rig/rig_loop.hpp>
 #include <tactus/runtime/site_link.hpp>
+#include <tactus/runtime/site_parts.hpp>
 #include <tactus/station/device_guard.hpp>
 
 #include <memory>
 #include <optional>
-#include <variant>
 
 namespace tactus::devices {
 
 /// One site of several joints, of either role.
-using JointSite = std::variant<control::JointSupervisedMaster, control::JointSupervisedSlave>;
+using JointSite = runtime::JointSupervisedSite;
 
 /// Whether the slave of these parameters tells where its motors are, so that its master can see how far it is.
 bool tells_its_place(const Joints<control::ControlParams>& control, Seconds tick);

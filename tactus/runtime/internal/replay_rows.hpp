@@ -1,10 +1,12 @@
 #pragma once
 
+#include <tactus/experiments/arm_tapping/params.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/replay.hpp>
 #include <tactus/station/device.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -17,19 +19,22 @@
 namespace tactus::runtime {
 
 /// Reads what the log says.
-class RecordedDevice final : public station::Device {
+template <class Reading>
+class RecordedDeviceOf final : public station::DeviceOf<Reading> {
  public:
-  explicit RecordedDevice(const station::DeviceLimits& limits) : limits_(limits) {}
-  [[nodiscard]] station::DeviceLimits limits() const override { return limits_; }
+  using Limits = Each<Reading, station::DeviceLimits>;
+  explicit RecordedDeviceOf(const Limits& limits)
+      : reading(same_for_each(limits, station::DeviceReading{})), limits_(limits) {}
+  [[nodiscard]] Limits limits() const override { return limits_; }
   [[nodiscard]] bool simulated() const noexcept override { return true; }
-  station::DeviceReading read(const station::Tick&) noexcept override { return reading; }
-  void write(const station::DeviceCommand&) noexcept override {}
+  Reading read(const station::Tick&) noexcept override { return reading; }
+  void write(const Each<Reading, station::DeviceCommand>&) noexcept override {}
   [[nodiscard]] station::DeviceHealth health() const noexcept override { return state; }
-  station::DeviceReading reading;
+  Reading reading;
   station::DeviceHealth state = station::DeviceHealth::good;
 
  private:
-  station::DeviceLimits limits_;
+  Limits limits_;
 };
 
 inline Error refuse_replay(ErrorCode code, std::string message) {
@@ -40,11 +45,19 @@ inline Error refuse_replay(ErrorCode code, std::string message) {
 template <Recordable Record>
 Check check_table(const telemetry::LogTable& table) {
   const auto expected = telemetry::columns_of<Record>();
-  bool same = table.columns.size() == expected.size();
-  for (std::size_t i = 0; same && i < expected.size(); ++i) {
-    same = table.columns[i].name == expected[i].name && table.columns[i].type == expected[i].type;
+  std::string lacking;
+  for (const telemetry::Column& column : expected) {
+    if (std::ranges::find(table.columns, column.name, &telemetry::Column::name) != table.columns.end()) continue;
+    lacking += (lacking.empty() ? "" : ", ") + column.name;
   }
-  if (!same) {
+  if (!lacking.empty()) {
+    return refuse_replay(ErrorCode::missing, "topic " + table.topic + " has no " + lacking +
+                                                 ": the log is of another version, and this one replays with it; "
+                                                 "replay it with the version that wrote it, or record it anew");
+  }
+  if (!std::ranges::equal(table.columns, expected, [](const auto& one, const auto& other) {
+        return one.name == other.name && one.type == other.type;
+      })) {
     return refuse_replay(ErrorCode::inconsistent,
                          "topic " + table.topic +
                              " has other signals than this version records: replay it with the version that wrote it");
@@ -84,6 +97,7 @@ std::optional<ReplayDifference> compare(const telemetry::LogTable& table, std::i
     }
     if (found || same) return;
     found = ReplayDifference{.topic = table.topic,
+                             .joint = {},
                              .tap = tap,
                              .tick = recorded.tick,
                              .signal = signal.name,
@@ -101,8 +115,16 @@ inline const telemetry::LogTable* find_table(const telemetry::LogContent& conten
   return nullptr;
 }
 
-/// Replays the log of one site, or of both under supervision; false where it is no such log.
+/// A value of what the log says about itself; empty where it does not.
+std::string about(const telemetry::LogContent& content, const std::string& name, const std::string& key);
+
+/// Replays the log of one site, or of both under supervision, of one axis or of joints that are driven each by itself;
+/// false where it is no such log.
 Result<bool> replay_sites(const telemetry::LogContent& content, const experiments::TappingParams& params,
                           Replay& replay);
+
+/// The same of two arms: of a rig's, or of simulated ones that tapped.
+Result<bool> replay_arms(const telemetry::LogContent& content, const experiments::ArmTappingParams& params,
+                         Replay& replay);
 
 }  // namespace tactus::runtime
