@@ -7,8 +7,6 @@
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/site_parts.hpp>
 
-#include <array>
-#include <charconv>
 #include <filesystem>
 
 namespace tactus::cli {
@@ -36,10 +34,7 @@ void tell_devices(RigDrive& drive, std::optional<SiteRole> only) {
 }
 /// The same of what a site that is alone has in common with the other.
 void tell_agreement(RigDrive& drive) {
-  std::array<char, 20> digits{};
-  const auto end =
-      std::to_chars(digits.data(), digits.data() + digits.size(), drive.agreement->agreement().digest(), 16).ptr;
-  drive.about["tactus"]["agreement"] = std::string(digits.data(), end);
+  drive.about["tactus"]["agreement"] = runtime::text_of(drive.agreement->agreement());
 }
 
 }  // namespace

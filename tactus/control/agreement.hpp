@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 /// How two sites find out that they do not work by the same parameters, from a few bytes in each packet.
@@ -22,8 +23,12 @@ class Agreement {
   static constexpr std::size_t most_cells = 128;
 
   Agreement() = default;
-  /// One that is known by its digest alone: it decides as the whole one does.
-  explicit Agreement(std::uint64_t digest) noexcept : digest_(digest) {}
+  /// The one that gave this digest and these cells, at most `most_cells`; it tells and decides what that did.
+  Agreement(std::uint64_t digest, std::span<const std::uint64_t> cells) noexcept : digest_(digest) {
+    for (const std::uint64_t value : cells) {
+      if (size_ < most_cells) cells_[size_++] = value;
+    }
+  }
 
   /// Adds a cell, and both to the digest. What has no room is in the digest alone.
   void add(std::string_view key, std::uint64_t value) noexcept {

@@ -1,7 +1,6 @@
 #include <tactus/runtime/internal/replay_sites.hpp>
 #include <tactus/runtime/site_parts.hpp>
 
-#include <charconv>
 #include <set>
 #include <sstream>
 
@@ -81,12 +80,7 @@ std::optional<SiteRole> only_site(const LogContent& content) {
 }
 
 Result<control::Agreement> agreement_in(const LogContent& content) {
-  const std::string text = about(content, "tactus", "agreement");
-  std::uint64_t digest = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), digest, 16);
-  if (!text.empty() && read.ec == std::errc() && read.ptr == text.data() + text.size()) {
-    return control::Agreement(digest);
-  }
+  if (const auto agreement = agreement_from(about(content, "tactus", "agreement"))) return *agreement;
   return refuse_replay(ErrorCode::missing,
                        "the log does not say what its site had in common with the other (agreement): it is of an "
                        "earlier version, which did not leave it, so it is not replayed; record it anew");

@@ -4,9 +4,12 @@
 #include <tactus/station/wall.hpp>
 
 #include <charconv>
+#include <span>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace tactus::runtime {
 
@@ -120,6 +123,21 @@ Result<Joints<DeviceLimits>> limits_in(const Words& words, std::size_t joints) {
     }
   }
   return limits;
+}
+
+std::string text_of(const control::Agreement& agreement) {
+  std::ostringstream text;
+  text << std::hex << agreement.digest();
+  for (std::size_t cell = 0; cell < agreement.size(); ++cell) text << ' ' << agreement[cell];
+  return text.str();
+}
+
+std::optional<control::Agreement> agreement_from(const std::string& text) {
+  std::istringstream words(text);
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t number = 0; words >> std::hex >> number;) numbers.push_back(number);
+  if (!words.eof() || numbers.empty() || numbers.size() > control::Agreement::most_cells + 1) return std::nullopt;
+  return control::Agreement(numbers[0], std::span(numbers).subspan(1));
 }
 
 Words urdfs_of(const experiments::ArmPairSetup& setup) {

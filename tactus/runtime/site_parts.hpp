@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -48,6 +49,11 @@ station::DeviceLimits limits_in(const Words& words);
 /// The same of several joints, under `joint_1` and on. Errors: `missing` where a limit of one of them is no number.
 Words in_words(const Joints<station::DeviceLimits>& limits);
 Result<Joints<station::DeviceLimits>> limits_in(const Words& words, std::size_t joints);
+
+/// What a site has in common with the other as a log carries it: its digest, then its cells. And back; nothing where
+/// that is no such text.
+std::string text_of(const control::Agreement& agreement);
+std::optional<control::Agreement> agreement_from(const std::string& text);
 
 /// The URDFs of arms by their names, as a log carries them, so that it replays wherever the files are by then.
 Words urdfs_of(const experiments::ArmPairSetup& setup);
