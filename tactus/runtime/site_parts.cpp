@@ -135,8 +135,14 @@ std::string text_of(const control::Agreement& agreement) {
 std::optional<control::Agreement> agreement_from(const std::string& text) {
   std::istringstream words(text);
   std::vector<std::uint64_t> numbers;
-  for (std::uint64_t number = 0; words >> std::hex >> number;) numbers.push_back(number);
-  if (!words.eof() || numbers.empty() || numbers.size() > control::Agreement::most_cells + 1) return std::nullopt;
+  for (std::string word; words >> word;) {
+    std::uint64_t number = 0;
+    const char* const end = word.data() + word.size();
+    const auto read = std::from_chars(word.data(), end, number, 16);
+    if (read.ec != std::errc() || read.ptr != end) return std::nullopt;
+    numbers.push_back(number);
+  }
+  if (numbers.empty() || numbers.size() > control::Agreement::most_cells + 1) return std::nullopt;
   return control::Agreement(numbers[0], std::span(numbers).subspan(1));
 }
 
