@@ -58,11 +58,11 @@ JointVector ElasticTorqueObserver::step(const ArmReading& reading) noexcept {
   if (!started_) {
     velocity_ = Filtered::Zero(torque.size(), 3);
     torque_ = velocity_;
-    torque_.col(0) = torque;
     velocity_.col(0) = reading.velocity;
-    torque_before_ = torque;
     velocity_before_ = reading.velocity;
+    torque_before_ = JointVector::Zero(torque.size());
     started_ = true;
+    return torque_before_;
   }
   velocity_ = Filtered(velocity_ * kept_ + 0.5 * (velocity_before_ + reading.velocity) * let_in_);
   torque_ = Filtered(torque_ * kept_ + 0.5 * (torque_before_ + torque) * let_in_);

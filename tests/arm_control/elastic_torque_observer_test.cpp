@@ -35,6 +35,19 @@ TEST(ElasticTorqueObserver, AnswersAStepOnAnArmAtRestInThirdOrder) {
   }
 }
 
+TEST(ElasticTorqueObserver, ADriveThatTellsNoTorqueBeforeItsFirstCommandIsNotTheArmsWeightFromOutside) {
+  const arm::Chain::Params params = arm_plants::openarm_class().chain;
+  auto observer =
+      *ElasticTorqueObserver::make({.cutoff_Hz = cutoff_Hz}, params, JointVector::Constant(7, 3000.0), Seconds{tick_s});
+  const JointVector q = arm_plants::bent();
+  const JointVector none = JointVector::Zero(7);
+  const JointVector weight = arm::Chain::make(params)->gravity_torque(q);
+  ASSERT_GT(weight.norm(), 3.0);
+  double most_N_m = observer.step({q, none, none}).norm();
+  for (int k = 0; k < 200; ++k) most_N_m = std::max(most_N_m, observer.step({q, none, weight}).norm());
+  EXPECT_LT(most_N_m, 0.15 * weight.norm());
+}
+
 TEST(ElasticTorqueObserver, TellsAForceOnSwingingLinksWhereTheRigidObserverTellsTheirSwing) {
   arm_plants::ArmPlant::Params params = arm_plants::openarm_class();
   for (arm::JointParams& joint : params.chain.joints) joint.friction.viscous_N_m_s_per_rad = 0.1;
