@@ -51,13 +51,17 @@ Choice drive_damping(const ArmTappingParams& params, std::size_t joints, double 
   return choice;
 }
 
+/// Limits at the follower's tool, with the torque of the wanted motion, without which they cost more lag than is
+/// allowed.
 Choice tool_limit(double stiffness_N_per_m, double damping_N_s_per_m) {
+  const bool limited = stiffness_N_per_m > 0.0;
   Choice choice{.settings = {{"control.follower.tool_stiffness_limit_N_per_m", format_number(stiffness_N_per_m)},
-                             {"control.follower.tool_damping_limit_N_s_per_m", format_number(damping_N_s_per_m)}}};
-  if (stiffness_N_per_m > 0.0) {
+                             {"control.follower.tool_damping_limit_N_s_per_m", format_number(damping_N_s_per_m)},
+                             {"control.follower.wanted_motion.cutoff_Hz", limited ? "6" : "0"}}};
+  if (limited) {
     choice.words = "the follower's tool held at " + format_number(stiffness_N_per_m) + " N/m";
     if (damping_N_s_per_m > 0.0) choice.words += " and " + format_number(damping_N_s_per_m) + " N s/m";
-    choice.words += " at most";
+    choice.words += " at most and moved as the leader wants";
   }
   return choice;
 }

@@ -17,10 +17,11 @@ JointVector of_each(const ArmFollower::Params& params, std::size_t joints, doubl
 }  // namespace
 
 ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
-                         const std::optional<ToolCoupling>& coupling, Seconds dt)
+                         const WantedMotion& wanted_motion, const std::optional<ToolCoupling>& coupling, Seconds dt)
     : chain_(chain),
       tool_m_(arm.tool_m),
       feed_forward_(params.feed_forward, arm.chain, chain),
+      wanted_motion_(wanted_motion),
       observer_(observer),
       tool_coupling_(coupling),
       most_(effort_limits(arm.chain)),
@@ -78,9 +79,12 @@ Result<ArmFollower> ArmFollower::make(const Params& params, const Arm& arm, Seco
   if (!chain) return chain.error();
   const auto observer = make_observer(params.observer, arm, *chain, dt);
   if (!observer) return under("observer", observer.error());
+  const auto wanted = WantedMotion::make(params.wanted_motion, params.feed_forward.friction_velocity_rad_per_s,
+                                         {arm.chain, *chain, arm.tool_m}, dt);
+  if (!wanted) return under("wanted_motion", wanted.error());
   const auto coupling = make_coupling(params, arm, *chain, dt);
   if (!coupling) return coupling.error();
-  return ArmFollower(params, arm, *chain, *observer, *coupling, dt);
+  return ArmFollower(params, arm, *chain, *observer, *wanted, *coupling, dt);
 }
 
 JointVector ArmFollower::excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept {
@@ -93,12 +97,10 @@ JointVector ArmFollower::excess_torque(const ArmReading& reading, const ArmMessa
   return tool.transpose() * excess_N;
 }
 
-JointVector ArmFollower::observed(const ArmReading& reading) noexcept {
-  JointVector torque = std::visit([&](auto& one) { return one.step(reading); }, observer_);
+void ArmFollower::leave_out_dead_band(JointVector& torque) const noexcept {
   for (Eigen::Index i = 0; i < torque.size(); ++i) {
     torque[i] -= std::clamp(torque[i], -dead_band_[i], dead_band_[i]);
   }
-  return torque;
 }
 
 ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVector& sensed,
@@ -118,8 +120,12 @@ ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVect
     output.command.torque += both.torque;
     output.message.external_torque = both.external;
   } else if (observes_) {
-    output.message.external_torque = observed(reading);
+    output.message.external_torque = std::visit([&](auto& one) { return one.step(reading); }, observer_);
   }
+  if (wanted_motion_.adds()) {
+    output.command.torque += wanted_motion_.step(reading, leader.velocity, output.message.external_torque);
+  }
+  if (observes_ && !four_channel_) leave_out_dead_band(output.message.external_torque);
   saturate(output.command.torque, most_);
   if (tool_coupling_) output.message = tool_coupling_->told(reading, output.message.external_torque);
   return output;

@@ -7,6 +7,7 @@
 #include <tactus/arm_control/feed_forward.hpp>
 #include <tactus/arm_control/tool_coupling.hpp>
 #include <tactus/arm_control/tool_limit.hpp>
+#include <tactus/arm_control/wanted_motion.hpp>
 
 #include <array>
 #include <optional>
@@ -41,9 +42,9 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
 
 /// The site of the arm that touches things: its drives pull it to where the leader wants it, by their own law, and it
 /// tells the torque from outside. What their gains come to at the tool beyond its limits is taken away over the bus
-/// (`ToolLimit`). What the bus carries saturates at each joint's effort limit, at 100 N m at most. Gates stand behind
-/// it
-/// (`follower_site`). With the coupling `tool` it hears and tells three numbers, those of the leader's handle.
+/// (`ToolLimit`), and in free motion the torque of the wanted motion is added there (`WantedMotion`). What the bus
+/// carries saturates at each joint's effort limit, at 100 N m at most. Gates stand behind it (`follower_site`). With
+/// the coupling `tool` it hears and tells three numbers, those of the leader's handle.
 class ArmFollower {
  public:
   struct Params {
@@ -54,6 +55,7 @@ class ArmFollower {
     double tool_stiffness_limit_N_per_m = 0.0;
     double tool_damping_limit_N_s_per_m = 0.0;
     FeedForward::Params feed_forward = {};
+    WantedMotion::Params wanted_motion = {};
     TorqueSource torque = TorqueSource::observer;
     TorqueObserverParams observer = {};
     static constexpr auto fields() {
@@ -75,6 +77,8 @@ class ArmFollower {
                 tactus::units::newton_second_per_metre, between(0.0, 1e4),
                 "The most that the drives' damping may come to there; 0 is no limit."),
           field("feed_forward", &P::feed_forward, "What carries the follower and helps it against friction."),
+          field("wanted_motion", &P::wanted_motion,
+                "What moves it as the leader wants, beside its drives, where it touches nothing."),
           field("torque", &P::torque, "Where the external torque that comes back is from."),
           field("observer", &P::observer, "The observer of external torque.")};
     }
@@ -111,13 +115,14 @@ class ArmFollower {
   static Result<std::optional<ToolCoupling>> make_coupling(const Params& params, const Arm& arm,
                                                            const arm::Chain& chain, Seconds dt);
   ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
-              const std::optional<ToolCoupling>& coupling, Seconds dt);
+              const WantedMotion& wanted_motion, const std::optional<ToolCoupling>& coupling, Seconds dt);
   [[nodiscard]] JointVector excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept;
-  [[nodiscard]] JointVector observed(const ArmReading& reading) noexcept;
+  void leave_out_dead_band(JointVector& torque) const noexcept;
 
   arm::Chain chain_;
   arm::Vector3 tool_m_;
   FeedForward feed_forward_;
+  WantedMotion wanted_motion_;
   Observer observer_;
   std::optional<ToolCoupling> tool_coupling_;
   std::optional<FourChannel> four_channel_;

@@ -7,6 +7,11 @@
 
 namespace tactus::arm_control {
 
+/// Coulomb·tanh(v/v1) + viscous·v of a joint, in N m. Real-time safe.
+inline double smooth_friction(const arm::JointFriction& friction, double v, double v1) noexcept {
+  return friction.coulomb_N_m * std::tanh(v / v1) + friction.viscous_N_m_s_per_rad * v;
+}
+
 /// What a site gives a joint so that it moves as if it had no weight and less friction:
 ///
 ///     gravity(q) + share·(Coulomb·tanh(v/v1) + viscous·v)
@@ -35,10 +40,8 @@ class FeedForward {
     arm::JointVector torque = chain_.gravity_torque(reading.position);
     for (std::size_t i = 0; i < friction_.size(); ++i) {
       const auto joint = static_cast<Eigen::Index>(i);
-      const double v = reading.velocity[joint];
-      torque[joint] +=
-          params_.friction_share * (friction_[i].coulomb_N_m * std::tanh(v / params_.friction_velocity_rad_per_s) +
-                                    friction_[i].viscous_N_m_s_per_rad * v);
+      torque[joint] += params_.friction_share *
+                       smooth_friction(friction_[i], reading.velocity[joint], params_.friction_velocity_rad_per_s);
     }
     return torque;
   }

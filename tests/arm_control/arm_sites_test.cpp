@@ -237,6 +237,7 @@ TEST(ArmSites, ATickDoesNotAllocate) {
   ArmFollower::Params limited;
   limited.tool_stiffness_limit_N_per_m = 100.0;
   limited.tool_damping_limit_N_s_per_m = 1.0;
+  limited.wanted_motion.cutoff_Hz = 6.0;
   auto leader = *ArmLeader::make({.method = ArmMethod::cancellation,
                                   .damping_N_s_per_m = 10.0,
                                   .drive_damping_limit_N_s_per_m = 5.0,
@@ -266,6 +267,12 @@ TEST(ArmSites, RefuseNumbersOutOfBoundsByName) {
   ArmFollower::Params follower;
   follower.observer.cutoff_Hz = 700.0;
   EXPECT_EQ(ArmFollower::make(follower, touching_arm(), tick).error().parameter, "observer.cutoff_Hz");
+  ArmFollower::Params wanted;
+  wanted.wanted_motion.cutoff_Hz = 60.0;
+  EXPECT_EQ(ArmFollower::make(wanted, touching_arm(), tick).error().parameter, "wanted_motion.cutoff_Hz");
+  wanted.observer.cutoff_Hz = 20.0;
+  wanted.wanted_motion.cutoff_Hz = 30.0;
+  EXPECT_EQ(ArmFollower::make(wanted, touching_arm(), Seconds{0.02}).error().parameter, "wanted_motion.cutoff_Hz");
 }
 
 }  // namespace

@@ -75,6 +75,7 @@ inline ArmFollower::Params follower_params() {
   params.gains.joint_5 = params.gains.joint_6 =
       params.gains.joint_7 = {.stiffness_N_m_per_rad = 18.0, .damping_N_m_s_per_rad = 0.2};
   params.feed_forward.friction_share = 0.0;
+  params.wanted_motion.cutoff_Hz = 6.0;
   params.observer.dead_band_share = 1.0;
   return params;
 }
