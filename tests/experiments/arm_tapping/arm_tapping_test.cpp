@@ -106,6 +106,19 @@ TEST(ArmTapping, AlongTheArmTapsSettleBecauseOfTheLimitsAtTheTool) {
   EXPECT_EQ(share_that_settles(params, 3), 0.0);
 }
 
+TEST(ArmTapping, AlongTheArmTheFollowerLagsNoMoreThanPlainAllowsBecauseOfTheWantedMotion) {
+  const auto lag_m = [](ArmTappingParams params) {
+    params.task.direction = TapDirection::along_x;
+    return ArmTaps::make(params, folder)->reach().lag_m;
+  };
+  const double plain_m = lag_m(bare(ArmMethod::position_force));
+  for (ArmTappingParams params : {shipped(), shipped_with({"arms/elastic-joints.toml"})}) {
+    EXPECT_LT(lag_m(params), plain_m + 0.007);
+    params.control.follower.wanted_motion.cutoff_Hz = 0.0;
+    EXPECT_GT(lag_m(params), plain_m + 0.010);
+  }
+}
+
 TEST(ArmTapping, ASoftHandReachesASurfaceAlongTheArmBecauseOfTheDeadBand) {
   ArmTappingParams params = shipped();
   params.control.force_gain = 5.66;
