@@ -29,7 +29,8 @@ inline experiments::ArmPairSetup setup_of(const std::vector<std::string>& on_top
   return experiments::set_up_arm_pair(*params, experiments_folder).value();
 }
 
-/// The same without what a linear loop has not: Coulomb friction, steps, the dead band, the person's correction.
+/// The same without what a linear loop has not: Coulomb friction, steps, the dead band, the person's correction, and the
+/// torque of the wanted motion, which contact that is felt takes away.
 inline experiments::ArmPairSetup smooth(experiments::ArmPairSetup setup) {
   for (experiments::DescribedArm* one : {&setup.leader, &setup.follower}) {
     for (arm::JointParams& joint : one->arm.chain.joints) joint.friction.coulomb_N_m = 0.0;
@@ -39,6 +40,7 @@ inline experiments::ArmPairSetup smooth(experiments::ArmPairSetup setup) {
   }
   setup.exact.induced.chain = setup.leader.arm.chain;
   setup.params.control.follower.observer.dead_band_share = 0.0;
+  setup.params.control.follower.wanted_motion.cutoff_Hz = 0.0;
   setup.params.person.correction_gain_per_s = 0.0;
   return setup;
 }
