@@ -29,8 +29,8 @@ inline experiments::ArmPairSetup setup_of(const std::vector<std::string>& on_top
   return experiments::set_up_arm_pair(*params, experiments_folder).value();
 }
 
-/// The same without what a linear loop has not: Coulomb friction, steps, the dead band, the person's correction, and the
-/// torque of the wanted motion, which contact that is felt takes away.
+/// The same without what a linear loop has not: Coulomb friction, steps, the dead band, the person's correction, and
+/// the torque of the wanted motion, which contact that is felt takes away.
 inline experiments::ArmPairSetup smooth(experiments::ArmPairSetup setup) {
   for (experiments::DescribedArm* one : {&setup.leader, &setup.follower}) {
     for (arm::JointParams& joint : one->arm.chain.joints) joint.friction.coulomb_N_m = 0.0;
