@@ -18,8 +18,8 @@ namespace tactus::arm_control {
 /// Without K⁻¹ this is the momentum observer of rigid joints, which is wrong by M·K⁻¹·s²·τ_J: as large as the contact
 /// itself where a joint swings, and of the wrong sign beyond. F delays by 2/(2π·cutoff) what is slow, twice as long as
 /// one of first order. Damping of the springs is left out, and c and gravity are taken where the motors are.
-/// Positive in the direction in which the position grows. Starts at rest with nothing from outside, whatever the first
-/// reading's torque: a drive tells none before its first command, which is no load of the arm's weight.
+/// Positive in the direction in which the position grows. Starts at rest with nothing from outside, whatever torque the
+/// first reading tells: before its first command a drive tells none, though the arm has weight.
 /// Sources: A. De Luca, A. Albu-Schäffer, S. Haddadin, G. Hirzinger, Collision detection and safe reaction with the
 /// DLR-III lightweight robot arm, IROS 2006 (links behind springs, with sensors of τ_J); M. W. Spong, Modeling and
 /// control of elastic joint robots, 1987 (the model).

@@ -11,8 +11,8 @@ namespace tactus::arm_control {
 namespace {
 
 constexpr double contact_Hz = 10.0;       ///< of the torque by which contact is told
-constexpr double contact_friction = 2.0;  ///< shares of a joint's Coulomb friction and of its effort limit: beyond both
-constexpr double contact_effort = 0.01;   ///< it is in contact
+constexpr double contact_friction = 2.0;  ///< share of a joint's Coulomb friction, beyond which it is in contact
+constexpr double contact_effort = 0.01;   ///< and beyond this one of its effort limit
 constexpr double contact_rise_s = 3e-3;
 constexpr double contact_fall_m = 0.15;
 

@@ -21,8 +21,9 @@ using arm::JointVector;
 ///
 /// In contact it would: v is where the person goes, not where the arm can go, and what it pushes comes back as force.
 /// So s, 1 in contact and 0 away from it, takes it away. A joint is in contact whose torque from outside, behind a
-/// low-pass of 10 Hz, exceeds twice its Coulomb friction; s then rises within 3 ms. It falls by 1/e for each 0.15 m
-/// that the tool goes without contact: a tool that bounces off is still close to what it bounced off.
+/// low-pass of 10 Hz, exceeds twice its Coulomb friction and a hundredth of its effort limit; s then rises within 3 ms.
+/// It falls by 1/e for each 0.15 m that the tool goes without contact: a tool that bounces off is still close to what
+/// it bounced off.
 ///
 /// Gravity and Coriolis torque are not in it: `FeedForward` carries the arm, and Coriolis torque is small where arms
 /// follow a hand.
