@@ -77,14 +77,19 @@ TEST_F(RealTime, TwoArmsTapAtTheRealClockAndLeaveBothSitesAndBothToolsInTheLog) 
   ASSERT_EQ(log.status, 0) << log.err;
   const Json told = Json::parse(log.out);
   int topics = 0;
+  int recorded = 0;
   for (const Json& topic : told["topics"]) {
     EXPECT_EQ(topic["missing"], 0) << topic;
     const std::string name = topic["topic"];
     if (name != "/tools") {
-      EXPECT_EQ(topic["messages"].get<int>(), ticks) << name;
+      const int messages = topic["messages"].get<int>();
+      if (recorded == 0) recorded = messages;
+      EXPECT_EQ(messages, recorded) << name;
     }
     ++topics;
   }
+  EXPECT_LE(recorded, ticks);
+  EXPECT_GE(recorded, ticks - 2) << "a tap may end in missed ticks: the sites then have nothing to do in its last";
   EXPECT_EQ(topics, 2 * (1 + 7) + 2) << "of each site one and one for each joint, /servo and /tools";
   const Outcome replayed = tactus({"replay", "results/log", "--check"});
   EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
