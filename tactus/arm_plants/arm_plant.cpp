@@ -42,18 +42,18 @@ using Model = std::unique_ptr<mjModel, Freed>;
 using Data = std::unique_ptr<mjData, Freed>;
 
 Result<Model> load(const std::string& text) {
-  // The loader of MuJoCo 2.2 keeps what it reads in one place for all.
+  // The loader of MuJoCo 2.2 keeps what it reads in one place for all. Its table of files is two megabytes.
   static std::mutex one_at_a_time;
+  static mjVFS files;
   const std::lock_guard lock(one_at_a_time);
   mju_user_warning = stay_silent;
   constexpr const char* name = "arm.xml";
-  const auto files = std::make_unique<mjVFS>();
-  mj_defaultVFS(files.get());
-  mj_makeEmptyFileVFS(files.get(), name, static_cast<int>(text.size()));
-  std::memcpy(files->filedata[mj_findFileVFS(files.get(), name)], text.data(), text.size());
+  mj_defaultVFS(&files);
+  mj_makeEmptyFileVFS(&files, name, static_cast<int>(text.size()));
+  std::memcpy(files.filedata[mj_findFileVFS(&files, name)], text.data(), text.size());
   std::array<char, 1000> complaint{};
-  Model model(mj_loadXML(name, files.get(), complaint.data(), static_cast<int>(complaint.size())));
-  mj_deleteVFS(files.get());
+  Model model(mj_loadXML(name, &files, complaint.data(), static_cast<int>(complaint.size())));
+  mj_deleteVFS(&files);
   if (model) return model;
   return Error{.code = ErrorCode::failed,
                .parameter = {},

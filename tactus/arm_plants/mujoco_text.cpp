@@ -11,6 +11,10 @@ namespace {
 /// torque creeps at more than 10 mrad/s; so at less than 1.
 constexpr const char* sticks = "solreffriction='0.002 1' solimpfriction='0.99 0.99 0.001'";
 
+/// Room for eight elastic joints with friction, of whose stack 1000 numbers are used. MuJoCo's own choice is 13 MB an
+/// arm, cleared when it is made and copied with it: most of the time of a program that makes many.
+constexpr const char* fits = "<size njmax='16' nconmax='0' nstack='20000'/>";
+
 void write_joint(std::ostream& xml, const arm::JointParams& joint, const MotorParams& motor) {
   const auto begin = [&] {
     xml << "<joint type='" << (joint.kind == arm::JointKind::prismatic ? "slide" : "hinge") << "' axis='"
@@ -36,7 +40,8 @@ std::string mujoco_text(const ArmPlant::Params& params) {
   xml.precision(17);
   const arm::Gravity& g = params.chain.gravity;
   // Contacts and limits are not MuJoCo's: what touches the tool is located by who steps the arm.
-  xml << "<mujoco><compiler angle='radian' inertiafromgeom='false' boundmass='0' boundinertia='0'/><option timestep='"
+  xml << "<mujoco>" << fits
+      << "<compiler angle='radian' inertiafromgeom='false' boundmass='0' boundinertia='0'/><option timestep='"
       << params.step_s << "' gravity='" << g.x_m_per_s2 << " " << g.y_m_per_s2 << " " << g.z_m_per_s2
       << "'><flag contact='disable' limit='disable'/></option><worldbody>";
   for (std::size_t i = 0; i < params.chain.joints.size(); ++i) {
