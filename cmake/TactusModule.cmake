@@ -36,11 +36,11 @@ if(TACTUS_SANITIZE)
   # what computes took two and a half times as long.
   if(TACTUS_SANITIZE MATCHES address)
     target_compile_options(tactus_options INTERFACE -fno-sanitize=null,object-size,vptr,alignment)
+    # Of a function that several modules instantiate, the linker keeps the first: one of tactus_words, say, which is not
+    # optimised. Products of small matrices took three times as long by that, so they are always inlined.
+    target_compile_definitions(tactus_options INTERFACE "EIGEN_STRONG_INLINE=inline __attribute__((always_inline))")
   endif()
   target_link_options(tactus_options INTERFACE -fsanitize=${TACTUS_SANITIZE})
-  # Of a function that several modules instantiate, the linker keeps the first: one of tactus_words, say, which is not
-  # optimised. Products of small matrices took three times as long by that, so they are always inlined.
-  target_compile_definitions(tactus_options INTERFACE "EIGEN_STRONG_INLINE=inline __attribute__((always_inline))")
 endif()
 
 set_property(GLOBAL PROPERTY TACTUS_MODULES "")
