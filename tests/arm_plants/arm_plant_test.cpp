@@ -144,6 +144,22 @@ TEST(ArmPlant, FrictionHoldsAJointBelowCoulombsTorqueAndSlowsItAbove) {
   EXPECT_NEAR(sliding.link_velocity()[0], expected, 0.01 * expected);
 }
 
+TEST(ArmPlant, FrictionHoldsEachOfAsManyJointsAsAnArmMayHave) {
+  ArmPlant::Params params = openarm_class();
+  const std::size_t last = params.chain.joints.size() - 1;
+  params.chain.gravity = {0.0, 0.0, 0.0};
+  params.chain.joints = Joints<arm::JointParams>(most_joints, params.chain.joints[last]);
+  for (arm::JointParams& joint : params.chain.joints) joint.friction.coulomb_N_m = 0.3;
+  params.motors = Joints<MotorParams>(most_joints, params.motors[last]);
+  set_elastic(params, 3000.0, 1.0);
+  params.carried_kg = 0.4;
+  ArmPlant arm = *ArmPlant::make(params, JointVector::Zero(most_joints));
+  arm.write(ArmCommand::of_torque(JointVector::Constant(most_joints, 0.25)));
+  for (int i = 0; i < 2000; ++i) arm.step(nothing);
+  EXPECT_TRUE(arm.healthy());
+  EXPECT_LT(arm.link_position().cwiseAbs().maxCoeff(), 1e-3);
+}
+
 /// A link of 0.01 kg m² on a motor so heavy that it stands, with play in between.
 ArmPlant::Params rattle(double play_rad, double stiffness_N_m_per_rad) {
   ArmPlant::Params params = turntable(1e6, {});
