@@ -11,8 +11,8 @@ namespace {
 /// torque creeps at more than 10 mrad/s; so at less than 1.
 constexpr const char* sticks = "solreffriction='0.002 1' solimpfriction='0.99 0.99 0.001'";
 
-/// Room for eight elastic joints with friction, of whose stack 1000 numbers are used. MuJoCo's own choice is 13 MB an
-/// arm, cleared when it is made and copied with it: most of the time of a program that makes many.
+/// Room for eight elastic joints with friction, which use 1000 numbers of this stack. MuJoCo's own choice is 13 MB an
+/// arm, cleared at each load and copied with the arm.
 constexpr const char* fits = "<size njmax='16' nconmax='0' nstack='20000'/>";
 
 void write_joint(std::ostream& xml, const arm::JointParams& joint, const MotorParams& motor) {
