@@ -124,7 +124,8 @@ TEST_F(TwoSites, ASlaveThatIsKilledAndComesBackFollowsOnlyAfterArming) {
     wait_for master ' hold  *silent '
     site slave2 --site slave --listen 127.0.0.1:$P2 --peer 127.0.0.1:$P0 & slave=$!
     wait_for_next slave2 ' align '
-    wait_for_next master ' hold '
+    # A word to arm counts only while the other site is heard: a round trip is told then.
+    wait_for_next master ' hold  *silent  *none  *none  *[0-9.]*[1-9]'
     kill -USR1 $master
     wait_for_next master ' active '
     wait_for_next slave2 ' active '
