@@ -112,6 +112,11 @@ struct ArmPlant::Engine {
   Vector3 carry_N;  ///< holds the carried mass up
   ArmCommand command;
   JointVector torque;  ///< of the motors, at the latest step
+  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor, 3, 2 * arm::most>;
+  struct ToolJacobian {
+    Rows moving, turning;
+  };
+  ToolJacobian jacobian;  ///< of the tool, for a velocity of each of MuJoCo's own coordinates
 
   [[nodiscard]] int joints() const noexcept { return static_cast<int>(motors.size()); }
   [[nodiscard]] std::size_t dof(int joint) const noexcept {
@@ -138,16 +143,11 @@ struct ArmPlant::Engine {
     const auto at = static_cast<std::size_t>(last_body);
     return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data->xmat + 9 * at);
   }
-  using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor, 3, 2 * arm::most>;
-  struct ToolJacobian {
-    Rows moving, turning;
-  };
-  /// For a velocity of each of MuJoCo's own coordinates.
-  [[nodiscard]] ToolJacobian jacobian() const {
-    ToolJacobian found{Rows(3, model->nv), Rows(3, model->nv)};
+  /// Where the arm is now, for the next step to begin there.
+  void look() {
+    mj_step1(model.get(), data.get());
     const Vector3 point = tool_position();
-    mj_jac(model.get(), data.get(), found.moving.data(), found.turning.data(), point.data(), last_body);
-    return found;
+    mj_jac(model.get(), data.get(), jacobian.moving.data(), jacobian.turning.data(), point.data(), last_body);
   }
   [[nodiscard]] auto velocities() const { return Eigen::Map<const Eigen::VectorXd>(data->qvel, model->nv); }
 };
@@ -171,7 +171,8 @@ ArmPlant::ArmPlant(const ArmPlant& other)
                  .last_body = other.engine_->last_body,
                  .carry_N = other.engine_->carry_N,
                  .command = other.engine_->command,
-                 .torque = other.engine_->torque})) {}
+                 .torque = other.engine_->torque,
+                 .jacobian = other.engine_->jacobian})) {}
 
 Result<ArmPlant> ArmPlant::make(const Params& params, const JointVector& position) {
   const Result<arm::Chain> chain = arm::Chain::make(params.chain);
@@ -204,7 +205,8 @@ Result<ArmPlant> ArmPlant::make(const Params& params, const JointVector& positio
   }
   engine->command = ArmCommand::of_torque(JointVector::Zero(joints));
   engine->torque = JointVector::Zero(joints);
-  mj_step1(engine->model.get(), engine->data.get());
+  engine->jacobian = {Engine::Rows(3, engine->model->nv), Engine::Rows(3, engine->model->nv)};
+  engine->look();
   return ArmPlant(std::move(engine));
 }
 
@@ -225,19 +227,17 @@ void ArmPlant::write(const ArmCommand& command) { engine_->command = command; }
 
 ToolState ArmPlant::tool() const {
   const Engine& e = *engine_;
-  const auto jacobian = e.jacobian();
   return {.position_m = e.tool_position(),
           .rotation = e.rotation(),
-          .velocity_m_per_s = jacobian.moving * e.velocities(),
-          .turning_rad_per_s = jacobian.turning * e.velocities()};
+          .velocity_m_per_s = e.jacobian.moving * e.velocities(),
+          .turning_rad_per_s = e.jacobian.turning * e.velocities()};
 }
 
 void ArmPlant::step(const ToolForce& on_tool) {
   Engine& e = *engine_;
-  const auto jacobian = e.jacobian();
   Eigen::Map<Eigen::VectorXd> applied(e.data->qfrc_applied, e.model->nv);
-  applied.noalias() = jacobian.moving.transpose() * (on_tool.force_N + e.carry_N);
-  applied.noalias() += jacobian.turning.transpose() * on_tool.moment_N_m;
+  applied.noalias() = e.jacobian.moving.transpose() * (on_tool.force_N + e.carry_N);
+  applied.noalias() += e.jacobian.turning.transpose() * on_tool.moment_N_m;
   for (int i = 0; i < e.joints(); ++i) {
     const MotorParams& motor = e.motors[static_cast<std::size_t>(i)];
     const double limit = motor.torque_limit_N_m;
@@ -252,7 +252,7 @@ void ArmPlant::step(const ToolForce& on_tool) {
     }
   }
   mj_step2(e.model.get(), e.data.get());
-  mj_step1(e.model.get(), e.data.get());
+  e.look();
 }
 
 JointVector ArmPlant::link_position() const { return engine_->link_side(engine_->data->qpos); }
@@ -261,17 +261,16 @@ JointVector ArmPlant::link_velocity() const { return engine_->link_side(engine_-
 JointVector ArmPlant::bearing_torque() const {
   const Engine& e = *engine_;
   const Eigen::Map<const Eigen::VectorXd> all(e.data->qfrc_bias, e.model->nv);
-  const Eigen::VectorXd left = all - e.jacobian().moving.transpose() * e.carry_N;
+  const Eigen::VectorXd left = all - e.jacobian.moving.transpose() * e.carry_N;
   return e.motor_side(left.data());
 }
 
 JointVector ArmPlant::torque_of(const ToolForce& on_tool) const {
   const Engine& e = *engine_;
-  const auto jacobian = e.jacobian();
   // Of motors and, where joints are elastic, of links: in a place of its own size, for a tick does not allocate.
   const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * arm::most, 1> all =
-      jacobian.moving.transpose().lazyProduct(on_tool.force_N) +
-      jacobian.turning.transpose().lazyProduct(on_tool.moment_N_m);
+      e.jacobian.moving.transpose().lazyProduct(on_tool.force_N) +
+      e.jacobian.turning.transpose().lazyProduct(on_tool.moment_N_m);
   return e.motor_side(all.data());
 }
 
