@@ -24,6 +24,8 @@ ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain&
       wanted_motion_(wanted_motion),
       observer_(observer),
       tool_coupling_(coupling),
+      passivity_(arm.passivity, chain.joints(), dt),
+      told_(JointVector::Zero(chain.joints())),
       most_(effort_limits(arm.chain)),
       observes_(params.torque == TorqueSource::observer),
       dead_band_(JointVector::Zero(chain.joints())),
@@ -105,7 +107,9 @@ void ArmFollower::leave_out_dead_band(JointVector& torque) const noexcept {
 
 ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVector& sensed,
                                       const ArmMessage& heard) noexcept {
-  const ArmMessage leader = tool_coupling_ ? tool_coupling_->wanted(heard, reading.position) : heard;
+  ArmMessage leader = heard;
+  if (passivity_.counts()) passivity_.hold_back(leader, told_);
+  if (tool_coupling_) leader = tool_coupling_->wanted(leader, reading.position);
   Output output;
   output.support = feed_forward_.torque(reading);
   output.command = {.position = leader.position,
@@ -128,6 +132,8 @@ ArmFollower::Output ArmFollower::step(const ArmReading& reading, const JointVect
   if (observes_ && !four_channel_) leave_out_dead_band(output.message.external_torque);
   saturate(output.command.torque, most_);
   if (tool_coupling_) output.message = tool_coupling_->told(reading, output.message.external_torque);
+  told_.head(output.message.external_torque.size()) = output.message.external_torque;
+  output.message.energy_J = passivity_.in_J();
   return output;
 }
 

@@ -5,6 +5,7 @@
 #include <tactus/arm_control/elastic_torque_observer.hpp>
 #include <tactus/arm_control/external_torque_observer.hpp>
 #include <tactus/arm_control/feed_forward.hpp>
+#include <tactus/arm_control/passivity.hpp>
 #include <tactus/arm_control/tool_coupling.hpp>
 #include <tactus/arm_control/tool_limit.hpp>
 #include <tactus/arm_control/wanted_motion.hpp>
@@ -93,6 +94,7 @@ class ArmFollower {
     std::optional<arm::Matrix3> leader_axes = std::nullopt;
     /// Where the leader couples so: in place of the drives' gains and of `torque`.
     std::optional<FourChannelCoupling> four_channel = std::nullopt;
+    PassivityCoupling passivity = {};
   };
   struct Output {
     ArmCommand command;
@@ -126,6 +128,8 @@ class ArmFollower {
   Observer observer_;
   std::optional<ToolCoupling> tool_coupling_;
   std::optional<FourChannel> four_channel_;
+  PassiveFollower passivity_;
+  JointVector told_;  ///< what it told last of torque from outside
   JointVector most_;  ///< torque of the bus
   bool observes_;
   JointVector dead_band_;

@@ -2,6 +2,8 @@
 #include <tactus/arm_control/effort_limits.hpp>
 #include <tactus/signal/checks.hpp>
 
+#include <string>
+
 namespace tactus::arm_control {
 namespace {
 
@@ -30,6 +32,7 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
       factr_(params.factr, arm.carried, chain),
       avoidance_(params.avoidance, chain.joints()),
       four_channel_(params.four_channel, FourChannel::Side::leader, params.force_gain, arm.carried, chain, dt),
+      passivity_(params.passivity, params.force_gain, chain.joints(), dt),
       force_(force),
       command_position_(command),
       command_velocity_(command),
@@ -49,6 +52,13 @@ ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& fe
 
 Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds dt) {
   if (Check wrong = signal::check(params, dt)) return *std::move(wrong);
+  if (params.passivity.port != PassivePort::none && pulls(params.method)) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "passivity.port",
+                 .message = std::string(name_of(params.method)) +
+                            " reflects no torque whose energy could be counted: write none, or another method",
+                 .place = {}};
+  }
   const auto chain = arm::Chain::make(arm.carried);
   if (!chain) return chain.error();
   const InducedMotion::Site site{.damping_N_s_per_m = params.damping_N_s_per_m,
@@ -66,12 +76,16 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
                    dt);
 }
 
+ToolJacobian ArmLeader::tool_at(const JointVector& position) const noexcept {
+  return chain_.jacobian(position, chain_.joints() - 1, tool_m_).topRows<3>();
+}
+
 /// All of the bus's torque but what comes from the follower.
 JointVector ArmLeader::beside_display(const ArmReading& reading, const JointVector& support) noexcept {
   JointVector torque = support;
   const bool gives_back = !pulls(params_.method) && damping_limit_.limits();
   if (params_.damping_N_s_per_m > 0.0 || gives_back) {
-    const ToolJacobian tool = chain_.jacobian(reading.position, chain_.joints() - 1, tool_m_).topRows<3>();
+    const ToolJacobian tool = tool_at(reading.position);
     const arm::Vector3 velocity = tool * reading.velocity;
     arm::Vector3 force_N = -params_.damping_N_s_per_m * velocity;
     if (gives_back) force_N += damping_limit_.excess(tool) * velocity;
@@ -96,6 +110,8 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
   if (params_.method == ArmMethod::feedback_avoidance) {
     displayed = avoidance_.displayed(displayed, reading.velocity);
   }
+  if (passivity_.counts())
+    displayed += passivity_.brake(reading, displayed, follower.energy_J, tool_at(reading.position));
   JointVector own_external = JointVector::Zero(joints);
   if (params_.method == ArmMethod::four_channel) {
     const FourChannel::Output both = four_channel_.step(reading, follower);
@@ -115,7 +131,10 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
   if (params_.method != ArmMethod::position_position) displayed = output.command.torque - undisplayed;
   output.displayed = displayed;
   output.induced = JointVector::Zero(joints);
-  output.message = {.position = reading.position, .velocity = reading.velocity, .external_torque = own_external};
+  output.message = {.position = reading.position,
+                    .velocity = reading.velocity,
+                    .external_torque = own_external,
+                    .energy_J = passivity_.in_J()};
   if (params_.method == ArmMethod::cancellation) {
     output.induced = model_.position();
     output.message.position -= output.induced;
@@ -130,6 +149,7 @@ ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& f
 
 void ArmLeader::applied(const JointVector& torque) noexcept {
   if (params_.method == ArmMethod::cancellation) acting_ = torque - undisplayed_;
+  if (passivity_.counts()) passivity_.applied(torque - undisplayed_);
 }
 
 }  // namespace tactus::arm_control

@@ -8,6 +8,7 @@
 #include <tactus/arm_control/four_channel.hpp>
 #include <tactus/arm_control/induced_motion.hpp>
 #include <tactus/arm_control/joint_low_pass.hpp>
+#include <tactus/arm_control/passivity.hpp>
 #include <tactus/arm_control/tool_limit.hpp>
 
 #include <array>
@@ -63,10 +64,9 @@ struct DriveDamping {
 /// beyond a limit is given back over the bus (`ToolLimit`). With `factr` and `feedback_avoidance` it is what their
 /// classes say beside that. With position-position it is feed-forward and the drives' law, towards the follower; with
 /// four-channel what `FourChannel` adds as well. What the bus carries saturates at each joint's effort limit. Gates
-/// stand behind it
-/// (`leader_site`); the model of induced motion lives on what `applied` says that they let through. Sources:
-/// position-position as openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the leader's
-/// stiffness as i2rt's YAM has it (`bilateral_kp`, MIT); the rest as on one axis
+/// stand behind it (`leader_site`); the model of induced motion lives on what `applied` says that they let through.
+/// Sources: position-position as openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the
+/// leader's stiffness as i2rt's YAM has it (`bilateral_kp`, MIT); the rest as on one axis
 /// (`control::PositionForceMaster`).
 class ArmLeader {
  public:
@@ -83,6 +83,7 @@ class ArmLeader {
     FactrLaw::Params factr = {};
     FeedbackAvoidance::Params avoidance = FeedbackAvoidance::released;
     FourChannel::Params four_channel = {};
+    PassivityParams passivity = {};
     static constexpr auto fields() {
       using P = Params;
       return List{
@@ -105,7 +106,10 @@ class ArmLeader {
           field("model", &P::model, "The model of induced motion."),
           field("factr", &P::factr, "With factr alone: its law beside the displayed torque."),
           field("avoidance", &P::avoidance, "With feedback-avoidance alone: its gain of each joint."),
-          field("four_channel", &P::four_channel, "With four-channel alone: the law of both arms.")};
+          field("four_channel", &P::four_channel, "With four-channel alone: the law of both arms."),
+          field(
+              "passivity", &P::passivity,
+              "Dampers at both sites that take what energy there is too much of; with a method that reflects torque.")};
     }
   };
 
@@ -124,7 +128,8 @@ class ArmLeader {
   };
 
   /// Torques saturate at the effort limits of `arm.carried`, at 100 N m at most. Errors: a number out of bounds; those
-  /// of the parts.
+  /// of the parts; `inconsistent`, under `passivity.port`, for passive ports with a method that pulls both arms to one
+  /// another.
   static Result<ArmLeader> make(const Params& params, const Arm& arm, Seconds dt);
 
   /// One tick. The command acts from the next tick on, as on a bus, and the model counts with that. Real-time safe.
@@ -135,6 +140,7 @@ class ArmLeader {
  private:
   ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
             const InducedMotion& model, const JointLowPass& force, const JointLowPass& command, Seconds dt);
+  [[nodiscard]] ToolJacobian tool_at(const JointVector& position) const noexcept;
   [[nodiscard]] JointVector beside_display(const ArmReading& reading, const JointVector& support) noexcept;
 
   Params params_;
@@ -148,6 +154,7 @@ class ArmLeader {
   FactrLaw factr_;
   FeedbackAvoidance avoidance_;
   FourChannel four_channel_;
+  PassiveLeader passivity_;
   JointLowPass force_;
   JointLowPass command_position_;
   JointLowPass command_velocity_;

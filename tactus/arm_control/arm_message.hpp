@@ -15,11 +15,13 @@ struct ArmMessage {
   JointVector position;
   JointVector velocity;
   JointVector external_torque;
+  /// That flowed into the line at the site's port so far, in J, as `PassiveLeader` counts it; empty where nobody does.
+  JointVector energy_J = {};
 
   /// An arm that rests there and touches nothing.
   static ArmMessage at_rest(const JointVector& position) noexcept {
     const JointVector none = arm::JointVector::Zero(position.size());
-    return {.position = position, .velocity = none, .external_torque = none};
+    return {.position = position, .velocity = none, .external_torque = none, .energy_J = none};
   }
 };
 

@@ -33,7 +33,8 @@ template <class Input>
 ArmMessage message_of(const Joints<Input>& input, std::size_t of_arm) noexcept {
   return {.position = each(input, of_arm, [](const Input& joint) { return joint.arrival.message.position_m; }),
           .velocity = each(input, of_arm, [](const Input& joint) { return joint.arrival.message.velocity_m_per_s; }),
-          .external_torque = each(input, of_arm, [](const Input& joint) { return -joint.arrival.message.force_N; })};
+          .external_torque = each(input, of_arm, [](const Input& joint) { return -joint.arrival.message.force_N; }),
+          .energy_J = each(input, of_arm, [](const Input& joint) { return joint.arrival.message.energy_J; })};
 }
 
 template <class Output>
@@ -55,6 +56,7 @@ void put(const ArmCommand& command, const JointVector& support, const ArmMessage
     joint.message.position_m = message.position[at];
     joint.message.velocity_m_per_s = message.velocity[at];
     joint.message.force_N = -message.external_torque[at];
+    if (message.energy_J.size() > 0) joint.message.energy_J = message.energy_J[at];
   }
 }
 

@@ -16,7 +16,16 @@ using experiments::ArmPairSetup;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 
-Check refuse_method(ArmMethod method) {
+Check refuse_what_is_not_linear(const arm_control::ArmLeader::Params& control) {
+  if (control.passivity.port != arm_control::PassivePort::none) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "control.passivity.port",
+                 .message =
+                     "its dampers go by energy, so no loop of it is linear: write none, or look at taps, as in "
+                     "tactus run",
+                 .place = {}};
+  }
+  const ArmMethod method = control.method;
   if (method == ArmMethod::position_force || method == ArmMethod::cancellation) return std::nullopt;
   return Error{.code = ErrorCode::inconsistent,
                .parameter = "control.method",
@@ -183,7 +192,7 @@ Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmB
                               const ArmLinearisation& linearisation) {
   const experiments::ArmTappingParams& params = setup.params;
   const auto& control = params.control;
-  if (Check refused = refuse_method(control.method)) return *std::move(refused);
+  if (Check refused = refuse_what_is_not_linear(control)) return *std::move(refused);
   if (Check refused = experiments::refuse_tool_coupling(params, "tactus stability")) return *std::move(refused);
   const auto wall = linear_wall(params.wall, linearisation.preload_N);
   if (!wall) return wall.error();

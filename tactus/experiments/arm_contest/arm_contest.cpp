@@ -83,6 +83,15 @@ std::span<const ArmContestMethod> arm_contest_methods() {
        {"control.method=four-channel", "control.feed_forward.friction_share=0"},
        "Positions and torques both ways with observers of disturbance and reaction, as openarm_bilateral has it; its "
        "own gain is 1."},
+      {"passivity, each joint",
+       false,
+       {plain, "control.passivity.port=joints"},
+       "Position-force between ports at each joint that let no more energy out than went in: a damper at the leader's "
+       "joint, and a follower that stays behind."},
+      {"passivity, tool",
+       false,
+       {plain, "control.passivity.port=tool"},
+       "The same with one port for all joints, whose power is that of the tool."},
       {"cancellation",
        false,
        {"control.method=cancellation"},

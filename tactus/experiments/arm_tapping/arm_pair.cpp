@@ -219,7 +219,8 @@ Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const A
   if (!leader_site) return under("control", leader_site.error());
   arm_control::ArmFollower::Arm known{.chain = follows.chain,
                                       .tool_m = follows.tool_m,
-                                      .joint_stiffness_N_m_per_rad = beliefs.follower_joint_stiffness_N_m_per_rad};
+                                      .joint_stiffness_N_m_per_rad = beliefs.follower_joint_stiffness_N_m_per_rad,
+                                      .passivity = {params.control.passivity, params.control.force_gain}};
   if (params.control.method == arm_control::ArmMethod::four_channel) {
     known.four_channel =
         arm_control::FourChannelCoupling{.params = params.control.four_channel, .gain = params.control.force_gain};

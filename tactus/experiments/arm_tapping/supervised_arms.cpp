@@ -125,7 +125,8 @@ Result<control::JointSupervisedSlave> arm_follower_site(const ArmPairSetup& setu
       arm_control::follower_site(setup.params.control.follower,
                                  {.chain = within(setup.follower.arm.chain, begun->gates),
                                   .tool_m = setup.follower.arm.tool_m,
-                                  .joint_stiffness_N_m_per_rad = setup.exact.follower_joint_stiffness_N_m_per_rad},
+                                  .joint_stiffness_N_m_per_rad = setup.exact.follower_joint_stiffness_N_m_per_rad,
+                                  .passivity = {setup.params.control.passivity, setup.params.control.force_gain}},
                                  begun->gates, begun->tick, beside);
   if (!follows) return under("control.follower", follows.error());
   auto slave =
