@@ -74,12 +74,6 @@ class ArmSearch {
     const Method bare = bare_method(arm_dimensions(bench_.as_given, bench_.joints));
     auto plain = reaches_of(bare, 1.0);
     if (!plain) return plain.error();
-    const auto without_force = reaches_of(bare, 0.0);
-    if (!without_force) return without_force.error();
-    for (std::size_t hand = 0; hand < plain->size(); ++hand) {
-      const bool rings = (*plain)[hand].lag_m > (*without_force)[hand].lag_m + most_lag_more_m;
-      if (rings) (*plain)[hand] = (*without_force)[hand];
-    }
     plain_ = *std::move(plain);
     return {};
   }

@@ -13,10 +13,8 @@ namespace tactus::advice {
 
 /// The range of the search for force gains of arms, that of the contest of arms.
 inline constexpr double lowest_arm_gain = 0.0625, highest_arm_gain = 16.0;
-/// What a configuration may cost beyond plain position-force control on the bare pair, in a free reach at the file's
-/// own pose and direction, in each hand: lag on top of plain's, and effort over plain's. Plain's are those at gain 1
-/// or, as a pair that rings in a free reach is no measure, without force where it lags by `most_lag_more_m` more at
-/// gain 1.
+/// What a configuration may cost beyond plain position-force control on the bare pair at gain 1, in a free reach at
+/// the file's own pose and direction, in each hand: lag on top of plain's, and effort over plain's.
 inline constexpr double most_lag_more_m = 0.007;
 inline constexpr double most_effort_factor = 5.0;
 

@@ -53,11 +53,13 @@ Choice drive_damping(const ArmTappingParams& params, std::size_t joints, double 
 
 /// Limits at the follower's tool, with the torque of the wanted motion, without which they cost more lag than is
 /// allowed.
-Choice tool_limit(double stiffness_N_per_m, double damping_N_s_per_m) {
+Choice tool_limit(const ArmTappingParams& params, double stiffness_N_per_m, double damping_N_s_per_m) {
   const bool limited = stiffness_N_per_m > 0.0;
   Choice choice{.settings = {{"control.follower.tool_stiffness_limit_N_per_m", format_number(stiffness_N_per_m)},
                              {"control.follower.tool_damping_limit_N_s_per_m", format_number(damping_N_s_per_m)},
-                             {"control.follower.wanted_motion.cutoff_Hz", limited ? "6" : "0"}}};
+                             {"control.follower.wanted_motion.cutoff_Hz", !limited                       ? "0"
+                                                                          : has_elastic_follower(params) ? "12"
+                                                                                                         : "6"}}};
   if (limited) {
     choice.words = "the follower's tool held at " + format_number(stiffness_N_per_m) + " N/m";
     if (damping_N_s_per_m > 0.0) choice.words += " and " + format_number(damping_N_s_per_m) + " N s/m";
@@ -105,14 +107,17 @@ std::vector<Dimension> arm_dimensions(const ArmTappingParams& params, std::size_
        number_of(damper, 40.0, "a damper of {} N s/m over the bus")},
       {number_of(command, 0.0, ""), number_of(command, 8.0, low_pass_words), number_of(command, 16.0, low_pass_words)},
       {number_of(share, 1.0, ""), number_of(share, 0.6, "{} of the follower's stiffness")},
-      {tool_limit(0.0, 0.0), tool_limit(400.0, 8.0), tool_limit(800.0, 16.0), tool_limit(400.0, 0.0)}};
+      {tool_limit(params, 0.0, 0.0), tool_limit(params, 400.0, 8.0), tool_limit(params, 800.0, 16.0),
+       tool_limit(params, 400.0, 0.0)}};
   if (params.control.follower.torque == arm_control::TorqueSource::sensor) return dimensions;
   dimensions.push_back({number_of(dead_band, 0.0, ""), number_of(dead_band, 1.0, "no force within friction")});
   if (has_elastic_follower(params)) {
     const double cutoff_Hz = params.control.follower.observer.cutoff_Hz;
-    dimensions.push_back({observer("rigid", cutoff_Hz, ""),
-                          observer("elastic", 20.0, "an observer of elastic joints at 20 Hz"),
-                          observer("elastic", 30.0, "an observer of elastic joints at 30 Hz")});
+    // That of rigid joints closes a loop here that needs no surface: a pair with it is none to begin at, or to compare
+    // with.
+    dimensions.push_back({observer("elastic", 20.0, "an observer of elastic joints at 20 Hz"),
+                          observer("elastic", 30.0, "an observer of elastic joints at 30 Hz"),
+                          observer("rigid", cutoff_Hz, "an observer of rigid joints")});
   }
   return dimensions;
 }

@@ -99,11 +99,14 @@ inline ArmDevice device(double carried_kg) {
   return {*ArmPlant::make(params, arm_plants::bent()), Joints<station::DeviceLimits>(joints)};
 }
 
-inline station::JointSupervisedPair supervised_pair() {
-  auto master =
-      control::supervise_master(*leader_site(leader_params(), leader_arm(), gates(), tick), supervision(), 1, tick);
-  auto slave = control::supervise_slave(*follower_site(follower_params(), follower_arm(), gates(), tick), supervision(),
-                                        2, tick);
+inline station::JointSupervisedPair supervised_pair(const PassivityParams& passivity = {}) {
+  ArmLeader::Params leads = leader_params();
+  leads.passivity = passivity;
+  ArmFollower::Arm follows = follower_arm();
+  follows.passivity = {.params = passivity, .gain = leads.force_gain};
+  auto master = control::supervise_master(*leader_site(leads, leader_arm(), gates(), tick), supervision(), 1, tick);
+  auto slave =
+      control::supervise_slave(*follower_site(follower_params(), follows, gates(), tick), supervision(), 2, tick);
   return *station::JointSupervisedPair::around(*std::move(master), *std::move(slave), {}, tick, start());
 }
 
@@ -111,7 +114,7 @@ inline station::JointSupervisedPair supervised_pair() {
 struct Bench {
   ArmDevice leader = device(0.4), follower = device(0.0);
   arm_plants::Person person;
-  station::JointSupervisedPair sites = supervised_pair();
+  station::JointSupervisedPair sites;
   station::JointSupervisedPair::Output last;
   arm::Vector3 began_m = follower.plant().tool().position_m;
   arm_plants::Wall wall{
@@ -124,7 +127,9 @@ struct Bench {
   std::int64_t number = 0;
   bool held = true;
 
-  Bench() : person(*arm_plants::Person::make({.hand = firm}, tick, leader.plant().tool())) {}
+  explicit Bench(const PassivityParams& passivity = {})
+      : person(*arm_plants::Person::make({.hand = firm}, tick, leader.plant().tool())),
+        sites(supervised_pair(passivity)) {}
 
   void step(const SiteRequests& pressed, std::int64_t missed = 0) {
     number += missed;

@@ -42,6 +42,33 @@ TEST(ArmsUnderSupervision, CoupleFollowAndFeelContactWithinTheGates) {
   EXPECT_LE(bench.most_step_N, 2000.0 * tick.value * (1.0 + 1e-9));
 }
 
+TEST(ArmsUnderSupervision, WithPassivePortsTheyFollowFeelContactAndCanBeArmedAnew) {
+  for (const PassivePort port : {PassivePort::joints, PassivePort::tool}) {
+    Bench bench({.port = port});
+    bench.couple();
+    ASSERT_TRUE(bench.both(SiteState::active)) << name_of(port);
+    bench.press_on_the_wall();
+    EXPECT_GT(bench.contact_N, 0.5) << name_of(port);
+    EXPECT_LT(bench.contact_N, 20.0) << name_of(port);
+    EXPECT_GT(bench.last.master.output.site[1].message.energy_J + bench.last.master.output.site[0].message.energy_J,
+              1e-4)
+        << name_of(port) << ": the hand put energy in";
+    bench.follower.set_health(DeviceHealth::silent);
+    bench.run(0.03, {.dead_man = true});
+    EXPECT_EQ(bench.sites.slave().state(), SiteState::hold);
+    bench.follower.set_health(DeviceHealth::good);
+    bench.run(0.05, {.arm = true});
+    bench.run(0.5, {.dead_man = true});
+    ASSERT_TRUE(bench.both(SiteState::active)) << name_of(port);
+    bench.aim_m = 0.01;
+    bench.run(1.0, {.dead_man = true});
+    const arm::Vector3 leader_m = bench.leader.plant().tool().position_m;
+    EXPECT_GT((leader_m - bench.began_m).z(), 5e-3) << name_of(port);
+    EXPECT_LT((leader_m - bench.follower.plant().tool().position_m).norm(), 5e-3) << name_of(port) << " follows again";
+    EXPECT_TRUE(bench.sites.healthy());
+  }
+}
+
 TEST(ArmsUnderSupervision, TheDeadManSwitchUncouplesTheLeaderAndDropsNeitherArm) {
   Bench bench;
   bench.couple();
