@@ -96,6 +96,8 @@ TEST(ArmLoop, WhatHasNotBeenMadeLinearIsRefusedByName) {
     EXPECT_EQ(loop.error().parameter, "control.method");
     EXPECT_NE(loop.error().message.find(method), std::string::npos) << loop.error().message;
   }
+  const auto passive = setup_of({"control.passivity.port=joints"});
+  EXPECT_EQ(ArmLoop::make(passive, passive.exact).error().parameter, "control.passivity.port");
   const auto handle = setup_of({"inverse3-arm.toml"});
   EXPECT_EQ(ArmLoop::make(handle, handle.exact).error().parameter, "control.follower.coupling");
 }
