@@ -21,13 +21,31 @@ double bend_of(const MotorParams& motor, double apart_rad) noexcept {
   return std::copysign(std::max(std::fabs(apart_rad) - 0.5 * motor.play_rad, 0.0), apart_rad);
 }
 
-/// Torque of the flanks on the link, against the motor: they push, and never pull.
-double flank_torque(const MotorParams& motor, double apart_rad, double apart_rad_per_s) noexcept {
-  const double bend = bend_of(motor, apart_rad);
-  if (bend == 0.0) return 0.0;
-  const double torque = -motor.joint_stiffness_N_m_per_rad * bend - motor.joint_damping_N_m_s_per_rad * apart_rad_per_s;
-  return torque * bend < 0.0 ? torque : 0.0;
+/// What is stiff and damped pushes back, and never pulls.
+double push_back(double stiffness_N_m_per_rad, double damping_N_m_s_per_rad, double into_rad,
+                 double rad_per_s) noexcept {
+  if (into_rad == 0.0) return 0.0;
+  const double torque = -stiffness_N_m_per_rad * into_rad - damping_N_m_s_per_rad * rad_per_s;
+  return torque * into_rad < 0.0 ? torque : 0.0;
 }
+
+/// Torque of the flanks on the link, against the motor.
+double flank_torque(const MotorParams& motor, double apart_rad, double apart_rad_per_s) noexcept {
+  return push_back(motor.joint_stiffness_N_m_per_rad, motor.joint_damping_N_m_s_per_rad, bend_of(motor, apart_rad),
+                   apart_rad_per_s);
+}
+
+/// Where a link cannot go further.
+struct EndStops {
+  double lower_rad = 0.0;
+  double upper_rad = 0.0;
+  double stiffness_N_m_per_rad = 0.0;
+  double damping_N_m_s_per_rad = 0.0;
+  /// How far a link is beyond one of them, negative at the lower; 0 between them.
+  [[nodiscard]] double beyond_rad(double link_rad) const noexcept {
+    return link_rad - std::clamp(link_rad, lower_rad, upper_rad);
+  }
+};
 
 /// What goes wrong is asked for (`healthy`); MuJoCo by itself would write a file into the current folder.
 void stay_silent(const char*) {}
@@ -107,6 +125,7 @@ struct ArmPlant::Engine {
   Joints<MotorParams> motors;
   std::array<int, most_joints> motor_dof{};
   Joints<bool> elastic;
+  Joints<EndStops> stops;
   Vector3 tool_m;  ///< on the last link
   int last_body = 0;
   Vector3 carry_N;  ///< holds the carried mass up
@@ -127,12 +146,36 @@ struct ArmPlant::Engine {
     for (int i = 0; i < joints(); ++i) found[i] = of[dof(i)];
     return found;
   }
+  [[nodiscard]] double link_side(const mjtNum* of, int joint) const noexcept {
+    return elastic[static_cast<std::size_t>(joint)] ? of[dof(joint)] + of[dof(joint) + 1] : of[dof(joint)];
+  }
   [[nodiscard]] JointVector link_side(const mjtNum* of) const {
-    JointVector found = motor_side(of);
-    for (int i = 0; i < joints(); ++i) {
-      if (elastic[static_cast<std::size_t>(i)]) found[i] += of[dof(i) + 1];
-    }
+    JointVector found(joints());
+    for (int i = 0; i < joints(); ++i) found[i] = link_side(of, i);
     return found;
+  }
+  /// A torque on a link acts on both of an elastic joint's coordinates, which add up to where the link is.
+  void add_on_link(mjtNum* to, int joint, double torque_N_m) const noexcept {
+    to[dof(joint)] += torque_N_m;
+    if (elastic[static_cast<std::size_t>(joint)]) to[dof(joint) + 1] += torque_N_m;
+  }
+  /// What a torque on a link accelerates where the arm is now and its other joints are free.
+  [[nodiscard]] double inertia_kg_m2(int joint) const {
+    using Each = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * arm::most, 1>;
+    Each pushed = Each::Zero(model->nv), acceleration(model->nv);
+    add_on_link(pushed.data(), joint, 1.0);
+    mj_solveM(model.get(), data.get(), acceleration.data(), pushed.data(), 1);
+    return 1.0 / link_side(acceleration.data(), joint);
+  }
+  /// Of an end stop on a link, positive where the position grows.
+  [[nodiscard]] double stop_torque(int joint) const {
+    const EndStops& stop = stops[static_cast<std::size_t>(joint)];
+    const double beyond = stop.beyond_rad(link_side(data->qpos, joint));
+    if (beyond == 0.0) return 0.0;
+    // In a pose in which little moves with the joint, more would throw it back within a step.
+    const double most_damping = 0.5 * inertia_kg_m2(joint) / model->opt.timestep;
+    return push_back(stop.stiffness_N_m_per_rad, std::min(stop.damping_N_m_s_per_rad, most_damping), beyond,
+                     link_side(data->qvel, joint));
   }
   [[nodiscard]] Vector3 tool_position() const {
     const auto at = static_cast<std::size_t>(last_body);
@@ -167,6 +210,7 @@ ArmPlant::ArmPlant(const ArmPlant& other)
                  .motors = other.engine_->motors,
                  .motor_dof = other.engine_->motor_dof,
                  .elastic = other.engine_->elastic,
+                 .stops = other.engine_->stops,
                  .tool_m = other.engine_->tool_m,
                  .last_body = other.engine_->last_body,
                  .carry_N = other.engine_->carry_N,
@@ -207,6 +251,16 @@ Result<ArmPlant> ArmPlant::make(const Params& params, const JointVector& positio
   engine->torque = JointVector::Zero(joints);
   engine->jacobian = {Engine::Rows(3, engine->model->nv), Engine::Rows(3, engine->model->nv)};
   engine->look();
+  engine->stops = Joints<EndStops>(params.motors.size());
+  for (int i = 0; i < joints; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const arm::JointLimits& limits = params.chain.joints[at].limits;
+    const double inertia_kg_m2 = engine->inertia_kg_m2(i);
+    engine->stops[at] = {.lower_rad = std::min(limits.lower_rad, position[i]),
+                         .upper_rad = std::max(limits.upper_rad, position[i]),
+                         .stiffness_N_m_per_rad = inertia_kg_m2 * end_stop_rad_per_s * end_stop_rad_per_s,
+                         .damping_N_m_s_per_rad = 2.0 * end_stop_damping_ratio * inertia_kg_m2 * end_stop_rad_per_s};
+  }
   return ArmPlant(std::move(engine));
 }
 
@@ -250,6 +304,7 @@ void ArmPlant::step(const ToolForce& on_tool) {
       const std::size_t apart = e.dof(i) + 1;
       e.data->qfrc_applied[apart] += flank_torque(motor, e.data->qpos[apart], e.data->qvel[apart]);
     }
+    if (const double stop = e.stop_torque(i); stop != 0.0) e.add_on_link(e.data->qfrc_applied, i, stop);
   }
   mj_step2(e.model.get(), e.data.get());
   e.look();
@@ -282,14 +337,17 @@ double ArmPlant::energy_J() const {
   mj_energyVel(e.model.get(), e.data.get());
   e.model->opt.enableflags &= ~mjENBL_ENERGY;
   const double hand_J = -e.carry_N.dot(e.tool_position());  // what it seems to weigh in MuJoCo, it does not
-  double flanks_J = 0.0;
+  double pressed_J = 0.0;                                   // into flanks and end stops
   for (int i = 0; i < e.joints(); ++i) {
     const MotorParams& motor = e.motors[static_cast<std::size_t>(i)];
+    const EndStops& stops = e.stops[static_cast<std::size_t>(i)];
+    const double beyond = stops.beyond_rad(e.link_side(e.data->qpos, i));
+    pressed_J += 0.5 * stops.stiffness_N_m_per_rad * beyond * beyond;
     if (motor.play_rad == 0.0) continue;
     const double bend = bend_of(motor, e.data->qpos[e.dof(i) + 1]);
-    flanks_J += 0.5 * motor.joint_stiffness_N_m_per_rad * bend * bend;
+    pressed_J += 0.5 * motor.joint_stiffness_N_m_per_rad * bend * bend;
   }
-  return e.data->energy[0] + e.data->energy[1] + hand_J + flanks_J;
+  return e.data->energy[0] + e.data->energy[1] + hand_J + pressed_J;
 }
 
 bool ArmPlant::healthy() const {

@@ -39,7 +39,8 @@ std::string mujoco_text(const ArmPlant::Params& params) {
   std::ostringstream xml;
   xml.precision(17);
   const arm::Gravity& g = params.chain.gravity;
-  // Contacts and limits are not MuJoCo's: what touches the tool is located by who steps the arm.
+  // Contacts and limits are not MuJoCo's: what touches the tool is located by who steps the arm, and end stops are
+  // forces of the plant's own.
   xml << "<mujoco>" << fits
       << "<compiler angle='radian' inertiafromgeom='false' boundmass='0' boundinertia='0'/><option timestep='"
       << params.step_s << "' gravity='" << g.x_m_per_s2 << " " << g.y_m_per_s2 << " " << g.z_m_per_s2
