@@ -43,9 +43,10 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
 
 /// The site of the arm that touches things: its drives pull it to where the leader wants it, by their own law, and it
 /// tells the torque from outside. What their gains come to at the tool beyond its limits is taken away over the bus
-/// (`ToolLimit`), and in free motion the torque of the wanted motion is added there (`WantedMotion`). What the bus
-/// carries saturates at each joint's effort limit, at 100 N m at most. Gates stand behind it (`follower_site`). With
-/// the coupling `tool` it hears and tells three numbers, those of the leader's handle.
+/// (`ToolLimit`), with passive ports it may stay behind (`PassiveFollower`), and in free motion the torque of the
+/// wanted motion is added there (`WantedMotion`). What the bus carries saturates at each joint's effort limit, at 100 N
+/// m at most. Gates stand behind it (`follower_site`). With the coupling `tool` it hears and tells three numbers, those
+/// of the leader's handle.
 class ArmFollower {
  public:
   struct Params {

@@ -62,11 +62,12 @@ struct DriveDamping {
 ///
 /// of which the second part is displayed and the last is the drives' own. What the last comes to at the tool
 /// beyond a limit is given back over the bus (`ToolLimit`). With `factr` and `feedback_avoidance` it is what their
-/// classes say beside that. With position-position it is feed-forward and the drives' law, towards the follower; with
-/// four-channel what `FourChannel` adds as well. What the bus carries saturates at each joint's effort limit. Gates
-/// stand behind it (`leader_site`); the model of induced motion lives on what `applied` says that they let through.
-/// Sources: position-position as openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the
-/// leader's stiffness as i2rt's YAM has it (`bilateral_kp`, MIT); the rest as on one axis
+/// classes say beside that, and with passive ports a damper acts beside it (`PassiveLeader`). With position-position it
+/// is feed-forward and the drives' law, towards the follower; with four-channel what `FourChannel` adds as well. What
+/// the bus carries saturates at each joint's effort limit. Gates stand behind it (`leader_site`); the model of induced
+/// motion lives on what `applied` says that they let through. Sources: position-position as openarm_teleop ships it
+/// (enactic, Apache-2.0, `bilateral_step`), the gain on the leader's stiffness as i2rt's YAM has it (`bilateral_kp`,
+/// MIT); the rest as on one axis
 /// (`control::PositionForceMaster`).
 class ArmLeader {
  public:
