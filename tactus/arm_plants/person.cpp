@@ -1,6 +1,7 @@
 #include <tactus/arm_plants/person.hpp>
 
 #include <cmath>
+#include <numbers>
 
 #include <Eigen/Geometry>
 
@@ -9,6 +10,8 @@ namespace tactus::arm_plants {
 Person::Person(const Params& params, Seconds tick, const ToolState& tool, const signal::LowPass& low_pass)
     : hand_(params.hand),
       correction_gain_per_s_(params.correction_gain_per_s),
+      tremor_amplitude_m_(params.tremor_amplitude_m),
+      tremor_frequency_Hz_(params.tremor_frequency_Hz),
       tick_s_(tick.value),
       attitude_(tool.rotation),
       low_pass_{low_pass, low_pass, low_pass},
@@ -22,6 +25,16 @@ Result<Person> Person::make(const Params& params, Seconds tick, const ToolState&
   return Person(params, tick, tool, *low_pass);
 }
 
+Vector3 Person::tremor_m(std::int64_t tick) const {
+  if (tremor_amplitude_m_ == 0.0) return Vector3::Zero();
+  Vector3 shakes;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cycles = tremor_frequency_Hz_ * tick_s_ * static_cast<double>(tick) + axis / 3.0;
+    shakes[axis] = tremor_amplitude_m_ * std::sin(2.0 * std::numbers::pi * cycles);
+  }
+  return shakes;
+}
+
 void Person::begin_tick(const Vector3& path_m, const Vector3& path_at_next_tick_m, const ToolState& tool) {
   Vector3 felt;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -31,8 +44,9 @@ void Person::begin_tick(const Vector3& path_m, const Vector3& path_at_next_tick_
   felt_m_[next_] = felt;
   next_ = next_ + 1 == felt_m_.size() ? 0 : next_ + 1;
   const Vector3 correction_m_per_s = -correction_gain_per_s_ * felt_m_[next_];
-  aim_m_ = path_m + correction_m_;
-  aim_m_per_s_ = (path_at_next_tick_m - path_m) / tick_s_ + correction_m_per_s;
+  const Vector3 tremor_now_m = tremor_m(tick_), tremor_next_m = tremor_m(++tick_);
+  aim_m_ = path_m + tremor_now_m + correction_m_;
+  aim_m_per_s_ = (path_at_next_tick_m - path_m + tremor_next_m - tremor_now_m) / tick_s_ + correction_m_per_s;
   correction_m_ += correction_m_per_s * tick_s_;
 }
 

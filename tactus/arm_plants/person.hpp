@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct Wall {
 
 /// The person who holds the leader's tool: a hand (`arm::HandImpedance`, whose mass the arm carries) that follows an
 /// intended path, and slow correction. The person sees or feels the tool off the path and shifts the aim, as an
-/// integrator on the error, low-passed near 5 Hz and a reaction time late. The attitude is held where it was at first.
-/// What one axis has in `mechanics::Operator`, in three.
+/// integrator on the error, low-passed near 5 Hz and a reaction time late. On the path lies physiological tremor, the
+/// same along each axis of the base and a third of a cycle apart. The attitude is held where it was at first. What one
+/// axis has in `mechanics::Operator`, in three.
 class Person {
  public:
   struct Params {
@@ -38,6 +40,8 @@ class Person {
     double correction_gain_per_s = 4.0;
     double correction_bandwidth_Hz = 5.0;
     double reaction_time_s = 0.1;
+    double tremor_amplitude_m = 0.0;
+    double tremor_frequency_Hz = 10.0;
     static constexpr auto fields() {
       return List{field("hand", &Params::hand, "The passive impedance of hand and arm at the tool."),
                   field("correction_gain_per_s", &Params::correction_gain_per_s, units::per_second, between(0.0, 8.0),
@@ -45,7 +49,11 @@ class Person {
                   field("correction_bandwidth_Hz", &Params::correction_bandwidth_Hz, units::hertz, between(0.1, 20.0),
                         "Corner of the first-order low-pass on the error that is corrected."),
                   field("reaction_time_s", &Params::reaction_time_s, units::second, between(0.0, 0.4),
-                        "Time from an error to the start of its correction.")};
+                        "Time from an error to the start of its correction."),
+                  field("tremor_amplitude_m", &Params::tremor_amplitude_m, units::metre, between(0.0, 0.005),
+                        "Amplitude of physiological tremor on the intended path, along each axis."),
+                  field("tremor_frequency_Hz", &Params::tremor_frequency_Hz, units::hertz, between(1.0, 30.0),
+                        "Frequency of the tremor.")};
     }
   };
 
@@ -61,10 +69,14 @@ class Person {
 
  private:
   Person(const Params& params, Seconds tick, const ToolState& tool, const signal::LowPass& low_pass);
+  [[nodiscard]] Vector3 tremor_m(std::int64_t tick) const;
 
   arm::HandImpedance hand_;
   double correction_gain_per_s_;
+  double tremor_amplitude_m_;
+  double tremor_frequency_Hz_;
   double tick_s_;
+  std::int64_t tick_ = 0;
   arm::Matrix3 attitude_;
   std::array<signal::LowPass, 3> low_pass_;
   std::vector<Vector3> felt_m_;  ///< a ring, as long as the reaction takes

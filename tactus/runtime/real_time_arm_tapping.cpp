@@ -120,7 +120,7 @@ Result<RealTimeOutcome> run_arms_in_real_time(const experiments::Request& reques
   std::vector<experiments::ArmTappingRun> runs;
   std::vector<report::Figure> figures;
   if (!done->results.empty()) {
-    runs.push_back({settings, experiments::summarise(done->results, taps.reach().lag_m)});
+    runs.push_back({settings, experiments::summarise(done->results, taps.reach())});
     kept.runs.push_back(done->servo);
     figures = experiments::arm_figures(settings, taps, done->first);
   }

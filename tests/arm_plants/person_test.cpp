@@ -1,6 +1,7 @@
 #include <tactus/arm_plants/person.hpp>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/arm_plants/openarm.hpp"
 
@@ -58,6 +59,29 @@ TEST(Person, YieldsToAForceByWhatTheHandsStiffnessSays) {
   const arm::Matrix3 turn = turned.arm.tool().rotation * before.transpose();
   const Vector3 by(turn(2, 1), turn(0, 2), turn(1, 0));
   EXPECT_LT((by - moment_N_m / (400.0 * 0.01)).norm(), 1e-3);
+}
+
+TEST(Person, TremblesAlongEachAxisAThirdOfACycleApart) {
+  const Person::Params params{
+      .hand = {.mass_kg = 0.4, .stiffness_N_per_m = 400.0, .damping_N_s_per_m = 30.0, .lever_m = 0.1},
+      .correction_gain_per_s = 0.0,
+      .tremor_amplitude_m = 2e-4,
+      .tremor_frequency_Hz = 9.0};
+  const ToolState still{.position_m = Vector3(0.3, 0.1, 0.2),
+                        .rotation = arm::Matrix3::Identity(),
+                        .velocity_m_per_s = Vector3::Zero(),
+                        .turning_rad_per_s = Vector3::Zero()};
+  Person person = *Person::make(params, Seconds{tick_s}, still);
+  const double rad_per_s = 2.0 * std::numbers::pi * 9.0;
+  for (int tick = 0; tick < 500; ++tick) {
+    person.begin_tick(still.position_m, still.position_m, still);
+    const Vector3 force_N = person.force(still, 0.5 * tick_s).force_N;
+    for (int axis = 0; axis < 3; ++axis) {
+      // The damper takes the mean speed of a tick, which is that of its middle.
+      const double phase = rad_per_s * tick_s * (tick + 0.5) + 2.0 * std::numbers::pi * axis / 3.0;
+      EXPECT_NEAR(force_N[axis], 2e-4 * (400.0 * std::sin(phase) + 30.0 * rad_per_s * std::cos(phase)), 3e-4);
+    }
+  }
 }
 
 TEST(Person, CorrectsSlowlyWhatPushesTheToolAway) {

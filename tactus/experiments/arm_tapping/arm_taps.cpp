@@ -157,19 +157,24 @@ ArmReach ArmTaps::reach() const {
   const ArmTap& tap = taps_.front();
   ArmPair pair = *ArmPair::make(setup_, tap.beliefs, far_below_m);
   ArmReach found;
-  std::vector<double> forces_N;
+  std::vector<double> forces_N, false_forces_N;
   for (std::size_t k = 0; k < ticks_in(rest_s + reach.duration_s, pair.tick_s()); ++k) {
     const double now_s = static_cast<double>(k) * pair.tick_s();
     const ArmRecord record =
         pair.step(reach.position_m(now_s) * setup_.outward, reach.position_m(now_s + pair.tick_s()) * setup_.outward);
     found.lag_m = std::max(found.lag_m, record.tools_apart_m);
-    if (now_s >= rest_s) forces_N.push_back(record.hand_N);
+    if (now_s < rest_s) continue;
+    forces_N.push_back(record.hand_N);
+    const ArmSight sight = pair.sight();
+    false_forces_N.push_back(sight.told_N.norm());
+    found.drift_m = std::max(found.drift_m, sight.induced_m.norm());
   }
   found.effort_N = signal::root_mean_square(forces_N);
+  found.false_force_N = signal::root_mean_square(false_forces_N);
   return found;
 }
 
-ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, double reach_lag_m) {
+ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, const ArmReach& reach) {
   const auto share = [&](auto&& holds) {
     return static_cast<double>(std::count_if(taps.begin(), taps.end(), holds)) / static_cast<double>(taps.size());
   };
@@ -186,7 +191,7 @@ ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, double reach_
           .steady_force_N = median(&ArmContact::steady_N),
           .residual_rms_N = median(&ArmContact::residual_N),
           .felt_share = median(&ArmContact::felt_share),
-          .reach_lag_m = reach_lag_m};
+          .reach = reach};
 }
 
 }  // namespace tactus::experiments

@@ -61,8 +61,10 @@ ArmTapResult judge_arm_tap(const ArmContact& contact, bool diverged, const ArmCo
 
 /// A reach of 200 mm outward in 0.75 s, of the follower's tool, that meets nothing.
 struct ArmReach {
-  double lag_m = 0.0;     ///< farthest of the follower's tool from where the leader leads it
-  double effort_N = 0.0;  ///< of the hand's spring and damper along the reach, RMS
+  double lag_m = 0.0;          ///< farthest of the follower's tool from where the leader leads it
+  double effort_N = 0.0;       ///< of the hand's spring and damper along the reach, RMS
+  double false_force_N = 0.0;  ///< what the follower tells, as a force at the leader's tool (`ArmSight`), RMS
+  double drift_m = 0.0;        ///< farthest that cancellation moves the command from where the leader is
 };
 
 /// The ensemble of one combination.
@@ -105,8 +107,8 @@ struct ArmTappingMetrics {
   double steady_force_N = 0.0;
   double residual_rms_N = 0.0;
   double felt_share = 0.0;
-  double reach_lag_m = 0.0;
+  ArmReach reach;
 };
-ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, double reach_lag_m);
+ArmTappingMetrics summarise(const std::vector<ArmTapResult>& taps, const ArmReach& reach);
 
 }  // namespace tactus::experiments

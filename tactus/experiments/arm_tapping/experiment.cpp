@@ -30,14 +30,14 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
   };
   struct Results {
     std::vector<ArmTapResult> taps;
-    double reach_lag_m = 0.0;
+    ArmReach reach;
     ArmTrace trace;  ///< of the first tap
   };
   std::vector<Job> jobs;
   std::vector<Results> results;
   for (const auto& one : cases->all) {
     for (std::size_t tap = 0; tap <= one.prepared.size(); ++tap) jobs.push_back({results.size(), tap});
-    results.push_back({.taps = std::vector<ArmTapResult>(one.prepared.size()), .trace = {}});
+    results.push_back({.taps = std::vector<ArmTapResult>(one.prepared.size()), .reach = {}, .trace = {}});
   }
   simulation::for_each_in_parallel(
       jobs.size(),
@@ -46,7 +46,7 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
         const ArmTaps& taps = cases->all[run].prepared;
         Results& found = results[run];
         if (tap == taps.size()) {
-          found.reach_lag_m = taps.reach().lag_m;
+          found.reach = taps.reach();
         } else {
           found.taps[tap] = taps.run(tap, tap == 0 ? &found.trace : nullptr);
         }
@@ -57,7 +57,7 @@ Result<Outcome> ArmTappingExperiment::run(const Request& request, const Progress
   std::vector<report::Figure> figures;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const auto& [settings, taps] = cases->all[i];
-    runs.push_back({settings, summarise(results[i].taps, results[i].reach_lag_m)});
+    runs.push_back({settings, summarise(results[i].taps, results[i].reach)});
     std::vector<report::Figure> of_run = arm_figures(settings, taps, results[i].trace);
     std::move(of_run.begin(), of_run.end(), std::back_inserter(figures));
   }

@@ -56,7 +56,10 @@ report::Table arm_table(const std::vector<ArmTappingRun>& runs) {
                                        {"peak", "N"},
                                        {"steady", "N"},
                                        {"felt", "%"},
-                                       {"lag", "mm"}},
+                                       {"lag", "mm"},
+                                       {"effort", "N"},
+                                       {"false force", "N"},
+                                       {"drift", "mm"}},
                                       std::string(arm_tapping_title));
   for (const ArmTappingRun& run : runs) {
     const ArmTappingMetrics& m = run.metrics;
@@ -64,7 +67,9 @@ report::Table arm_table(const std::vector<ArmTappingRun>& runs) {
             {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
              report::number(100.0 * m.rings_fraction, 3), report::number(100.0 * m.ran_away_fraction, 3),
              report::number(m.peak_force_N, 3), report::number(m.steady_force_N, 3),
-             report::number(100.0 * m.felt_share, 3), report::number(1e3 * m.reach_lag_m, 3)});
+             report::number(100.0 * m.felt_share, 3), report::number(1e3 * m.reach.lag_m, 3),
+             report::number(m.reach.effort_N, 3), report::number(m.reach.false_force_N, 2),
+             report::number(1e3 * m.reach.drift_m, 2)});
   }
   return table;
 }
@@ -80,7 +85,10 @@ std::string arm_json(const Request& request, const std::vector<ArmTappingRun>& r
                          {"steady_force_N", m.steady_force_N},
                          {"residual_rms_N", m.residual_rms_N},
                          {"felt_share", m.felt_share},
-                         {"reach_lag_m", m.reach_lag_m}});
+                         {"reach_lag_m", m.reach.lag_m},
+                         {"reach_effort_N", m.reach.effort_N},
+                         {"reach_false_force_N", m.reach.false_force_N},
+                         {"reach_drift_m", m.reach.drift_m}});
   });
 }
 
@@ -121,8 +129,12 @@ report::Page arm_page(const Request& request, const std::string& verdict, const 
        {"peak, steady", "Contact force, largest and mean of the last 100 ms; medians over the taps."},
        {"felt", "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS; median."},
        {"lag",
-        "Farthest of the follower's tool from where the leader leads it, in a reach of 200 mm in 0.75 s that meets "
-        "nothing."}});
+        "In free motion, a reach of 200 mm in 0.75 s that meets nothing: farthest of the follower's tool from where "
+        "the "
+        "leader leads it."},
+       {"effort", "Force of the hand's spring and damper along that reach, RMS."},
+       {"false force", "What the follower tells of a force in it, though there is none, at the leader's tool, RMS."},
+       {"drift", "Farthest in it of the command from where the leader is, by cancellation."}});
   for (const report::Figure& figure : figures) page.figure(figure);
   return page;
 }

@@ -183,6 +183,22 @@ ArmTappingParams geared(const char* on_top = nullptr) {
   return on_top == nullptr ? shipped_with({"arms/geared-pair.toml"}) : shipped_with({"arms/geared-pair.toml", on_top});
 }
 
+TEST(ArmTapping, WhatIsFalseInFreeMotionIsTheObserversAndWhatDriftsIsCancellations) {
+  const auto reach = [](const ArmTappingParams& params) { return ArmTaps::make(params, folder)->reach(); };
+  ArmTappingParams plain = bare(ArmMethod::position_force);
+  const ArmReach observed = reach(plain);
+  EXPECT_GT(observed.false_force_N, 0.5) << "friction that the observer takes for a push";
+  EXPECT_EQ(observed.drift_m, 0.0);
+  plain.control.follower.torque = arm_control::TorqueSource::sensor;
+  const ArmReach sensed = reach(plain);
+  EXPECT_LT(sensed.false_force_N, 1e-9) << "nothing is there";
+  EXPECT_LT(sensed.effort_N, observed.effort_N);
+  EXPECT_GT(reach(bare(ArmMethod::cancellation)).drift_m, 1e-4) << "a false force moves what is modelled, too";
+  ArmTappingParams sure = bare(ArmMethod::cancellation);
+  sure.control.follower.torque = arm_control::TorqueSource::sensor;
+  EXPECT_LT(reach(sure).drift_m, 1e-9);
+}
+
 TEST(ArmTapping, AFollowerThatIsWrittenOutIsTreatedAsOneThatIsLikeTheLeader) {
   const ArmPairSetup setup = *set_up_arm_pair(with_equal_follower(), folder);
   EXPECT_NEAR(setup.tool_scale, 1.0, 1e-3);
