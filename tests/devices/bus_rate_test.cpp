@@ -207,11 +207,18 @@ std::unique_ptr<MotorBus> driver_of(const Motors& motors) {
   return std::make_unique<feetech::FeetechBus>(feetech::FeetechBus::make(params).value());
 }
 
+/// A machine that stands still for a moment makes motors silent while they are asked for the first time. That is not
+/// what is measured here, so it is tried again.
 std::unique_ptr<BusThread> drive(const Emulation& there) {
-  auto thread = BusThread::start(driver_of(there.motors()), there.open(), {});
-  EXPECT_TRUE(thread.ok());
-  EXPECT_FALSE((*thread)->wait_until_asked(Seconds{10.0}));
-  return *std::move(thread);
+  constexpr int most_tries = 3;
+  for (int tried = 1;; ++tried) {
+    auto thread = BusThread::start(driver_of(there.motors()), there.open(), {});
+    EXPECT_TRUE(thread.ok());
+    const Check silent = (*thread)->wait_until_asked(Seconds{10.0});
+    if (silent && tried < most_tries) continue;
+    EXPECT_FALSE(silent) << describe(*silent);
+    return *std::move(thread);
+  }
 }
 
 double own_cycles_per_s(const Emulation& there) {
