@@ -90,9 +90,16 @@ class ArmSearch {
     return reaches(bench_, *params);
   }
 
+  [[nodiscard]] std::vector<ArmReach> along_own_direction(std::vector<ArmReach> reach) const {
+    reach.resize(bench_.hands.size());
+    return reach;
+  }
+
   [[nodiscard]] bool within_costs(const std::vector<ArmReach>& reach) const {
-    for (std::size_t hand = 0; hand < reach.size(); ++hand) {
-      if (reach[hand].lag_m > plain_[hand].lag_m + most_lag_more_m) return false;
+    for (std::size_t i = 0; i < reach.size(); ++i) {
+      if (reach[i].lag_m > plain_[i].lag_m + most_lag_more_m) return false;
+    }
+    for (std::size_t hand = 0; hand < bench_.hands.size(); ++hand) {
       if (reach[hand].effort_N > most_effort_factor * plain_[hand].effort_N) return false;
     }
     return true;
@@ -295,8 +302,8 @@ class ArmSearch {
     const double own = candidate.holds_asked ? *bench_.asked_gain : candidate.force_gain;
     auto reach = reaches_of(candidate.method, own > 0.0 ? own : 1.0);
     if (!reach) return reach.error();
-    candidate.reach = *std::move(reach);
-    candidate.within_costs = within_costs(candidate.reach);
+    candidate.within_costs = within_costs(*reach);
+    candidate.reach = along_own_direction(*std::move(reach));
     if (own == 0.0) return {};
     const ArmScore score = check->at(own, check->tried().size());
     candidate.taps = check->tried().size();
@@ -322,7 +329,7 @@ class ArmSearch {
 
   Result<ArmAdvice> conclude() {
     ArmAdvice advice;
-    advice.plain = plain_;
+    advice.plain = along_own_direction(plain_);
     advice.climb = changes_;
     const auto eligible = [this](const ArmCandidate& one) {
       return one.note.empty() && one.within_costs && (bench_.asked_gain ? one.holds_asked : one.force_gain > 0.0);
@@ -362,7 +369,7 @@ class ArmSearch {
   const Progress& progress_;
   std::vector<Dimension> dimensions_;
   Dimension rivals_;
-  std::vector<ArmReach> plain_;  ///< of each hand
+  std::vector<ArmReach> plain_;  ///< of `reaches`
   std::optional<Method> best_alone_;
   std::vector<Step> climb_;
   std::vector<ArmChange> changes_;

@@ -14,7 +14,8 @@ namespace tactus::advice {
 /// The range of the search for force gains of arms, that of the contest of arms.
 inline constexpr double lowest_arm_gain = 0.0625, highest_arm_gain = 16.0;
 /// What a configuration may cost beyond plain position-force control on the bare pair at gain 1, in a free reach at
-/// the file's own pose and direction, in each hand: lag on top of plain's, and effort over plain's.
+/// the file's own pose, in each hand: lag on top of plain's in each direction, and effort over plain's in the file's
+/// own.
 inline constexpr double most_lag_more_m = 0.007;
 inline constexpr double most_effort_factor = 5.0;
 
@@ -30,10 +31,10 @@ struct ArmCandidate {
   // At that gain, on the taps that no search saw:
   std::size_t taps = 0;
   double settled_fraction = 0.0;
-  std::vector<double> felt;  ///< of each hand (`ArmScore`)
-  double presence = 0.0;     ///< the least of these
-  std::vector<experiments::ArmReach> reach;
-  bool within_costs = false;  ///< `most_lag_more_m` and `most_effort_factor`
+  std::vector<double> felt;                  ///< of each hand (`ArmScore`)
+  double presence = 0.0;                     ///< the least of these
+  std::vector<experiments::ArmReach> reach;  ///< in each hand, along the file's own direction
+  bool within_costs = false;                 ///< `most_lag_more_m` and `most_effort_factor`
 };
 
 /// Where a gain beyond the limit goes wrong first.
@@ -62,7 +63,7 @@ struct ArmObstacle {
 struct ArmAdvice {
   std::optional<ArmCandidate> start;
   std::vector<ArmCandidate> alternatives;    ///< what was tried to the end besides, the most presence first
-  std::vector<experiments::ArmReach> plain;  ///< what costs are compared with
+  std::vector<experiments::ArmReach> plain;  ///< what `reach` is compared with
   std::vector<ArmChange> climb;              ///< what the search did in its second stage, in order
   std::optional<ArmFault> fault;             ///< of `start`; none where the search ended there
   std::vector<ArmObstacle> obstacles;        ///< of `start`, the one that gives most first

@@ -39,9 +39,8 @@ std::vector<Situation> situations(const ArmBench& bench, const ArmDraws& draws) 
     }
   }
   for (std::size_t i = 0; i < draws.own_taps; ++i) {
-    for (std::size_t hand = 0; hand < bench.hands.size(); ++hand) {
-      add(hand, bench.poses.front(), bench.directions.front());
-    }
+    const auto direction = bench.directions[i % bench.directions.size()];
+    for (std::size_t hand = 0; hand < bench.hands.size(); ++hand) add(hand, bench.poses.front(), direction);
   }
   return all;
 }
@@ -157,10 +156,14 @@ std::string ArmTrial::fault(double gain, std::size_t situation) {
 
 Result<std::vector<experiments::ArmReach>> reaches(const ArmBench& bench, const experiments::ArmTappingParams& params) {
   std::vector<experiments::ArmReach> found;
-  for (std::size_t hand = 0; hand < bench.hands.size(); ++hand) {
-    const auto taps = experiments::ArmTaps::make(in_hand(bench, params, hand), bench.folder);
-    if (!taps) return taps.error();
-    found.push_back(taps->reach());
+  for (const experiments::TapDirection direction : bench.directions) {
+    for (std::size_t hand = 0; hand < bench.hands.size(); ++hand) {
+      experiments::ArmTappingParams one = in_hand(bench, params, hand);
+      one.task.direction = direction;
+      const auto taps = experiments::ArmTaps::make(one, bench.folder);
+      if (!taps) return taps.error();
+      found.push_back(taps->reach());
+    }
   }
   return found;
 }

@@ -29,7 +29,7 @@ struct ArmDraws {
   std::size_t first_pose = 1;
   std::size_t poses = 0;
   bool own_pose = true;
-  std::size_t own_taps = 0;  ///< beside these, in each hand at the first pose and in the first direction
+  std::size_t own_taps = 0;  ///< beside these, in each hand at the first pose, in its directions by turns
   /// Plants in steps of 250 µs, where the file has shorter ones: what settles does so too, and 1 to 3 % are felt more
   /// or less.
   bool coarse = true;
@@ -92,7 +92,8 @@ class ArmTrial {
   std::vector<std::size_t> failed_last_;
 };
 
-/// What reaching freely costs in each hand of the bench, at the gain of `params`. Errors: those of `ArmTaps::make`.
+/// What reaching freely costs in each hand of the bench, along its own direction and then each other, at the gain of
+/// `params`. Errors: those of `ArmTaps::make`.
 Result<std::vector<experiments::ArmReach>> reaches(const ArmBench& bench, const experiments::ArmTappingParams& params);
 
 }  // namespace tactus::advice

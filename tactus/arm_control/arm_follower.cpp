@@ -5,16 +5,6 @@
 #include <algorithm>
 
 namespace tactus::arm_control {
-namespace {
-
-JointVector of_each(const ArmFollower::Params& params, std::size_t joints, double DriveGains::*gain) {
-  const Joints<DriveGains> gains = params.gains.of(joints);
-  JointVector found(static_cast<Eigen::Index>(joints));
-  for (std::size_t i = 0; i < joints; ++i) found[static_cast<Eigen::Index>(i)] = gains[i].*gain;
-  return found;
-}
-
-}  // namespace
 
 ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
                          const WantedMotion& wanted_motion, const std::optional<ToolCoupling>& coupling, Seconds dt)
@@ -29,8 +19,8 @@ ArmFollower::ArmFollower(const Params& params, const Arm& arm, const arm::Chain&
       most_(effort_limits(arm.chain)),
       observes_(params.torque == TorqueSource::observer),
       dead_band_(JointVector::Zero(chain.joints())),
-      stiffness_(params.stiffness_share * of_each(params, arm.chain.joints.size(), &DriveGains::stiffness_N_m_per_rad)),
-      damping_(of_each(params, arm.chain.joints.size(), &DriveGains::damping_N_m_s_per_rad)),
+      stiffness_(params.stiffness_share * params.gains.of(chain.joints(), &DriveGains::stiffness_N_m_per_rad)),
+      damping_(params.gains.of(chain.joints(), &DriveGains::damping_N_m_s_per_rad)),
       stiffness_limit_(stiffness_, params.tool_stiffness_limit_N_per_m),
       damping_limit_(damping_, params.tool_damping_limit_N_s_per_m) {
   if (arm.four_channel) {

@@ -1,5 +1,6 @@
 #include <tactus/arm_control/arm_leader.hpp>
 #include <tactus/arm_control/effort_limits.hpp>
+#include <tactus/arm_control/joint_cutoff.hpp>
 #include <tactus/signal/checks.hpp>
 
 #include <string>
@@ -8,10 +9,14 @@ namespace tactus::arm_control {
 namespace {
 
 JointVector drive_damping(const ArmLeader::Params& params, int joints) {
-  const auto each = params.drive_damping.of(static_cast<std::size_t>(joints));
-  JointVector damping(joints);
-  for (int i = 0; i < joints; ++i) damping[i] = each[static_cast<std::size_t>(i)].damping_N_m_s_per_rad;
-  return damping;
+  return params.drive_damping.of(joints, &DriveDamping::damping_N_m_s_per_rad);
+}
+
+/// Errors name the key at fault, which begins with `name`.
+Result<JointLowPass> low_pass(const std::string& name, double cutoff_Hz, const EachJoint<JointCutoff>& each, int joints,
+                              Seconds dt) {
+  if (Check wrong = check_cutoffs(name + "_Hz", cutoff_Hz, name + "_each", each, joints, dt)) return *std::move(wrong);
+  return JointLowPass::make(cutoffs(cutoff_Hz, each, joints), dt);
 }
 
 /// Whether the drives pull the leader to where the follower is.
@@ -68,10 +73,12 @@ Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds 
                                  .friction_velocity_rad_per_s = params.feed_forward.friction_velocity_rad_per_s};
   const auto model = InducedMotion::make(params.model, site, arm.induced, dt);
   if (!model) return under("model", model.error());
-  const auto force = JointLowPass::make(params.force_low_pass_Hz, dt);
-  if (!force) return Error{force.error().code, "force_low_pass_Hz", force.error().message, {}};
-  const auto command = JointLowPass::make(params.command_low_pass_Hz, dt);
-  if (!command) return Error{command.error().code, "command_low_pass_Hz", command.error().message, {}};
+  const int joints = chain->joints();
+  const auto force = low_pass("force_low_pass", params.force_low_pass_Hz, params.force_low_pass_each, joints, dt);
+  if (!force) return force.error();
+  const auto command =
+      low_pass("command_low_pass", params.command_low_pass_Hz, params.command_low_pass_each, joints, dt);
+  if (!command) return command.error();
   return ArmLeader(params, arm, FeedForward(params.feed_forward, arm.carried, *chain), *chain, *model, *force, *command,
                    dt);
 }

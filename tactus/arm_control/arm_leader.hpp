@@ -78,7 +78,9 @@ class ArmLeader {
     EachJoint<DriveDamping> drive_damping = {};
     double drive_damping_limit_N_s_per_m = 0.0;
     double force_low_pass_Hz = 0.0;
+    EachJoint<JointCutoff> force_low_pass_each = {};
     double command_low_pass_Hz = 0.0;
+    EachJoint<JointCutoff> command_low_pass_each = {};
     FeedForward::Params feed_forward = {};
     InducedMotion::Params model = {};
     FactrLaw::Params factr = {};
@@ -101,8 +103,10 @@ class ArmLeader {
                 "The most that drive_damping may come to at the tool, in any direction; 0 is no limit."),
           field("force_low_pass_Hz", &P::force_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
                 "First-order low-pass on the displayed torque; 0 is none."),
+          field("force_low_pass_each", &P::force_low_pass_each, "Corners of joints that have one of their own."),
           field("command_low_pass_Hz", &P::command_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
                 "First-order low-pass on the command to the follower; 0 is none."),
+          field("command_low_pass_each", &P::command_low_pass_each, "Corners of joints that have one of their own."),
           field("feed_forward", &P::feed_forward, "What carries the leader and helps it against friction."),
           field("model", &P::model, "The model of induced motion."),
           field("factr", &P::factr, "With factr alone: its law beside the displayed torque."),

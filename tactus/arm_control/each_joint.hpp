@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/arm/chain.hpp>
 #include <tactus/core/joints.hpp>
 #include <tactus/core/parameters.hpp>
 
@@ -26,6 +27,28 @@ struct EachJoint {
     });
     return found;
   }
+  /// One of their numbers, of the first `joints`.
+  [[nodiscard]] arm::JointVector of(int joints, double T::*number) const {
+    const Joints<T> each = of(static_cast<std::size_t>(joints));
+    arm::JointVector found(joints);
+    for (int i = 0; i < joints; ++i) found[i] = each[static_cast<std::size_t>(i)].*number;
+    return found;
+  }
 };
+
+/// A corner that a joint has for itself.
+struct JointCutoff {
+  double cutoff_Hz = 0.0;
+  static constexpr auto fields() {
+    return List{field("cutoff_Hz", &JointCutoff::cutoff_Hz, units::hertz, between(0.0, 1000.0),
+                      "Corner of this joint; 0 is that of all.")};
+  }
+};
+
+/// The corner of each joint: its own, or that of all.
+inline arm::JointVector cutoffs(double of_all_Hz, const EachJoint<JointCutoff>& each, int joints) {
+  const arm::JointVector own_Hz = each.of(joints, &JointCutoff::cutoff_Hz);
+  return (own_Hz.array() > 0.0).select(own_Hz, of_all_Hz);
+}
 
 }  // namespace tactus::arm_control

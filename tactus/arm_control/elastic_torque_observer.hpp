@@ -17,12 +17,12 @@ namespace tactus::arm_control {
 /// F is a third-order Butterworth low-pass, whose states are the derivatives that r needs: nothing is differenced.
 /// Without K⁻¹ this is the momentum observer of rigid joints, which is wrong by M·K⁻¹·s²·τ_J: as large as the contact
 /// itself where a joint swings, and of the wrong sign beyond. F delays by 2/(2π·cutoff) what is slow, twice as long as
-/// one of first order. Damping of the springs is left out, and c and gravity are taken where the motors are.
-/// Positive in the direction in which the position grows. Starts at rest with nothing from outside, whatever torque the
-/// first reading tells: before its first command a drive tells none, though the arm has weight.
-/// Sources: A. De Luca, A. Albu-Schäffer, S. Haddadin, G. Hirzinger, Collision detection and safe reaction with the
-/// DLR-III lightweight robot arm, IROS 2006 (links behind springs, with sensors of τ_J); M. W. Spong, Modeling and
-/// control of elastic joint robots, 1987 (the model).
+/// one of first order. A joint with a corner of its own has a row of that filter's, over the signals of all. Damping of
+/// the springs is left out, and c and gravity are taken where the motors are. Positive in the direction in which the
+/// position grows. Starts at rest with nothing from outside, whatever torque the first reading tells: before its first
+/// command a drive tells none, though the arm has weight. Sources: A. De Luca, A. Albu-Schäffer, S. Haddadin, G.
+/// Hirzinger, Collision detection and safe reaction with the DLR-III lightweight robot arm, IROS 2006 (links behind
+/// springs, with sensors of τ_J); M. W. Spong, Modeling and control of elastic joint robots, 1987 (the model).
 class ElasticTorqueObserver {
  public:
   using Params = ExternalTorqueObserver::Params;
@@ -41,19 +41,30 @@ class ElasticTorqueObserver {
   /// A signal of each joint behind F, with its first and second derivative.
   using Filtered = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, arm::most, 3>;
 
+  /// F of one corner, with what passes it.
+  struct Filter {
+    Filter();
+    Filter(double cutoff_Hz, Seconds dt);
+    void start(const JointVector& velocity) noexcept;
+    void step(const JointVector& mean_velocity, const JointVector& mean_torque) noexcept;
+    [[nodiscard]] JointVector third_derivative(const JointVector& velocity) const noexcept;
+
+    double corner_rad_per_s = 0.0;
+    Eigen::Matrix3d kept = Eigen::Matrix3d::Zero();          ///< of signal and derivatives, from tick to tick
+    Eigen::RowVector3d let_in = Eigen::RowVector3d::Zero();  ///< of an input that is held for a tick
+    Filtered velocity;
+    Filtered torque;  ///< of the motors, less friction, c and gravity
+  };
+
   ElasticTorqueObserver(const arm::Chain& model, const JointVector& armature, const JointVector& joint_stiffness,
-                        double cutoff_rad_per_s, Seconds dt);
-  [[nodiscard]] JointVector third_derivative(const Filtered& filtered, const JointVector& input) const noexcept;
+                        const JointVector& cutoff_Hz, Seconds dt);
 
   arm::Chain model_;
   JointVector armature_;
-  JointVector softness_;  ///< K⁻¹, rad/(N m)
-  double cutoff_rad_per_s_;
-  Eigen::Matrix3d kept_;       ///< of signal and derivatives, from tick to tick
-  Eigen::RowVector3d let_in_;  ///< of an input that is held for a tick
+  JointVector softness_;          ///< K⁻¹, rad/(N m)
+  Joints<Filter> filters_;        ///< one of each corner that there is
+  Joints<std::size_t> of_joint_;  ///< which of them
   bool started_ = false;
-  Filtered velocity_;
-  Filtered torque_;  ///< of the motors, less friction, c and gravity
   JointVector velocity_before_;
   JointVector torque_before_;
 };

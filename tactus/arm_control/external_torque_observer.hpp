@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/arm/motors.hpp>
+#include <tactus/arm_control/each_joint.hpp>
 #include <tactus/core/parameters.hpp>
 
 /// What controls an arm's joints together.
@@ -13,7 +14,7 @@ using arm::JointVector;
 /// External torque of a rigid arm from its motors alone: the momentum that torque, gravity and friction did not put in
 /// came from outside (generalised-momentum observer with the full model).
 ///
-///     r = g/(s + g) · (d/dt(M q̇) − Ṁ q̇ + c + gravity + friction − τ),   g = 2π·cutoff
+///     r = g/(s + g) · (d/dt(M q̇) − Ṁ q̇ + c + gravity + friction − τ),   g = 2π·cutoff of the joint
 ///
 /// Ticks stand in for the integral: M·(q̇_k − q̇_{k−1})/dt is what d/dt(M q̇) − Ṁ q̇ comes to, torque, bias and friction
 /// are the means of both ticks, and r answers a step of external torque by exactly 1 − exp(−g·k·dt) after k ticks. That
@@ -25,9 +26,11 @@ class ExternalTorqueObserver {
  public:
   struct Params {
     double cutoff_Hz = 30.0;
+    EachJoint<JointCutoff> cutoff_each = {};
     static constexpr auto fields() {
       return List{field("cutoff_Hz", &Params::cutoff_Hz, units::hertz, positive_up_to(1000.0),
-                        "-3 dB of the estimate of external torque, for an exact velocity.")};
+                        "-3 dB of the estimate of external torque, for an exact velocity."),
+                  field("cutoff_each", &Params::cutoff_each, "Corners of joints that have one of their own.")};
     }
   };
 
@@ -40,15 +43,18 @@ class ExternalTorqueObserver {
   void reset() noexcept { started_ = false; }
 
  private:
-  ExternalTorqueObserver(const arm::Chain& model, Seconds dt, double kept);
+  ExternalTorqueObserver(const arm::Chain& model, Seconds dt, const JointVector& kept);
 
   arm::Chain model_;
   double dt_s_;
-  double kept_;  ///< of the estimate from tick to tick
+  JointVector kept_;  ///< of the estimate from tick to tick
   bool started_ = false;
   JointVector velocity_;  ///< at the tick before
   JointVector unmoved_;   ///< torque less bias and friction, then
   JointVector estimate_;
 };
+
+/// The corner of each joint. Errors: a number out of bounds, or a corner beyond half the sample rate.
+Result<JointVector> corners(const ExternalTorqueObserver::Params& params, int joints, Seconds dt);
 
 }  // namespace tactus::arm_control

@@ -31,10 +31,7 @@ class FeedbackAvoidance {
   using Params = EachJoint<AvoidanceGain>;
   static constexpr Params released{{18.75}, {15.0}, {13.5}, {9.0}, {5.25}, {3.0}, {1.5}, {1.5}};
 
-  FeedbackAvoidance(const Params& params, int joints) : alpha_(joints) {
-    const auto each = params.of(static_cast<std::size_t>(joints));
-    for (int i = 0; i < joints; ++i) alpha_[i] = each[static_cast<std::size_t>(i)].alpha_s_per_rad;
-  }
+  FeedbackAvoidance(const Params& params, int joints) : alpha_(params.of(joints, &AvoidanceGain::alpha_s_per_rad)) {}
 
   /// What is displayed of `reflected`, in N m. Real-time safe.
   [[nodiscard]] arm::JointVector displayed(arm::JointVector reflected,

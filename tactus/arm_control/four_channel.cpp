@@ -3,16 +3,6 @@
 #include <algorithm>
 
 namespace tactus::arm_control {
-namespace {
-
-JointVector each(const FourChannel::Params& params, std::size_t joints, double FourChannelJoint::*number) {
-  const Joints<FourChannelJoint> of_joints = params.joints.of(joints);
-  JointVector found(static_cast<Eigen::Index>(joints));
-  for (std::size_t i = 0; i < joints; ++i) found[static_cast<Eigen::Index>(i)] = of_joints[i].*number;
-  return found;
-}
-
-}  // namespace
 
 FourChannel::FourChannel(const Params& params, Side side, double gain, const arm::Chain::Params& arm,
                          const arm::Chain& chain, Seconds dt)
@@ -24,11 +14,11 @@ FourChannel::FourChannel(const Params& params, Side side, double gain, const arm
       alpha_(params.alpha),
       beta_(params.beta),
       dt_s_(dt.value),
-      stiffness_(each(params, arm.joints.size(), &FourChannelJoint::stiffness_N_m_per_rad)),
-      damping_(each(params, arm.joints.size(), &FourChannelJoint::damping_N_m_s_per_rad)),
-      observer_rad_per_s_(each(params, arm.joints.size(), &FourChannelJoint::observer_rad_per_s)),
-      force_share_(each(params, arm.joints.size(), &FourChannelJoint::force_share)),
-      disturbance_limit_(each(params, arm.joints.size(), &FourChannelJoint::disturbance_limit_N_m)),
+      stiffness_(params.joints.of(chain.joints(), &FourChannelJoint::stiffness_N_m_per_rad)),
+      damping_(params.joints.of(chain.joints(), &FourChannelJoint::damping_N_m_s_per_rad)),
+      observer_rad_per_s_(params.joints.of(chain.joints(), &FourChannelJoint::observer_rad_per_s)),
+      force_share_(params.joints.of(chain.joints(), &FourChannelJoint::force_share)),
+      disturbance_limit_(params.joints.of(chain.joints(), &FourChannelJoint::disturbance_limit_N_m)),
       disturbance_filter_(JointVector::Zero(chain.joints())),
       reaction_filter_(disturbance_filter_),
       disturbance_(disturbance_filter_),

@@ -11,12 +11,14 @@ namespace tactus::arm_control {
 class JointLowPass {
  public:
   /// Errors: those of `signal::LowPass::make`.
-  static Result<JointLowPass> make(double cutoff_Hz, Seconds dt) {
+  static Result<JointLowPass> make(const arm::JointVector& cutoff_Hz, Seconds dt) {
     JointLowPass made;
-    if (cutoff_Hz == 0.0) return made;
-    const auto one = signal::LowPass::make({.cutoff_Hz = cutoff_Hz}, dt);
-    if (!one) return one.error();
-    made.each_ = Joints<std::optional<signal::LowPass>>(most_joints, *one);
+    for (Eigen::Index i = 0; i < cutoff_Hz.size(); ++i) {
+      if (cutoff_Hz[i] == 0.0) continue;
+      const auto one = signal::LowPass::make({.cutoff_Hz = cutoff_Hz[i]}, dt);
+      if (!one) return one.error();
+      made.each_[static_cast<std::size_t>(i)] = *one;
+    }
     return made;
   }
   /// Real-time safe.

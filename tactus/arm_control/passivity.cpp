@@ -23,7 +23,7 @@ double work_J(PassivePort port, Eigen::Index at, const JointVector& torque, cons
 
 PassiveLeader::PassiveLeader(const PassivityParams& params, double force_gain, int joints, Seconds dt)
     : port_(at_gain(force_gain, params.port)),
-      joint_limits_(joints),
+      joint_limits_(params.joint_limits.of(joints, &PassivityLimit::damping_N_m_s_per_rad)),
       tool_limit_N_s_per_m_(params.tool_limit_N_s_per_m),
       energy_scale_(counts() ? 1.0 / force_gain : 0.0),
       dt_s_(dt.value),
@@ -31,12 +31,7 @@ PassiveLeader::PassiveLeader(const PassivityParams& params, double force_gain, i
       acting_{before_, before_},
       sent_(acting_),
       ports_(ports_of(port_, joints)),
-      in_J_(before_) {
-  const auto limits = params.joint_limits.of(static_cast<std::size_t>(joints));
-  for (std::size_t i = 0; i < limits.size(); ++i) {
-    joint_limits_[static_cast<Eigen::Index>(i)] = limits[i].damping_N_m_s_per_rad;
-  }
-}
+      in_J_(before_) {}
 
 JointVector PassiveLeader::joint_brake(Eigen::Index joint, double lack_J, const JointVector& velocity,
                                        const JointVector& displayed) const noexcept {

@@ -40,7 +40,8 @@ Result<WantedMotion> WantedMotion::make(const Params& params, double friction_ve
                                         Seconds dt) {
   if (Check wrong = signal::check(params, dt)) return *std::move(wrong);
   if (Check wrong = signal::check_below_nyquist("cutoff_Hz", params.cutoff_Hz, dt)) return *std::move(wrong);
-  const auto low_pass = JointLowPass::make(params.cutoff_Hz > 0.0 ? contact_Hz : 0.0, dt);
+  const auto low_pass =
+      JointLowPass::make(JointVector::Constant(arm.chain.joints(), params.cutoff_Hz > 0.0 ? contact_Hz : 0.0), dt);
   if (!low_pass) return low_pass.error();
   return WantedMotion(params, friction_velocity_rad_per_s, arm, *low_pass, dt);
 }

@@ -50,15 +50,6 @@ Result<stability::TipLoad> linear_wall(const experiments::ArmWallParams& wall, s
                .place = {}};
 }
 
-/// Gains of each joint, of drives.
-template <class Each, class Gain>
-Vector gains_of(const Each& each, std::size_t joints, double Gain::*gain) {
-  const Joints<Gain> gains = each.of(joints);
-  Vector found(static_cast<Eigen::Index>(joints));
-  for (std::size_t i = 0; i < joints; ++i) found[static_cast<Eigen::Index>(i)] = gains[i].*gain;
-  return found;
-}
-
 /// What a limit at the tool takes away of gains, as a matrix of the joints.
 Matrix taken_away(const Vector& gains, double most, const Matrix& moving) {
   const ToolLimit limit{arm::JointVector(gains), most};
@@ -115,9 +106,9 @@ struct LeaderGains {
 LeaderGains leader_gains(const ArmPairSetup& setup, const Rubbing& rubbing, const Matrix& weight,
                          const Matrix& moving) {
   const auto& control = setup.params.control;
-  const std::size_t joints = setup.leader.joints.size();
+  const int joints = static_cast<int>(setup.leader.joints.size());
   LeaderGains found;
-  found.drive_damping = gains_of(control.drive_damping, joints, &arm_control::DriveDamping::damping_N_m_s_per_rad);
+  found.drive_damping = control.drive_damping.of(joints, &arm_control::DriveDamping::damping_N_m_s_per_rad);
   found.given_back = taken_away(found.drive_damping, control.drive_damping_limit_N_s_per_m, moving);
   found.position = weight;
   const auto& forward = control.feed_forward;
@@ -175,14 +166,16 @@ Observer observer_of(const ArmPairSetup& setup, const experiments::ArmBeliefs& b
                      double tick_s, Allotment& states) {
   const auto& follower = setup.params.control.follower;
   if (follower.torque == arm_control::TorqueSource::sensor) return {};
+  const Vector cutoff_Hz = arm_control::cutoffs(follower.observer.cutoff_Hz, follower.observer.cutoff_each,
+                                                static_cast<int>(inertia.rows()));
   if (follower.observer.joints == arm_control::JointModel::rigid) {
-    return LinearRigidObserver(follower.observer.cutoff_Hz, tick_s, inertia, states);
+    return LinearRigidObserver(cutoff_Hz, tick_s, inertia, states);
   }
   Vector armature(inertia.rows());
   for (Eigen::Index i = 0; i < armature.size(); ++i) {
     armature[i] = setup.follower.arm.chain.joints[static_cast<std::size_t>(i)].drive.reflected_kg_m2();
   }
-  return LinearElasticObserver(follower.observer.cutoff_Hz, tick_s, inertia - Matrix(armature.asDiagonal()), armature,
+  return LinearElasticObserver(cutoff_Hz, tick_s, inertia - Matrix(armature.asDiagonal()), armature,
                                beliefs.follower_joint_stiffness_N_m_per_rad, states);
 }
 
@@ -202,7 +195,7 @@ Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmB
   if (!follower_chain) return follower_chain.error();
   const double tick_s = 1.0 / params.servo.rate_Hz;
   const auto n = static_cast<Eigen::Index>(chain->joints());
-  const std::size_t joints = setup.leader.joints.size();
+  const int joints = chain->joints();
   Allotment states;
 
   // The leader: its arm in the hand, and its site.
@@ -222,9 +215,11 @@ Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmB
                                   tick_s, states);
   if (!leader) return leader.error();
   const Stretch on_leaders_bus = states.take(n), heard = states.take(n);
-  const LinearLowPass force(control.force_low_pass_Hz, tick_s, n, states);
-  const LinearLowPass command_position(control.command_low_pass_Hz, tick_s, n, states);
-  const LinearLowPass command_velocity(control.command_low_pass_Hz, tick_s, n, states);
+  const Vector force_Hz = arm_control::cutoffs(control.force_low_pass_Hz, control.force_low_pass_each, joints);
+  const Vector command_Hz = arm_control::cutoffs(control.command_low_pass_Hz, control.command_low_pass_each, joints);
+  const LinearLowPass force(force_Hz, tick_s, states);
+  const LinearLowPass command_position(command_Hz, tick_s, states);
+  const LinearLowPass command_velocity(command_Hz, tick_s, states);
   std::optional<LinearInducedMotion> model;
   Stretch acting;
   if (control.method == ArmMethod::cancellation) {
@@ -242,8 +237,8 @@ Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmB
   const Matrix weight = weight_slope(*follower_chain, touches);
   const Rubbing rubbing(setup.follower.arm.chain, linearisation.friction_speed_rad_per_s);
   const Vector stiffness =
-      control.follower.stiffness_share * gains_of(control.follower.gains, joints, &DriveGains::stiffness_N_m_per_rad);
-  const Vector damping = gains_of(control.follower.gains, joints, &DriveGains::damping_N_m_s_per_rad);
+      control.follower.stiffness_share * control.follower.gains.of(joints, &DriveGains::stiffness_N_m_per_rad);
+  const Vector damping = control.follower.gains.of(joints, &DriveGains::damping_N_m_s_per_rad);
   const Matrix soft = taken_away(stiffness, control.follower.tool_stiffness_limit_N_per_m, moving);
   const Matrix undamped = taken_away(damping, control.follower.tool_damping_limit_N_s_per_m, moving);
   const Matrix wall_stiffness = of_wall(wall->stiffness_N_per_m, setup.outward);

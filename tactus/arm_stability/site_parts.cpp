@@ -2,9 +2,11 @@
 #include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/matrix_functions.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace tactus::arm_stability {
 namespace {
@@ -49,24 +51,29 @@ Vector Rubbing::left(double share, double velocity_rad_per_s) const {
   return (observed_ - share * fed_forward(velocity_rad_per_s)).cwiseMax(0.0);
 }
 
-LinearLowPass::LinearLowPass(double cutoff_Hz, double tick_s, Eigen::Index signals, Allotment& states)
-    : there_(cutoff_Hz > 0.0), state_(states.take(cutoff_Hz > 0.0 ? signals : 0)) {
-  if (!there_) return;
-  const double k = std::tan(std::numbers::pi * cutoff_Hz * tick_s);
-  b_ = k / (1.0 + k);
-  a_ = (k - 1.0) / (k + 1.0);
+LinearLowPass::LinearLowPass(const Vector& cutoff_Hz, double tick_s, Allotment& states)
+    : there_((cutoff_Hz.array() > 0.0).cast<double>()),
+      b_(Vector::Ones(cutoff_Hz.size())),
+      a_(Vector::Zero(cutoff_Hz.size())) {
+  if ((there_.array() > 0.0).any()) state_ = states.take(cutoff_Hz.size());
+  for (Eigen::Index i = 0; i < cutoff_Hz.size(); ++i) {
+    if (cutoff_Hz[i] == 0.0) continue;
+    const double k = std::tan(std::numbers::pi * cutoff_Hz[i] * tick_s);
+    b_[i] = k / (1.0 + k);
+    a_[i] = (k - 1.0) / (k + 1.0);
+  }
 }
 
 Vector LinearLowPass::step(const Vector& input, const Vector& state, Vector& next) const {
-  if (!there_) return input;
-  const Vector output = b_ * input + state_.of(state);
-  state_.of(next) = b_ * input - a_ * output;
+  if (state_.size == 0) return input;
+  const Vector output = b_.cwiseProduct(input) + state_.of(state);
+  state_.of(next) = there_.cwiseProduct(b_.cwiseProduct(input) - a_.cwiseProduct(output));
   return output;
 }
 
-LinearRigidObserver::LinearRigidObserver(double cutoff_Hz, double tick_s, const Eigen::MatrixXd& inertia,
+LinearRigidObserver::LinearRigidObserver(const Vector& cutoff_Hz, double tick_s, const Eigen::MatrixXd& inertia,
                                          Allotment& states)
-    : kept_(std::exp(-2.0 * std::numbers::pi * cutoff_Hz * tick_s)),
+    : kept_((-2.0 * std::numbers::pi * tick_s * cutoff_Hz).array().exp()),
       tick_s_(tick_s),
       inertia_(inertia),
       velocity_(states.take(inertia.rows())),
@@ -76,55 +83,71 @@ LinearRigidObserver::LinearRigidObserver(double cutoff_Hz, double tick_s, const 
 Vector LinearRigidObserver::step(const Vector& velocity, const Vector& unmoved, const Vector& state,
                                  Vector& next) const {
   const Vector pushed = inertia_ * (velocity - velocity_.of(state)) / tick_s_ - 0.5 * (unmoved + unmoved_.of(state));
-  const Vector estimate = kept_ * estimate_.of(state) + (1.0 - kept_) * pushed;
+  const Vector estimate = kept_.cwiseProduct(estimate_.of(state)) + (1.0 - kept_.array()).matrix().cwiseProduct(pushed);
   velocity_.of(next) = velocity;
   unmoved_.of(next) = unmoved;
   estimate_.of(next) = estimate;
   return estimate;
 }
 
-LinearElasticObserver::LinearElasticObserver(double cutoff_Hz, double tick_s, const Eigen::MatrixXd& link_inertia,
-                                             const Vector& armature, const Vector& joint_stiffness, Allotment& states)
-    : corner_(2.0 * std::numbers::pi * cutoff_Hz),
-      link_inertia_(link_inertia),
-      armature_(armature),
-      softness_(joint_stiffness.cwiseInverse()) {
+LinearElasticObserver::LinearElasticObserver(const Vector& cutoff_Hz, double tick_s,
+                                             const Eigen::MatrixXd& link_inertia, const Vector& armature,
+                                             const Vector& joint_stiffness, Allotment& states)
+    : link_inertia_(link_inertia), armature_(armature), softness_(joint_stiffness.cwiseInverse()) {
   const Eigen::Index n = armature.size();
-  for (Stretch& one : velocity_) one = states.take(n);
-  for (Stretch& one : torque_) one = states.take(n);
+  for (Eigen::Index joint = 0; joint < n; ++joint) {
+    const double w = 2.0 * std::numbers::pi * cutoff_Hz[joint];
+    const auto same = std::find_if(low_passes_.begin(), low_passes_.end(),
+                                   [w](const LowPass& one) { return one.corner_rad_per_s == w; });
+    if (same != low_passes_.end()) {
+      same->joints.push_back(joint);
+      continue;
+    }
+    LowPass added{.corner_rad_per_s = w, .tick = {}, .velocity = {}, .torque = {}, .joints = {joint}};
+    for (Stretch& one : added.velocity) one = states.take(n);
+    for (Stretch& one : added.torque) one = states.take(n);
+    Eigen::Matrix<double, 4, 4, Eigen::RowMajor> tick;
+    tick << 0, 1, 0, 0, 0, 0, 1, 0, -w * w * w, -2.0 * w * w, -2.0 * w, w * w * w, 0, 0, 0, 0;
+    tick *= tick_s;
+    signal::exponentiate({tick.data(), 16}, 4);
+    added.tick = tick;
+    low_passes_.push_back(std::move(added));
+  }
   velocity_before_ = states.take(n);
   torque_before_ = states.take(n);
-  const double w = corner_;
-  Eigen::Matrix<double, 4, 4, Eigen::RowMajor> tick;
-  tick << 0, 1, 0, 0, 0, 0, 1, 0, -w * w * w, -2.0 * w * w, -2.0 * w, w * w * w, 0, 0, 0, 0;
-  tick *= tick_s;
-  signal::exponentiate({tick.data(), 16}, 4);
-  tick_ = tick;
 }
 
-LinearElasticObserver::Derivatives LinearElasticObserver::filtered(const std::array<Stretch, 3>& at,
-                                                                   const Stretch& before, const Vector& input,
-                                                                   const Vector& state, Vector& next) const {
+LinearElasticObserver::Derivatives LinearElasticObserver::LowPass::filtered(const std::array<Stretch, 3>& at,
+                                                                            const Vector& mean, const Vector& state,
+                                                                            Vector& next) const {
   Derivatives found;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    found[i] = 0.5 * tick_(row, 3) * (before.of(state) + input);
-    for (std::size_t j = 0; j < 3; ++j) found[i] += tick_(row, static_cast<Eigen::Index>(j)) * at[j].of(state);
+    found[i] = tick(row, 3) * mean;
+    for (std::size_t j = 0; j < 3; ++j) found[i] += tick(row, static_cast<Eigen::Index>(j)) * at[j].of(state);
     at[i].of(next) = found[i];
   }
-  before.of(next) = input;
   return found;
 }
 
 Vector LinearElasticObserver::step(const Vector& velocity, const Vector& unmoved, const Vector& state,
                                    Vector& next) const {
-  const Derivatives v = filtered(velocity_, velocity_before_, velocity, state, next);
-  const Derivatives t = filtered(torque_, torque_before_, unmoved, state, next);
-  const double w = corner_;
-  const Vector third = w * w * w * (velocity - v[0]) - 2.0 * w * w * v[1] - 2.0 * w * v[2];
-  const Vector of_joints = t[0] - armature_.cwiseProduct(v[1]);
-  const Vector of_joints_twice = t[2] - armature_.cwiseProduct(third);
-  return link_inertia_ * (v[1] - softness_.cwiseProduct(of_joints_twice)) - of_joints;
+  const Vector mean_velocity = 0.5 * (velocity_before_.of(state) + velocity);
+  const Vector mean_torque = 0.5 * (torque_before_.of(state) + unmoved);
+  velocity_before_.of(next) = velocity;
+  torque_before_.of(next) = unmoved;
+  Vector external(velocity.size());
+  for (const LowPass& low_pass : low_passes_) {
+    const Derivatives v = low_pass.filtered(low_pass.velocity, mean_velocity, state, next);
+    const Derivatives t = low_pass.filtered(low_pass.torque, mean_torque, state, next);
+    const double w = low_pass.corner_rad_per_s;
+    const Vector third = w * w * w * (velocity - v[0]) - 2.0 * w * w * v[1] - 2.0 * w * v[2];
+    const Vector of_joints = t[0] - armature_.cwiseProduct(v[1]);
+    const Vector of_joints_twice = t[2] - armature_.cwiseProduct(third);
+    const Vector all = link_inertia_ * (v[1] - softness_.cwiseProduct(of_joints_twice)) - of_joints;
+    for (const Eigen::Index joint : low_pass.joints) external[joint] = all[joint];
+  }
+  return external;
 }
 
 LinearInducedMotion::LinearInducedMotion(const Matrices& m, double washout_Hz, double tick_s, Eigen::Index told,

@@ -15,7 +15,9 @@ struct OtherPage {
 };
 
 /// A page of Markdown: per section one table of its keys with unit, bounds, default and meaning. The values that the
-/// bindings point to are the defaults. Keys that `other` shows with equal words, bounds and default are left to it.
+/// bindings point to are the defaults. Sections that are numbered and differ in defaults alone, as those of joints,
+/// share a table, and a section with the keys and defaults of an earlier one, all below them too, refers to it. Keys
+/// that `other` shows with equal words, bounds and default are left to it.
 std::string reference_markdown(std::span<const Binding> bindings, std::string_view title, const OtherPage& other = {});
 
 template <Described T>

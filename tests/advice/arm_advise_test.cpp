@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -145,6 +146,36 @@ TEST(ArmTrial, NoStageSeesTheTapsOfAnother) {
   EXPECT_EQ(seeds.size(), taps);
   for (const Situation& one : situations(bench, {.first_pose = 4, .poses = 4, .own_pose = false})) {
     EXPECT_GE(one.pose, bench.poses[4]);
+  }
+}
+
+TEST(ArmTrial, TapsAtTheOwnPoseAreInEachDirectionAndHand) {
+  const ArmBench bench = arm_bench({});
+  std::set<std::pair<std::size_t, experiments::TapDirection>> seen;
+  const auto taps = situations(bench, {.own_pose = false, .own_taps = 3});
+  for (const Situation& one : taps) {
+    EXPECT_EQ(one.pose, bench.poses.front());
+    seen.emplace(one.hand, one.direction);
+  }
+  EXPECT_EQ(taps.size(), 6U);
+  EXPECT_EQ(seen.size(), 6U);
+}
+
+TEST(ArmTrial, FreeReachesAreInEachHandAlongEachDirectionTheOwnOneFirst) {
+  const ArmBench bench = arm_bench({});
+  const auto params = *params_of(bench, {});
+  const auto all = reaches(bench, params);
+  ASSERT_TRUE(all) << describe(all.error());
+  ASSERT_EQ(all->size(), 6U);
+  std::size_t i = 0;
+  using enum experiments::TapDirection;
+  for (const auto direction : {down, along_x, along_y}) {
+    for (const arm::HandImpedance& hand : {params.person.hand, soft_hand}) {
+      experiments::ArmTappingParams one = params;
+      one.person.hand = hand;
+      one.task.direction = direction;
+      EXPECT_EQ((*all)[i++].lag_m, experiments::ArmTaps::make(one, bench.folder)->reach().lag_m) << name_of(direction);
+    }
   }
 }
 

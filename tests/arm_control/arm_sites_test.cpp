@@ -111,6 +111,26 @@ TEST(ArmLeader, AFilteredCommandStartsWhereTheArmIs) {
   EXPECT_NEAR(told, 0.1 * (1.0 - std::exp(-2.0 * std::numbers::pi * 8.0 * 0.0195)), 1e-3);
 }
 
+TEST(ArmLeader, AJointsOwnLowPassIsThatJointsAlone) {
+  ArmLeader::Params params{.method = ArmMethod::position_force};
+  params.command_low_pass_each.joint_1.cutoff_Hz = 8.0;
+  params.force_low_pass_each.joint_2.cutoff_Hz = 5.0;
+  auto leader = *ArmLeader::make(params, believed(), tick);
+  leader.step(resting(), touching(0.0));
+  ArmReading moved = resting();
+  moved.position.array() += 0.1;
+  ArmLeader::Output output;
+  for (int k = 0; k < 20; ++k) output = leader.step(moved, touching(1.0));
+  const JointVector told = output.message.position - arm_plants::bent();
+  EXPECT_NEAR(told[0], 0.1 * (1.0 - std::exp(-2.0 * std::numbers::pi * 8.0 * 0.0195)), 1e-3);
+  EXPECT_LT((told.tail(6) - JointVector::Constant(6, 0.1)).norm(), 1e-12);
+  const JointVector external = touching(1.0).external_torque;
+  for (int i = 0; i < 7; ++i) {
+    const double share = i == 1 ? 1.0 - std::exp(-2.0 * std::numbers::pi * 5.0 * 0.0195) : 1.0;
+    EXPECT_NEAR(output.displayed[i], share * external[i], 1e-2 * std::fabs(external[i])) << i;
+  }
+}
+
 TEST(ArmFollower, CommandsItsDrivesAndTellsTheTorqueThatItWasAskedFor) {
   ArmFollower::Params params;
   params.gains.joint_2 = {.stiffness_N_m_per_rad = 200.0, .damping_N_m_s_per_rad = 2.0};
@@ -261,6 +281,9 @@ TEST(ArmSites, RefuseNumbersOutOfBoundsByName) {
   EXPECT_EQ(ArmLeader::make({.force_gain = -1.0}, believed(), tick).error().parameter, "force_gain");
   EXPECT_EQ(ArmLeader::make({.command_low_pass_Hz = 300.0}, believed(), Seconds{2e-3}).error().parameter,
             "command_low_pass_Hz");
+  ArmLeader::Params own;
+  own.force_low_pass_each.joint_2.cutoff_Hz = 500.0;
+  EXPECT_EQ(ArmLeader::make(own, believed(), tick).error().parameter, "force_low_pass_each.joint_2.cutoff_Hz");
   ArmLeader::Params params;
   params.model.hand.mass_kg = 50.0;
   EXPECT_EQ(ArmLeader::make(params, believed(), tick).error().parameter, "model.hand.mass_kg");

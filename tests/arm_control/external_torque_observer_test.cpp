@@ -75,9 +75,34 @@ TEST(ExternalTorqueObserver, NoiseOfTheVelocitysStepIsAboutWhatItsFormulaSays) {
   EXPECT_NEAR(found, chain.mass_matrix(q)(0, 0) * step * 2.0 * std::numbers::pi * cutoff_Hz, 0.1 * found);
 }
 
+TEST(ExternalTorqueObserver, AJointsOwnCornerIsThatJointsAlone) {
+  const arm::Chain chain = *arm::Chain::make(arm_plants::openarm_class().chain);
+  ExternalTorqueObserver::Params own{.cutoff_Hz = cutoff_Hz};
+  own.cutoff_each.joint_5.cutoff_Hz = 80.0;
+  ExternalTorqueObserver all = *ExternalTorqueObserver::make({.cutoff_Hz = cutoff_Hz}, chain, Seconds{tick_s});
+  ExternalTorqueObserver other = *ExternalTorqueObserver::make({.cutoff_Hz = 80.0}, chain, Seconds{tick_s});
+  ExternalTorqueObserver mixed = *ExternalTorqueObserver::make(own, chain, Seconds{tick_s});
+  JointVector q = arm_plants::bent(), v = JointVector::Zero(7);
+  for (int k = 0; k < 100; ++k) {
+    v += JointVector::LinSpaced(7, -0.02, 0.01) * std::cos(0.1 * k);
+    q += tick_s * v;
+    const ArmReading reading{q, v, JointVector::LinSpaced(7, -3.0, 3.0)};
+    JointVector expected = all.step(reading);
+    expected[4] = other.step(reading)[4];
+    ASSERT_EQ(mixed.step(reading), expected) << k;
+  }
+}
+
 TEST(ExternalTorqueObserver, RefusesACutoffThatTheTickCannotHave) {
   const arm::Chain chain = *arm::Chain::make(arm_plants::openarm_class().chain);
   EXPECT_EQ(ExternalTorqueObserver::make({.cutoff_Hz = 600.0}, chain, Seconds{tick_s}).error().parameter, "cutoff_Hz");
+  ExternalTorqueObserver::Params own;
+  own.cutoff_each.joint_3.cutoff_Hz = 500.0;
+  EXPECT_EQ(ExternalTorqueObserver::make(own, chain, Seconds{tick_s}).error().parameter,
+            "cutoff_each.joint_3.cutoff_Hz");
+  own.cutoff_each.joint_3.cutoff_Hz = -1.0;
+  EXPECT_EQ(ExternalTorqueObserver::make(own, chain, Seconds{tick_s}).error().parameter,
+            "cutoff_each.joint_3.cutoff_Hz");
 }
 
 }  // namespace

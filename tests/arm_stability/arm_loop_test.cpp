@@ -70,6 +70,13 @@ TEST(ArmLoop, AKickGrowsOnTheSimulatedPairAsFastAsTheSlowestModeSays) {
       {"bare.toml", "arm.joint_stiffness_N_m_per_rad=3000", "control.follower.torque=sensor"},
       {"bare.toml", "arm.joint_stiffness_N_m_per_rad=10000"},
       {"elastic-joints.toml", "control.method=cancellation"},
+      {"bare.toml", "task.pose=2", "task.direction=along-x",
+       "control.follower.observer.cutoff_each.joint_1.cutoff_Hz=12"},
+      {"bare.toml", "task.pose=2", "task.direction=along-x", "control.command_low_pass_each.joint_1.cutoff_Hz=20"},
+      {"bare.toml", "task.pose=2", "task.direction=along-x", "control.force_low_pass_each.joint_1.cutoff_Hz=15"},
+      {"elastic-joints.toml", "control.method=position-force",
+       "control.follower.observer.cutoff_each.joint_2.cutoff_Hz=12",
+       "control.follower.observer.cutoff_each.joint_4.cutoff_Hz=12"},
       {"yam-pair.toml", "soft-hand.toml"},
       {"bare.toml", "soft-hand.toml", "control.command_low_pass_Hz=8", "control.force_low_pass_Hz=20",
        "task.direction=along-y", "task.pose=3"}};

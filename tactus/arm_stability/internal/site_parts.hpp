@@ -2,6 +2,9 @@
 
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
 
+#include <array>
+#include <vector>
+
 #include <Eigen/Core>
 
 /// Recursions of what stands in the sites of two arms, for small signals. Each keeps its state in a stretch of the
@@ -47,16 +50,16 @@ class Rubbing {
   Eigen::VectorXd coulomb_, viscous_, of_motors_, observed_;
 };
 
-/// First-order low-pass by the bilinear transform, prewarped, on each of some signals, or none at 0 Hz.
+/// First-order low-pass by the bilinear transform, prewarped, on each signal, or none at 0 Hz.
 class LinearLowPass {
  public:
-  LinearLowPass(double cutoff_Hz, double tick_s, Eigen::Index signals, Allotment& states);
+  LinearLowPass(const Eigen::VectorXd& cutoff_Hz, double tick_s, Allotment& states);
   [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& input, const Eigen::VectorXd& state,
                                      Eigen::VectorXd& next) const;
 
  private:
-  bool there_;
-  double b_ = 1.0, a_ = 0.0;
+  Eigen::VectorXd there_;  ///< 1 of a signal that has one, else 0
+  Eigen::VectorXd b_, a_;
   Stretch state_;
 };
 
@@ -64,36 +67,44 @@ class LinearLowPass {
 /// position at rest (weight, friction).
 class LinearRigidObserver {
  public:
-  LinearRigidObserver(double cutoff_Hz, double tick_s, const Eigen::MatrixXd& inertia, Allotment& states);
+  LinearRigidObserver(const Eigen::VectorXd& cutoff_Hz, double tick_s, const Eigen::MatrixXd& inertia,
+                      Allotment& states);
   /// `unmoved` is the motors' torque less weight and friction.
   [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& velocity, const Eigen::VectorXd& unmoved,
                                      const Eigen::VectorXd& state, Eigen::VectorXd& next) const;
 
  private:
-  double kept_, tick_s_;
+  Eigen::VectorXd kept_;
+  double tick_s_;
   Eigen::MatrixXd inertia_;
   Stretch velocity_, unmoved_, estimate_;
 };
 
-/// The same of elastic joints: a third-order Butterworth low-pass, whose states are the derivatives that it takes.
+/// The same of elastic joints: a third-order Butterworth low-pass, whose states are the derivatives that it takes. Each
+/// joint's torque is made of the signals of all, behind the low-pass of its own corner.
 class LinearElasticObserver {
  public:
-  LinearElasticObserver(double cutoff_Hz, double tick_s, const Eigen::MatrixXd& link_inertia,
+  LinearElasticObserver(const Eigen::VectorXd& cutoff_Hz, double tick_s, const Eigen::MatrixXd& link_inertia,
                         const Eigen::VectorXd& armature, const Eigen::VectorXd& joint_stiffness, Allotment& states);
   [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& velocity, const Eigen::VectorXd& unmoved,
                                      const Eigen::VectorXd& state, Eigen::VectorXd& next) const;
 
  private:
   using Derivatives = std::array<Eigen::VectorXd, 3>;
-  [[nodiscard]] Derivatives filtered(const std::array<Stretch, 3>& at, const Stretch& before,
-                                     const Eigen::VectorXd& input, const Eigen::VectorXd& state,
-                                     Eigen::VectorXd& next) const;
+  /// Of one corner.
+  struct LowPass {
+    double corner_rad_per_s = 0.0;
+    Eigen::Matrix4d tick;  ///< of signal, two derivatives and a held input
+    std::array<Stretch, 3> velocity, torque;
+    std::vector<Eigen::Index> joints;  ///< that have it
 
-  double corner_;
-  Eigen::Matrix4d tick_;  ///< of signal, two derivatives and a held input
+    [[nodiscard]] Derivatives filtered(const std::array<Stretch, 3>& at, const Eigen::VectorXd& mean,
+                                       const Eigen::VectorXd& state, Eigen::VectorXd& next) const;
+  };
+
+  std::vector<LowPass> low_passes_;
   Eigen::MatrixXd link_inertia_;
   Eigen::VectorXd armature_, softness_;
-  std::array<Stretch, 3> velocity_, torque_;
   Stretch velocity_before_, torque_before_;
 };
 
