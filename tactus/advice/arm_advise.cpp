@@ -1,11 +1,12 @@
 #include <tactus/advice/advise.hpp>
 #include <tactus/advice/arm_advise.hpp>
+#include <tactus/advice/arm_trial.hpp>
+#include <tactus/advice/internal/arm_climb.hpp>
+#include <tactus/advice/internal/arm_costs.hpp>
 #include <tactus/advice/internal/arm_obstacles.hpp>
 #include <tactus/simulation/parallel.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace tactus::advice {
@@ -19,13 +20,11 @@ using experiments::Progress;
 
 /// Taps of each stage; what confirms an answer has seen no search.
 constexpr ArmDraws alone{.first_seed = 0, .poses = 0, .brief = true};
-constexpr ArmDraws climbing{.first_seed = 1000, .first_pose = 1, .poses = 1, .brief = true};
 constexpr ArmDraws settling{.first_seed = 2000, .first_pose = 2, .poses = 2, .own_taps = 1};
 constexpr ArmDraws unseen{
-    .first_seed = 3000, .first_pose = 4, .poses = 4, .own_pose = false, .own_taps = 8, .coarse = false};
+    .first_seed = 3000, .first_pose = 1, .poses = most_poses, .own_pose = false, .own_taps = 8, .coarse = false};
 /// Of each hand where `--set` leaves one pose, in place of the others.
 constexpr std::size_t settling_at_one_pose = 7, unseen_at_one_pose = 19;
-constexpr std::size_t most_rounds = 24;    // of changes, over all gains
 constexpr std::size_t farthest_taken = 2;  // configurations of the climb that are tried to the end
 constexpr double nearly_as_much = 0.9;
 
@@ -41,12 +40,6 @@ double rounded_below(double value) {
   return near > value ? rounded(value * (1.0 - 5e-3)) : near;
 }
 
-/// A configuration on the climb.
-struct Step {
-  Method method;
-  double gain = 0.0;
-};
-
 class ArmSearch {
  public:
   ArmSearch(const ArmBench& bench, const Progress& progress) : bench_(bench), progress_(progress) {}
@@ -54,10 +47,11 @@ class ArmSearch {
   Result<ArmAdvice> run() {
     if (auto error = prepare()) return *std::move(error);
     if (auto error = try_alone()) return *std::move(error);
-    if (auto error = climb()) return *std::move(error);
-    gather();
+    ArmClimb climb(bench_, *costs_, dimensions_, progress_);
+    if (auto error = climb.run()) return *std::move(error);
+    gather(climb.steps());
     if (auto error = try_to_the_end()) return *std::move(error);
-    return conclude();
+    return conclude(climb.changes());
   }
 
  private:
@@ -71,10 +65,9 @@ class ArmSearch {
     if (!rivals) return rivals.error();
     std::erase_if(*rivals, [](const Choice& choice) { return choice.settings.empty(); });
     rivals_ = *std::move(rivals);
-    const Method bare = bare_method(arm_dimensions(bench_.as_given, bench_.joints));
-    auto plain = reaches_of(bare, 1.0);
-    if (!plain) return plain.error();
-    plain_ = *std::move(plain);
+    auto costs = ArmCosts::make(bench_, bare_method(arm_dimensions(bench_.as_given, bench_.joints)));
+    if (!costs) return costs.error();
+    costs_ = *std::move(costs);
     return {};
   }
 
@@ -84,25 +77,9 @@ class ArmSearch {
     return ArmTrial::make(bench_, *params, for_bench(bench_, draws));
   }
 
-  [[nodiscard]] Result<std::vector<ArmReach>> reaches_of(const Method& method, double gain) const {
-    const auto params = params_of(bench_, method, {{"control.force_gain", format_number(gain)}});
-    if (!params) return params.error();
-    return reaches(bench_, *params);
-  }
-
   [[nodiscard]] std::vector<ArmReach> along_own_direction(std::vector<ArmReach> reach) const {
     reach.resize(bench_.hands.size());
     return reach;
-  }
-
-  [[nodiscard]] bool within_costs(const std::vector<ArmReach>& reach) const {
-    for (std::size_t i = 0; i < reach.size(); ++i) {
-      if (reach[i].lag_m > plain_[i].lag_m + most_lag_more_m) return false;
-    }
-    for (std::size_t hand = 0; hand < bench_.hands.size(); ++hand) {
-      if (reach[hand].effort_N > most_effort_factor * plain_[hand].effort_N) return false;
-    }
-    return true;
   }
 
   /// Stage 1: leaves in `best_alone_` the coupling that shows most where it still settles.
@@ -126,8 +103,8 @@ class ArmSearch {
           }
           const GainLimit limit = trial->limit(lowest_arm_gain, highest_arm_gain);
           if (limit.gain == 0.0) return;
-          const auto reach = reaches_of(methods[i], limit.gain);
-          if (reach && within_costs(*reach)) presence[i] = trial->at(limit.gain, trial->tried().size()).presence;
+          if (costs_->allow(methods[i], limit.gain))
+            presence[i] = trial->at(limit.gain, trial->tried().size()).presence;
         },
         [this](double done) { progress_(0.1 * done); });
     for (std::size_t i = 0; i < methods.size(); ++i) {
@@ -139,122 +116,8 @@ class ArmSearch {
     return {};
   }
 
-  struct Tried {
-    ArmScore score;
-    bool affordable = false;
-  };
-  /// Of each method at a gain, where `failed` are the taps that fail without it: those that mend some of these and
-  /// fail less in all, and what they cost.
-  [[nodiscard]] std::vector<Tried> tried(const std::vector<Method>& methods, double gain,
-                                         const std::vector<std::size_t>& failed) const {
-    std::vector<std::optional<ArmTrial>> trials(methods.size());
-    std::vector<std::size_t> left(methods.size(), failed.size());
-    simulation::for_each_in_parallel(
-        methods.size(),
-        [&](std::size_t i) {
-          auto trial = trial_of(methods[i], climbing);
-          if (!trial) return;
-          left[i] = trial->failures_among(failed, gain);
-          trials[i] = *std::move(trial);
-        },
-        [](double) {});
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-      if (trials[i] && left[i] < failed.size()) order.push_back(i);
-    }
-    return looked_at(methods, trials, order, gain, failed.size() - 1, failed);
-  }
-
-  /// The whole of some of the trials.
-  [[nodiscard]] std::vector<Tried> looked_at(const std::vector<Method>& methods,
-                                             std::vector<std::optional<ArmTrial>>& trials,
-                                             const std::vector<std::size_t>& order, double gain,
-                                             std::size_t most_failures, const std::vector<std::size_t>& first) const {
-    std::vector<Tried> all(methods.size());
-    simulation::for_each_in_parallel(
-        order.size(),
-        [&](std::size_t k) {
-          const std::size_t i = order[k];
-          all[i].score = trials[i]->at(gain, most_failures, first);
-          if (!all[i].score.whole) return;
-          const auto reach = reaches_of(methods[i], gain);
-          all[i].affordable = reach && within_costs(*reach);
-        },
-        [](double) {});
-    return all;
-  }
-
-  /// The affordable method that fails least, and of those the one that shows most; none where none is.
-  static const Tried* best_of(const std::vector<Tried>& all) {
-    const Tried* best = nullptr;
-    for (const Tried& one : all) {
-      if (!one.score.whole || !one.affordable) continue;
-      const auto place = [](const Tried& each) { return std::pair(each.score.failed.size(), -each.score.presence); };
-      if (best == nullptr || place(one) < place(*best)) best = &one;
-    }
-    return best;
-  }
-
-  /// Stage 2: leaves what settled at each gain in `climb_`, and what shows most at the highest of them.
-  Check climb() {
-    Step now{.method = bare_method(dimensions_), .gain = bench_.asked_gain.value_or(1.0)};
-    std::size_t round = 0;
-    bool anew = true;
-    ArmScore score;
-    while (round < most_rounds) {
-      if (anew) {
-        auto trial = trial_of(now.method, climbing);
-        if (!trial) return trial.error();
-        score = trial->at(now.gain, trial->tried().size());
-        anew = false;
-      }
-      if (score.failed.empty()) {
-        climb_.push_back(now);
-        if (bench_.asked_gain || now.gain >= highest_arm_gain) break;
-        now.gain = std::min(now.gain * std::numbers::sqrt2, highest_arm_gain);
-        anew = true;
-        continue;
-      }
-      const std::vector<Method> others = neighbours(now.method, dimensions_);
-      const std::vector<Tried> all = tried(others, now.gain, score.failed);
-      progress_(0.1 + 0.5 * static_cast<double>(++round) / static_cast<double>(most_rounds));
-      const Tried* best = best_of(all);
-      if (best == nullptr) break;
-      now.method = others[static_cast<std::size_t>(best - all.data())];
-      changes_.push_back({.gain = now.gain,
-                          .words = now.method.words(),
-                          .failed_before = score.failed.size(),
-                          .failed = best->score.failed.size(),
-                          .of = situations(bench_, for_bench(bench_, climbing)).size()});
-      score = best->score;
-    }
-    if (!climb_.empty()) look_around(climb_.back());
-    progress_(0.6);
-    return {};
-  }
-
-  /// Adds the neighbour that shows most at the highest gain of the climb, where one settles there and shows more.
-  void look_around(const Step& top) {
-    std::vector<Method> methods = neighbours(top.method, dimensions_);
-    methods.push_back(top.method);
-    std::vector<std::optional<ArmTrial>> trials;
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < methods.size(); ++i) {
-      auto trial = trial_of(methods[i], climbing);
-      trials.emplace_back();
-      if (!trial) continue;
-      trials.back() = *std::move(trial);
-      order.push_back(i);
-    }
-    const std::vector<Tried> all = looked_at(methods, trials, order, top.gain, 0, {});
-    const Tried* best = best_of(all);
-    if (best != nullptr && best->score.presence > all.back().score.presence) {
-      climb_.push_back({methods[static_cast<std::size_t>(best - all.data())], top.gain});
-    }
-  }
-
   /// Leaves the finalists in `candidates_`.
-  void gather() {
+  void gather(const std::vector<ArmStep>& steps) {
     const auto add = [this](const Method& method, std::string note, double near = 1.0) {
       for (const ArmCandidate& one : candidates_) {
         if (one.method == method) return;
@@ -262,7 +125,7 @@ class ArmSearch {
       candidates_.push_back({.method = method, .note = std::move(note), .limit = {}, .felt = {}, .reach = {}});
       near_.push_back(near);
     };
-    for (auto one = climb_.rbegin(); one != climb_.rend() && candidates_.size() < farthest_taken; ++one) {
+    for (auto one = steps.rbegin(); one != steps.rend() && candidates_.size() < farthest_taken; ++one) {
       add(one->method, "", one->gain);
     }
     if (best_alone_) add(*best_alone_, "");
@@ -282,27 +145,29 @@ class ArmSearch {
   }
 
   Check try_to_the_end(ArmCandidate& candidate, double near) const {
+    const auto params = params_of(bench_, candidate.method);
+    if (!params) return params.error();
     auto trial = trial_of(candidate.method, settling);
     if (!trial) return trial.error();
     candidate.limit =
         trial->limit_near(std::clamp(near, lowest_arm_gain, highest_arm_gain), lowest_arm_gain, highest_arm_gain);
     auto check = trial_of(candidate.method, unseen);
     if (!check) return check.error();
-    constexpr int steps = 6;
+    constexpr int steps = 12;
     constexpr double step = 0.84;
     double gain = rounded_below(candidate.limit.gain / reserve);
     for (int i = 0; i < steps && gain >= lowest_arm_gain / reserve; ++i, gain = rounded_below(step * gain)) {
-      if (!holds(*check, gain)) continue;
+      if (!holds(*check, *params, gain) || !holds(*check, *params, 0.5 * gain)) continue;
       candidate.force_gain = gain;
       break;
     }
     if (bench_.asked_gain) {
-      candidate.holds_asked = candidate.limit.gain >= *bench_.asked_gain && holds(*check, *bench_.asked_gain);
+      candidate.holds_asked = candidate.limit.gain >= *bench_.asked_gain && holds(*check, *params, *bench_.asked_gain);
     }
     const double own = candidate.holds_asked ? *bench_.asked_gain : candidate.force_gain;
-    auto reach = reaches_of(candidate.method, own > 0.0 ? own : 1.0);
+    auto reach = costs_->of(candidate.method, own > 0.0 ? own : 1.0);
     if (!reach) return reach.error();
-    candidate.within_costs = within_costs(*reach);
+    candidate.within_costs = costs_->allow(*reach);
     candidate.reach = along_own_direction(*std::move(reach));
     if (own == 0.0) return {};
     const ArmScore score = check->at(own, check->tried().size());
@@ -313,8 +178,8 @@ class ArmSearch {
     return {};
   }
 
-  /// At least 95 % of the taps in each hand.
-  [[nodiscard]] bool holds(ArmTrial& trial, double gain) const {
+  /// At least 95 % of the taps in each hand, and of those alike in hand, pose and direction three of four.
+  [[nodiscard]] bool holds(ArmTrial& trial, const ArmTappingParams& params, double gain) const {
     const ArmScore score = trial.at(gain, trial.may_fail());
     if (!score.whole) return false;
     for (std::size_t hand = 0; hand < bench_.hands.size(); ++hand) {
@@ -324,13 +189,15 @@ class ArmSearch {
       for (const std::size_t one : score.failed) failed += trial.tried()[one].hand == hand ? 1U : 0U;
       if (20 * failed > taps) return false;
     }
-    return true;
+    return std::none_of(score.failed.begin(), score.failed.end(), [&](std::size_t one) {
+      return fails_with_those_alike(bench_, params, trial.tried()[one], gain, unseen);
+    });
   }
 
-  Result<ArmAdvice> conclude() {
+  Result<ArmAdvice> conclude(const std::vector<ArmChange>& changes) {
     ArmAdvice advice;
-    advice.plain = along_own_direction(plain_);
-    advice.climb = changes_;
+    advice.plain = along_own_direction(costs_->plain());
+    advice.climb = changes;
     const auto eligible = [this](const ArmCandidate& one) {
       return one.note.empty() && one.within_costs && (bench_.asked_gain ? one.holds_asked : one.force_gain > 0.0);
     };
@@ -369,10 +236,8 @@ class ArmSearch {
   const Progress& progress_;
   std::vector<Dimension> dimensions_;
   Dimension rivals_;
-  std::vector<ArmReach> plain_;  ///< of `reaches`
+  std::optional<ArmCosts> costs_;
   std::optional<Method> best_alone_;
-  std::vector<Step> climb_;
-  std::vector<ArmChange> changes_;
   std::vector<ArmCandidate> candidates_;
   std::vector<double> near_;  ///< of each candidate, where its limit may be
 };

@@ -75,13 +75,17 @@ struct ArmAdvice {
 /// 2. From bare position-force on, a gain at a time in steps of √2: while taps fail, the one change of one dimension
 ///    (`arm_dimensions`) that lets most of them settle, and among equals the hand that has less feel most, within the
 ///    costs. It ends where no change helps. Taps in two poses.
-/// 3. The configurations that got farthest, the best of 1 and what the file has: their limits on other taps in three
+/// 3. From there on, a gain at a time downward, the same on these taps and on those that fail in eight poses with one
+///    of three alike. What settles there is changed once more while that lets the hand feel more.
+/// 4. The configurations that got farthest, the best of 1 and what the file has: their limits on other taps in three
 ///    poses.
-/// 4. What of that holds on taps in poses that no search has seen, less `reserve`.
+/// 5. What of that holds on taps that no search has seen, less `reserve`: in those poses and in four that no search
+///    has seen either.
 ///
-/// A gain holds where at least 95 % of the taps settle, as `arm-tapping` counts. Of those within the costs, the one
-/// with the largest presence is taken; of those within a tenth of it, the one of least effort. What the file has is
-/// shown beside it and never taken.
+/// A gain holds where at least 95 % of the taps settle in each hand, as `arm-tapping` counts, and of each that does not
+/// three alike in hand, pose and direction do. One that is advised holds at half of it too, for less may settle less:
+/// a person begins there. Of those within the costs, the one with the largest presence is taken; of those within a
+/// tenth of it, the one of least effort. What the file has is shown beside it and never taken.
 ///
 /// Equal benches give equal advice. Errors: those of reading the document. Not real-time safe; minutes, on all cores.
 Result<ArmAdvice> advise(const ArmBench& bench, const experiments::Progress& progress);

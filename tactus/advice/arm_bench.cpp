@@ -14,8 +14,6 @@ using experiments::ArmTappingParams;
 using experiments::TapDirection;
 
 constexpr const char* pose_key = "task.pose";
-/// Poses beside the file's own: one that the search sees, two for deciding and four that neither has seen.
-constexpr std::size_t most_poses = 8;
 constexpr std::int64_t most_poses_tried = 40;
 
 /// A dimension's setting is given where its key is, or a section that holds it.

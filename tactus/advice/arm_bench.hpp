@@ -26,6 +26,10 @@ struct ArmHand {
 inline constexpr arm::HandImpedance soft_hand{
     .mass_kg = 0.1, .stiffness_N_per_m = 60.0, .damping_N_s_per_m = 10.0, .lever_m = 0.05};
 
+/// Poses beside the file's own that a search may see, and all that there are with it: what confirms an answer sees
+/// those too that no search saw.
+inline constexpr std::size_t seen_poses = 7, most_poses = 12;
+
 /// An experiment on two arms with what must stay as it is.
 struct ArmBench {
   configuration::Document document;  ///< of kind arm-tapping, with the values that were given

@@ -143,7 +143,8 @@ std::string basis_text(const ArmBench& bench) {
          ", in several poses and directions, with a model that is wrong by up to " +
          three_digits(100.0 * bench.as_given.task.model_error) +
          " %; the force gain is the largest that did, divided by " + three_digits(reserve) +
-         ", and settles on taps in poses that no search had seen. Configurations that lag by more than " +
+         ", and holds, as half of it does, on taps that no search had seen, some in poses new to it. Configurations "
+         "that lag by more than " +
          three_digits(1e3 * most_lag_more_m) + " mm beyond the bare pair, or take more than " +
          three_digits(most_effort_factor) + " times its effort, are not advised. Simulated.\n";
 }

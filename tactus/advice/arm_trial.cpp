@@ -1,4 +1,5 @@
 #include <tactus/advice/arm_trial.hpp>
+#include <tactus/simulation/parallel.hpp>
 #include <tactus/simulation/quantile.hpp>
 
 #include <algorithm>
@@ -52,12 +53,17 @@ std::string words_of(const ArmBench& bench, const Situation& situation) {
 
 Result<ArmTrial> ArmTrial::make(const ArmBench& bench, const experiments::ArmTappingParams& params,
                                 const ArmDraws& draws) {
+  return make(bench, params, situations(bench, draws), draws);
+}
+
+Result<ArmTrial> ArmTrial::make(const ArmBench& bench, const experiments::ArmTappingParams& params,
+                                std::vector<Situation> taps, const ArmDraws& detail) {
   ArmTrial trial;
   trial.bench_ = &bench;
   trial.params_ = params;
-  if (draws.coarse) trial.params_.servo.plant_step_s = std::max(params.servo.plant_step_s, coarse_arm_step_s);
-  if (draws.brief) trial.params_.task.observation_s = std::min(params.task.observation_s, brief_s);
-  trial.situations_ = situations(bench, draws);
+  if (detail.coarse) trial.params_.servo.plant_step_s = std::max(params.servo.plant_step_s, coarse_arm_step_s);
+  if (detail.brief) trial.params_.task.observation_s = std::min(params.task.observation_s, brief_s);
+  trial.situations_ = std::move(taps);
   trial.taps_.resize(trial.situations_.size());
   if (const auto first = trial.made(0); !first) return first.error();
   return trial;
@@ -154,18 +160,34 @@ std::string ArmTrial::fault(double gain, std::size_t situation) {
   return result.contact.touched ? "rings" : "does not touch";
 }
 
+bool fails_with_those_alike(const ArmBench& bench, const experiments::ArmTappingParams& params, const Situation& tap,
+                            double gain, const ArmDraws& detail) {
+  constexpr std::int64_t beyond_any_draw = 100'000;
+  std::vector<Situation> alike(4, tap);
+  for (std::size_t i = 1; i < alike.size(); ++i) alike[i].seed += static_cast<std::int64_t>(i) * beyond_any_draw;
+  auto trial = ArmTrial::make(bench, params, alike, detail);
+  if (!trial) return true;
+  return trial->failures_among({0}, gain) > 0 && trial->failures_among({1, 2, 3}, gain) > 0;
+}
+
 Result<std::vector<experiments::ArmReach>> reaches(const ArmBench& bench, const experiments::ArmTappingParams& params) {
-  std::vector<experiments::ArmReach> found;
-  for (const experiments::TapDirection direction : bench.directions) {
-    for (std::size_t hand = 0; hand < bench.hands.size(); ++hand) {
-      experiments::ArmTappingParams one = in_hand(bench, params, hand);
-      one.task.direction = direction;
-      const auto taps = experiments::ArmTaps::make(one, bench.folder);
-      if (!taps) return taps.error();
-      found.push_back(taps->reach());
-    }
+  const std::size_t hands = bench.hands.size();
+  std::vector<Result<experiments::ArmReach>> found(bench.directions.size() * hands, experiments::ArmReach{});
+  simulation::for_each_in_parallel(
+      found.size(),
+      [&](std::size_t i) {
+        experiments::ArmTappingParams one = in_hand(bench, params, i % hands);
+        one.task.direction = bench.directions[i / hands];
+        const auto taps = experiments::ArmTaps::make(one, bench.folder);
+        found[i] = taps ? Result<experiments::ArmReach>(taps->reach()) : taps.error();
+      },
+      [](double) {});
+  std::vector<experiments::ArmReach> all;
+  for (const auto& one : found) {
+    if (!one) return one.error();
+    all.push_back(*one);
   }
-  return found;
+  return all;
 }
 
 }  // namespace tactus::advice

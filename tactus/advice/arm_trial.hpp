@@ -55,6 +55,9 @@ class ArmTrial {
   /// Errors: those of `ArmTaps::make` at the first tap; another that cannot be made counts as failed.
   static Result<ArmTrial> make(const ArmBench& bench, const experiments::ArmTappingParams& params,
                                const ArmDraws& draws);
+  /// The same of any taps; of `detail` only how closely they are looked at is used.
+  static Result<ArmTrial> make(const ArmBench& bench, const experiments::ArmTappingParams& params,
+                               std::vector<Situation> taps, const ArmDraws& detail);
 
   /// Runs the taps, those in `first` before all others, and stops where more than `most_failures` fail. What was run at
   /// this gain before is not run again.
@@ -91,6 +94,11 @@ class ArmTrial {
   double gain_ = -1.0;
   std::vector<std::size_t> failed_last_;
 };
+
+/// Whether a tap fails at a gain, and with it one at least of three more of its hand, pose and direction that no draw
+/// has. Of `detail` only how closely they are looked at is used. What cannot be made fails.
+bool fails_with_those_alike(const ArmBench& bench, const experiments::ArmTappingParams& params, const Situation& tap,
+                            double gain, const ArmDraws& detail);
 
 /// What reaching freely costs in each hand of the bench, along its own direction and then each other, at the gain of
 /// `params`. Errors: those of `ArmTaps::make`.

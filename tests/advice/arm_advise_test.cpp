@@ -111,7 +111,7 @@ TEST(ArmBench, AHandIsAddedThatIsSoftUnlessOneWasGiven) {
   EXPECT_EQ(both.hands[0].hand.stiffness_N_per_m, 400.0);
   EXPECT_EQ(both.hands[1].hand.stiffness_N_per_m, 60.0);
   EXPECT_EQ(both.directions.size(), 3U);
-  EXPECT_EQ(both.poses.size(), 8U);
+  EXPECT_EQ(both.poses.size(), most_poses);
   const ArmBench one = arm_bench(narrow);
   EXPECT_EQ(one.hands.size(), 1U);
   EXPECT_EQ(one.directions.size(), 1U);
@@ -137,16 +137,23 @@ TEST(ArmTrial, NoStageSeesTheTapsOfAnother) {
   const ArmBench bench = arm_bench({});
   std::set<std::int64_t> seeds;
   std::size_t taps = 0;
-  for (const std::int64_t first : {0, 1000, 2000, 3000}) {
-    for (const Situation& one : situations(bench, {.first_seed = first, .poses = 4, .own_taps = 8})) {
+  for (const std::int64_t first : {0, 1000, 2000, 3000, 4000}) {
+    for (const Situation& one : situations(bench, {.first_seed = first, .poses = most_poses, .own_taps = 8})) {
       seeds.insert(one.seed);
       ++taps;
     }
   }
   EXPECT_EQ(seeds.size(), taps);
-  for (const Situation& one : situations(bench, {.first_pose = 4, .poses = 4, .own_pose = false})) {
-    EXPECT_GE(one.pose, bench.poses[4]);
-  }
+  for (const Situation& one : situations(bench, {.poses = seen_poses})) EXPECT_LE(one.pose, bench.poses[seen_poses]);
+  EXPECT_GT(bench.poses.size(), 1 + seen_poses);
+}
+
+TEST(ArmTrial, ATapFailsWithThoseAlikeWhereTheyRingTooAndNotWhereItSettles) {
+  const ArmBench bench = arm_bench(narrow, {"arms/bare.toml"});
+  const auto params = *params_of(bench, {});
+  const Situation tap = situations(bench, {}).front();
+  EXPECT_FALSE(fails_with_those_alike(bench, params, tap, 0.5, {}));
+  EXPECT_TRUE(fails_with_those_alike(bench, params, tap, 16.0, {}));
 }
 
 TEST(ArmTrial, TapsAtTheOwnPoseAreInEachDirectionAndHand) {
@@ -207,6 +214,29 @@ TEST(ArmAdvise, DampingIsFoundForABarePairAndItsGainHoldsOnTapsThatNoSearchSaw) 
   EXPECT_TRUE(outcome->text.starts_with(sentence(bench, *advice) + "\n"));
   EXPECT_EQ(value_of(settings_of(bench, *advice->start), "control.force_gain"),
             format_number(advice->start->force_gain));
+}
+
+/// Along x, where some poses bear a third of what others do: the climb sees two of them.
+TEST(ArmAdvise, WhatIsAdvisedSettlesInEveryPose) {
+  Words set = narrow + Words{"control.drive_damping_limit_N_s_per_m=20"};
+  std::erase(set, "task.pose=0");
+  std::replace(set.begin(), set.end(), std::string("task.direction=down"), std::string("task.direction=along-x"));
+  const ArmBench bench = arm_bench(set, {"arms/bare.toml"});
+  ASSERT_EQ(bench.poses.size(), most_poses);
+  const auto advice = advise(bench, [](double) {});
+  ASSERT_TRUE(advice) << describe(advice.error());
+  ASSERT_TRUE(advice->start);
+  auto params = *params_of(bench, advice->start->method);
+  params.task.taps = 8;
+  params.task.seed = 78;
+  params.control.force_gain = advice->start->force_gain;
+  for (const std::int64_t pose : bench.poses) {
+    params.task.pose = pose;
+    const auto taps = *experiments::ArmTaps::make(params, bench.folder);
+    std::size_t settled = 0;
+    for (std::size_t i = 0; i < taps.size(); ++i) settled += taps.run(i).settled() ? 1U : 0U;
+    EXPECT_GE(settled, 6U) << "pose " << pose;
+  }
 }
 
 TEST(ArmAdvise, AGainThatIsGivenIsJudgedAndNotChanged) {
