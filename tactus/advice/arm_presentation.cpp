@@ -129,7 +129,7 @@ report::Table tried_table(const ArmAdvice& advice) {
 report::Table climb_table(const ArmAdvice& advice) {
   using Align = report::Column::Align;
   report::Table table({{"at a gain of"}, {"taken", "", Align::left}, {"taps that fail"}},
-                      "How the search went up from the bare pair");
+                      "How the search went: up from the bare pair, then down in more poses");
   for (const ArmChange& one : advice.climb) {
     table.add_row({three_digits(one.gain), one.words,
                    std::to_string(one.failed) + " of " + std::to_string(one.of) + ", before " +
