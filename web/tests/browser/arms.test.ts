@@ -1,6 +1,7 @@
 import type { Browser, Page } from 'playwright-core';
 import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, test, vi } from 'vitest';
 import { launch, open, parameter, type Watched } from './browser';
+import { handleAtRest, placeOfHandle } from './moves';
 import { demandProgram, leftOut, TactusServer } from './tactus';
 
 /** Two pairs of arms behind the page, from `tactus serve experiments/arm-tapping.toml`. */
@@ -12,10 +13,6 @@ describe.skipIf(leftOut)('the page before two arms', () => {
 
   const until = (check: () => Promise<void>) => vi.waitFor(check, { timeout: 20_000, interval: 25 });
   const verdict = (side: string) => page.getAttribute(`.loop[data-side=${side}]`, 'data-verdict');
-  const handle = async (): Promise<readonly [number, number]> => {
-    const box = (await page.locator('#handle-left').boundingBox())!;
-    return [box.x + box.width / 2, box.y + box.height / 2];
-  };
   /** Pixels of the picture that are not the page behind it. */
   const painted = () =>
     page.$eval('[data-kind=arms] .loop[data-side=left] canvas', (canvas) => {
@@ -60,19 +57,20 @@ describe.skipIf(leftOut)('the page before two arms', () => {
   });
 
   test('a drag of the hand in the picture goes to the wall and across, and home when it is let go', async () => {
-    const [x, y] = await handle();
+    await until(async () => expect(await painted()).toBeGreaterThan(0.01));
+    const [x, y] = await handleAtRest(page);
     await page.mouse.move(x, y);
     await page.mouse.down();
     await page.mouse.move(x + 30, y - 40, { steps: 5 });
     await until(async () => {
-      const [nowX, nowY] = await handle();
+      const [nowX, nowY] = await placeOfHandle(page);
       expect(nowX - x).toBeGreaterThan(10);
       expect(y - nowY).toBeGreaterThan(15);
     });
     await page.mouse.move(x, y + 30, { steps: 5 });
     await until(async () => expect(['contact', 'settled', 'rings']).toContain(await verdict('left')));
     await page.mouse.up();
-    await until(async () => expect(Math.abs((await handle())[0] - x)).toBeLessThan(4));
+    await until(async () => expect(Math.abs((await placeOfHandle(page))[0] - x)).toBeLessThan(4));
   });
 
   test('is worked by keys alone', async () => {

@@ -31,6 +31,25 @@ export const presses: Readonly<Record<string, readonly string[]>> = {
 /** How long the hand rests at the end of a move, longer than any verdict takes. */
 const holds_ms = 900;
 
+/** The middle of the left handle in the window. */
+export async function placeOfHandle(page: Page): Promise<readonly [number, number]> {
+  const box = (await page.locator('#handle-left').boundingBox())!;
+  return [box.x + box.width / 2, box.y + box.height / 2];
+}
+
+/**
+ * The same once it stays there. It may still be on its way back from the move before, or what stands above it may not
+ * be laid out yet: a pointer that is pressed beside it drags nothing.
+ */
+export async function handleAtRest(page: Page): Promise<readonly [number, number]> {
+  for (let before = await placeOfHandle(page); ; ) {
+    await page.waitForTimeout(50);
+    const now = await placeOfHandle(page);
+    if (Math.hypot(now[0] - before[0], now[1] - before[1]) < 0.5) return now;
+    before = now;
+  }
+}
+
 /** A finger where the page has touch, else the mouse. */
 export class Pointer {
   private constructor(
@@ -51,18 +70,7 @@ export class Pointer {
   async drag({ length_mm, duration_ms }: Drag): Promise<void> {
     const handle = this.page.locator('#handle-left');
     await handle.scrollIntoViewIfNeeded();
-    const place = async (): Promise<[number, number]> => {
-      const box = (await handle.boundingBox())!;
-      return [box.x + box.width / 2, box.y + box.height / 2];
-    };
-    // It may still be on its way back from the move before: a pointer that is pressed beside it drags nothing.
-    let [x, y] = await place();
-    for (let moved = true; moved; ) {
-      await this.page.waitForTimeout(50);
-      const before = x;
-      [x, y] = await place();
-      moved = Math.abs(x - before) > 0.5;
-    }
+    const [x, y] = await handleAtRest(this.page);
     const width = (await this.page.locator('.loop[data-side=left] canvas').boundingBox())!.width;
     const length = (length_mm * width) / 25;
     await this.put('down', x, y);
