@@ -64,7 +64,7 @@ struct ArmAdvice {
   std::optional<ArmCandidate> start;
   std::vector<ArmCandidate> alternatives;    ///< what was tried to the end besides, the most presence first
   std::vector<experiments::ArmReach> plain;  ///< what `reach` is compared with
-  std::vector<ArmChange> climb;              ///< what the search did in its second stage, in order
+  std::vector<ArmChange> climb;              ///< what the search did in its second and third stage, in order
   std::optional<ArmFault> fault;             ///< of `start`; none where the search ended there
   std::vector<ArmObstacle> obstacles;        ///< of `start`, the one that gives most first
 };
