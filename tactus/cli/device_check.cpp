@@ -7,10 +7,8 @@
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -88,15 +86,6 @@ double position_of(const Checked& checked, std::size_t motor) {
   return checked.side == nullptr ? of_motor_rad : checked.side->joints[motor].joint.first_position_rad(of_motor_rad);
 }
 
-/// With so many digits behind the point that a row of joints stays within 80 columns.
-std::string cell(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  const double unit = std::pow(0.1, digits);
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, std::round(value / unit) * unit + 0.0);  // 0 has no sign
-  return text.data();
-}
-
 /// Of all joints of a side.
 bool slides(const Checked& checked) { return checked.side != nullptr && checked.side->joints.front().slides; }
 
@@ -120,8 +109,8 @@ report::Table table_of(const Checked& checked) {
     if (checked.side != nullptr) row.emplace_back(checked.side->joints[i].name());
     row.insert(row.end(), {std::to_string(stated.id), stated.model, motor.sheet.scales, motor.sheet.firmware});
     if (checked.found.heard) {
-      row.insert(row.end(),
-                 {cell(position_of(checked, i), 4), cell(motor.reading.temperature_C, 0), cell(1e3 * motor.age_s, 1)});
+      row.insert(row.end(), {report::fixed(position_of(checked, i), 4), report::fixed(motor.reading.temperature_C, 0),
+                             report::fixed(1e3 * motor.age_s, 1)});
     } else {
       row.resize(row.size() + 3);
     }

@@ -10,8 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -87,13 +85,6 @@ std::vector<Shown> look(Watched& watched, const BusReadings& now, const std::str
   return all;
 }
 
-std::string fixed(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
-
 std::string table_of(const std::vector<Shown>& all) {
   report::Table table({{"joint", "", report::Column::Align::left},
                        {"position"},
@@ -104,9 +95,9 @@ std::string table_of(const std::vector<Shown>& all) {
                        {"age", "ms"},
                        {"state", "", report::Column::Align::left}});
   for (const Shown& one : all) {
-    table.add_row({one.joint->path, fixed(one.position_rad, 3), fixed(one.moved_rad, 3),
-                   fixed(one.velocity_rad_per_s, 2), one.joint->words().velocity_unit, fixed(one.temperature_C, 0),
-                   fixed(1e3 * one.age_s, 1), one.state});
+    table.add_row({one.joint->path, report::fixed(one.position_rad, 3), report::fixed(one.moved_rad, 3),
+                   report::fixed(one.velocity_rad_per_s, 2), one.joint->words().velocity_unit,
+                   report::fixed(one.temperature_C, 0), report::fixed(1e3 * one.age_s, 1), one.state});
   }
   return table.to_text();
 }
@@ -114,9 +105,10 @@ std::string table_of(const std::vector<Shown>& all) {
 std::string lines_of(const std::vector<Shown>& all, double time_s) {
   std::string lines;
   for (const Shown& one : all) {
-    lines += fixed(time_s, 1) + " " + one.joint->path + " " + one.joint->words().position_unit + " " +
-             fixed(one.position_rad, 4) + " " + fixed(one.moved_rad, 4) + " " + fixed(one.velocity_rad_per_s, 3) + " " +
-             fixed(one.temperature_C, 0) + " " + fixed(1e3 * one.age_s, 1) + " " + one.state + "\n";
+    lines += report::fixed(time_s, 1) + " " + one.joint->path + " " + one.joint->words().position_unit + " " +
+             report::fixed(one.position_rad, 4) + " " + report::fixed(one.moved_rad, 4) + " " +
+             report::fixed(one.velocity_rad_per_s, 3) + " " + report::fixed(one.temperature_C, 0) + " " +
+             report::fixed(1e3 * one.age_s, 1) + " " + one.state + "\n";
   }
   return lines;
 }

@@ -98,7 +98,7 @@ RigGuard::RigGuard(RigGuard&& other) noexcept
 
 RigGuard::~RigGuard() {
   if (pipe_ < 0) return;
-  static_cast<void>(!write(pipe_, &goodbye, 1));
+  static_cast<void>(!::write(pipe_, &goodbye, 1));
   close(pipe_);
   waitpid(process_, nullptr, 0);
 }

@@ -4,12 +4,11 @@
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/report/figure.hpp>
 #include <tactus/report/page.hpp>
+#include <tactus/report/text.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include <nlohmann/json.hpp>
 
@@ -19,12 +18,6 @@ namespace {
 
 using devices::RigPair;
 using devices::RigSecond;
-
-std::string fixed(double value, int digits) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
-  return text.data();
-}
 
 const devices::RigJoint& joint_of(const devices::RigSide& side, std::size_t joint) {
   return side.joints[std::min(joint, side.joints.size() - 1)];
@@ -55,8 +48,9 @@ std::string words_of(const devices::DeviceTrouble& trouble, const char* name, co
       const bool stood = trouble.cycle_age_s > 0.5 * trouble.age_s;
       const std::string said = trouble.fault == devices::MotorFault::lost_master
                                    ? joint + " had not heard from us in time"
-                                   : joint + " unheard for " + fixed(1e3 * trouble.age_s, 1) + " ms";
-      return place + said + (stood ? ", no cycle of its bus for " + fixed(1e3 * trouble.cycle_age_s, 1) + " ms" : "");
+                                   : joint + " unheard for " + report::fixed(1e3 * trouble.age_s, 1) + " ms";
+      return place + said +
+             (stood ? ", no cycle of its bus for " + report::fixed(1e3 * trouble.cycle_age_s, 1) + " ms" : "");
     }
     case Trouble::motor_fault:
       return place + joint + " has the fault " + name_of(trouble.fault);
@@ -89,7 +83,7 @@ std::string advice(const RigSecond& second, const RigPair& pair, std::optional<c
     if (only && !(second.farthest > 0.0)) {
       return std::string("; the ") + (*only == control::SiteRole::master ? "follower" : "leader") + " is not heard";
     }
-    return "; too far apart to arm: move " + leading(pair, joint) + " by " + fixed(second.farthest, 2) + " " +
+    return "; too far apart to arm: move " + leading(pair, joint) + " by " + report::fixed(second.farthest, 2) + " " +
            joint.words().position_unit + " to where its follower is";
   }
   if (only == control::SiteRole::slave && second.leader == SiteState::configure) return "; armed at its leader's";
@@ -101,12 +95,12 @@ std::string advice(const RigSecond& second, const RigPair& pair, std::optional<c
 }  // namespace
 
 std::string line_of(const RigSecond& second, const RigPair& pair, std::optional<control::SiteRole> only) {
-  std::string line = fixed(second.time_s, 0) + " s: leader " + name_of(second.leader) + ", follower " +
+  std::string line = report::fixed(second.time_s, 0) + " s: leader " + name_of(second.leader) + ", follower " +
                      name_of(second.follower) + " (" + name_of(second.cause) + "), most torque " +
-                     fixed(second.most_torque, 2) + ", farthest apart " + fixed(second.farthest, 3);
+                     report::fixed(second.most_torque, 2) + ", farthest apart " + report::fixed(second.farthest, 3);
   if (only) {
-    line += ", round trip " + fixed(1e3 * second.link.round_trip_s, 2) + " ms, lost " +
-            fixed(100.0 * second.link.loss_fraction, 1) + " %";
+    line += ", round trip " + report::fixed(1e3 * second.link.round_trip_s, 2) + " ms, lost " +
+            report::fixed(100.0 * second.link.loss_fraction, 1) + " %";
   }
   if (only != control::SiteRole::slave) line += words_of(second.leader_trouble, "leader", *pair.leader);
   if (only != control::SiteRole::master) line += words_of(second.follower_trouble, "follower", *pair.follower);
@@ -119,11 +113,11 @@ std::string summary_of(const RigRun& run) {
   const devices::RigTotals& totals = run.totals;
   std::string link;
   if (run.link) {
-    link = "; round trip " + fixed(1e3 * run.link->round_trip_mean_s, 2) + " ms, at most " +
-           fixed(1e3 * run.link->round_trip_max_s, 2) + " ms, " + std::to_string(run.link->link.sent) +
+    link = "; round trip " + report::fixed(1e3 * run.link->round_trip_mean_s, 2) + " ms, at most " +
+           report::fixed(1e3 * run.link->round_trip_max_s, 2) + " ms, " + std::to_string(run.link->link.sent) +
            " packets sent, " + std::to_string(run.link->link.inbound.counted) + " came";
   }
-  return std::to_string(totals.ticks) + " ticks in " + fixed(totals.duration_s, 1) + " s, " +
+  return std::to_string(totals.ticks) + " ticks in " + report::fixed(totals.duration_s, 1) + " s, " +
          std::to_string(totals.active_ticks) + " of them coupled; armed " + std::to_string(totals.armings) +
          " times, held " + std::to_string(totals.holds) + " times, a device late in " +
          std::to_string(totals.late_ticks) + ", silent in " + std::to_string(totals.silent_ticks) + ", lost in " +

@@ -37,8 +37,7 @@ ContactMetrics judge_contact(std::span<const double> contact_force_N, std::size_
   metrics.settled = metrics.settling_time_s <= window_s - quiet_time_s;
   if (!metrics.settled) metrics.settling_time_s = window_s;
 
-  const auto residual_ticks =
-      std::min(window.size(), static_cast<std::size_t>(std::lround(residual_window_s / tick_s)));
+  const auto residual_ticks = std::min(window.size(), ticks_in(residual_window_s, tick_s));
   metrics.residual_rms_N = signal::root_mean_square(window.last(residual_ticks));
   return metrics;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -16,6 +17,11 @@ struct ContactMetrics {
   double peak_force_N = 0;     ///< largest contact force
   double residual_rms_N = 0;   ///< RMS of the force above 15 Hz over the last 100 ms of the window
 };
+
+/// How many ticks come nearest to a duration.
+inline std::size_t ticks_in(double duration_s, double tick_s) {
+  return static_cast<std::size_t>(std::lround(duration_s / tick_s));
+}
 
 /// Corner of the high-pass before "force above 15 Hz".
 inline constexpr double transient_cutoff_Hz = 15.0;

@@ -83,6 +83,17 @@ std::string rewrite(std::string_view text, Write&& write) {
 
 }  // namespace
 
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return "-";
+  std::array<char, 400> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::abs(value),
+                                 std::chars_format::fixed, std::clamp(decimals, 0, 17))
+                       .ptr;
+  const std::string digits(buffer.data(), end);
+  const bool zero = digits.find_first_not_of("0.") == std::string::npos;
+  return value < 0.0 && !zero ? "-" + digits : digits;
+}
+
 std::string power_of_ten(int exponent) {
   constexpr std::array<const char*, 10> digits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string text = exponent < 0 ? "10⁻" : "10";

@@ -17,7 +17,9 @@ using ArmJson = nlohmann::json;
 /// On the recordings of a simulated arm of three joints that come with the project.
 class ArmVerbs : public Command {
  protected:
-  static std::string example(const std::string& name) { return std::string(TACTUS_RECORDING_FOLDER) + "/" + name; }
+  static std::string example(const std::string& name) {
+    return std::string(TACTUS_EXAMPLE_FOLDER "/recordings") + "/" + name;
+  }
   static std::string example_text(const std::string& name) {
     std::ostringstream text;
     text << std::ifstream(example(name)).rdbuf();

@@ -14,7 +14,7 @@ namespace {
 using Diagnose = Command;
 using Json = nlohmann::json;
 
-const std::string shipped = TACTUS_EXAMPLE_RECORDING;
+const std::string shipped = TACTUS_EXAMPLE_FOLDER "/recordings/shaking-contact.csv";
 
 /// Four seconds at 1 kHz of a slave that shakes by itself at 25 Hz from 1 s on.
 std::string shaking_slave(const std::string& header) {

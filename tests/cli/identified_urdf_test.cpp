@@ -16,7 +16,7 @@ namespace {
 
 TEST(IdentifiedUrdf, IsTheModelThatWasFound) {
   const std::filesystem::path folder = scratch_path();
-  const std::string recordings = TACTUS_RECORDING_FOLDER;
+  const std::string recordings = TACTUS_EXAMPLE_FOLDER "/recordings";
   std::vector<std::string> words{"tactus",     "identify",
                                  "arm",        recordings + "/arm-free-motion.csv",
                                  "--urdf",     recordings + "/three-joints.urdf",

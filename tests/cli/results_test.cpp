@@ -117,10 +117,10 @@ TEST_F(Results, OfRecordingsAreOfTheirSchemas) {
   std::ostringstream table;
   table << "time_s,position_m,force_N\n";
   for (int i = 0; i < 8000; ++i) {
-    constexpr double mass_kg = 0.5, viscous_N_s_per_m = 1.2, amplitude_m = 0.02;
+    constexpr double moved_mass_kg = 0.5, viscous_N_s_per_m = 1.2, amplitude_m = 0.02;
     const double t = 1e-3 * i, phase = std::numbers::pi * (t + 0.5 * t * t), w = std::numbers::pi * (1.0 + t);
     const double position_m = amplitude_m * std::sin(phase), velocity_m_per_s = amplitude_m * w * std::cos(phase);
-    table << t << "," << position_m << "," << viscous_N_s_per_m * velocity_m_per_s - mass_kg * w * w * position_m
+    table << t << "," << position_m << "," << viscous_N_s_per_m * velocity_m_per_s - moved_mass_kg * w * w * position_m
           << "\n";
   }
   write("free.csv", table.str());

@@ -55,7 +55,7 @@ class RigRun : public Command {
       RUN="$TACTUS run $JOINTS --realtime --device rig.toml"
       )sh" + rest);
     setenv("TACTUS", TACTUS_COMMAND, 1);
-    setenv("JOINTS", TACTUS_JOINTS_FILE, 1);
+    setenv("JOINTS", TACTUS_EXAMPLE_FOLDER "/rigs/joints.toml", 1);
     EXPECT_EQ(std::system(("cd '" + folder().string() + "' && sh script >out 2>err").c_str()), 0) << content("err");
     return content("out") + content("err");
   }
@@ -220,7 +220,7 @@ class ArmRun : public RigRun {
     const std::string arm =
         "damiao --motors 8 --arm $EXPERIMENTS/arms/openarm-class.urdf --armature 0.0167,0.0167,0.029,0.029,0.0018 "
         "--model DM8009,DM8009,DM4340,DM4340,DM4310 --held 0.2,-1.77,0.15,";
-    const std::filesystem::path rigs = std::filesystem::path(TACTUS_JOINTS_FILE).parent_path();
+    const std::filesystem::path rigs = TACTUS_EXAMPLE_FOLDER "/rigs";
     setenv("EXPERIMENTS", TACTUS_EXPERIMENT_FOLDER, 1);
     setenv("RIGS", rigs.c_str(), 1);
     return shell_until(signs, arm + "1.55,0.2,0.1,0.2", arm + "1.4,0.2,0.1,0.2", "", R"sh(
@@ -262,7 +262,7 @@ TEST_F(ArmRun, AFollowerWhoseMotorsAreGoneIsAFaultAndTheLeaderHoldsItself) {
 }
 
 TEST_F(RigRun, AnArmThatTheRigDoesNotFitIsRefusedBeforeAnythingIsOpened) {
-  const auto file = std::filesystem::path(TACTUS_JOINTS_FILE).parent_path() / "arms.toml";
+  const auto file = std::filesystem::path(TACTUS_EXAMPLE_FOLDER "/rigs/arms.toml");
   write("rig.toml", pair("damiao", "DM4310", 7, ""));
   const auto said = tactus({"run", file.string(), "--realtime", "--device", "rig.toml"});
   EXPECT_EQ(said.status, 2);
@@ -278,7 +278,8 @@ TEST_F(RigRun, AnArmThatTheRigDoesNotFitIsRefusedBeforeAnythingIsOpened) {
 TEST_F(RigRun, WhatMakesNoSenseIsRefusedWithTheRemedy) {
   const auto refusal = [this](const std::string& rig, const std::vector<std::string>& more) {
     write("rig.toml", rig);
-    std::vector<std::string> words{"run", TACTUS_JOINTS_FILE, "--realtime", "--device", "rig.toml"};
+    std::vector<std::string> words{"run", TACTUS_EXAMPLE_FOLDER "/rigs/joints.toml", "--realtime", "--device",
+                                   "rig.toml"};
     words.insert(words.end(), more.begin(), more.end());
     const Outcome outcome = tactus(words);
     EXPECT_EQ(outcome.status, 2) << outcome.err;

@@ -22,7 +22,7 @@ class RigSites : public Command {
       setenv(name.c_str(), std::to_string(port + i).c_str(), 1);
     }
     setenv("TACTUS", TACTUS_COMMAND, 1);
-    setenv("JOINTS", TACTUS_JOINTS_FILE, 1);
+    setenv("JOINTS", TACTUS_EXAMPLE_FOLDER "/rigs/joints.toml", 1);
   }
 
   /// Runs a script in the folder. `rig SIDE PORT [JOINT...]` writes a rig file of that side alone; `site NAME MORE...`
@@ -218,7 +218,8 @@ TEST_F(RigSites, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
 TEST_F(RigSites, WhatMakesNoSenseIsRefusedWithTheRemedy) {
   EXPECT_EQ(shell("rig leader /dev/null one; rig follower /dev/null one; true\n"), 0) << all();
   const auto refusal = [this](std::vector<std::string> more) {
-    std::vector<std::string> words{"run", TACTUS_JOINTS_FILE, "--site", "master", "--device", "leader.toml"};
+    std::vector<std::string> words{
+        "run", TACTUS_EXAMPLE_FOLDER "/rigs/joints.toml", "--site", "master", "--device", "leader.toml"};
     words.insert(words.end(), more.begin(), more.end());
     const Outcome outcome = tactus(words);
     EXPECT_EQ(outcome.status, 2) << outcome.err;
@@ -235,8 +236,8 @@ TEST_F(RigSites, WhatMakesNoSenseIsRefusedWithTheRemedy) {
   EXPECT_NE(silent.find("control.architecture: a follower of position-force does not tell where it is"),
             std::string::npos)
       << silent;
-  const Outcome other = tactus({"run", TACTUS_JOINTS_FILE, "--site", "slave", "--device", "leader.toml", "--peer",
-                                "127.0.0.1:7300", "--unencrypted"});
+  const Outcome other = tactus({"run", TACTUS_EXAMPLE_FOLDER "/rigs/joints.toml", "--site", "slave", "--device",
+                                "leader.toml", "--peer", "127.0.0.1:7300", "--unencrypted"});
   EXPECT_EQ(other.status, 2);
   EXPECT_NE(other.err.find("arm: there is no follower, which the slave drives"), std::string::npos) << other.err;
 }

@@ -1,4 +1,5 @@
 #include <tactus/experiments/arm_tapping/arm_tap_run.hpp>
+#include <tactus/experiments/contact_metrics.hpp>
 
 #include <cmath>
 #include <utility>

@@ -11,11 +11,6 @@
 
 namespace tactus::experiments {
 
-/// How many ticks come nearest to a duration.
-inline std::size_t ticks_in(double duration_s, double tick_s) {
-  return static_cast<std::size_t>(std::lround(duration_s / tick_s));
-}
-
 /// One tap: how the person goes about it, and what the controller believes.
 struct ArmTap {
   mechanics::MinimumJerk path;  ///< of the follower's tool, outward from where it began

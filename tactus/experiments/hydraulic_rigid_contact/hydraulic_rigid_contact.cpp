@@ -18,7 +18,7 @@ struct Press {
   double reach_from_s, reach_until_s, hold_until_s, leave_until_s;
 };
 constexpr std::array presses{Press{0.2, 1.0, 2.0, 2.6}, Press{2.8, 3.6, 4.6, 5.2}};
-constexpr double judged_s = 0.3;
+constexpr double press_judged_s = 0.3;
 constexpr double both_presses_s = 5.4;  ///< and the way back
 /// Where the person waits between the presses, from mid-stroke, as a share of the way to the stop.
 constexpr double waiting_share = 0.6;
@@ -79,15 +79,15 @@ RigidContact judge(const RigidContactRun& run, const std::vector<bool>& touching
   }
   contact.touched = contact.touches > 0;
   const auto last_part = [&](const std::vector<double>& signal) {
-    return std::span(signal).subspan(tick(press.hold_until_s - judged_s), tick(judged_s));
+    return std::span(signal).subspan(tick(press.hold_until_s - press_judged_s), tick(press_judged_s));
   };
   contact.fed_back_N = simulation::mean(last_part(run.fed_back_N));
   contact.ripple_N = simulation::rms(last_part(run.fed_back_N), contact.fed_back_N);
   contact.pressure_force_N = simulation::mean(last_part(run.pressure_force_N));
   contact.stop_force_N = simulation::mean(last_part(run.stop_force_N));
   const auto master_m = last_part(run.master_m);
-  const auto judged = touching.begin() + static_cast<std::ptrdiff_t>(tick(press.hold_until_s - judged_s));
-  const bool stays = std::all_of(judged, judged + static_cast<std::ptrdiff_t>(tick(judged_s)), std::identity{});
+  const auto judged = touching.begin() + static_cast<std::ptrdiff_t>(tick(press.hold_until_s - press_judged_s));
+  const bool stays = std::all_of(judged, judged + static_cast<std::ptrdiff_t>(tick(press_judged_s)), std::identity{});
   contact.settled = stays && simulation::rms(master_m, simulation::mean(master_m)) <= settled_within_m;
   const auto half_after_s = [&](const std::vector<double>& signal, double last_N) {
     std::size_t i = first;

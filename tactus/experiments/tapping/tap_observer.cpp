@@ -1,3 +1,4 @@
+#include <tactus/experiments/contact_metrics.hpp>
 #include <tactus/experiments/tapping/tap_observer.hpp>
 
 #include <algorithm>
@@ -8,12 +9,8 @@ namespace tactus::experiments {
 namespace {
 
 /// A slave that has not met the wall this long after the reach has ended never will.
-constexpr double patience_s = 0.2;
+constexpr double tap_patience_s = 0.2;
 constexpr double workspace_m = 1.0;
-
-std::size_t ticks_in(double duration_s, double tick_s) {
-  return static_cast<std::size_t>(std::lround(duration_s / tick_s));
-}
 
 }  // namespace
 
@@ -21,7 +18,7 @@ TapObserver::TapObserver(const Tap& tap, double observation_s)
     : tick_s_(1.0 / tap.params.servo.rate_Hz),
       observation_s_(observation_s),
       slave_workspace_m_(workspace_m * tap.params.control.position_scale),
-      last_(ticks_in(tap.path.start_time_s + tap.path.duration_s + patience_s, tick_s_)) {
+      last_(ticks_in(tap.path.start_time_s + tap.path.duration_s + tap_patience_s, tick_s_)) {
   // Filled and emptied, so that every page of it is there.
   contact_force_N_.resize(last_ + ticks_in(observation_s, tick_s_));
   contact_force_N_.clear();

@@ -14,7 +14,7 @@ namespace tactus::experiments {
 namespace {
 
 /// The person rests this long before the reach, so that every filter is at rest too.
-constexpr double rest_s = 0.05;
+constexpr double tap_rest_s = 0.05;
 
 template <class Teleoperator>
 TapResult run_tap(const Tap& tap, TapObserver judge, std::vector<simulation::Teleoperator::Record>* trace) {
@@ -87,7 +87,7 @@ Result<TappingEnsemble> TappingEnsemble::make(const TappingParams& params) {
     const double wall = params.environment.position_m / params.control.position_scale;
     tap.path = {.start_m = wall - depth,
                 .end_m = wall + depth,
-                .start_time_s = rest_s,
+                .start_time_s = tap_rest_s,
                 .duration_s = mechanics::MinimumJerk::duration_for(2.0 * depth, speed)};
     if (auto error = check(tap, task.supervised)) return *std::move(error);
     taps.push_back(tap);
