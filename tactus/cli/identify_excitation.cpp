@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -91,18 +90,13 @@ std::string csv_of(const ExcitationOptions& options, const std::vector<std::stri
     }
   }
   text += "\n";
-  char buffer[40];
   const auto rows = std::lround(options.request.duration_s * options.rate_Hz);
   for (long i = 0; i <= rows; ++i) {
     const double time_s = static_cast<double>(i) / options.rate_Hz;
-    std::snprintf(buffer, sizeof buffer, "%.6f", time_s);
-    text += buffer;
+    text += report::fixed(time_s, 6);
     const FourierMotion::State state = motion.at(time_s);
     for (const arm::JointVector* values : {&state.position, &state.velocity, &state.acceleration}) {
-      for (const double value : *values) {
-        std::snprintf(buffer, sizeof buffer, ",%.9f", value);
-        text += buffer;
-      }
+      for (const double value : *values) text += "," + report::fixed(value, 9);
     }
     text += "\n";
   }

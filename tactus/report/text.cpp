@@ -87,7 +87,7 @@ std::string fixed(double value, int decimals) {
   if (!std::isfinite(value)) return "-";
   std::array<char, 400> buffer{};
   const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::abs(value),
-                                 std::chars_format::fixed, std::clamp(decimals, 0, 17))
+                                 std::chars_format::fixed, std::clamp(decimals, 0, 30))
                        .ptr;
   const std::string digits(buffer.data(), end);
   const bool zero = digits.find_first_not_of("0.") == std::string::npos;

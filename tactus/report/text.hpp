@@ -13,8 +13,8 @@ namespace tactus::report {
 /// `–`, infinities are `∞` and `-∞`. The decimal sign is a point in every locale.
 std::string number(double value, int significant_digits);
 
-/// A number with so many `decimals` (0 to 17) whatever its magnitude, as a column of one unit shows it. What rounds to
-/// zero has no sign; NaN and infinities are `-`. The decimal sign is a point in every locale.
+/// A number with so many `decimals` (clamped to 0 to 30) whatever its magnitude, as a column of one unit shows it. What
+/// rounds to zero has no sign; NaN and infinities are `-`. The decimal sign is a point in every locale.
 std::string fixed(double value, int decimals);
 
 /// `10⁻³`, with the exponent in Unicode superscripts.

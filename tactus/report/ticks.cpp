@@ -2,21 +2,15 @@
 #include <tactus/report/ticks.hpp>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 
 namespace tactus::report {
 namespace {
 
 std::string label_of(double value, int decimals) {
-  std::array<char, 400> buffer{};
-  const double magnitude = std::abs(value);
-  const auto end =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), magnitude, std::chars_format::fixed, decimals).ptr;
-  const std::string digits(buffer.data(), end);
-  const bool zero = digits.find_first_not_of("0.") == std::string::npos;
-  return value < 0.0 && !zero ? "−" + digits : digits;
+  std::string label = fixed(value, decimals);
+  if (label.front() == '-') label.replace(0, 1, "−");
+  return label;
 }
 
 /// factor·10^exponent, correctly rounded: dividing by a positive power of ten keeps 0.3 equal to 3e-1.

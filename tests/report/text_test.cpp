@@ -44,6 +44,16 @@ TEST(Number, TakesAnyCountOfDigitsAndAnyMagnitude) {
   EXPECT_EQ(number(5e-324, 1), "5×10⁻³²⁴");
 }
 
+TEST(Fixed, HasTheDecimalsAskedForWhateverTheMagnitude) {
+  EXPECT_EQ(fixed(1234.5678, 2), "1234.57");
+  EXPECT_EQ(fixed(-0.04, 1), "0.0");
+  EXPECT_EQ(fixed(-0.06, 1), "-0.1");
+  EXPECT_EQ(fixed(2.0, -3), "2");
+  EXPECT_EQ(fixed(std::numeric_limits<double>::max(), 99).size(), 309 + 1 + 30);
+  EXPECT_EQ(fixed(std::numeric_limits<double>::quiet_NaN(), 3), "-");
+  EXPECT_EQ(fixed(-std::numeric_limits<double>::infinity(), 3), "-");
+}
+
 TEST(DisplayWidth, CountsColumnsOfTheTerminalNotBytes) {
   EXPECT_EQ(display_width("force"), 5U);
   EXPECT_EQ(display_width("λ·µ – 10⁻³"), 10U);
