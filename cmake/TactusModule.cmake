@@ -58,12 +58,10 @@ add_library(tactus_light INTERFACE)
 target_link_libraries(tactus_light INTERFACE tactus_follows_less)
 target_compile_options(tactus_light INTERFACE $<$<CONFIG:Release>:-O1>)
 
-# By modules that are WORDS: that compiles in a fifth less again. More than half of the build with the address sanitizer
-# was spent on optimising what it had added to these; in what computes, templates that are not optimised take the tests
-# twenty times as long.
+# By modules that are WORDS. More than half of the build with the address sanitizer was spent on optimising what it had
+# added to these; in what computes, templates that are not optimised take the tests twenty times as long.
 add_library(tactus_words INTERFACE)
-target_link_libraries(tactus_words INTERFACE tactus_follows_less)
-target_compile_options(tactus_words INTERFACE $<$<CONFIG:Release>:-Og>)
+target_link_libraries(tactus_words INTERFACE tactus_light)
 if(TACTUS_SANITIZE MATCHES address)
   target_compile_options(tactus_words INTERFACE -O0)
 endif()
