@@ -198,17 +198,12 @@ class Site {
   Output step(const Sensors& input, const Shares& shares, std::int64_t elapsed_ticks, const Forces& added_N) noexcept {
     // A site that reads nonsense lets go until it is re-armed, even where the nonsense would not have reached a force,
     // and its controller goes on with what was read last: no number that is none gets into its state.
-    Sensors read = input;
     for_each_joint(
-        [elapsed_ticks](JointGates& gates, JointOf<In>& joint, const JointOf<In>& believed) noexcept {
-          if (!is_finite(joint)) {
-            gates.motor().refuse();
-            mend(joint, believed);
-          }
-          joint.motor_position_m = gates.believe(joint, elapsed_ticks);
+        [elapsed_ticks](JointGates& gates, JointOf<In>& believed, const JointOf<In>& read) noexcept {
+          if (!take_over(believed, read)) gates.motor().refuse();
+          believed.motor_position_m = gates.believe(believed, elapsed_ticks);
         },
-        gates_, read, believed_);
-    believed_ = read;
+        gates_, believed_, input);
     Output output = controller_->respond(believed_);
     Forces passed = added_N;
     pushes_ = carried_ = false;

@@ -96,25 +96,12 @@ struct SlaveOutput {
   double support_N = 0.0;  ///< of `motor_force_N`, what carries the device: it stays where the rest fades
 };
 
-/// Whether every number that a site reads is one, and what drives tell is of motors. Real-time safe.
-inline bool is_finite(const DriveTells& tells) noexcept {
-  return can_be_told(tells.velocity_m_per_s) && can_be_told(tells.force_N);
-}
+/// Whether every number is one. Real-time safe.
 inline bool is_finite(const Message& message) noexcept {
   bool finite = true;
   for_each_signal<Message>([&](const auto& each) { finite = finite && std::isfinite(message.*each.member); });
   return finite;
 }
-inline bool is_finite(const MasterInput& input) noexcept {
-  return std::isfinite(input.motor_position_m) && std::isfinite(input.motor_age_s) &&
-         std::isfinite(input.hand_force_N) && std::isfinite(input.grip) && is_finite(input.motor_tells) &&
-         is_finite(input.arrival.message);
-}
-inline bool is_finite(const SlaveInput& input) noexcept {
-  return std::isfinite(input.motor_position_m) && std::isfinite(input.motor_age_s) &&
-         std::isfinite(input.tip_force_N) && is_finite(input.motor_tells) && is_finite(input.arrival.message);
-}
-
 template <class T>
 bool is_finite(const Joints<T>& joints) noexcept {
   bool finite = true;
@@ -127,31 +114,41 @@ bool is_finite(const Joints<T>& joints) noexcept {
 inline double resisting_N(const MasterInput& input) noexcept { return -input.hand_force_N; }
 inline double resisting_N(const SlaveInput& input) noexcept { return input.tip_force_N; }
 
-/// Puts what was read last in the place of each number that is none. Real-time safe.
-inline void mend(double& value, double last) noexcept {
-  if (!std::isfinite(value)) value = last;
+/// Takes over each number that is one, and of what a drive tells what is of motors; what was read last stays in the
+/// place of the others. Whether all were taken. One number after the other, for a copy of the whole would wait for them
+/// to be written. Real-time safe.
+inline bool take_over(double& last, double read) noexcept {
+  const bool finite = std::isfinite(read);
+  if (finite) last = read;
+  return finite;
 }
-inline void mend(DriveTells& tells, const DriveTells& last) noexcept {
-  if (!can_be_told(tells.velocity_m_per_s)) tells.velocity_m_per_s = last.velocity_m_per_s;
-  if (!can_be_told(tells.force_N)) tells.force_N = last.force_N;
+inline bool take_over(DriveTells& last, const DriveTells& read) noexcept {
+  const bool velocity = can_be_told(read.velocity_m_per_s), force = can_be_told(read.force_N);
+  if (velocity) last.velocity_m_per_s = read.velocity_m_per_s;
+  if (force) last.force_N = read.force_N;
+  return velocity && force;
 }
-inline void mend(Message& message, const Message& last) noexcept {
-  for_each_signal<Message>([&](const auto& each) { mend(message.*each.member, last.*each.member); });
+inline bool take_over(Arrival& last, const Arrival& read) noexcept {
+  bool all = true;
+  for_each_signal<Message>(
+      [&](const auto& each) { all = take_over(last.message.*each.member, read.message.*each.member) && all; });
+  last.fresh = read.fresh;
+  return all;
 }
-inline void mend(MasterInput& input, const MasterInput& last) noexcept {
-  mend(input.motor_position_m, last.motor_position_m);
-  mend(input.motor_age_s, last.motor_age_s);
-  mend(input.hand_force_N, last.hand_force_N);
-  mend(input.grip, last.grip);
-  mend(input.motor_tells, last.motor_tells);
-  mend(input.arrival.message, last.arrival.message);
+inline bool take_over(MasterInput& last, const MasterInput& read) noexcept {
+  bool all = take_over(last.motor_position_m, read.motor_position_m);
+  all = take_over(last.motor_age_s, read.motor_age_s) && all;
+  all = take_over(last.hand_force_N, read.hand_force_N) && all;
+  all = take_over(last.grip, read.grip) && all;
+  all = take_over(last.motor_tells, read.motor_tells) && all;
+  return take_over(last.arrival, read.arrival) && all;
 }
-inline void mend(SlaveInput& input, const SlaveInput& last) noexcept {
-  mend(input.motor_position_m, last.motor_position_m);
-  mend(input.motor_age_s, last.motor_age_s);
-  mend(input.tip_force_N, last.tip_force_N);
-  mend(input.motor_tells, last.motor_tells);
-  mend(input.arrival.message, last.arrival.message);
+inline bool take_over(SlaveInput& last, const SlaveInput& read) noexcept {
+  bool all = take_over(last.motor_position_m, read.motor_position_m);
+  all = take_over(last.motor_age_s, read.motor_age_s) && all;
+  all = take_over(last.tip_force_N, read.tip_force_N) && all;
+  all = take_over(last.motor_tells, read.motor_tells) && all;
+  return take_over(last.arrival, read.arrival) && all;
 }
 
 }  // namespace tactus::control

@@ -116,12 +116,16 @@ constexpr Each<Like, T> same_for_each(const Like& like, const T& each) {
   }
 }
 
-/// A member of what each joint has.
+/// A member of what each joint has; of one axis that member itself, which lives as long as `x`.
 template <class X, class T>
-constexpr Each<X, T> member_of_each(const X& x, T JointOf<X>::*member) {
-  auto found = same_for_each(x, joint_of(x, 0).*member);
-  for_each_joint([member](T& to, const JointOf<X>& from) { to = from.*member; }, found, x);
-  return found;
+constexpr std::conditional_t<has_joints<X>, Joints<T>, const T&> member_of_each(const X& x, T JointOf<X>::*member) {
+  if constexpr (has_joints<X>) {
+    Joints<T> found(x.size());
+    for_each_joint([member](T& to, const JointOf<X>& from) { to = from.*member; }, found, x);
+    return found;
+  } else {
+    return x.*member;
+  }
 }
 
 /// The one of two values that is farther from zero: for a figure that stands for all joints. Real-time safe.

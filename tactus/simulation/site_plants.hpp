@@ -24,7 +24,9 @@ class MasterPlant {
 
   /// What the sensors read at this tick. The person changes the grip here.
   station::DeviceReading read(const station::Tick&) noexcept;
-  void write(const station::DeviceCommand& command) noexcept { next_ = command; }
+  void write(const station::DeviceCommand& command) noexcept {
+    next_ = {.motor_N = command.force_N, .handle_N = command.handle_force_N};
+  }
   /// The person intends to be at `path_m` now and at `path_at_next_tick_m` then.
   void begin_tick(double path_m, double path_at_next_tick_m) noexcept {
     begin_tick(person_.step({.path_m = path_m,
@@ -54,8 +56,8 @@ class MasterPlant {
   void substep(int index) noexcept {
     if (index == clock_.late_substeps) command_ = next_;
     const double middle_s = (index + 0.5) * clock_.substep_s;
-    const auto moved = device_.step({.commanded_force_N = command_.force_N,
-                                     .commanded_handle_force_N = command_.handle_force_N,
+    const auto moved = device_.step({.commanded_force_N = command_.motor_N,
+                                     .commanded_handle_force_N = command_.handle_N,
                                      .grip_position_m = aim_.position_m + middle_s * aim_.velocity_m_per_s,
                                      .grip_velocity_m_per_s = aim_.velocity_m_per_s});
     hand_force_N_ = moved.grip_force_N;
@@ -65,6 +67,12 @@ class MasterPlant {
   [[nodiscard]] const mechanics::CableChain& mechanism() const noexcept { return device_.mechanism(); }
 
  private:
+  /// Commanded of its two actuators.
+  struct Forces {
+    double motor_N = 0.0;
+    double handle_N = 0.0;
+  };
+
   MasterPlant(const mechanics::CableDrivenMaster& device, const mechanics::Operator& person,
               const mechanics::Operator::Params& params, const Clock& clock)
       : device_(device), person_(person), clock_(clock), grip_(params.grip), grip_change_(params.grip_change) {}
@@ -76,8 +84,8 @@ class MasterPlant {
   mechanics::Operator::GripChange grip_change_;
   double grip_factor_ = 1.0;
   std::int64_t ticks_ = 0;
-  station::DeviceCommand command_;
-  station::DeviceCommand next_;
+  Forces command_;
+  Forces next_;
   mechanics::Operator::Output aim_;
   double hand_force_N_ = 0.0;
 };

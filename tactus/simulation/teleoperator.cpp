@@ -109,9 +109,10 @@ auto TeleoperatorOf<Pair>::step(double path_m, double path_at_next_tick_m, doubl
   }
 }
 
+/// Flat: a substep takes as long as some calls, and two kinds of pair share what they call, so it would be called.
 template <class Pair>
-auto TeleoperatorOf<Pair>::advance(double path_m, double path_at_next_tick_m, const typename Pair::Wish& wish) noexcept
-    -> Record {
+[[gnu::flatten]] auto TeleoperatorOf<Pair>::advance(double path_m, double path_at_next_tick_m,
+                                                    const typename Pair::Wish& wish) noexcept -> Record {
   const typename Pair::Output output = sites_.step(master_, slave_, {.number = ticks_}, wish);
   Record record = recorded(static_cast<double>(ticks_) * clock_.tick_s, output);
   record.tip_position_m = slave_.tip_position_m();

@@ -4,6 +4,8 @@
 #include <tactus/station/channel.hpp>
 #include <tactus/station/step.hpp>
 
+#include <algorithm>
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
@@ -21,11 +23,14 @@ struct WayEnd {
   double tick_s;
   bool a_tick_later;  ///< what arrived has lain there since the tick before
 
-  [[nodiscard]] Each<Payload, control::Arrival> arrival() const noexcept {
-    auto arrivals = same_for_each(heard.message, control::Arrival{.message = {}, .fresh = heard.fresh});
-    for_each_joint([](control::Arrival& to, const control::Message& from) noexcept { to.message = from; }, arrivals,
-                   heard.message);
-    return arrivals;
+  /// Puts what has come into what the site senses. A side of fewer joints, as a handle that leads a tool, says fewer
+  /// numbers: those of the first joints.
+  template <class Sensors>
+  void hear(Sensors& sensors) const noexcept {
+    const std::size_t said = std::min(joints_of(sensors), joints_of(heard.message));
+    for (std::size_t joint = 0; joint < said; ++joint) {
+      joint_of(sensors, joint).arrival = {.message = joint_of(heard.message, joint), .fresh = heard.fresh};
+    }
   }
   void send(const Payload& message) noexcept { other_hears = out.step(message); }
 
@@ -78,10 +83,9 @@ class SitePair {
         .heard = at_master_, .out = to_slave_, .other_hears = at_slave, .tick_s = tick_s_, .a_tick_later = true};
     WayEnd<Payload> of_slave{
         .heard = at_slave, .out = to_master_, .other_hears = at_master_, .tick_s = tick_s_, .a_tick_later = false};
-    Output output;
-    output.master = station::step(master_, master, of_master, tick, wish);
-    output.slave = station::step(slave_, slave, of_slave, tick, wish);
-    return output;
+    // In this order, as the members of an output are made.
+    return {.master = station::step(master_, master, of_master, tick, wish),
+            .slave = station::step(slave_, slave, of_slave, tick, wish)};
   }
 
   /// Goes on with the channels of `made`, which has not been stepped, and gives it the own ones; what is on its way is
