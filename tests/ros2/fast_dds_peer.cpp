@@ -4,6 +4,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "tests/ros2/test_network.hpp"
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
@@ -128,14 +129,16 @@ struct FastDdsPeer::State final : dds::DomainParticipantListener {
   void note(const Info& info, bool writes) {
     // Fast DDS announces its own readers and writers too.
     if (participant != nullptr && info.guid().guidPrefix == participant->guid().guidPrefix) return;
+    // Among a hundred domains another test's process may have the same.
+    const std::string name = info.topicName().to_string();
+    if (name.find("/" + private_namespace() + "/") == std::string::npos) return;
     const auto& user_data = info.m_qos.m_userData;
     const std::scoped_lock lock(mutex);
-    announced[info.topicName().to_string()] = {
-        .type = info.typeName().to_string(),
-        .user_data = std::string(user_data.begin(), user_data.end()),
-        .reliable = info.m_qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS,
-        .is_volatile = info.m_qos.m_durability.kind == dds::VOLATILE_DURABILITY_QOS,
-        .writes = writes};
+    announced[name] = {.type = info.typeName().to_string(),
+                       .user_data = std::string(user_data.begin(), user_data.end()),
+                       .reliable = info.m_qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS,
+                       .is_volatile = info.m_qos.m_durability.kind == dds::VOLATILE_DURABILITY_QOS,
+                       .writes = writes};
   }
   void on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& found) override {
     note(found.info, true);

@@ -48,7 +48,7 @@ class FastDdsPeer {
   [[nodiscard]] int readers(const std::string& topic);
   void publish(const std::string& topic, const Bytes& bytes);
 
-  /// By topic.
+  /// By topic, those of this test's namespace.
   std::map<std::string, Announcement> announced();
 
  private:
