@@ -17,7 +17,7 @@ endfunction()
 function(build_against_the_package source build)
   run(${CMAKE_COMMAND} -S ${source} -B ${build} -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER}
       -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_PREFIX_PATH=${SCRATCH}/prefix)
-  run(${CMAKE_COMMAND} --build ${build})
+  run(${CMAKE_COMMAND} --build ${build} --parallel 1)  # the core that the test has, not all
 endfunction()
 
 file(REMOVE_RECURSE ${SCRATCH})

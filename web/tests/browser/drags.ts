@@ -7,12 +7,9 @@ import { Witness } from './witness';
 
 /**
  * Whatever a visitor does at force gain 10 rings without cancellation and settles with it, or the page says why not; and
- * verdict, meter and plots agree in every picture of it.
+ * verdict, meter and plots agree in every picture of it. A file for each screen, for they run side by side.
  */
-describe.skipIf(leftOut).each([
-  { screen: 'a screen of 1280 px', phone: false },
-  { screen: 'a phone of 390 px', phone: true },
-])('on $screen', ({ phone }) => {
+export const describeDrags = (screen: string, phone: boolean) => describe.skipIf(leftOut)(`on ${screen}`, () => {
   let browser: Browser | undefined;
   let server: TactusServer;
   let visit: Watched;
