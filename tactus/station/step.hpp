@@ -84,8 +84,8 @@ auto read(Device& device, const Tick& tick, DeviceHealth& health) noexcept {
 ///
 /// A way of a supervised site has `receive(tick, take)`, which hands each packet that has come to `take`, and
 /// `send(packet, tick)`; one of a site without supervision has `hear(sensors)`, which puts what has come there, and
-/// `send(message)`. `wish` is what the
-/// person presses, or the share of the force. Real-time safe as far as device and way are.
+/// `send(message)`. `wish` is what the person presses, or the share of the force. Real-time safe as far as device and
+/// way are.
 template <class Site, Drivable Device, class Way>
 Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const typename Site::Wish& wish) noexcept {
   DeviceHealth health = DeviceHealth::good;
