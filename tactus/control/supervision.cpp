@@ -1,6 +1,7 @@
 #include <tactus/control/supervision.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace tactus::control {
 
@@ -110,7 +111,8 @@ bool SupervisionOf<Payload>::is_renumbered(const Packet& packet) noexcept {
   const Agreement& own = agreement_.own();
   if (said.digest == own.digest() && said.cell != own.excerpt(packet.sequence).cell) {
     doubted_session_ = packet.session;
-    believed_from_ = packet.sequence + static_cast<std::int64_t>(own.size());
+    const auto turn = static_cast<std::int64_t>(own.size());
+    believed_from_ = std::min(packet.sequence, std::numeric_limits<std::int64_t>::max() - turn) + turn;
   }
   return packet.session == doubted_session_ && packet.sequence <= believed_from_;
 }

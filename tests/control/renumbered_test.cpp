@@ -1,5 +1,7 @@
 #include <tactus/control/supervised_site.hpp>
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace tactus::control {
@@ -36,6 +38,19 @@ TEST(RenumberedPackets, OfASessionThatWasLeftAreNoDoubtAboutTheNext) {
   EXPECT_EQ(master.take(said), PacketVerdict::stale);
   auto again = make_supervised_slave({}, 3, tick).value();
   EXPECT_EQ(master.take(again.step({}).packet), PacketVerdict::applied);
+}
+
+/// The number after which a session is believed again does not wrap.
+TEST(RenumberedPackets, AreStaleUpToTheLastNumberThatThereIs) {
+  constexpr auto last = std::numeric_limits<std::int64_t>::max();
+  const Seconds tick{2e-4};
+  auto master = make_supervised_master({}, 1, tick).value();
+  auto slave = make_supervised_slave({}, 2, tick).value();
+  Packet said = slave.step({}).packet;
+  ASSERT_EQ(master.take(said), PacketVerdict::applied);
+  said.sequence = last;
+  said.agreement = master.agreement().own().excerpt(last - 1);
+  EXPECT_EQ(master.take(said), PacketVerdict::stale);
 }
 
 }  // namespace renumbered_test
