@@ -1,5 +1,6 @@
 #include <tactus/control/supervised_site.hpp>
 
+#include <cstdint>
 #include <limits>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,3 @@
 import { describeDrags } from './drags';
 
-describeDrags('a phone of 390 px', true);
+describeDrags({ phone: true });

@@ -1,3 +1,3 @@
 import { describeDrags } from './drags';
 
-describeDrags('a screen of 1280 px', false);
+describeDrags({ phone: false });
