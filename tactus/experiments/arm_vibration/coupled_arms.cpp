@@ -98,27 +98,31 @@ Result<HostedArm> hosted(const CoupledArmsSetup& setup, const ArmPlant::Params& 
                    .told_at_s = known.at_s};
 }
 
-/// In the second from there on.
-Shaking shaking_from(const Told& told, double from_s) {
-  const auto from = static_cast<std::size_t>(std::lround(from_s / record_s));
-  const auto judged = static_cast<std::size_t>(std::lround(judged_s / record_s));
-  return shaking_of(std::span(told.position).subspan(from, judged), std::span(told.velocity).subspan(from, judged),
-                    1.0 / record_s);
-}
-
+/// In the second from there on. Of both arms that which shakes more counts, for each joint.
 ShakingArms shaking_arms(const std::array<ToldByJoint, 2>& told, std::size_t joint, double from_s) {
-  const auto of_both = [&](std::size_t one) {
-    const Shaking leader = shaking_from(told[0][one], from_s), follower = shaking_from(told[1][one], from_s);
-    return leader.rms_rad_per_s > follower.rms_rad_per_s ? leader : follower;
+  constexpr double rate_Hz = 1.0 / record_s;
+  const auto judged = [&](const std::vector<double>& values) {
+    return std::span(values).subspan(static_cast<std::size_t>(std::lround(from_s / record_s)),
+                                     static_cast<std::size_t>(std::lround(judged_s / record_s)));
   };
-  ShakingArms found{.joint = of_both(joint), .worst_joint = joint, .worst = of_both(joint)};
+  struct Strongest {
+    double rms_rad_per_s;
+    const Told* told;
+  };
+  std::vector<Strongest> joints;
   for (std::size_t i = 0; i < told[0].size(); ++i) {
-    const Shaking one = of_both(i);
-    if (!(one.rms_rad_per_s > found.worst.rms_rad_per_s)) continue;
-    found.worst = one;
-    found.worst_joint = i;
+    const double leader = shaking_rms_of(judged(told[0][i].velocity), rate_Hz);
+    const double follower = shaking_rms_of(judged(told[1][i].velocity), rate_Hz);
+    joints.push_back(leader > follower ? Strongest{leader, &told[0][i]} : Strongest{follower, &told[1][i]});
   }
-  return found;
+  std::size_t worst = joint;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].rms_rad_per_s > joints[worst].rms_rad_per_s) worst = i;
+  }
+  const auto shaking = [&](std::size_t i) {
+    return shaking_of(judged(joints[i].told->position), judged(joints[i].told->velocity), rate_Hz);
+  };
+  return {.joint = shaking(joint), .worst_joint = worst, .worst = shaking(worst)};
 }
 
 /// As the drives have it, by their own ranges: what the host makes of a velocity is not how the arm moves.

@@ -35,6 +35,7 @@ TEST(ArmVibration, ASineIsToldByItsFrequencySpeedAndAmplitudeWhateverDriftsBesid
   EXPECT_NEAR(shaking.amplitude_rad, 4e-3, off * 4e-3);
   const double rms = 4e-3 * 2.0 * std::numbers::pi * 27.3 / std::numbers::sqrt2;
   EXPECT_NEAR(shaking.rms_rad_per_s, rms, off * rms);
+  EXPECT_EQ(shaking_rms_of(velocity, 1000.0), shaking.rms_rad_per_s);
   const Shaking rest = shaking_of(std::vector(500, 0.2), std::vector(500, 0.0), 1000.0);
   EXPECT_EQ(rest.rms_rad_per_s, 0.0);
   EXPECT_EQ(rest.frequency_Hz, 0.0);
