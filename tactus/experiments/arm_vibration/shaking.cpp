@@ -1,4 +1,5 @@
 #include <tactus/experiments/arm_vibration/shaking.hpp>
+#include <tactus/signal/root_mean_square.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +24,6 @@ std::vector<double> fast_part(std::span<const double> values, double rate_Hz) {
   return left;
 }
 
-double root_mean_square(const std::vector<double>& values) {
-  double squares = 0.0;
-  for (const double value : values) squares += value * value;
-  return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
 /// Under a Hann window.
 std::vector<double> windowed(std::vector<double> values) {
   const double window = 2.0 * std::numbers::pi / static_cast<double>(values.size());
@@ -49,7 +44,7 @@ Shaking shaking_of(std::span<const double> position_rad, std::span<const double>
   constexpr double lowest_Hz = 2.0, highest_Hz = 200.0, step_Hz = 0.25;
   const std::vector<double> velocity = fast_part(velocity_rad_per_s, rate_Hz);
   const std::vector<double> position = fast_part(position_rad, rate_Hz);
-  Shaking found{.rms_rad_per_s = root_mean_square(velocity)};
+  Shaking found{.rms_rad_per_s = signal::root_mean_square(velocity)};
   const auto [least, most] = std::minmax_element(position.begin(), position.end());
   found.amplitude_rad = 0.5 * (*most - *least);
   const std::vector<double> in_window = windowed(velocity);
@@ -64,7 +59,7 @@ Shaking shaking_of(std::span<const double> position_rad, std::span<const double>
 }
 
 double shaking_rms_of(std::span<const double> velocity_rad_per_s, double rate_Hz) {
-  return root_mean_square(fast_part(velocity_rad_per_s, rate_Hz));
+  return signal::root_mean_square(fast_part(velocity_rad_per_s, rate_Hz));
 }
 
 }  // namespace tactus::experiments

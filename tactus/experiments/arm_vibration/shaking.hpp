@@ -16,7 +16,7 @@ struct Shaking {
 /// safe.
 Shaking shaking_of(std::span<const double> position_rad, std::span<const double> velocity_rad_per_s, double rate_Hz);
 
-/// `Shaking::rms_rad_per_s` alone, for a hundredth of the time: most of it is the search for the frequency.
+/// `Shaking::rms_rad_per_s` of the same alone, without the search for the frequency. Not real-time safe.
 double shaking_rms_of(std::span<const double> velocity_rad_per_s, double rate_Hz);
 
 }  // namespace tactus::experiments
