@@ -63,11 +63,13 @@ endif()
 
 # By modules that are WORDS. More than half of the build with the address sanitizer was spent on optimising what it had
 # added to these; in what computes, templates that are not optimised take the tests twenty times as long.
+set(TACTUS_WORDS_OPTIONS)
+if(TACTUS_SANITIZE MATCHES address)
+  set(TACTUS_WORDS_OPTIONS -O0)
+endif()
 add_library(tactus_words INTERFACE)
 target_link_libraries(tactus_words INTERFACE tactus_light)
-if(TACTUS_SANITIZE MATCHES address)
-  target_compile_options(tactus_words INTERFACE -O0)
-endif()
+target_compile_options(tactus_words INTERFACE ${TACTUS_WORDS_OPTIONS})
 
 # By tests that spend their time in the libraries or wait: what instantiates much for a few calls compiles in little more
 # than half the time.
