@@ -61,8 +61,9 @@ if(TACTUS_SANITIZE MATCHES thread)
   target_compile_options(tactus_light INTERFACE -O0)
 endif()
 
-# By modules that are WORDS, and sources (TACTUS_WORDS_OPTIONS). More than half of the build with the address sanitizer was spent on optimising what it had
-# added to these; in what computes, templates that are not optimised take the tests twenty times as long.
+# By modules that are WORDS; TACTUS_WORDS_OPTIONS for single sources. More than half of the build with the address sanitizer
+# was spent on optimising what it had added to these; in what computes, templates that are not optimised take the tests
+# twenty times as long.
 set(TACTUS_WORDS_OPTIONS)
 if(TACTUS_SANITIZE MATCHES address)
   set(TACTUS_WORDS_OPTIONS -O0)

@@ -3,11 +3,11 @@
 #include <tactus/identification/refusal.hpp>
 #include <tactus/identification/zero_phase.hpp>
 #include <tactus/signal/decompositions.hpp>
+#include <tactus/signal/root_mean_square.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -50,11 +50,6 @@ Result<Kinematics> differentiate(const std::vector<double>& position, double cut
       .velocity = central_difference(*smooth, dt), .acceleration = {}, .fast_velocity = central_difference(*fast, dt)};
   motion.acceleration = central_difference(motion.velocity, dt);
   return motion;
-}
-
-double root_mean_square(std::span<const double> values) {
-  return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0) /
-                   static_cast<double>(values.size()));
 }
 
 /// 1 for the samples whose filtered force and friction stem from motion: none nearer to a standstill than the filter
@@ -107,7 +102,7 @@ Result<Problem> prepare(const AxisSignals& signals, double cutoff_Hz) {
   const auto force = zero_phase_low_pass(signals.force, cutoff_Hz, dt);
   if (!even || !odd || !force) return inconsistent("the recording could not be filtered: choose another --cutoff-Hz");
   Problem problem;
-  problem.friction_speed = friction_speed_share * root_mean_square(motion->velocity);
+  problem.friction_speed = friction_speed_share * signal::root_mean_square(motion->velocity);
   problem.cut = std::min(static_cast<std::size_t>(1.0 / (cutoff_Hz * dt.value)), signals.position.size() / 8);
   const auto regressors = regressors_of(*even, problem.friction_speed, cutoff_Hz, dt, problem.cut);
   const auto instruments = regressors_of(*odd, problem.friction_speed, cutoff_Hz, dt, problem.cut);
@@ -115,7 +110,7 @@ Result<Problem> prepare(const AxisSignals& signals, double cutoff_Hz) {
     return inconsistent("the recording could not be filtered: choose another --cutoff-Hz");
   problem.regressors = *regressors;
   problem.instruments = *instruments;
-  const double slow = standstill_share * root_mean_square(motion->velocity);
+  const double slow = standstill_share * signal::root_mean_square(motion->velocity);
   const auto reach = static_cast<std::size_t>(filter_reach / (cutoff_Hz * dt.value));
   problem.moving = moving_samples(motion->fast_velocity, slow, reach, problem.cut);
   problem.instruments.array().colwise() *= problem.moving.array();
@@ -201,7 +196,7 @@ Check check_plausible(const InverseDynamics& model, const Problem& problem, cons
 Check check_motion(const Problem& problem) {
   int turns = 0;
   double direction = 0.0;
-  const double slow = 0.2 * root_mean_square(problem.velocity);
+  const double slow = 0.2 * signal::root_mean_square(problem.velocity);
   for (const double v : problem.velocity) {
     if (std::abs(v) < slow) continue;
     if (direction * v < 0.0) ++turns;

@@ -3,6 +3,7 @@
 #include <tactus/identification/zero_phase.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/signal/decompositions.hpp>
+#include <tactus/signal/root_mean_square.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -205,11 +206,6 @@ OperatorImpedance fit(const Problem& problem, std::size_t first, std::size_t cou
   return found;
 }
 
-double root_mean_square(std::span<const double> values) {
-  return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.0) /
-                   static_cast<double>(values.size()));
-}
-
 /// Correlation of force and velocity where people move: positive for a hand that moves the device; 0 where nothing
 /// moves.
 double slow_work(const AxisSignals& signals, double upper_Hz) {
@@ -220,7 +216,7 @@ double slow_work(const AxisSignals& signals, double upper_Hz) {
   const double mean = std::accumulate(force->begin(), force->end(), 0.0) / count;
   for (double& value : *force) value -= mean;
   const auto velocity = derivative(*position, signals.sample_time);
-  const double scale = root_mean_square(*force) * root_mean_square(velocity);
+  const double scale = signal::root_mean_square(*force) * signal::root_mean_square(velocity);
   const double power = std::inner_product(force->begin(), force->end(), velocity.begin(), 0.0) / count;
   return scale > 0.0 ? power / scale : 0.0;
 }
@@ -229,7 +225,7 @@ double slow_work(const AxisSignals& signals, double upper_Hz) {
 double quickness(const std::vector<double>& samples, Band band, Seconds dt) {
   const auto passed = band_pass(samples, band, dt);
   if (!passed) return 0.0;
-  return root_mean_square(derivative(*passed, dt)) / root_mean_square(*passed);
+  return signal::root_mean_square(derivative(*passed, dt)) / signal::root_mean_square(*passed);
 }
 
 bool look_swapped(const AxisSignals& signals, Band band, double window_s) {
