@@ -170,6 +170,10 @@ std::span<const std::uint8_t> ServoBus::send_errand(const Errand& errand, std::i
   packet_ = errand.reads ? read(id, errand.place) : write(id, errand.place, value);
   heard_bytes_ = 0;
   wait(Waiting::errand, answer_bytes(errand.reads ? errand.place.bytes : 0U));
+  // Each time longer, for nothing is driven yet: this program or the adapter may stand still for a moment.
+  if (errand.purpose == Purpose::asking) {
+    deadline_ns_ += static_cast<std::int64_t>(servos_[errand.motor].tries) * servo::patience_ns;
+  }
   return sent();
 }
 
