@@ -28,10 +28,10 @@ web/node_modules/.package-lock.json: web/package-lock.json
 web/dist/index.html: web/node_modules/.package-lock.json web/index.html $(shell find web/src web/public -type f)
 	npm run --prefix web build
 
-# A core has two slots for tests (tests/CMakeLists.txt).
+# A core has three slots for tests (tests/CMakeLists.txt).
 test: configure ## Build tactus and its tests, and run them
 	cmake --build --preset release --parallel $(JOBS)
-	ctest --preset release --parallel $$((2 * $(JOBS)))
+	scripts/in-light-session ctest --preset release --parallel $$((3 * $(JOBS)))
 
 bench: configure ## Build the benchmarks, and run those of the servo tick
 	cmake --build --preset release --parallel $(JOBS) --target benchmarks

@@ -85,6 +85,18 @@ Finding kernel(const MachineFacts& facts) {
           "sudo apt install linux-image-rt-amd64, then boot it"};
 }
 
+Finding sessions(const MachineFacts& facts) {
+  const std::string name = "sessions";
+  if (facts.autogroup.value_or(0) == 0) {
+    return {name, "no share of their own", Fitness::good, "no session keeps the kernel's own threads waiting", {}};
+  }
+  return {
+      name, "each has its share of a core (autogroup)", Fitness::poor,
+      "beside a session that fills the cores, Linux 6.18 let threads of its own wait for up to 3 s; some of them carry "
+      "the bytes of serial ports, so motors may seem silent",
+      "sudo sysctl kernel.sched_autogroup_enabled=0"};
+}
+
 Finding governor(const MachineFacts& facts) {
   const std::string name = "frequency governor";
   if (facts.governors.empty()) {
@@ -194,11 +206,17 @@ Result<Measurement> measure_lateness(const ServoThreadParams& params, double dur
 }
 
 std::vector<Finding> diagnose(const MachineFacts& facts, const Measurement& measurement) {
-  return {scheduler(facts),     group_budget(facts),
-          throttling(facts),    locked_memory(facts),
-          timer(facts),         clock_source(facts),
-          kernel(facts),        governor(facts),
-          cores(facts),         hypervisor(facts, measurement),
+  return {scheduler(facts),
+          group_budget(facts),
+          throttling(facts),
+          locked_memory(facts),
+          timer(facts),
+          clock_source(facts),
+          kernel(facts),
+          sessions(facts),
+          governor(facts),
+          cores(facts),
+          hypervisor(facts, measurement),
           lateness(measurement)};
 }
 

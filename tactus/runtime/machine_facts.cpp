@@ -91,6 +91,7 @@ MachineFacts read_machine_facts(int priority, const std::filesystem::path& root)
   read_group(root, facts);
   facts.budget_us = number_in(root / "proc/sys/kernel/sched_rt_runtime_us");
   facts.budget_period_us = number_in(root / "proc/sys/kernel/sched_rt_period_us");
+  facts.autogroup = number_in(root / "proc/sys/kernel/sched_autogroup_enabled");
   facts.governors = governors(root);
 
   timespec resolution{};

@@ -20,7 +20,8 @@ struct MachineFacts {
   std::optional<std::int64_t> group_budget_us;     ///< real-time budget of the control group
   std::optional<std::int64_t> budget_us;           ///< of all real-time threads in each period; −1 is no limit
   std::optional<std::int64_t> budget_period_us;
-  std::vector<std::string> governors;  ///< of the cores, each once
+  std::optional<std::int64_t> autogroup;  ///< whether each session has its own share of a core (man 7 sched): 0 or 1
+  std::vector<std::string> governors;     ///< of the cores, each once
   std::optional<std::int64_t> timer_resolution_ns;
   std::optional<std::int64_t> timer_slack_ns;
   std::string clock_source;

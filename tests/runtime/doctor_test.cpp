@@ -82,6 +82,7 @@ TEST(Doctor, EachFaultIsFoundWhereItIsAndNowhereElse) {
       {"timer", [](MachineFacts& f) { f.timer_resolution_ns = 4'000'000; }, Fitness::bad},
       {"clock", [](MachineFacts& f) { f.clock_source = "hpet"; }, Fitness::poor},
       {"kernel", [](MachineFacts& f) { f.preempt_rt = false; }, Fitness::poor},
+      {"sessions", [](MachineFacts& f) { f.autogroup = 1; }, Fitness::poor},
       {"frequency governor",
        [](MachineFacts& f) {
          f.governors = {"performance", "powersave"};
@@ -141,6 +142,7 @@ TEST_F(Machine, FactsAreReadFromTheFilesOfTheKernel) {
   write("sys/fs/cgroup/cpu,cpuacct/user.slice/one/cpu.rt_runtime_us", "0\n");
   write("proc/sys/kernel/sched_rt_runtime_us", "-1\n");
   write("proc/sys/kernel/sched_rt_period_us", "1000000\n");
+  write("proc/sys/kernel/sched_autogroup_enabled", "1\n");
   write("sys/devices/system/cpu/cpu0/cpufreq/scaling_governor", "powersave\n");
   write("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "performance\n");
   write("sys/devices/system/cpu/isolated", "2-3\n");
@@ -152,6 +154,7 @@ TEST_F(Machine, FactsAreReadFromTheFilesOfTheKernel) {
   EXPECT_EQ(found.group_budget_us, 0);
   EXPECT_EQ(found.budget_us, -1);
   EXPECT_EQ(found.budget_period_us, 1'000'000);
+  EXPECT_EQ(found.autogroup, 1);
   EXPECT_EQ(found.governors, (std::vector<std::string>{"performance", "powersave"}));
   EXPECT_EQ(found.isolated, "2-3");
   EXPECT_EQ(found.clock_source, "hpet");

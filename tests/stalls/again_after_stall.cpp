@@ -16,7 +16,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto nap = std::chrono::milliseconds(10);
-/// Longer than a thread waits for its turn beside four tests on two cores.
+/// Longer than a thread waits for its turn beside six tests on two cores.
 constexpr auto stall = std::chrono::milliseconds(150);
 constexpr int most_runs = 3;
 
