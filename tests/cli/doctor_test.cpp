@@ -23,7 +23,7 @@ TEST_F(Doctor, EveryFindingHasItsVerdictMeaningAndRemedyAndTheExitStatusSaysWhet
   const Outcome outcome = tactus(with({"--json"}));
   const Json document = Json::parse(outcome.out);
   bool bad = false;
-  EXPECT_EQ(document["findings"].size(), 11U);
+  EXPECT_EQ(document["findings"].size(), 12U);
   for (const Json& finding : document["findings"]) {
     const std::string verdict = finding["verdict"];
     EXPECT_FALSE(finding["found"].get<std::string>().empty());
