@@ -3,8 +3,12 @@
 #include <chrono>
 #include <utility>
 
-#include <boost/asio.hpp>
-#include <boost/beast.hpp>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
 
 namespace tactus::devices::inverse3 {
 
@@ -14,6 +18,8 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 using Tcp = asio::ip::tcp;
+/// Without compression, which no side takes up and whose code takes its time to compile.
+using WebSocket = beast::websocket::stream<Tcp::socket, false>;
 
 constexpr std::size_t most_bytes = 65536;
 
@@ -46,7 +52,7 @@ beast::error_code finish(asio::io_context& io, std::int64_t longest_ns, Begin&& 
 
 struct ServiceConnection::State {
   asio::io_context io{1};
-  beast::websocket::stream<Tcp::socket> stream{io};
+  WebSocket stream{io};
   beast::flat_buffer buffer{most_bytes};
   std::string heard, version;
 

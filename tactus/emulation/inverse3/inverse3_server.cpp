@@ -6,8 +6,12 @@
 #include <thread>
 #include <utility>
 
-#include <boost/asio.hpp>
-#include <boost/beast.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
 
 namespace tactus::emulation::inverse3 {
 
@@ -17,6 +21,8 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 using Tcp = asio::ip::tcp;
+/// Without compression, which no side takes up and whose code takes its time to compile.
+using WebSocket = beast::websocket::stream<Tcp::socket, false>;
 
 constexpr std::size_t most_bytes = 65536;
 
@@ -95,7 +101,7 @@ class Client : public std::enable_shared_from_this<Client> {
   beast::flat_buffer buffer_{most_bytes};
   http::request_parser<http::string_body> parser_;
   http::response<http::string_body> response_;
-  std::optional<beast::websocket::stream<Tcp::socket>> web_socket_;
+  std::optional<WebSocket> web_socket_;
   std::string told_;
 };
 

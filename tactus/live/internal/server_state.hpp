@@ -29,6 +29,8 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
 using Tcp = asio::ip::tcp;
+/// Without compression, which no side takes up and whose code takes its time to compile.
+using WebSocket = websocket::stream<beast::tcp_stream, false>;
 
 inline std::chrono::nanoseconds duration(double seconds) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
@@ -105,7 +107,7 @@ class Server::State::Client : public std::enable_shared_from_this<Client> {
 
   State& server_;
   ClientId id_;
-  websocket::stream<beast::tcp_stream> stream_;
+  WebSocket stream_;
   beast::flat_buffer buffer_;
   Conversation conversation_;
   std::uint64_t counted_ = 0;

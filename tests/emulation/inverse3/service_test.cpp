@@ -161,7 +161,7 @@ TEST(Inverse3Server, SpeaksWebSocketAndHttpToOneClientAfterAnother) {
   const asio::ip::tcp::endpoint endpoint(asio::ip::address_v4::loopback(), server.value().port());
   asio::io_context io;
   for (int client = 0; client < 2; ++client) {
-    beast::websocket::stream<asio::ip::tcp::socket> socket(io);
+    beast::websocket::stream<asio::ip::tcp::socket, false> socket(io);
     socket.next_layer().connect(endpoint);
     socket.handshake("127.0.0.1", "/");
     const auto read = [&socket] {
