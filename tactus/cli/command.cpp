@@ -5,6 +5,7 @@
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/suggestion.hpp>
 #include <tactus/cli/verbs.hpp>
+#include <tactus/cli/version_text.hpp>
 #include <tactus/report/text.hpp>
 
 #include <csignal>

@@ -1,11 +1,11 @@
 #include <tactus/cli/help.hpp>
 #include <tactus/cli/suggestion.hpp>
-#include <tactus/core/version.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -94,24 +94,6 @@ void add_help(CLI::App& app, int& status) {
     for (const std::string& word : *words) name += " " + word;
     std::cout << asked->get_formatter()->make_help(asked, name, CLI::AppFormatMode::Normal);
   });
-}
-
-std::string version_text() {
-#if defined(__clang__)
-  const std::string compiler = "clang " __clang_version__;
-#elif defined(__GNUC__)
-  const std::string compiler = "g++ " __VERSION__;
-#else
-  const std::string compiler = "another compiler";
-#endif
-#ifdef NDEBUG
-  const std::string assertions = "off";
-#else
-  const std::string assertions = "on";
-#endif
-  const std::string sanitizers = TACTUS_SANITIZERS;
-  return "tactus " + std::string(version()) + "\ncompiler: " + compiler + "\nbuild: " TACTUS_BUILD_TYPE +
-         "\nassertions: " + assertions + "\nsanitizers: " + (sanitizers.empty() ? "none" : sanitizers);
 }
 
 }  // namespace tactus::cli

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 namespace CLI {  // NOLINT: the name is not ours
 class App;
 }
@@ -13,8 +11,5 @@ void set_help(CLI::App& app);
 
 /// Adds `help [VERB...]`, which prints what `VERB... --help` does.
 void add_help(CLI::App& app, int& status);
-
-/// The version, and how the command was built: compiler, kind of build, assertions, sanitizers.
-std::string version_text();
 
 }  // namespace tactus::cli
