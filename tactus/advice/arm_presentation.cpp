@@ -3,6 +3,7 @@
 #include <tactus/configuration/text.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -149,7 +150,9 @@ std::string basis_text(const ArmBench& bench) {
          three_digits(most_effort_factor) + " times its effort, are not advised. Simulated.\n";
 }
 
-ArmJson object_of(const Settings& settings) { return ArmJson::parse(experiments::settings_json(settings)); }
+ArmJson object_of(const Settings& settings) {
+  return report::parse_json<ArmJson>(experiments::settings_json(settings));
+}
 
 void add_members(ArmJson& object, const ArmCandidate& candidate) {
   object["force_gain"] = candidate.force_gain;
@@ -215,7 +218,7 @@ std::string arm_advice_json(const ArmBench& bench, const ArmAdvice& advice) {
     object["expected"] = expected_of(bench, one);
     document["alternatives"].push_back(std::move(object));
   }
-  return document.dump(2, ' ', false, ArmJson::error_handler_t::replace) + "\n";
+  return report::json_text(document);
 }
 
 }  // namespace

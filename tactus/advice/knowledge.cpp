@@ -1,11 +1,14 @@
 #include <tactus/advice/knowledge.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/signal/decompositions.hpp>
 #include <tactus/signal/random.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -155,12 +158,12 @@ Knowledge Knowledge::identified(std::span<const identification::FoundParameter> 
 }
 
 Result<Knowledge> Knowledge::read(const std::filesystem::path& results, const Conditions& given) {
-  using Json = nlohmann::json;
+  using Json = nlohmann::ordered_json;
   std::ifstream stream(results, std::ios::binary);
   if (!stream) {
     return Error{ErrorCode::missing, {}, "the file cannot be read: check its permissions", results.string()};
   }
-  const Json document = Json::parse(stream, nullptr, false);
+  const Json document = report::parse_json<Json>(std::string(std::istreambuf_iterator<char>(stream), {}));
   const auto refuse = [&results](std::string why) {
     return Error{ErrorCode::syntax, {}, std::move(why), results.string()};
   };

@@ -2,6 +2,7 @@
 #include <tactus/configuration/text.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/tapping/presentation.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -127,7 +128,7 @@ std::string basis(const Bench& bench) {
 }
 
 Json settings_object(const experiments::Settings& settings) {
-  return Json::parse(experiments::settings_json(settings));
+  return report::parse_json<Json>(experiments::settings_json(settings));
 }
 
 void add_gains(Json& object, const Candidate& candidate) {
@@ -167,7 +168,7 @@ Json limited_by_json(const Advice& advice) {
 
 Json expected_json(const Advice& advice) {
   if (!advice.start) return Json::object();
-  Json object = Json::parse(experiments::metrics_json(advice.expected));
+  Json object = report::parse_json<Json>(experiments::metrics_json(advice.expected));
   add_costs(object, *advice.start);
   return object;
 }
@@ -192,7 +193,7 @@ std::string json_of(const Bench& bench, const Advice& advice) {
     add_costs(object, one);
     document["alternatives"].push_back(std::move(object));
   }
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return report::json_text(document);
 }
 
 }  // namespace

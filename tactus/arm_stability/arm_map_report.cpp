@@ -1,6 +1,7 @@
 #include <tactus/arm_stability/arm_map.hpp>
 #include <tactus/arm_stability/internal/mode_json.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -121,7 +122,8 @@ std::string map_json(const ArmMap& map, const experiments::Request& request, dou
   MapJson document{{"experiment", request.name}, {"friction_speed_rad_per_s", friction_speed_rad_per_s}};
   document["points"] = MapJson::array();
   for (const ArmMapPoint& point : map.points) {
-    MapJson entry{{"hand", map.hands[point.hand]}, {"set", MapJson::parse(experiments::settings_json(point.settings))}};
+    MapJson entry{{"hand", map.hands[point.hand]},
+                  {"set", report::parse_json<MapJson>(experiments::settings_json(point.settings))}};
     entry["hand_stiffness_N_per_m"] = point.hand_stiffness_N_per_m;
     entry["gain_limit"] = point.limit.exact.gain;
     entry["gain_limit_censored"] = point.limit.exact.censored();
@@ -131,7 +133,7 @@ std::string map_json(const ArmMap& map, const experiments::Request& request, dou
     entry["at_drawn_limit"] = mode_json(point.limit.beyond_drawn, point.joints);
     document["points"].push_back(std::move(entry));
   }
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 std::string csv_of(const ArmMap& map) {

@@ -2,6 +2,7 @@
 #include <tactus/arm_stability/arm_point.hpp>
 #include <tactus/arm_stability/internal/mode_json.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -112,7 +113,7 @@ std::string json_of(const experiments::Request& request, const ArmAnalysis& a, d
                 {"follower_stiffness_N_per_m", a.point.follower_stiffness_N_per_m},
                 {"preload_N", a.preload_N ? Json(*a.preload_N) : Json(nullptr)},
                 {"wall_stiffness_N_per_m", a.point.loops.front().wall_stiffness_N_per_m()}};
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include <tactus/cli/device.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/devices/rig/examination.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 
@@ -202,7 +202,7 @@ Result<bool> print(const std::vector<Checked>& all, const CheckOptions& options)
   if (options.json.wanted) {
     nlohmann::ordered_json document{{"clean", clean}, {"buses", nlohmann::ordered_json::array()}};
     for (const Checked& checked : all) document["buses"].push_back(json_of(checked));
-    std::cout << options.json.document(json_text(document));
+    std::cout << options.json.document(report::json_text(document));
   } else {
     if (clean) {
       double slowest_Hz = std::numeric_limits<double>::infinity();

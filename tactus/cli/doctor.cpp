@@ -1,8 +1,8 @@
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/runtime/doctor.hpp>
@@ -78,8 +78,8 @@ std::string json_of(const std::vector<Finding>& findings, const runtime::Measure
                                     {"means", finding.means},
                                     {"remedy", finding.remedy}});
   }
-  document["servo"] = nlohmann::ordered_json::parse(runtime::servo_json(measurement.report));
-  return json_text(document);
+  document["servo"] = report::parse_json<nlohmann::ordered_json>(runtime::servo_json(measurement.report));
+  return report::json_text(document);
 }
 
 /// Whether the machine can keep time.

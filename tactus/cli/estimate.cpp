@@ -1,12 +1,12 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/estimate.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/force_comparison.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/text.hpp>
 
@@ -90,7 +90,7 @@ std::string json_of(const EstimateOptions& options, const AxisRecording& axis, c
   const bool moved_freely = free.duration_s >= shortest_free_motion_s;
   document["free_motion_residual" + unit] = moved_freely ? Json(free.rms) : Json(nullptr);
   document["free_motion_s"] = free.duration_s;
-  return json_text(document);
+  return report::json_text(document);
 }
 
 /// What was read and what was estimated from it, as a recording.

@@ -1,9 +1,9 @@
 #include <tactus/arm_identification/external_torque.hpp>
 #include <tactus/cli/arm_options.hpp>
 #include <tactus/cli/estimate.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/core/version.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -52,7 +52,7 @@ std::string json_of(const EstimateTorqueOptions& options, const ArmModel& model,
   for (const ArmContact& contact : found.contacts) {
     document["contacts"].push_back({{"from_s", contact.from_s}, {"to_s", contact.to_s}, {"joints", contact.joints}});
   }
-  return json_text(document);
+  return report::json_text(document);
 }
 
 /// A column for each joint.

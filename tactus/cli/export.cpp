@@ -1,7 +1,7 @@
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/cli/verbs.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/telemetry/export.hpp>
 
@@ -98,7 +98,7 @@ std::string json_of(const telemetry::LogContent& content, const std::filesystem:
       document["topics"].back()["signals"].push_back({{"name", column.name}, {"unit", column.unit}});
     }
   }
-  return json_text(document);
+  return report::json_text(document);
 }
 
 Check run(const ExportOptions& options) {

@@ -1,5 +1,4 @@
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/configuration/toml_writer.hpp>
@@ -9,6 +8,7 @@
 #include <tactus/identification/isolation_figures.hpp>
 #include <tactus/identification/quick.hpp>
 #include <tactus/identification/session.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -123,7 +123,7 @@ std::string json_of(const Isolation& isolation, const ImpactCheck& check, const 
     document["stages"].push_back({{"name", stage.title}, {"residual_rms_m", stage.residual_rms_m}});
   }
   document["impact_residual"] = check.residual;
-  return json_text(document);
+  return report::json_text(document);
 }
 
 report::Table table_of(const Isolation& isolation, const SimulatedRig& rig) {

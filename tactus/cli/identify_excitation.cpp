@@ -1,12 +1,12 @@
 #include <tactus/arm_identification/excitation.hpp>
 #include <tactus/cli/arm_options.hpp>
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/internal/parameters_json.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/real_between.hpp>
 #include <tactus/core/version.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -76,7 +76,7 @@ std::string json_of(const ExcitationOptions& options, const ArmExcitation& found
                                   {"noise_N_m", joint.noise_N_m},
                                   {"parameters", parameters_json(joint.parameters)}});
   }
-  return json_text(document);
+  return report::json_text(document);
 }
 
 /// A row for each instant, the start again at the end.

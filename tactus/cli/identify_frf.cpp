@@ -1,9 +1,9 @@
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/frequency_response.hpp>
 #include <tactus/recording/recording.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/text.hpp>
 
@@ -292,7 +292,7 @@ std::string json_of(const Estimates& found, const std::vector<Row>& rows, const 
                          {"spread", found.linearity->spread},
                          {"worst_Hz", found.linearity->worst_Hz}};
   }
-  return json_text(json);
+  return report::json_text(json);
 }
 
 Check identify(const FrfOptions& options, const std::string& command) {

@@ -1,11 +1,11 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/inverse_dynamics.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -70,7 +70,7 @@ std::string json_of(const InverseDynamics& model, const AxisRecording& axis, con
                                       {"determined", determined(row.estimate)},
                                       {"least_squares", row.least_squares}});
   }
-  return json_text(document);
+  return report::json_text(document);
 }
 
 /// The file that `tactus estimate force` loads. Friction below zero, which the fit may find within its interval, is

@@ -1,9 +1,9 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/operator_impedance.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -113,7 +113,7 @@ std::string json_of(const OperatorImpedances& found, const AxisRecording& axis, 
                                    {"verdict", word_of(window.verdict)},
                                    {"parameters", parameters_of(window, axis.rotary)}});
   }
-  return json_text(document);
+  return report::json_text(document);
 }
 
 /// `12 ± 3`, in brackets where the data do not tell it.

@@ -1,6 +1,5 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/real_between.hpp>
 #include <tactus/configuration/document.hpp>
@@ -8,6 +7,7 @@
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/identification/prediction_time.hpp>
 #include <tactus/recording/recording.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -106,7 +106,7 @@ experiments::Outcome outcome_of(const PredictionOptions& options, const TimeCons
                                     {"error_rms_N", found.error_rms_N}};
   experiments::Outcome outcome;
   outcome.text = felt + ".\n\n" + table.to_text();
-  outcome.json = json_text(json);
+  outcome.json = report::json_text(json);
   outcome.html = page.to_html();
   outcome.configuration = configuration;
   return outcome;

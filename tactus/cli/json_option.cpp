@@ -1,7 +1,7 @@
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/configuration/json_writer.hpp>
 #include <tactus/core/version.hpp>
+#include <tactus/report/json.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 /// A word of the command line: a number where it is one.
 Json value_of(const std::string& word) {
-  Json parsed = Json::parse(word, nullptr, false);
+  Json parsed = report::parse_json<Json>(word);
   return parsed.is_number() ? parsed : Json(word);
 }
 
@@ -57,11 +57,11 @@ Json seed_in(const Json& configuration) {
 std::string JsonOption::document(std::string_view results, std::string_view configuration) const {
   Json made_by = options_of(*verb);
   if (!configuration.empty()) {
-    if (const auto written = configuration::json_of_toml(configuration)) made_by = Json::parse(*written);
+    if (const auto written = configuration::json_of_toml(configuration)) made_by = report::parse_json<Json>(*written);
   }
   Json all{{"version", version()}, {"command", *command}, {"seed", seed_in(made_by)}, {"configuration", made_by}};
-  all.update(Json::parse(results));
-  return json_text(all);
+  all.update(report::parse_json<Json>(results));
+  return report::json_text(all);
 }
 
 void add_json_option(CLI::App& verb, JsonOption& option, const std::string& command, const std::string& help) {

@@ -1,11 +1,11 @@
 #include <tactus/cli/experiment_options.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/plant_server.hpp>
@@ -56,16 +56,17 @@ std::string text_of(const std::string& name, const PlantStatus& status, const ru
 }
 
 std::string json_of(const std::string& name, const PlantStatus& status, const runtime::ServoReport& servo) {
-  const nlohmann::ordered_json document{{"name", name},
-                                        {"readings", status.readings},
-                                        {"commands", status.commands},
-                                        {"taps", status.taps},
-                                        {"held_back", status.held_back},
-                                        {"let_go", status.let_go},
-                                        {"cause", name_of(status.cause)},
-                                        {"missed", status.missed},
-                                        {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}};
-  return json_text(document);
+  const nlohmann::ordered_json document{
+      {"name", name},
+      {"readings", status.readings},
+      {"commands", status.commands},
+      {"taps", status.taps},
+      {"held_back", status.held_back},
+      {"let_go", status.let_go},
+      {"cause", name_of(status.cause)},
+      {"missed", status.missed},
+      {"servo", report::parse_json<nlohmann::ordered_json>(runtime::servo_json(servo))}};
+  return report::json_text(document);
 }
 
 Result<experiments::TappingParams> params_of(const PlantOptions& options) {

@@ -1,5 +1,4 @@
 #include <tactus/cli/experiment_options.hpp>
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/passages.hpp>
@@ -9,6 +8,7 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/link/socket.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
 
 #include <algorithm>
@@ -148,7 +148,7 @@ void print(const Way::Counters& to_slave, const Way::Counters& to_master, const 
     table.add_row({name, std::to_string(c->arrived), std::to_string(c->lost), std::to_string(c->doubled),
                    std::to_string(c->overflowed), std::to_string(c->passed)});
   }
-  std::cout << (json.wanted ? json.document(json_text(document), configuration) : table.to_text());
+  std::cout << (json.wanted ? json.document(report::json_text(document), configuration) : table.to_text());
 }
 
 Check run(const RelayOptions& options) {

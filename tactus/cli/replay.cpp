@@ -1,8 +1,8 @@
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/replay.hpp>
 
@@ -58,7 +58,7 @@ std::string json_of(const runtime::Replay& replay) {
                               {"tick", found->tick},        {"signal", found->signal}, {"recorded", found->recorded},
                               {"replayed", found->replayed}};
   }
-  return json_text(document);
+  return report::json_text(document);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/internal/link_json.hpp>
 #include <tactus/cli/rig_report.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/report/figure.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
@@ -188,7 +188,7 @@ nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
   }
   if (run.only) document["site"] = name_of(*run.only);
   if (run.link) document.update(link_json(*run.link));
-  document["servo"] = nlohmann::ordered_json::parse(runtime::servo_json(run.servo));
+  document["servo"] = report::parse_json<nlohmann::ordered_json>(runtime::servo_json(run.servo));
   if (run.log_dropped) document["log_dropped"] = *run.log_dropped;
   return document;
 }
@@ -236,7 +236,7 @@ experiments::Outcome rig_outcome(const RigRun& run, const RigPair& pair, const e
   std::string text = summary + "\n";
   if (run.log_dropped) text += std::to_string(*run.log_dropped) + " records of the log dropped.\n";
   return {.text = std::move(text),
-          .json = json_text(json_of(run, pair)),
+          .json = report::json_text(json_of(run, pair)),
           .html = page.to_html(),
           .figures = figures,
           .traces = {},

@@ -1,10 +1,10 @@
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/onlookers.hpp>
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/report/files.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -25,18 +25,19 @@ using ros2::HandSession;
 
 std::string json_of(const experiments::Request& request, const Ros2Options& options, const HandSession& session,
                     const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo) {
-  return json_text({{"experiment", request.name},
-                    {"namespace", options.name_space},
-                    {"time_s", session.time_s()},
-                    {"contacts", session.contacts()},
-                    {"peak_contact_force_N", session.peak_force_N()},
-                    {"driven", session.driven()},
-                    {"published", counts.published},
-                    {"dropped", counts.dropped},
-                    {"messages_lost", counts.lost},
-                    {"wishes", counts.wishes},
-                    {"commands_refused", counts.refused},
-                    {"servo", nlohmann::ordered_json::parse(runtime::servo_json(servo))}});
+  return report::json_text(
+      nlohmann::ordered_json{{"experiment", request.name},
+                             {"namespace", options.name_space},
+                             {"time_s", session.time_s()},
+                             {"contacts", session.contacts()},
+                             {"peak_contact_force_N", session.peak_force_N()},
+                             {"driven", session.driven()},
+                             {"published", counts.published},
+                             {"dropped", counts.dropped},
+                             {"messages_lost", counts.lost},
+                             {"wishes", counts.wishes},
+                             {"commands_refused", counts.refused},
+                             {"servo", report::parse_json<nlohmann::ordered_json>(runtime::servo_json(servo))}});
 }
 
 report::Table table_of(const Ros2Options& options, const HandSession& session, const ros2::Bridge::Counts& counts) {

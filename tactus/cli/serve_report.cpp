@@ -1,9 +1,9 @@
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/serve_report.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/report/figure.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -189,7 +189,7 @@ std::string json_of(const ServeSession& session, const SessionHistory& history) 
                                         {"settings", std::move(settings)},
                                         {"contacts", std::move(contacts)},
                                         {"forgotten_contacts", history.forgotten()}};
-  return json_text(document);
+  return report::json_text(document);
 }
 
 }  // namespace

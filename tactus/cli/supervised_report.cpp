@@ -1,8 +1,8 @@
-#include <tactus/cli/internal/json_text.hpp>
 #include <tactus/cli/internal/link_json.hpp>
 #include <tactus/cli/supervised_report.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/report/figure.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -313,9 +313,9 @@ std::string json_of(const SupervisedRun& run) {
   document["lines_dropped"] = run.lines_dropped;
   document["seconds"] = nlohmann::ordered_json::array();
   for (const SiteSecond& second : run.seconds) document["seconds"].push_back(json_of(run, second));
-  document["servo"] = nlohmann::ordered_json::parse(runtime::servo_json(run.servo));
+  document["servo"] = report::parse_json<nlohmann::ordered_json>(runtime::servo_json(run.servo));
   if (run.log_dropped) document["log_dropped"] = *run.log_dropped;
-  return json_text(document);
+  return report::json_text(document);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <tactus/diagnosis/line.hpp>
 #include <tactus/diagnosis/report.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 
@@ -128,7 +129,7 @@ std::string to_json(const Signals& signals, const Diagnosis& diagnosis, const st
   const auto scale = [](const std::optional<ToldVelocity>& told) { return told ? Json(told->scale) : Json(nullptr); };
   document["told_velocity_scale"] = {{"master", scale(signals.master_velocity)},
                                      {"slave", scale(signals.slave_velocity)}};
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return report::json_text(document);
 }
 
 report::HeatMap spectrogram_of(const Signals& signals, const Diagnosis& diagnosis) {

@@ -1,5 +1,6 @@
 #include <tactus/core/version.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -44,10 +45,10 @@ std::optional<double> as_number(std::string_view text) {
 std::string settings_json(const Settings& settings) {
   auto object = nlohmann::ordered_json::object();
   for (const auto& [key, value] : settings) {
-    const auto parsed = nlohmann::ordered_json::parse(value, nullptr, false);
+    const auto parsed = report::parse_json<nlohmann::ordered_json>(value);
     object[key] = parsed.is_number() || parsed.is_boolean() ? parsed : nlohmann::ordered_json(value);
   }
-  return object.dump();
+  return report::json_line(object);
 }
 
 std::string settings_caption(const Settings& settings) {
@@ -92,8 +93,8 @@ void add_row(report::Table& table, const Settings& settings, std::vector<std::st
 std::string runs_json(const Request& request, const std::vector<std::pair<Settings, std::string>>& runs) {
   nlohmann::ordered_json document{{"experiment", request.name}, {"runs", nlohmann::ordered_json::array()}};
   for (const auto& [settings, members] : runs) {
-    nlohmann::ordered_json run{{"set", nlohmann::ordered_json::parse(settings_json(settings))}};
-    const auto own = nlohmann::ordered_json::parse(members, nullptr, false);
+    nlohmann::ordered_json run{{"set", report::parse_json<nlohmann::ordered_json>(settings_json(settings))}};
+    const auto own = report::parse_json<nlohmann::ordered_json>(members);
     if (own.is_object()) {
       run.update(own);
     } else {
@@ -101,13 +102,13 @@ std::string runs_json(const Request& request, const std::vector<std::pair<Settin
     }
     document["runs"].push_back(std::move(run));
   }
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 std::string metrics_json(const std::vector<std::pair<std::string, double>>& metrics) {
   auto values = nlohmann::ordered_json::object();
   for (const auto& [key, value] : metrics) values[key] = value;  // what is not finite is written as null
-  return nlohmann::ordered_json{{"metrics", std::move(values)}}.dump();
+  return report::json_line(nlohmann::ordered_json{{"metrics", std::move(values)}});
 }
 
 void add_provenance(report::Page& page, const Request& request, std::string_view configuration) {

@@ -1,4 +1,5 @@
 #include <tactus/experiments/faults/experiment.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/runtime/real_time_faults.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 
@@ -131,9 +132,9 @@ Result<experiments::Outcome> run_faults_in_real_time(const experiments::Request&
   }
   auto outcome = experiments::present_faults(request, *params, *table, real);
   if (interrupted) {
-    auto document = nlohmann::ordered_json::parse(outcome.json);
+    auto document = report::parse_json<nlohmann::ordered_json>(outcome.json);
     document["real_time"]["interrupted"] = {{"runs", played->size()}, {"of", runs.size()}};
-    outcome.json = document.dump(2) + "\n";
+    outcome.json = report::json_text(document);
   }
   return outcome;
 }

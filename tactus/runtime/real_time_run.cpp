@@ -1,4 +1,5 @@
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/runtime/internal/real_time_run.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 
@@ -16,14 +17,14 @@ std::string text_of(const Interrupted& interrupted) {
 }
 
 std::string json_of(const std::string& of_taps, const std::optional<PlantChoice>& plant, const KeptTime& kept) {
-  auto document = nlohmann::ordered_json::parse(of_taps);
+  auto document = report::parse_json<nlohmann::ordered_json>(of_taps);
   document["clock"] = "real";
   if (plant) document["plant"] = plant->name;
   if (kept.interrupted) document["interrupted"] = {{"taps", kept.interrupted->taps}, {"of", kept.interrupted->of}};
   for (std::size_t i = 0; i < kept.runs.size(); ++i) {
-    document["runs"][i]["servo"] = nlohmann::ordered_json::parse(servo_json(kept.runs[i]));
+    document["runs"][i]["servo"] = report::parse_json<nlohmann::ordered_json>(servo_json(kept.runs[i]));
   }
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 /// What the system refused, in words.

@@ -1,3 +1,4 @@
+#include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 
@@ -152,20 +153,19 @@ std::string servo_json(const ServoReport& report) {
                       {"means", right.means},
                       {"remedy", right.remedy}});
   }
-  return nlohmann::ordered_json{{"period_us", us_per_ns * static_cast<double>(report.period_ns)},
-                                {"ticks", report.ticks},
-                                {"missed", report.missed},
-                                {"longest_gap", report.longest_gap},
-                                {"late_ours", report.late_ours()},
-                                {"late_machine", report.late_machine()},
-                                {"late", late},
-                                {"minor_faults", report.minor_faults},
-                                {"major_faults", report.major_faults},
-                                {"involuntary_switches", report.involuntary_switches},
-                                {"lateness", quantiles_json(report.lateness)},
-                                {"duration", quantiles_json(report.duration)},
-                                {"rights", rights}}
-      .dump(2);
+  return report::json_line(nlohmann::ordered_json{{"period_us", us_per_ns * static_cast<double>(report.period_ns)},
+                                                  {"ticks", report.ticks},
+                                                  {"missed", report.missed},
+                                                  {"longest_gap", report.longest_gap},
+                                                  {"late_ours", report.late_ours()},
+                                                  {"late_machine", report.late_machine()},
+                                                  {"late", late},
+                                                  {"minor_faults", report.minor_faults},
+                                                  {"major_faults", report.major_faults},
+                                                  {"involuntary_switches", report.involuntary_switches},
+                                                  {"lateness", quantiles_json(report.lateness)},
+                                                  {"duration", quantiles_json(report.duration)},
+                                                  {"rights", rights}});
 }
 
 }  // namespace tactus::runtime

@@ -1,4 +1,5 @@
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/stability/angle.hpp>
 #include <tactus/stability/limit_ladder.hpp>
@@ -177,7 +178,7 @@ Result<experiments::Outcome> report_limit(const experiments::Request& request, c
   page.table(taken_out);
   for (const report::Figure& figure : figures) page.figure(figure);
   return experiments::outcome_of({.text = verdict + reason + "\n" + table.to_text() + taken_out.to_text(),
-                                  .json = document.dump(2) + "\n",
+                                  .json = report::json_text(document),
                                   .page = std::move(page),
                                   .figures = std::move(figures)},
                                  request, configuration::to_toml(*params));

@@ -1,5 +1,6 @@
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
@@ -100,7 +101,7 @@ std::string json_of(const MapResult& map, const std::vector<MapPlane>& planes, c
     const bool censored = along.words.empty() && (std::isnan(limit) || limit == along.values.back());
     json["settled_limit_censored"].push_back(censored);
   }
-  return json.dump(2) + "\n";
+  return report::json_text(json);
 }
 
 std::string effort_of(const MapResult& map, double elapsed_s) {

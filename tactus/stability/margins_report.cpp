@@ -1,5 +1,6 @@
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/stability/angle.hpp>
 #include <tactus/stability/margins.hpp>
@@ -196,7 +197,7 @@ std::string json_of(const experiments::Request& request, const ReportOptions& op
   }
   auto& listed = document["slowest_poles"] = nlohmann::ordered_json::array();
   for (const std::complex<double> pole : analysis.slowest) listed.push_back({pole.real(), pole.imag()});
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/stability/angle.hpp>
 #include <tactus/stability/scorecard.hpp>
@@ -126,7 +127,7 @@ Result<experiments::Outcome> report_scorecard(const experiments::Request& reques
   page.table(changes);
   page.figure(figure);
   return experiments::outcome_of({.text = limited + "\n" + table.to_text() + changes.to_text(),
-                                  .json = document.dump(2) + "\n",
+                                  .json = report::json_text(document),
                                   .page = std::move(page),
                                   .figures = {figure}},
                                  request, configuration::to_toml(*params));

@@ -1,5 +1,6 @@
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/stability/angle.hpp>
 #include <tactus/stability/two_port_report.hpp>
@@ -144,7 +145,7 @@ std::string json_of(const experiments::Request& request, const TwoPortSweep& swe
   complex("free_N_s_per_m", [](const TwoPortPoint& point) { return point.free_N_s_per_m; });
   complex("on_the_wall_N_s_per_m", [](const TwoPortPoint& point) { return point.contact_N_s_per_m; });
   complex("transparency", [](const TwoPortPoint& point) { return point.transparency; });
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <tactus/experiments/arm_contest/presentation.hpp>
 #include <tactus/experiments/internal/gain_json.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
@@ -180,7 +181,7 @@ std::string arm_contest_json(const std::string& experiment, const ArmContest& co
     }
     document["use"].push_back({{"arms", contest.pairs[pair]}, {"methods", methods}});
   }
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 }  // namespace tactus::experiments

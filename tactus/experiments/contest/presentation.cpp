@@ -1,6 +1,7 @@
 #include <tactus/experiments/contest/presentation.hpp>
 #include <tactus/experiments/internal/gain_json.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
@@ -163,7 +164,7 @@ std::string contest_json(const std::string& experiment, const std::vector<Method
                         {"free_space_lag_s", json_of(score.free_space.lag_s)}};
     document["methods"].push_back(std::move(entry));
   }
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 }  // namespace tactus::experiments

@@ -1,5 +1,6 @@
 #include <tactus/experiments/faults/presentation.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/report/json.hpp>
 
 #include <algorithm>
 #include <map>
@@ -289,9 +290,9 @@ std::string json_of(const Request& request, const FaultsShown& shown, const Faul
                              {"longest_cut_s", real_time->params.task.longest_cut_s},
                              {"rows", json_of(real_time->tallies)},
                              {"lost", lost_json(real_time->lost)},
-                             {"servo", Json::parse(real_time->timing_json)}};
+                             {"servo", report::parse_json<Json>(real_time->timing_json)}};
   }
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 /// Survived runs by fault, in percent.

@@ -1,5 +1,6 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/force_display/force_display.hpp>
+#include <tactus/report/json.hpp>
 
 #include <algorithm>
 #include <tuple>
@@ -75,7 +76,7 @@ std::string json_of(const DisplayRun& run) {
                      {"kept_fraction", one.kept_fraction},
                      {"encoder_fraction", one.encoder_fraction}});
   }
-  return nlohmann::ordered_json{{"metrics", {{"cases", cases}}}}.dump();
+  return report::json_line(nlohmann::ordered_json{{"metrics", {{"cases", cases}}}});
 }
 
 std::vector<double> times(double factor, const std::vector<double>& values) {

@@ -1,5 +1,6 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/force_estimators/force_estimators.hpp>
+#include <tactus/report/json.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -148,7 +149,7 @@ std::string json_of(const EstimatorsRun& run) {
                           {"free_motion_residual_N", score.free_residual_N},
                           {"rest_noise_N", score.rest_noise_N}});
   }
-  return nlohmann::ordered_json{{"estimators", estimators}, {"narx", narx_json(run.found.narx)}}.dump();
+  return report::json_line(nlohmann::ordered_json{{"estimators", estimators}, {"narx", narx_json(run.found.narx)}});
 }
 
 Presentation ForceEstimatorsExperiment::present(const Request& request, const Runs& runs) const {

@@ -1,5 +1,6 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/hydraulic_chirp/hydraulic_chirp.hpp>
+#include <tactus/report/json.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -115,16 +116,15 @@ std::string json_of(const HydraulicChirpRun& run) {
                         {"percent_of_rated_current_below_2_Hz", percent_of_full(run, score.mae_below_2_Hz_mA)}});
   }
   const auto& friction = run.found.fitted.model.friction;
-  return nlohmann::ordered_json{{"metrics",
-                                 {{"model",
-                                   {{"damping_N", friction.force_N},
-                                    {"linear", friction.linear},
-                                    {"quadratic", friction.quadratic},
-                                    {"offset_N", friction.offset_N},
-                                    {"apparent_mass_kg", run.found.fitted.apparent_mass_kg},
-                                    {"fit_residual_rms_mA", run.found.fitted.residual_rms_mA}}},
-                                  {"variants", variants}}}}
-      .dump();
+  return report::json_line(nlohmann::ordered_json{{"metrics",
+                                                   {{"model",
+                                                     {{"damping_N", friction.force_N},
+                                                      {"linear", friction.linear},
+                                                      {"quadratic", friction.quadratic},
+                                                      {"offset_N", friction.offset_N},
+                                                      {"apparent_mass_kg", run.found.fitted.apparent_mass_kg},
+                                                      {"fit_residual_rms_mA", run.found.fitted.residual_rms_mA}}},
+                                                    {"variants", variants}}}});
 }
 
 Presentation HydraulicChirpExperiment::present(const Request& request, const Runs& runs) const {

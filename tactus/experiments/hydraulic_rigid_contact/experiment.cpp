@@ -1,5 +1,6 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/hydraulic_rigid_contact/hydraulic_rigid_contact.hpp>
+#include <tactus/report/json.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -143,7 +144,7 @@ std::string json_of(const ContactCase& one) {
                         {"false_force_rms_N", run.false_force_N},
                         {"contacts", contacts}});
   }
-  return nlohmann::ordered_json{{"metrics", {{"variants", variants}}}}.dump();
+  return report::json_line(nlohmann::ordered_json{{"metrics", {{"variants", variants}}}});
 }
 
 Presentation HydraulicRigidContactExperiment::present(const Request& request, const Runs& cases) const {

@@ -1,5 +1,6 @@
 #include <tactus/experiments/experiment_of.hpp>
 #include <tactus/experiments/inverse_model_chirp/inverse_model_chirp.hpp>
+#include <tactus/report/json.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -88,14 +89,13 @@ std::string json_of(const ChirpRun& run) {
   for (const BandOptimum& one : run.found.by_band) {
     bands.push_back({{"band_Hz", one.band_Hz}, {"from_data_s", one.time_constant_s}});
   }
-  return nlohmann::ordered_json{
+  return report::json_line(nlohmann::ordered_json{
       {"metrics",
        {{"phase_margin_deg", run.found.phase_margin_deg},
         {"command_rms_N", run.found.command_rms_N},
         {"time_constant",
          {{"closed_form_s", run.found.closed_form_s}, {"limit_s", run.found.limit_s}, {"by_band", bands}}},
-        {"variants", variants}}}}
-      .dump();
+        {"variants", variants}}}});
 }
 
 report::Figure figure_of(const ChirpRun& run) {

@@ -1,4 +1,5 @@
 #include <tactus/experiments/experiment_of.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/signal/predictor.hpp>
 
 #include <cmath>
@@ -193,7 +194,7 @@ std::string json_of(const BlockRun& run) {
                   {"white_noise_gain", row.noise_gain}});
     (i < cascades ? blocks : rivals).push_back(std::move(entry));
   }
-  return nlohmann::ordered_json{{"metrics", {{"cascades", blocks}, {"rivals", rivals}}}}.dump();
+  return report::json_line(nlohmann::ordered_json{{"metrics", {{"cascades", blocks}, {"rivals", rivals}}}});
 }
 
 Presentation PredictionBlockExperiment::present(const Request& request, const Runs& runs) const {

@@ -1,6 +1,7 @@
 #include <tactus/experiments/internal/gain_json.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/sensorless/presentation.hpp>
+#include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
@@ -191,7 +192,7 @@ std::string sensorless_json(const std::string& experiment, const std::vector<Sen
                 {"free_space_displayed_force_rms_N", score.free_space.displayed_force_rms_N}});
     document["rows"].push_back(std::move(row));
   }
-  return document.dump(2) + "\n";
+  return report::json_text(document);
 }
 
 }  // namespace tactus::experiments

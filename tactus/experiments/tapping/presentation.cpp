@@ -1,6 +1,7 @@
 #include <tactus/experiments/internal/gain_json.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/experiments/tapping/presentation.hpp>
+#include <tactus/report/json.hpp>
 
 #include <cctype>
 #include <cmath>
@@ -80,7 +81,7 @@ std::string metrics_json(const TappingMetrics& metrics) {
     json["stopped"] = metrics.stopped;
     json["stopped_by"] = {{"site", name_of(metrics.stopped_by->site)}, {"cause", name_of(metrics.stopped_by->cause)}};
   }
-  return json.dump();
+  return report::json_line(json);
 }
 
 std::string tapping_json(const Request& request, const std::vector<TappingRun>& runs) {
