@@ -1,0 +1,45 @@
+# The parts of tactus that can be left out. A component is a list of modules and of the components on which it builds; it
+# finds the libraries of its own modules alone. `kernel` needs Eigen and no operating system. scripts/install-deps names
+# the packages of each.
+
+set(TACTUS_ALL_COMPONENTS kernel data identification simulation analysis runtime hardware interfaces)
+
+set(TACTUS_COMPONENT_kernel core signal mechanics arm control arm_control station)
+set(TACTUS_COMPONENT_data recording configuration report urdf telemetry)
+set(TACTUS_COMPONENT_identification identification arm_identification diagnosis)
+set(TACTUS_COMPONENT_simulation arm_plants simulation experiments)
+set(TACTUS_COMPONENT_analysis stability arm_stability advice)
+set(TACTUS_COMPONENT_runtime live link runtime ros2)
+set(TACTUS_COMPONENT_hardware wire emulation devices)
+set(TACTUS_COMPONENT_interfaces cli)
+
+set(TACTUS_COMPONENT_kernel_NEEDS)
+set(TACTUS_COMPONENT_data_NEEDS kernel)
+set(TACTUS_COMPONENT_identification_NEEDS data)
+set(TACTUS_COMPONENT_simulation_NEEDS identification)
+set(TACTUS_COMPONENT_analysis_NEEDS simulation)
+set(TACTUS_COMPONENT_runtime_NEEDS simulation)
+set(TACTUS_COMPONENT_hardware_NEEDS runtime)
+set(TACTUS_COMPONENT_interfaces_NEEDS analysis hardware)
+
+# Leaves in OUT the components WANTED and all on which they build, those that others build on first.
+function(tactus_close_components out)
+  set(closed)
+  set(open ${ARGN})
+  while(open)
+    list(POP_FRONT open component)
+    if(NOT component IN_LIST TACTUS_ALL_COMPONENTS)
+      list(JOIN TACTUS_ALL_COMPONENTS ", " all)
+      message(FATAL_ERROR "TACTUS_COMPONENTS names `${component}`, which is no component of tactus; the components are: ${all}")
+    endif()
+    list(APPEND closed ${component})
+    list(APPEND open ${TACTUS_COMPONENT_${component}_NEEDS})
+  endwhile()
+  set(ordered)
+  foreach(component IN LISTS TACTUS_ALL_COMPONENTS)
+    if(component IN_LIST closed)
+      list(APPEND ordered ${component})
+    endif()
+  endforeach()
+  set(${out} ${ordered} PARENT_SCOPE)
+endfunction()
