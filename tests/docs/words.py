@@ -57,7 +57,7 @@ docs/how-to/my-arm-buzzes.md docs/how-to/compare-methods.md docs/how-to/openarm.
 docs/how-to/gello.md docs/how-to/so101.md docs/how-to/dynamixel-servos.md docs/how-to/feetech-servos.md
 docs/how-to/inverse3.md docs/how-to/damiao-motors.md docs/how-to/how-much-gain-is-safe.md docs/how-to/diagnose.md
 docs/how-to/your-own-device.md docs/how-to/ros2.md docs/how-to/live-page.md docs/how-to/live-view.md
-docs/how-to/plug-in-your-own.md docs/how-to/two-hosts.md
+docs/how-to/plug-in-your-own.md docs/how-to/two-hosts.md docs/how-to/real-time.md
 """.split()
 
 # Pages that have yet to be rewritten. This list only shrinks.
@@ -65,7 +65,7 @@ NOT_YET = """
 CONTRIBUTING.md SECURITY.md docs/architecture.md docs/validation.md docs/how-to/add-an-element.md
 docs/how-to/add-an-experiment.md docs/how-to/advise.md docs/how-to/combinations.md docs/how-to/faults.md
 docs/how-to/identify-an-arm.md docs/how-to/identify-from-a-recording.md docs/how-to/identify-your-master.md
-docs/how-to/logs.md docs/how-to/real-time.md docs/how-to/rigs.md docs/theory/arm-margins.md docs/theory/arms.md
+docs/how-to/logs.md docs/how-to/rigs.md docs/theory/arm-margins.md docs/theory/arms.md
 docs/theory/cancellation-models.md docs/theory/changing-grip.md docs/theory/contest.md docs/theory/couplings.md
 docs/theory/diagnosis.md docs/theory/force-estimators.md docs/theory/four-channel.md
 docs/theory/frequency-responses.md docs/theory/hand-force.md docs/theory/induced-master-motion.md docs/theory/maps.md
