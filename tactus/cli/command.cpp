@@ -1,6 +1,7 @@
 #include <tactus/cli/colour.hpp>
 #include <tactus/cli/command.hpp>
 #include <tactus/cli/help.hpp>
+#include <tactus/cli/plugin.hpp>
 #include <tactus/cli/printable_output.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/suggestion.hpp>
@@ -17,6 +18,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
@@ -81,6 +83,17 @@ int run(int argc, char** argv) {
   CLI::App app{"Crisp and stable force-reflecting teleoperation", name};
   app.set_version_flag("--version", version_text());
   set_help(app);
+  // Loaded before the command that follows reads a rig file.
+  app.add_option_function<std::vector<std::string>>(
+         "--plugin",
+         [](const std::vector<std::string>& files) {
+           for (const std::string& file : files) {
+             if (const auto error = load_plugin(file)) throw CLI::ValidationError(describe(*error));
+           }
+         },
+         "Shared object that adds drivers for rig files; before COMMAND")
+      ->type_name("FILE.so")
+      ->take_all();
   app.option_defaults()->always_capture_default();
   // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
   app.require_subcommand(0, 1);

@@ -155,7 +155,7 @@ nlohmann::ordered_json json_of(const Checked& checked) {
   }
   ordered_json bus;
   if (checked.side != nullptr) bus["side"] = checked.side->path;
-  bus.update({{"bus", name_of(checked.bus->kind)},
+  bus.update({{"bus", bus_name(*checked.bus)},
               {"port", checked.bus->port},
               {"cycles_per_s", number(checked.found.rate_Hz)},
               {"problems", json_of(checked.found.problems)},
@@ -220,7 +220,7 @@ Result<bool> print(const std::vector<Checked>& all, const CheckOptions& options)
     for (const Checked& checked : all) {
       std::cout << "\n";
       if (checked.side != nullptr) {
-        std::cout << checked.side->path << ": " << name_of(checked.bus->kind) << " at "
+        std::cout << checked.side->path << ": " << bus_name(*checked.bus) << " at "
                   << report::printable(checked.bus->port) << "\n";
       }
       std::cout << table_of(checked).to_text();

@@ -129,7 +129,7 @@ report::Table limits_table(const RigSide& side, const BusFinding& found, const s
     const RigJoint& one = side.joints[i];
     if (!Rig::holds(name, one.path)) continue;
     const double most_Nm = found.motors[i].sheet.torque_limit_Nm * one.joint.gear;
-    const double fastest = ability_of(side.bus.kind, one.motor).velocity_rad_per_s / one.joint.gear;
+    const double fastest = ability_of(side.bus, one.motor).velocity_rad_per_s / one.joint.gear;
     table.add_row({std::string(one.name()), number(most_Nm),
                    one.joint.gives_force ? number(one.joint.torque_limit_Nm) : "-",
                    one.joint.gives_force ? what_holds(most_Nm, one.joint.torque_limit_Nm) : "no force", number(fastest),

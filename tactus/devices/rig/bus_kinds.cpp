@@ -3,9 +3,11 @@
 #include <tactus/devices/dynamixel/dynamixel_bus.hpp>
 #include <tactus/devices/feetech/feetech_bus.hpp>
 #include <tactus/devices/inverse3/inverse3_link.hpp>
+#include <tactus/devices/plugin/blocking_link.hpp>
 #include <tactus/devices/rig/bus_kinds.hpp>
 #include <tactus/wire/port.hpp>
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -87,6 +89,21 @@ inverse3::LinkParams inverse3_params(const StatedBus& stated) {
   return params;
 }
 
+Result<std::unique_ptr<BlockingDriver>> make_driver(const StatedBus& stated) {
+  DriverRequest request{.port = stated.port, .motors = {}};
+  for (const StatedMotor& motor : stated.motors) request.motors.push_back(motor.id);
+  auto driver = stated.settings->make(request);
+  if (driver && (*driver)->motors() != stated.motors.size()) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "motors",
+                 .message = "the driver " + stated.driver + " has " + std::to_string((*driver)->motors()) +
+                            " motors, and the file states " + std::to_string(stated.motors.size()) +
+                            " joints: write a joint for each",
+                 .place = {}};
+  }
+  return driver;
+}
+
 /// On the heap, whatever `make` gives.
 template <class Bus>
 Result<std::unique_ptr<MotorBus>> on_heap(Result<Bus> made) {
@@ -112,7 +129,8 @@ Result<std::unique_ptr<MotorBus>> make_bus(const StatedBus& stated) {
       return params ? on_heap(FeetechBus::make(*params)) : params.error();
     }
     case BusKind::inverse3:
-      break;  // is no bus of ours
+    case BusKind::plugged:
+      break;  // are no buses of ours
   }
   return Error{};
 }
@@ -129,12 +147,18 @@ std::vector<std::string> models_of(BusKind kind) {
       return words_of<feetech::FeetechModel>();
     case BusKind::inverse3:
       return {"inverse3"};
+    case BusKind::plugged:
+      return {};
   }
   return {};
 }
 
-MotorAbility ability_of(BusKind kind, const StatedMotor& motor) {
-  switch (kind) {
+std::string_view bus_name(const StatedBus& stated) {
+  return stated.kind == BusKind::plugged ? std::string_view(stated.driver) : name_of(stated.kind);
+}
+
+MotorAbility ability_of(const StatedBus& bus, const StatedMotor& motor) {
+  switch (bus.kind) {
     case BusKind::damiao: {
       const auto model = value_of<damiao::Model>("model", motor.model);
       const damiao::Scale scale = damiao::scale_of(model ? *model : damiao::Model{});
@@ -155,12 +179,22 @@ MotorAbility ability_of(BusKind kind, const StatedMotor& motor) {
     }
     case BusKind::inverse3:
       return {.torque_Nm = std::numeric_limits<double>::infinity()};
+    case BusKind::plugged: {
+      const auto place = std::ranges::find(bus.motors, motor.id, &StatedMotor::id) - bus.motors.begin();
+      const auto driver = make_driver(bus);
+      const auto index = static_cast<std::size_t>(place);
+      return driver && index < bus.motors.size() ? (*driver)->ability(index) : MotorAbility{};
+    }
   }
   return {};
 }
 
 Check check(const StatedBus& stated) {
   if (stated.kind == BusKind::inverse3) return inverse3::check(inverse3_params(stated));
+  if (stated.kind == BusKind::plugged) {
+    const auto driver = make_driver(stated);
+    return driver ? Check{} : driver.error();
+  }
   const auto made = make_bus(stated);
   return made ? Check{} : made.error();
 }
@@ -168,6 +202,13 @@ Check check(const StatedBus& stated) {
 Result<std::unique_ptr<MotorLink>> start(const StatedBus& stated) {
   if (stated.kind == BusKind::inverse3) {
     auto link = inverse3::Inverse3Link::start(inverse3_params(stated));
+    if (!link) return link.error();
+    return std::unique_ptr<MotorLink>(*std::move(link));
+  }
+  if (stated.kind == BusKind::plugged) {
+    auto driver = make_driver(stated);
+    if (!driver) return driver.error();
+    auto link = BlockingLink::start(*std::move(driver), stated.watchdog_s);
     if (!link) return link.error();
     return std::unique_ptr<MotorLink>(*std::move(link));
   }
@@ -190,6 +231,7 @@ std::vector<std::int64_t> bit_rates_of(BusKind kind) {
   switch (kind) {
     case BusKind::damiao:
     case BusKind::inverse3:
+    case BusKind::plugged:
       return {};
     case BusKind::dynamixel:
       return {dynamixel::bit_rates.begin(), dynamixel::bit_rates.end()};

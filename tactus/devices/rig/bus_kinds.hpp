@@ -3,19 +3,22 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/devices/motor_link.hpp>
+#include <tactus/devices/plugin/driver_registry.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// Buses and their motors as a person states them: in a rig file, or on a command line.
 namespace tactus::devices {
 
-/// A word for each kind of bus whose motors have a driver.
-enum class BusKind : std::int64_t { damiao, dynamixel, feetech, inverse3 };
+/// A word for each kind of bus whose motors have a driver. `plugged` is any that was registered (`register_driver`): a
+/// rig file names it by its own name.
+enum class BusKind : std::int64_t { damiao, dynamixel, feetech, inverse3, plugged };
 constexpr auto enumerators(BusKind) {
   return std::array{Enumerator{BusKind::damiao, "damiao"}, Enumerator{BusKind::dynamixel, "dynamixel"},
                     Enumerator{BusKind::feetech, "feetech"}, Enumerator{BusKind::inverse3, "inverse3"}};
@@ -37,23 +40,21 @@ struct StatedBus {
   double watchdog_s = 0.05;             ///< a motor that is unheard for so long is lost; of Damiao it lets go by itself
   std::int64_t bits_per_s = 1'000'000;  ///< of servos
   std::vector<StatedMotor> motors;
+  std::string driver = {};                         ///< name of the registered driver, where `kind` is `plugged`
+  std::shared_ptr<const DriverSettings> settings = {};  ///< its own keys
 };
+
+/// The word after `bus =`.
+std::string_view bus_name(const StatedBus& stated);
 
 /// The words for models of a kind.
 std::vector<std::string> models_of(BusKind kind);
 
-/// Whether its motors let go by themselves when nobody speaks to them any more.
+/// Whether its motors remove their torque by themselves when commands stop. A plug-in promises it (`BlockingDriver`).
 constexpr bool has_watchdog(BusKind kind) { return kind != BusKind::feetech; }
 
-/// What a motor of this model can do, at its output.
-struct MotorAbility {
-  double torque_Nm = 0.0;           ///< 0: it takes no command; infinite: not known
-  double velocity_rad_per_s = 0.0;  ///< that its numbers end at; 0: not known
-  /// The largest gains of the law that it runs by itself; both 0: it runs none.
-  double stiffness_Nm_per_rad = 0.0, damping_Nms_per_rad = 0.0;
-};
-/// Of a motor that `check` passed.
-MotorAbility ability_of(BusKind kind, const StatedMotor& motor);
+/// Of a motor of a bus that `check` passed.
+MotorAbility ability_of(const StatedBus& bus, const StatedMotor& motor);
 
 /// That the statement is one, before anything is opened. Errors, with the remedy, under `framing`, `bits_per_s`,
 /// `motors` or `motors[i].id`, `.model` and so on.

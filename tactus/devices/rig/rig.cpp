@@ -73,11 +73,11 @@ Check Rig::read_and_check() {
     for (auto* side : {&pair.leader, &pair.follower}) {
       if (!*side) continue;
       RigSide& here = **side;
-      if (Check error = check_keys(here)) return error;
       for (const RigJoint& joint : here.joints) here.bus.motors.push_back(joint.motor);
+      if (Check error = check_keys(here)) return error;
       if (Check error = check_side(here)) return error;
       for (RigJoint& joint : here.joints) {
-        joint.joint.gives_force = ability_of(here.bus.kind, joint.motor).torque_Nm > 0.0;
+        joint.joint.gives_force = ability_of(here.bus, joint.motor).torque_Nm > 0.0;
         if (here.bus.kind == BusKind::feetech) joint.joint.turn_rad = 2.0 * std::numbers::pi;
       }
     }
@@ -93,7 +93,10 @@ Check Rig::check_keys(const RigSide& side) const {
         section, ErrorCode::missing,
         std::string(key) + " is needed: write for instance " + key + " = " + example + " under [" + section + "]");
   };
-  if (Check error = needed(side.path, "port", "\"/dev/serial/by-id/...\"")) return error;
+  const bool plugged = side.bus.kind == BusKind::plugged;
+  if (!plugged) {
+    if (Check error = needed(side.path, "port", "\"/dev/serial/by-id/...\"")) return error;
+  }
   if (!joint_counts.contain(static_cast<double>(side.joints.size()))) {
     return at(side.path, ErrorCode::out_of_bounds,
               std::to_string(side.joints.size()) + " joints: one to " + std::to_string(most_joints) +
@@ -101,7 +104,7 @@ Check Rig::check_keys(const RigSide& side) const {
   }
   for (const RigJoint& joint : side.joints) {
     Check error = needed(joint.path, "motor", "1");
-    if (!error) {
+    if (!error && !plugged) {
       const std::string model = "\"" + models_of(side.bus.kind).front() + "\"";
       error = needed(joint.path, "model", model.c_str());
     }
@@ -109,7 +112,7 @@ Check Rig::check_keys(const RigSide& side) const {
     if (!error) error = needed(joint.path, words.lower, joint.slides ? "-0.1" : "-1.5");
     if (!error) error = needed(joint.path, words.upper, joint.slides ? "0.1" : "1.5");
     if (!error) error = needed(joint.path, words.velocity_limit, joint.slides ? "1.0" : "3.0");
-    if (!error && ability_of(side.bus.kind, joint.motor).torque_Nm > 0.0) {
+    if (!error && ability_of(side.bus, joint.motor).torque_Nm > 0.0) {
       error = needed(joint.path, words.force_limit, "1.0");
       if (!error) error = needed(joint.path, words.rate_limit, "50.0");
     }
@@ -130,7 +133,7 @@ Check Rig::check_side(const RigSide& side) const {
   if (Check error = check(side.bus)) return locate(side, *std::move(error));
   for (const RigJoint& one : side.joints) {
     const MotorJoint& joint = one.joint;
-    const MotorAbility ability = ability_of(side.bus.kind, one.motor);
+    const MotorAbility ability = ability_of(side.bus, one.motor);
     const JointWords& words = one.words();
     if (one.slides != side.joints.front().slides) {
       return at(one.path, ErrorCode::inconsistent,
@@ -183,7 +186,7 @@ Check Rig::check_ports() const {
   std::map<std::string, const RigSide*> taken;
   for (const RigPair& pair : pairs_) {
     for (const auto* side : {&pair.leader, &pair.follower}) {
-      if (!*side) continue;
+      if (!*side || (*side)->bus.port.empty()) continue;
       const auto [earlier, fresh] = taken.emplace(own_port((*side)->bus.port), &**side);
       if (fresh) continue;
       return at(join((*side)->path, "port"), ErrorCode::inconsistent,

@@ -64,6 +64,28 @@ struct Inverse3Side {
   void put_into(StatedBus& stated) const { stated = {.kind = bus, .port = port, .device = device, .motors = {}}; }
 };
 
+/// A registered driver, whose own keys stand beside these.
+struct PluggedSide {
+  std::string bus, port;
+  double watchdog_s = 0.05;
+  static constexpr auto fields() {
+    return List{
+        field("bus", &PluggedSide::bus, "Name of a registered driver."),
+        field("port", &PluggedSide::port, "Where the device is reached, in the words of its driver."),
+        field("watchdog_s", &PluggedSide::watchdog_s, units::second, between(0.005, 1.0),
+              "If no reading arrives for this time, the device counts as lost; it removes its torque by itself.")};
+  }
+  std::shared_ptr<DriverSettings> settings = {};
+  void put_into(StatedBus& stated) const {
+    stated = {.kind = BusKind::plugged,
+              .port = port,
+              .watchdog_s = watchdog_s,
+              .motors = {},
+              .driver = bus,
+              .settings = settings};
+  }
+};
+
 constexpr const char* motor_doc = "Its identifier on the bus.";
 constexpr const char* model_doc = "As its maker calls it.";
 
@@ -105,6 +127,16 @@ struct FeetechMotor {
   void put_into(StatedMotor& stated) const {
     stated = {.id = motor, .model = name_of(model), .torque_Nm_per_A = torque_Nm_per_A};
   }
+};
+
+struct PluggedMotor {
+  std::int64_t motor = 0;
+  std::string model = "motor";
+  static constexpr auto fields() {
+    return List{field("motor", &PluggedMotor::motor, between(0.0, 1e6), "Its number, in the words of the driver."),
+                field("model", &PluggedMotor::model, "Its name in tables.")};
+  }
+  void put_into(StatedMotor& stated) const { stated = {.id = motor, .model = model}; }
 };
 
 enum class Inverse3Model : std::int64_t { inverse3 };
@@ -199,6 +231,21 @@ std::vector<std::string_view> parts_of(std::string_view path) {
   return parts;
 }
 
+/// That a bus without a registered driver is a built-in one.
+Check check_built_in(const std::string& kind, const std::string& side) {
+  std::string all;
+  for (const auto& entry : enumerators(BusKind{})) {
+    if (entry.name == kind) return std::nullopt;
+    all += (all.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  for (const DriverKind& driver : driver_kinds()) all += ", " + driver.name;
+  return Error{.code = ErrorCode::unknown_key,
+               .parameter = join(side, "bus"),
+               .message = "'" + kind + "' is not a bus that tactus can drive; write one of " + all +
+                          ", or load the driver with `tactus --plugin FILE.so`",
+               .place = {}};
+}
+
 /// The element of that path, added where there is none.
 template <class T>
 T& named(std::vector<T>& all, std::string T::*name, std::string_view wanted) {
@@ -242,7 +289,16 @@ Check Rig::read() {
       }
       const bool damiao = *kind == name_of(BusKind::damiao), feetech = *kind == name_of(BusKind::feetech);
       const bool inverse3 = *kind == name_of(BusKind::inverse3);
-      if (damiao) {
+      const DriverKind* driver = find_driver(*kind);
+      if (driver == nullptr) {
+        if (Check unknown = check_built_in(*kind, here.path)) return unknown;
+      }
+      if (driver != nullptr) {
+        PluggedSide plugged;
+        plugged.settings = driver->settings();
+        plugged.settings->append_to(bindings, here.path);
+        fill(std::move(plugged), here.bus, here.path);
+      } else if (damiao) {
         fill(DamiaoSide{}, here.bus, here.path);
       } else if (inverse3) {
         fill(Inverse3Side{}, here.bus, here.path);
@@ -250,7 +306,9 @@ Check Rig::read() {
         fill(ServoSide{}, here.bus, here.path);
       }
       for (RigJoint& joint : here.joints) {
-        if (damiao) {
+        if (driver != nullptr) {
+          fill(PluggedMotor{}, joint.motor, joint.path);
+        } else if (damiao) {
           fill(DamiaoMotor{}, joint.motor, joint.path);
         } else if (feetech) {
           fill(FeetechMotor{}, joint.motor, joint.path);
