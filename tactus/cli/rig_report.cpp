@@ -54,6 +54,10 @@ std::string words_of(const devices::DeviceTrouble& trouble, const char* name, co
     }
     case Trouble::motor_fault:
       return place + joint + " has the fault " + name_of(trouble.fault);
+    case Trouble::guard_gone:
+      return place + "the guard process of its motors is gone, so they get no power: start the run again";
+    case Trouble::guard_acted:
+      return place + "this program stood still, and the guard process switched its motors off";
     case Trouble::no_power:
       return place + joint + " has no power";
     default:
