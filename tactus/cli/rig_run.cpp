@@ -266,7 +266,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
   for (const devices::RigJoint& joint : sides.front()->joints) names.emplace_back(joint.name());
 
   runtime::SiteExchange exchange;
-  const auto interruption = Interruption::start(exchange.end);
+  const auto interruption = Interruption::start(exchange.end, Interrupted::site);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
   auto onlookers = Onlookers::open(looking_on, request, only, names);

@@ -268,7 +268,7 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
 
   runtime::SiteExchange exchange;
   // Before all other threads: what they hold back, only these two hear.
-  const auto interruption = Interruption::start(exchange.end);
+  const auto interruption = Interruption::start(exchange.end, Interrupted::site);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
   const auto person = Person::listen_to(STDIN_FILENO, here.one.value_or(SiteRole::master), exchange, errors);
