@@ -221,6 +221,7 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
   take_seconds();
   if (const std::string seen = around.onlookers.end(); !seen.empty()) lines.say(seen);
   run.totals = (*thread)->step().totals();
+  run.last = (*thread)->step().last();
   add_link(run, (*thread)->step());
   run.ended_by = around.interruption.signal() != 0 ? around.interruption.name() : "its duration";
   run.lines_dropped = lines.dropped();
@@ -229,8 +230,10 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
     log_error = log->close();
     run.log_dropped = log->dropped();
   }
-  return leave_outcome(rig_outcome(run, pair, around.request, around.drive.configuration), folder, std::move(log_error),
-                       log ? log->removed() : 0, around.output, around.errors);
+  Check unwritten = leave_outcome(rig_outcome(run, pair, around.request, around.drive.configuration), folder,
+                                  std::move(log_error), log ? log->removed() : 0, around.output, around.errors);
+  const std::string fault = fault_of(run, pair);
+  return fault.empty() ? unwritten : ended_in_a_fault(fault, std::move(unwritten), around.errors);
 }
 
 }  // namespace

@@ -165,6 +165,12 @@ TEST_F(RigRun, AMotorWithAFaultEndsTheForceOfBothAndIsSaid) {
   EXPECT_NE(said.find("follower active"), std::string::npos) << said;
   EXPECT_NE(said.find("leader hold, follower fault (gate), "), std::string::npos) << said;
   EXPECT_NE(said.find("; follower: joint_2 has the fault hot"), std::string::npos) << said;
+  EXPECT_NE(said.find("\nEnded in a fault: follower (gate); follower: joint_2 has the fault hot"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("\ntactus: the run ended in a fault: follower (gate); follower: joint_2 has the fault hot"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
 }
 
 TEST_F(RigRun, NothingIsDrivenBeforeTheRigIsClean) {
@@ -319,7 +325,8 @@ TEST_F(ArmRun, AFollowerWhoseMotorsAreGoneIsAFaultAndTheLeaderHoldsItself) {
   EXPECT_NE(said.find("leader hold, follower fault (gate), "), std::string::npos) << said;
   EXPECT_NE(said.find("; follower: its port was closed"), std::string::npos) << said;
   EXPECT_EQ(said.find("leader fault"), std::string::npos) << said;
-  EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("Ended in a fault: follower (gate); follower: its port was closed"), std::string::npos) << said;
+  EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
 }
 
 TEST_F(RigRun, AnArmThatTheRigDoesNotFitIsRefusedBeforeAnythingIsOpened) {
