@@ -298,6 +298,16 @@ TEST_F(ConsoleLost, ARunInRealTimeThatNobodyCanArmIsEndedByTheSignalThatArms) {
   EXPECT_EQ(results("results")["interrupted"]["taps"], 0);
 }
 
+TEST_F(ConsoleLost, ASiteThatIsInterruptedTwiceAtOnceEndsThoughNobodyReadsEitherOutput) {
+  const auto ports = free_ports(2);
+  Running site(folder(), lone_slave(ports[0], ports[1], {}), "", Running::Terminal::stalled);
+  std::this_thread::sleep_for(1s);
+  site.signal(SIGINT);
+  std::this_thread::sleep_for(20ms);
+  site.signal(SIGINT);
+  EXPECT_EQ(site.wait(), 1) << "its results found no reader";
+}
+
 /// As services and clusters set it: the log reaches the limit, and the site goes on to its end.
 TEST_F(ConsoleLost, ALogThatReachesTheLimitOnFileSizesEndsAloneAndIsSaid) {
   const auto ports = free_ports(2);
