@@ -82,6 +82,7 @@ class SiteLinkOf {
     }
   };
   void count(const Packet& packet, control::PacketVerdict verdict) noexcept;
+  KeyTrouble key_trouble(const link::LinkCounters& now) noexcept;
 
   link::EndpointOf<Payload> endpoint_;
   double longest_age_s_;
@@ -98,6 +99,8 @@ class SiteLinkOf {
   std::int64_t told_session_ = 0;
   std::uint16_t told_version_ = 0;
   std::size_t told_joints_ = 0;
+  KeyTrouble told_keys_ = KeyTrouble::none;
+  link::LinkCounters counted_;  ///< when the second before ended
 };
 /// A link, and `see(tick, packet)` for each packet that comes on it: the way of a site that leaves a log.
 template <class Payload, class See>
