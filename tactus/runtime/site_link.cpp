@@ -52,8 +52,11 @@ template <class Payload>
 void SiteLinkOf<Payload>::tell_misfit(const control::AgreementCheck& agreement, SiteExchange& exchange) noexcept {
   const auto counters = endpoint_.counters();
   const std::int64_t session = agreement.session();
-  // Until all cells have come, or had a second for it.
-  const bool known = agreement.complete() || session == listened_session_;
+  // Until all cells have come, or those that did have shown a difference, or no more are to be waited for.
+  constexpr int longest_s = 10;
+  listened_s_ = session == listened_session_ ? listened_s_ + 1 : 0;
+  const bool shown = listened_s_ > 0 && agreement.first_difference() != 0;
+  const bool known = agreement.complete() || shown || listened_s_ >= longest_s;
   const KeyTrouble keys = key_trouble(counters);
   if (keys != KeyTrouble::none && keys != told_keys_) {
     told_keys_ = keys;

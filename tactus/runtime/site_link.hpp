@@ -96,6 +96,7 @@ class SiteLinkOf {
   std::uint64_t second_expected_ = 0, second_arrived_ = 0;
   // Of the misfits.
   std::int64_t listened_session_ = 0;  ///< that was heard when the second before ended
+  int listened_s_ = 0;                 ///< for how many seconds
   std::int64_t told_session_ = 0;
   std::uint16_t told_version_ = 0;
   std::size_t told_joints_ = 0;
