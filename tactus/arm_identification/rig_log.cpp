@@ -1,10 +1,12 @@
 #include <tactus/arm_identification/rig_log.hpp>
 #include <tactus/control/packet.hpp>
 #include <tactus/core/parameters.hpp>
+#include <tactus/recording/limits.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -92,7 +94,8 @@ Result<ToldJoint> told_in(const LogTable& table, const std::string& file) {
   double last_s = -std::numeric_limits<double>::infinity();
   for (std::size_t row = 0; row < table.times_ns.size(); ++row) {
     const double at_s = seconds(table.times_ns[row]) - (*age_s)[row];
-    if (at_s - last_s < same_answer_s) continue;
+    // Also a time that is not a number.
+    if (!std::isfinite(at_s) || at_s - last_s < same_answer_s) continue;
     const double since_s = at_s - std::exchange(last_s, at_s);
     const double way = since_s < longest_pause_s ? since_s * (*velocity)[row] : 0.0;
     told.time_s.push_back(at_s);
@@ -110,6 +113,13 @@ ToldJoint within(const ToldJoint& all, const Interval& stretch) {
     return std::vector<double>(values.begin() + from, values.begin() + to);
   };
   return {part(all.time_s), part(all.position), part(all.velocity), part(all.effort)};
+}
+
+/// Whether all of it can have been measured.
+bool is_measured(const ToldJoint& joint) {
+  const auto measured = [](double value) { return std::fabs(value) <= recording::largest_value; };
+  return std::ranges::all_of(joint.position, measured) && std::ranges::all_of(joint.velocity, measured) &&
+         std::ranges::all_of(joint.effort, measured);
 }
 
 /// The names of the rig's joints, in the order of their topics; empty where the log does not tell.
@@ -178,7 +188,14 @@ Result<std::vector<ArmRecording>> read_rig_log(const std::string& file, const st
   std::vector<ArmRecording> recordings;
   for (const Interval& stretch : stretches) {
     std::vector<ToldJoint> here;
-    for (const ToldJoint& joint : told) here.push_back(within(joint, stretch));
+    for (const ToldJoint& joint : told) {
+      here.push_back(within(joint, stretch));
+      if (is_measured(here.back())) continue;
+      return wrong(ErrorCode::out_of_bounds,
+                   "the follower's " + joints[here.size() - 1] +
+                       " has a value that is not finite, or beyond 1e30, which is no measurement: record it anew",
+                   file);
+    }
     auto recording = recording_of(file, here, joints, tick);
     if (!recording) return recording.error();
     recordings.push_back(*std::move(recording));

@@ -79,6 +79,8 @@ int run(int argc, char** argv) {
   }
   // A reader of the results that went away is not the end: files are still written.
   std::signal(SIGPIPE, SIG_IGN);
+  // A file that reaches the limit on its size (ulimit -f) is a write that fails, as on a full disk, and not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
   int status = 0;
   CLI::App app{"Crisp and stable force-reflecting teleoperation", name};
   app.set_version_flag("--version", version_text());

@@ -11,17 +11,24 @@
 
 namespace tactus::cli {
 
-/// While it lives, SIGINT (Ctrl-C), SIGTERM and SIGHUP do not end the program. The first one asks what runs to come to
-/// its end. Another SIGINT or SIGTERM insists: no force from the next tick on, and the program ends with the exit
-/// status 128 and the signal's number, whatever it was about to write.
+/// What runs while signals are waited for.
+enum class Interrupted {
+  job,  ///< it has no operator: SIGUSR1 ends it too, and Ctrl-Z stops it as any program
+  site  ///< SIGUSR1 is the operator's, see `Person`; Ctrl-Z (SIGTSTP) ends it, for what is driven must not stand still
+};
+
+/// While it lives, no signal that can be caught ends the program. The first one requests the end of what runs: SIGINT
+/// (Ctrl-C), SIGTERM, SIGQUIT, SIGHUP, SIGUSR2, SIGALRM, SIGXCPU and whatever else would end a program. Another SIGINT,
+/// SIGTERM or SIGQUIT insists: no force from the next tick on, and the program ends with the exit status 128 and the
+/// signal's number, whatever it was about to write. Signals for which the program has a handler keep it, and so does a
+/// SIGHUP that is ignored, as under nohup. SIGSEGV and its like are not waited for: they end the program.
 ///
-/// They are waited for by a thread that does nothing else, so that nothing that stalls keeps them from being heard.
-/// Signals are held back in the thread that makes it and in those that this one starts afterwards; so make it first.
-/// One at a time.
+/// They are waited for by a thread that does nothing else, so that nothing that stalls delays them. Signals are blocked
+/// in the thread that makes it and in those that this one starts afterwards; so make it first. One at a time.
 class Interruption {
  public:
   /// `end` must outlive it. Errors: `failed` where the system gives no thread.
-  static Result<std::unique_ptr<Interruption>> start(runtime::EndRequest& end);
+  static Result<std::unique_ptr<Interruption>> start(runtime::EndRequest& end, Interrupted what = Interrupted::job);
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
   ~Interruption();
@@ -34,11 +41,12 @@ class Interruption {
   [[nodiscard]] std::string name() const;
 
  private:
-  explicit Interruption(runtime::EndRequest& end);
+  Interruption(runtime::EndRequest& end, Interrupted what);
   void listen() noexcept;
 
   runtime::EndRequest* end_;
-  sigset_t signals_{};
+  sigset_t signals_{};  ///< that are waited for
+  sigset_t blocked_{};  ///< these, and those of the operator
   sigset_t before_{};
   std::atomic<int> signal_{0};
   std::atomic<bool> stopping_{false};

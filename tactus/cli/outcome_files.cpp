@@ -50,4 +50,9 @@ Check leave_outcome(const experiments::Outcome& outcome, OutputFolder& folder, C
   return log_error;
 }
 
+Error ended_in_a_fault(const std::string& fault, Check unwritten, LineWriter& errors) {
+  if (unwritten) errors.say("tactus: " + describe(*unwritten) + "\n");
+  return {.code = ErrorCode::failed, .parameter = {}, .message = "the run ended in a fault: " + fault, .place = {}};
+}
+
 }  // namespace tactus::cli

@@ -37,4 +37,7 @@ Check write_outcome(const OutputOptions& options, const experiments::Outcome& ou
 Check leave_outcome(const experiments::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
                     LineWriter& output, LineWriter& errors);
 
+/// The error of a run whose outcome was left and that ended in this fault; what else went wrong is said before.
+Error ended_in_a_fault(const std::string& fault, Check unwritten, LineWriter& errors);
+
 }  // namespace tactus::cli

@@ -1,8 +1,10 @@
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/report/files.hpp>
+#include <tactus/report/text.hpp>
 #include <tactus/telemetry/log_writer.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <iostream>
 #include <system_error>
@@ -31,6 +33,23 @@ bool is_of_a_report(const std::string& name) {
 
 bool is_of_a_log(const std::string& name) {
   return name == "log.mcap" || name == "metadata.yaml" || is_numbered(name, "log_", ".mcap");
+}
+
+/// What verbs write beside a report, and what of it a killed run leaves.
+bool is_of_a_run(const fs::path& path, const std::vector<std::string>& own_files) {
+  static constexpr std::array others{
+      "advice.toml",    "arm.urdf", "armatures.toml", "estimated_force.csv", "external_torque.csv", "map.csv",
+      "map.h5",         "map.svg",  "model.toml",     "recording.csv",       "response.csv",        "rig.toml",
+      "trajectory.csv", "log"};
+  const std::string name = path.filename().string();
+  return is_of_a_report(name) || path.extension() == ".partial" || std::ranges::find(others, name) != others.end() ||
+         std::ranges::find(own_files, name) != own_files.end();
+}
+
+/// Whether both are there and the same.
+bool is_same(const fs::path& one, const char* other) {
+  std::error_code ignored;
+  return other != nullptr && *other != '\0' && fs::equivalent(one, other, ignored);
 }
 
 Error refused(std::string message, std::string place) {
@@ -117,13 +136,39 @@ std::vector<fs::path> OutputFolder::left() const {
   return found;
 }
 
+/// Refuses a folder in which results would stand among the files of others. One that an earlier report shows to be for
+/// results may hold more.
+Check OutputFolder::refuse_shared() const {
+  const auto shared = [this](const std::string& why) {
+    return refused("'" + path().string() + "' " + why +
+                       ": name a folder of its own, one that is not there yet or is empty, as " +
+                       (path() / "results").string(),
+                   "--out");
+  };
+  if (is_same(path(), "/")) return shared("is the root of the file system");
+  if (is_same(path(), std::getenv("HOME"))) return shared("is your home folder");
+  std::error_code ignored;
+  if (fs::is_regular_file(fs::symlink_status(path() / "report.html", ignored))) return std::nullopt;
+  std::string foreign;
+  for (const auto& entry : fs::directory_iterator(path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!is_of_a_run(entry.path(), options_.own_files) && (foreign.empty() || name < foreign)) foreign = name;
+  }
+  if (foreign.empty()) return std::nullopt;
+  return shared("holds other files, as '" + report::printable(foreign) + "'");
+}
+
 Check OutputFolder::check() const {
   for (const fs::path& folder : {path(), log_folder()}) {
     if (is_link(folder)) return is_a_link(folder, "--out");
   }
-  for (const fs::path& file : left()) {
+  const std::vector<fs::path> old = left();
+  for (const fs::path& file : old) {
     if (is_link(file)) return is_a_link(file, "--out");
-    if (options_.overwrite) continue;
+  }
+  if (Check error = refuse_shared()) return error;
+  for (const fs::path& file : old) {
+    if (options_.overwrite) break;
     return refused("'" + file.string() +
                        "' is there already, of an earlier run: name another folder, or add --overwrite to replace all "
                        "that it left there",

@@ -32,7 +32,8 @@ void add_output_options(CLI::App& verb, OutputOptions& options, const std::strin
 void add_log_limit_option(CLI::App& verb, std::uint64_t& most_bytes);
 
 /// The folder of `--out`. What a run has left there is replaced as a whole with `--overwrite` and never without; a
-/// symbolic link is never followed, be it the folder itself or a file in it.
+/// symbolic link is never followed, be it the folder itself or a file in it. The folder is one for results: neither the
+/// root of the file system nor the home folder, and without files of others unless an earlier report stands there.
 class OutputFolder {
  public:
   /// Proves, before long work and without making the folder, that results may and could be written there: a request
@@ -64,6 +65,7 @@ class OutputFolder {
   explicit OutputFolder(OutputOptions options) : options_(std::move(options)) {}
   [[nodiscard]] std::vector<std::filesystem::path> left() const;
   [[nodiscard]] Check check() const;
+  [[nodiscard]] Check refuse_shared() const;
 
   OutputOptions options_;
   bool begun_ = false;

@@ -42,6 +42,10 @@ Person::Person(int descriptor, control::SiteRole role, runtime::SiteExchange& ex
   asked_to_arm.store(false, std::memory_order_relaxed);
   const sigset_t set = arming_signal();
   pthread_sigmask(SIG_BLOCK, &set, &mask_before_);
+  // One that came before there was anything to arm arms nothing later.
+  constexpr timespec at_once{};
+  while (sigtimedwait(&set, nullptr, &at_once) > 0) {
+  }
   // Without SA_RESTART: it ends a wait for input too.
   struct sigaction note {};
   note.sa_handler = [](int) { asked_to_arm.store(true, std::memory_order_relaxed); };

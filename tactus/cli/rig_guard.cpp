@@ -1,19 +1,18 @@
-#include <tactus/cli/device.hpp>
+#include <tactus/cli/guard_post.hpp>
 #include <tactus/cli/rig_guard.hpp>
-#include <tactus/devices/rig/bus_kinds.hpp>
 
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <memory>
 #include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,95 +20,92 @@ namespace tactus::cli {
 
 namespace {
 
-constexpr char goodbye = 'q';
+using std::chrono::steady_clock;
 
-Error no_guard(int code) {
+Error no_guard(const std::string& why) {
   return {.code = ErrorCode::failed,
           .parameter = {},
-          .message = "no process to guard motors without a watchdog (" + std::system_category().message(code) +
-                     "): end other programs",
+          .message = "no process to guard motors without a watchdog (" + why + "): end other programs",
           .place = {}};
 }
 
-struct GuardOptions {
-  std::string rig, side;
-};
+Error no_guard(int code) { return no_guard(std::system_category().message(code)); }
 
-/// Until nobody speaks any more. False where somebody said goodbye.
-bool wait_for_silence() {
-  for (char word = 0;;) {
-    const ssize_t size = read(STDIN_FILENO, &word, 1);
-    if (size > 0 && word == goodbye) return false;
-    if (size == 0 || (size < 0 && errno != EINTR)) return true;
-  }
-}
-
-Result<bool> guard(const GuardOptions& options) {
-  const auto rig = devices::Rig::load(options.rig);
-  if (!rig) return rig.error();
-  const auto sides = rig->sides(options.side);
-  if (!sides) return rig->locate(sides.error());
-  if (!wait_for_silence()) return true;
-  // Whoever died may still hold the port for a moment. The first that a bus says is that nobody has power.
-  constexpr int most_tries = 200;
-  for (int tries = 0; tries < most_tries; ++tries) {
-    auto bus = devices::start(sides->front()->bus);
-    if (bus) {
-      constexpr Seconds longest{2.0};
-      return !(*bus)->wait_until_asked(longest);
-    }
-    if (tries + 1 == most_tries) return bus.error();
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return true;
+/// The guard at the socket, or the number of the error.
+int spawn(pid_t& process, int socket, std::vector<std::string> words) {
+  posix_spawn_file_actions_t actions;
+  posix_spawnattr_t attributes;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawnattr_init(&attributes);
+  posix_spawn_file_actions_adddup2(&actions, socket, STDIN_FILENO);
+  // Ctrl-C and Ctrl-Z at the terminal are not for it, and it does not write where nobody expects it.
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const int failed = posix_spawn(&process, "/proc/self/exe", &actions, &attributes, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  return failed;
 }
 
 }  // namespace
 
 Result<RigGuard> RigGuard::start(const std::string& file, const devices::RigSide& side) {
+  auto page = MappedGuardPage::create();
+  if (!page) return no_guard(errno);
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) return no_guard(errno);
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawnattr_init(&attributes);
-  posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-  // Ctrl-C at the terminal is not for it, and it does not write where nobody expects it.
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
-  std::vector<std::string> words{"tactus", "device", "guard", file, side.path};
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) return no_guard(errno);
   pid_t process = -1;
-  const int failed = posix_spawn(&process, "/proc/self/exe", &actions, &attributes, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
+  const int failed = spawn(process, ends[0], {"tactus", "device", "guard", file, side.path});
   close(ends[0]);
   if (failed != 0) {
     close(ends[1]);
     return no_guard(failed);
   }
-  return RigGuard(ends[1], process);
+  RigGuard guard(ends[1], process, *std::move(page));
+  if (!send_to_guard(guard.socket_, guard_word::page, guard.page_.descriptor())) return no_guard("it ended at once");
+  constexpr std::chrono::seconds longest{10};
+  for (const auto until = steady_clock::now() + longest; guard.page().guard_beats.load() == 0;) {
+    guard.look();
+    if (guard.page().guard_ended.load() != 0) return no_guard("it ended at once");
+    if (steady_clock::now() > until) return no_guard("it did not start within 10 s");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return guard;
 }
 
 RigGuard::RigGuard(RigGuard&& other) noexcept
-    : pipe_(std::exchange(other.pipe_, -1)), process_(std::exchange(other.process_, -1)) {}
+    : socket_(std::exchange(other.socket_, -1)),
+      process_(std::exchange(other.process_, -1)),
+      page_(std::move(other.page_)) {}
 
-RigGuard::~RigGuard() {
-  if (pipe_ < 0) return;
-  static_cast<void>(!::write(pipe_, &goodbye, 1));
-  close(pipe_);
-  waitpid(process_, nullptr, 0);
+Check RigGuard::give(const wire::Port& port) const {
+  if (send_to_guard(socket_, guard_word::port, port.descriptor())) return std::nullopt;
+  return no_guard("it has ended");
 }
 
-void add_device_guard(CLI::App& device, const CLI::App& app, int& status) {
-  auto options = std::make_shared<GuardOptions>();
-  CLI::App* verb = device.add_subcommand(
-      "guard", "Take the power from motors without a watchdog once standard input ends; 'run' starts it by itself");
-  verb->add_option("RIG", options->rig, "The rig file")->required();
-  verb->add_option("SIDE", options->side, "A side of it, as arm.leader")->required();
-  verb->callback([options, &app, &status] { end_verb(app, guard(*options), status); });
+void RigGuard::look() noexcept {
+  if (process_ < 0 || waitpid(process_, nullptr, WNOHANG) == 0) return;
+  process_ = -1;
+  page_->guard_ended.store(1, std::memory_order_relaxed);
+}
+
+RigGuard::~RigGuard() {
+  if (socket_ < 0) return;
+  static_cast<void>(send_to_guard(socket_, guard_word::goodbye));
+  close(socket_);
+  // A guard that is stopped does not keep this program from its end.
+  constexpr std::chrono::seconds longest{1};
+  for (const auto until = steady_clock::now() + longest; process_ >= 0; look()) {
+    if (steady_clock::now() > until) {
+      kill(process_, SIGKILL);
+      waitpid(process_, nullptr, 0);
+      return;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 }  // namespace tactus::cli

@@ -54,6 +54,10 @@ std::string words_of(const devices::DeviceTrouble& trouble, const char* name, co
     }
     case Trouble::motor_fault:
       return place + joint + " has the fault " + name_of(trouble.fault);
+    case Trouble::guard_gone:
+      return place + "the guard process of its motors is gone, so they get no power: start the run again";
+    case Trouble::guard_acted:
+      return place + "this program stood still, and the guard process switched its motors off";
     case Trouble::no_power:
       return place + joint + " has no power";
     default:
@@ -107,9 +111,24 @@ std::string line_of(const RigSecond& second, const RigPair& pair, std::optional<
   return line + words_of_fault(second, pair) + advice(second, pair, only) + "\n";
 }
 
+std::string fault_of(const RigRun& run, const RigPair& pair) {
+  const RigSecond& last = run.last;
+  const auto faulty = [&](control::SiteRole role, control::SiteState state) {
+    return (!run.only || *run.only == role) && state == control::SiteState::fault;
+  };
+  const bool leader = faulty(control::SiteRole::master, last.leader),
+             follower = faulty(control::SiteRole::slave, last.follower);
+  if (!leader && !follower) return {};
+  std::string text = std::string(leader ? (follower ? "leader and follower" : "leader") : "follower") + " (" +
+                     name_of(last.cause) + ")";
+  if (leader) text += words_of(last.leader_trouble, "leader", *pair.leader);
+  if (follower) text += words_of(last.follower_trouble, "follower", *pair.follower);
+  return text + words_of_fault(last, pair);
+}
+
 namespace {
 
-std::string summary_of(const RigRun& run) {
+std::string summary_of(const RigRun& run, const RigPair& pair) {
   const devices::RigTotals& totals = run.totals;
   std::string link;
   if (run.link) {
@@ -117,13 +136,15 @@ std::string summary_of(const RigRun& run) {
            report::fixed(1e3 * run.link->round_trip_max_s, 2) + " ms, " + std::to_string(run.link->link.sent) +
            " packets sent, " + std::to_string(run.link->link.inbound.counted) + " came";
   }
-  return std::to_string(totals.ticks) + " ticks in " + report::fixed(totals.duration_s, 1) + " s, " +
-         std::to_string(totals.active_ticks) + " of them coupled; armed " + std::to_string(totals.armings) +
-         " times, held " + std::to_string(totals.holds) + " times, a device late in " +
-         std::to_string(totals.late_ticks) + ", silent in " + std::to_string(totals.silent_ticks) + ", lost in " +
-         std::to_string(totals.lost_ticks) + " ticks; " + std::to_string(run.servo.missed) +
-         " deadlines missed, late " + std::to_string(run.servo.late_ours()) + " by us and " +
-         std::to_string(run.servo.late_machine()) + " by the machine" + link + "; ended by " + run.ended_by + ".";
+  const std::string fault = fault_of(run, pair);
+  return (fault.empty() ? "" : "Ended in a fault: " + fault + ". ") + std::to_string(totals.ticks) + " ticks in " +
+         report::fixed(totals.duration_s, 1) + " s, " + std::to_string(totals.active_ticks) +
+         " of them coupled; armed " + std::to_string(totals.armings) + " times, held " + std::to_string(totals.holds) +
+         " times, a device late in " + std::to_string(totals.late_ticks) + ", silent in " +
+         std::to_string(totals.silent_ticks) + ", lost in " + std::to_string(totals.lost_ticks) + " ticks; " +
+         std::to_string(run.servo.missed) + " deadlines missed, late " + std::to_string(run.servo.late_ours()) +
+         " by us and " + std::to_string(run.servo.late_machine()) + " by the machine" + link + "; ended by " +
+         run.ended_by + ".";
 }
 
 /// The joint that was farthest from its leader's.
@@ -147,7 +168,8 @@ std::string gate_joint(const RigSecond& second, const RigPair& pair) {
 
 nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
   const devices::RigTotals& totals = run.totals;
-  nlohmann::ordered_json document{{"pair", pair.name}, {"joints", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json document{
+      {"fault", fault_of(run, pair)}, {"pair", pair.name}, {"joints", nlohmann::ordered_json::array()}};
   for (const devices::RigJoint& joint : any_side(pair).joints) document["joints"].push_back(joint.name());
   document.update({{"duration_s", totals.duration_s},
                    {"ticks", totals.ticks},
@@ -223,7 +245,7 @@ report::Figure seconds_figure(const RigRun& run, const RigPair& pair) {
 
 experiments::Outcome rig_outcome(const RigRun& run, const RigPair& pair, const experiments::Request& request,
                                  std::string_view configuration) {
-  const std::string summary = summary_of(run);
+  const std::string summary = summary_of(run, pair);
   const std::vector<report::Figure> figures{seconds_figure(run, pair), runtime::timing_figure(run.servo)};
   report::Page page(request.name + ": " + pair.name +
                     (!run.only                                ? ", leader and follower"

@@ -18,6 +18,7 @@ struct RigRun {
   std::optional<control::SiteRole> only;    ///< where the other side is elsewhere
   std::optional<runtime::LinkTotals> link;  ///< then
   std::vector<devices::RigSecond> seconds;
+  devices::RigSecond last;  ///< the end
   devices::RigTotals totals;
   runtime::ServoReport servo;
   std::string ended_by;  ///< a signal, or its duration
@@ -29,7 +30,10 @@ struct RigRun {
 std::string line_of(const devices::RigSecond& second, const devices::RigPair& pair,
                     std::optional<control::SiteRole> only = {});
 
-/// The run for every reader. `configuration` is TOML.
+/// How a run ended in a fault: the site, the cause and the joint. Empty where it did not.
+std::string fault_of(const RigRun& run, const devices::RigPair& pair);
+
+/// The run for every reader, a fault at its end first. `configuration` is TOML.
 experiments::Outcome rig_outcome(const RigRun& run, const devices::RigPair& pair, const experiments::Request& request,
                                  std::string_view configuration);
 

@@ -1,3 +1,4 @@
+#include <tactus/cli/guarded_link.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/outcome_files.hpp>
@@ -16,6 +17,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,21 +112,30 @@ Check refuse_unclean(const Rig& rig, const std::vector<const RigSide*>& sides, L
                .place = rig.name()};
 }
 
-/// A side that is driven. The guard is there before the port is open, and goes after it is closed.
+/// A side that is driven. The guard ends after the port is closed.
 struct Driven {
   std::optional<RigGuard> guard;
   std::unique_ptr<devices::MotorLink> link;
   std::unique_ptr<MotorBusDevice> device;
 };
 
+/// The guard is there before the port is open, and has it before a motor is asked.
+Result<std::unique_ptr<devices::MotorLink>> start_guarded(const Rig& rig, const RigSide& side,
+                                                          std::optional<RigGuard>& guard) {
+  auto started = RigGuard::start(rig.name(), side);
+  if (!started) return started.error();
+  guard.emplace(*std::move(started));
+  auto port = open_port(side.bus);
+  if (!port) return port.error();
+  if (Check gone = guard->give(*port)) return *std::move(gone);
+  auto link = start(side.bus, *std::move(port));
+  if (!link) return link.error();
+  return std::unique_ptr<devices::MotorLink>(std::make_unique<GuardedLink>(*std::move(link), guard->page()));
+}
+
 Result<Driven> drive(const Rig& rig, const RigSide& side) {
   Driven driven;
-  if (!has_watchdog(side.bus.kind)) {
-    auto guard = RigGuard::start(rig.name(), side);
-    if (!guard) return guard.error();
-    driven.guard.emplace(*std::move(guard));
-  }
-  auto link = start(side.bus);
+  auto link = has_watchdog(side.bus.kind) ? start(side.bus) : start_guarded(rig, side, driven.guard);
   if (!link) return rig.locate(side, link.error());
   driven.link = *std::move(link);
   constexpr Seconds longest{10.0};
@@ -149,6 +160,7 @@ struct RigSurroundings {
   LineWriter& output;
   LineWriter& errors;
   const std::vector<std::string>& names;  ///< of the joints
+  std::span<std::optional<Driven>> driven;
 };
 
 void add_link(RigRun&, const RigLoop&) {}
@@ -196,12 +208,20 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
   constexpr unsigned between_looks_us = 20'000;
   while (!(*thread)->ended()) {
     take_seconds();
+    for (auto& side : around.driven) {
+      if (side && side->guard) side->guard->look();
+    }
     usleep(between_looks_us);
   }
   run.servo = (*thread)->finish();
+  // Before anything is written, which may take time: no motor has power any more, and no guard waits for a beat.
+  for (auto& side : around.driven) {
+    if (side) side->link->stop();
+  }
   take_seconds();
   if (const std::string seen = around.onlookers.end(); !seen.empty()) lines.say(seen);
   run.totals = (*thread)->step().totals();
+  run.last = (*thread)->step().last();
   add_link(run, (*thread)->step());
   run.ended_by = around.interruption.signal() != 0 ? around.interruption.name() : "its duration";
   run.lines_dropped = lines.dropped();
@@ -210,8 +230,10 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
     log_error = log->close();
     run.log_dropped = log->dropped();
   }
-  return leave_outcome(rig_outcome(run, pair, around.request, around.drive.configuration), folder, std::move(log_error),
-                       log ? log->removed() : 0, around.output, around.errors);
+  Check unwritten = leave_outcome(rig_outcome(run, pair, around.request, around.drive.configuration), folder,
+                                  std::move(log_error), log ? log->removed() : 0, around.output, around.errors);
+  const std::string fault = fault_of(run, pair);
+  return fault.empty() ? unwritten : ended_in_a_fault(fault, std::move(unwritten), around.errors);
 }
 
 }  // namespace
@@ -247,7 +269,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
   for (const devices::RigJoint& joint : sides.front()->joints) names.emplace_back(joint.name());
 
   runtime::SiteExchange exchange;
-  const auto interruption = Interruption::start(exchange.end);
+  const auto interruption = Interruption::start(exchange.end, Interrupted::site);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
   auto onlookers = Onlookers::open(looking_on, request, only, names);
@@ -284,7 +306,8 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
                                .onlookers = *onlookers,
                                .output = output,
                                .errors = errors,
-                               .names = names};
+                               .names = names,
+                               .driven = driven};
   if (only) {
     auto loop = RigSiteLoop::make(*std::move(site), *std::move(endpoint), Seconds{1.0 / found->rate_Hz},
                                   found->settings, exchange, *driven[0]->device, found->control);

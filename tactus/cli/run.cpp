@@ -1,5 +1,6 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
+#include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/onlookers.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
@@ -24,6 +25,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <unistd.h>
 
 namespace tactus::cli {
 
@@ -250,9 +252,14 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   verb->callback([options, verb, &app, &command, &status] {
     Check error = refuse_what_makes_no_sense(*verb, *options);
     if (!error) error = run(*options, command, status);
-    if (error) {
-      std::cerr << app.get_name() << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+    if (!error) return;
+    status = exit_status(*error);
+    const std::string line = app.get_name() + ": " + describe(*error) + "\n";
+    if (options->supervised.wanted()) {
+      // Who drove devices ends, whether or not anybody reads why.
+      static_cast<void>(LineWriter(STDERR_FILENO).finish(line));
+    } else {
+      std::cerr << line;
     }
   });
 }

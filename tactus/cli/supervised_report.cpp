@@ -8,6 +8,7 @@
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <functional>
@@ -301,7 +302,7 @@ nlohmann::ordered_json json_of(const SiteTotals& totals) {
 }
 
 std::string json_of(const SupervisedRun& run) {
-  nlohmann::ordered_json document;
+  nlohmann::ordered_json document{{"fault", fault_of(run)}};
   if (run.here.one) {
     document["site"] = name_of(*run.here.one);
     document.update(json_of(run.sites.front().totals));
@@ -347,17 +348,34 @@ nlohmann::ordered_json link_json(const LinkTotals& totals) {
             {"overflowed", link.secure.overflowed}}}};
 }
 
+std::string fault_of(const SupervisedRun& run) {
+  std::string text;
+  for (const auto& site : run.sites) {
+    const auto last = std::find_if(run.seconds.rbegin(), run.seconds.rend(),
+                                   [&site](const SiteSecond& second) { return second.role == site.role; });
+    if (last == run.seconds.rend() || last->state != control::SiteState::fault) continue;
+    text += (text.empty() ? "" : ", ") + std::string(name_of(site.role)) + " (" + name_of(last->cause);
+    if (last->fault != control::GateFault::none) text += std::string(", ") + name_of(last->fault);
+    text += ")";
+  }
+  return text;
+}
+
 experiments::Outcome supervised_outcome(const SupervisedRun& run, const experiments::Request& request,
                                         std::string_view configuration) {
   const report::Table table = sites_table(run), states = states_table(run);
   const std::vector<report::Figure> figures{seconds_figure(run), runtime::timing_figure(run.servo)};
   report::Page page(request.name + ": " + run.here.name());
+  const std::string fault = fault_of(run);
+  const std::string verdict = fault.empty() ? "" : "Ended in a fault: " + fault + ".";
+  if (!verdict.empty()) page.paragraph(verdict);
   page.table(table);
   page.table(states);
   page.figure(figures[0]);
   runtime::add_timing(page, run.servo, figures[1]);
   experiments::add_provenance(page, request, configuration);
-  return {.text = table.to_text() + "\n" + states.to_text() + "\n" + runtime::timing_text(run.servo),
+  return {.text = verdict + (verdict.empty() ? "" : "\n\n") + table.to_text() + "\n" + states.to_text() + "\n" +
+                  runtime::timing_text(run.servo),
           .json = json_of(run),
           .html = page.to_html(),
           .figures = figures,

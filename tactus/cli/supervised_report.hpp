@@ -42,7 +42,11 @@ struct SupervisedRun {
   std::uint64_t lines_dropped = 0;           ///< that found nobody reading
 };
 
-/// All of a run for every reader: tables, one JSON document, a report with states, link and force second by second.
+/// How a run ended in a fault: site, cause and what its gate latched. Empty where it did not.
+std::string fault_of(const SupervisedRun& run);
+
+/// All of a run for every reader, a fault at its end first: tables, one JSON document, a report with states, link and
+/// force second by second.
 experiments::Outcome supervised_outcome(const SupervisedRun& run, const experiments::Request& request,
                                         std::string_view configuration);
 

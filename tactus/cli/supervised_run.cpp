@@ -211,8 +211,10 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
     log_error = log->close();
     run.log_dropped = log->dropped();
   }
-  return leave_outcome(supervised_outcome(run, around.request, around.configuration), folder, std::move(log_error),
-                       log ? log->removed() : 0, around.output, around.errors);
+  Check unwritten = leave_outcome(supervised_outcome(run, around.request, around.configuration), folder,
+                                  std::move(log_error), log ? log->removed() : 0, around.output, around.errors);
+  const std::string fault = fault_of(run);
+  return fault.empty() ? unwritten : ended_in_a_fault(fault, std::move(unwritten), around.errors);
 }
 
 }  // namespace
@@ -268,7 +270,7 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
 
   runtime::SiteExchange exchange;
   // Before all other threads: what they hold back, only these two hear.
-  const auto interruption = Interruption::start(exchange.end);
+  const auto interruption = Interruption::start(exchange.end, Interrupted::site);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
   const auto person = Person::listen_to(STDIN_FILENO, here.one.value_or(SiteRole::master), exchange, errors);

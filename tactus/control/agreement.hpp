@@ -20,7 +20,7 @@ struct AgreementExcerpt {
 /// without a cell agrees with its like.
 class Agreement {
  public:
-  static constexpr std::size_t most_cells = 128;
+  static constexpr std::size_t most_cells = 512;
 
   Agreement() = default;
   /// The one that gave this digest and these cells, at most `most_cells`; it tells and decides what that did.

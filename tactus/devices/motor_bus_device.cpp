@@ -78,6 +78,8 @@ DeviceTrouble MotorBusDevice::found() noexcept {
   };
   if (!bus_->running()) return with(Trouble::bus_ended);
   if (last_.state == BusState::refused) return with(Trouble::bus_refused);
+  if (last_.guard == GuardState::gone) return with(Trouble::guard_gone);
+  if (last_.guard == GuardState::acted) return with(Trouble::guard_acted);
   bool silent = found.age_s > params_.silence_s;
   for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
     const MotorReading& motor = last_.motors[joint];

@@ -22,7 +22,9 @@ enum class Trouble : std::int64_t {
   velocity,     ///< it is faster than it may be
   temperature,  ///< its motor is hotter than it may be
   motor_fault,  ///< its motor says that something is wrong
-  no_power      ///< its motor was asked to have power and has none
+  no_power,     ///< its motor was asked to have power and has none
+  guard_gone,   ///< the guard process of its motors is gone, see `GuardState`
+  guard_acted   ///< this program stood still, and the guard process has switched its motors off
 };
 constexpr auto enumerators(Trouble) {
   return std::array{Enumerator{Trouble::none, "none"},
@@ -34,7 +36,9 @@ constexpr auto enumerators(Trouble) {
                     Enumerator{Trouble::velocity, "velocity"},
                     Enumerator{Trouble::temperature, "temperature"},
                     Enumerator{Trouble::motor_fault, "motor-fault"},
-                    Enumerator{Trouble::no_power, "no-power"}};
+                    Enumerator{Trouble::no_power, "no-power"},
+                    Enumerator{Trouble::guard_gone, "guard-gone"},
+                    Enumerator{Trouble::guard_acted, "guard-acted"}};
 }
 
 /// That, and whose it is.

@@ -12,6 +12,13 @@
 
 namespace tactus::devices {
 
+/// The process that switches off motors without a watchdog if this program stops.
+enum class GuardState : std::int64_t {
+  watches,  ///< or the motors need none
+  gone,     ///< it has ended, or does not respond: no motor gets power
+  acted     ///< it has switched the motors off, and no command has enabled nothing since
+};
+
 /// All motors of a bus after one of its cycles.
 struct BusReadings {
   std::array<MotorReading, most_joints> motors{};
@@ -19,6 +26,7 @@ struct BusReadings {
   std::int64_t cycles = 0;
   std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, when the cycle ended
   std::int64_t unheard = 0;  ///< 1: commands were older than the silence allowed, so all motors lost their power
+  GuardState guard = GuardState::watches;
 };
 
 /// What a tick wants of all motors.

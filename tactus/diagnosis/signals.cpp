@@ -3,6 +3,7 @@
 #include <tactus/diagnosis/signals.hpp>
 #include <tactus/identification/axis_recording.hpp>
 #include <tactus/identification/axis_units.hpp>
+#include <tactus/recording/limits.hpp>
 #include <tactus/recording/names.hpp>
 #include <tactus/recording/recording.hpp>
 #include <tactus/recording/time_base.hpp>
@@ -210,10 +211,12 @@ Result<Found> read_log(const SignalRoles& wanted) {
     if (entry == entries.end()) return recording::no_such_variable(name, wanted.file, entries);
     std::vector<double> values = best->values[static_cast<std::size_t>(entry - entries.begin())];
     for (std::size_t row = 0; row < values.size(); ++row) {
-      if (std::isfinite(values[row])) continue;
+      if (std::fabs(values[row]) <= recording::largest_value) continue;
+      const char* what = std::isfinite(values[row]) ? "' is beyond 1e30, which is no measurement, in message "
+                                                    : "' is not a finite number in message ";
       return refuse(ErrorCode::inconsistent, wanted,
-                    "'" + name + "' is not a finite number in message " + std::to_string(row + 1) + " of " +
-                        best->topic + "; export the log and fill in the lost samples");
+                    "'" + name + what + std::to_string(row + 1) + " of " + best->topic +
+                        "; export the log and correct these samples");
     }
     if (auto error = take(found, roles, role, name, entry->unit, std::move(values))) return *std::move(error);
   }

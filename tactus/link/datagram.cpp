@@ -6,7 +6,7 @@ namespace tactus::link {
 namespace {
 
 /// "TCT1" in the order of the bytes, and so on to "TCT8": the last one is the number of joints.
-constexpr std::uint32_t magic = 0x00544354;
+constexpr std::uint32_t magic = datagram_magic;
 constexpr int joints_at_bit = 24;
 /// Of magic and version, which stand at the same place in every version.
 constexpr std::size_t head_bytes = 6;
@@ -97,6 +97,12 @@ Refusal decode(std::span<const std::byte> bytes, DatagramOf<Payload>& datagram) 
 }
 template Refusal decode(std::span<const std::byte>, Datagram&) noexcept;
 template Refusal decode(std::span<const std::byte>, JointDatagram&) noexcept;
+
+bool looks_like_a_datagram(std::span<const std::byte> bytes) noexcept {
+  if (bytes.size() < head_bytes) return false;
+  const std::size_t joints = joints_in(bytes);
+  return joints >= 1 && joints <= most_joints && Reader(bytes.data()).get<std::uint32_t>() == magic_of(joints);
+}
 
 std::uint16_t version_of(std::span<const std::byte> bytes) noexcept {
   return Reader(bytes.data() + sizeof(magic)).get<std::uint16_t>();

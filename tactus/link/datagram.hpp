@@ -46,6 +46,8 @@ inline constexpr std::size_t datagram_bytes = datagram_bytes_of(1);
 inline constexpr std::size_t longest_datagram_bytes = datagram_bytes_of(most_joints);
 /// The version of the format that this library speaks.
 inline constexpr std::uint16_t datagram_version = 3;
+/// "TCT", with which every datagram begins, and a place for the digit behind it, in the order of the bytes.
+inline constexpr std::uint32_t datagram_magic = 0x00544354;
 /// What stands for a site on the wire.
 constexpr std::uint8_t site_byte(SiteRole site) noexcept { return site == SiteRole::master ? 1 : 2; }
 using DatagramBytes = std::array<std::byte, datagram_bytes>;
@@ -70,6 +72,8 @@ inline std::span<const std::byte> bytes_of(const JointDatagramBytes& bytes) noex
 template <class Payload>
 Refusal decode(std::span<const std::byte> bytes, DatagramOf<Payload>& datagram) noexcept;
 
+/// Whether bytes begin as a datagram in plain text, of any version and number of joints. Real-time safe.
+bool looks_like_a_datagram(std::span<const std::byte> bytes) noexcept;
 /// The version of the format that bytes are of which `decode` refused for it. Real-time safe.
 std::uint16_t version_of(std::span<const std::byte> bytes) noexcept;
 /// How many joints bytes are of which `decode` refused for that. Real-time safe.

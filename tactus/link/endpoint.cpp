@@ -1,4 +1,5 @@
 #include <tactus/link/endpoint.hpp>
+#include <tactus/link/handshake_frame.hpp>
 
 #include <utility>
 
@@ -54,6 +55,7 @@ std::span<const control::PacketOf<Payload>> EndpointOf<Payload>::receive(std::in
       datagram.packet.message = nothing_;
       if (const Refusal refusal = decode(bytes, datagram); refusal != Refusal::none) {
         ++malformed_;
+        if (refusal == Refusal::magic && !secure_ && is_a_frame(bytes)) ++keyed_;
         if (refusal == Refusal::version) other_version_ = version_of(bytes);
         if (refusal == Refusal::joints) other_joints_ = joints_in(bytes);
       } else if (inbound_.take(datagram, now_ns) == Inbound::Verdict::counted) {
@@ -97,6 +99,7 @@ LinkCounters EndpointOf<Payload>::counters() const noexcept {
           .sent = sent_,
           .unsent = unsent_,
           .malformed = malformed_,
+          .keyed = keyed_,
           .other_version = other_version_ != 0 ? other_version_ : secure.other_version,
           .other_joints = other_joints_ != 0 ? other_joints_ : secure.other_joints,
           .expected = inbound_.expected(),

@@ -40,6 +40,7 @@ struct LinkCounters {
   std::uint64_t sent = 0;
   std::uint64_t unsent = 0;         ///< not taken by the kernel, or no keys yet
   std::uint64_t malformed = 0;      ///< plain text or authentic, but no datagram
+  std::uint64_t keyed = 0;          ///< of these, frames of a site that has a key, which this one has not
   std::uint16_t other_version = 0;  ///< of the format that the other site speaks, where that is another one
   std::size_t other_joints = 0;     ///< that the other site has, where those are others than the own; 0 where not
   std::uint64_t expected = 0;       ///< of the other's session so far
@@ -99,6 +100,7 @@ class EndpointOf {
   std::uint64_t sent_ = 0;
   std::uint64_t unsent_ = 0;
   std::uint64_t malformed_ = 0;
+  std::uint64_t keyed_ = 0;
   std::uint16_t other_version_ = 0;
   std::size_t other_joints_ = 0;
 };

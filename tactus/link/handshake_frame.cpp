@@ -70,6 +70,11 @@ class FrameTags::Mac {
   EVP_MAC_CTX* context_ = nullptr;
 };
 
+bool is_a_frame(std::span<const std::byte> bytes) noexcept {
+  return bytes.size() >= shortest_frame_bytes && bytes.size() <= longest_frame_bytes &&
+         Reader(bytes.data()).get<std::uint32_t>() == frame_magic;
+}
+
 FrameTags::FrameTags(std::unique_ptr<Mac> mac, SiteRole own_site, std::size_t joints)
     : mac_(std::move(mac)), own_site_(own_site), joints_(static_cast<std::uint8_t>(joints)) {}
 FrameTags::FrameTags(FrameTags&&) noexcept = default;

@@ -36,6 +36,9 @@ using FrameBytes = std::array<std::byte, longest_frame_bytes>;
 inline constexpr std::uint32_t frame_magic = 0x48544354;  // "TCTH" in the order of the bytes
 inline constexpr std::size_t frame_site_at = 6;
 
+/// Whether bytes begin as a frame and can be one by their size, whoever made it. Real-time safe.
+bool is_a_frame(std::span<const std::byte> bytes) noexcept;
+
 /// Writes the frames of one site and reads those of the other. The tag is SipHash-2-4 (J.-P. Aumasson and
 /// D. J. Bernstein, INDOCRYPT 2012), 128 bits wide, under a key that HKDF (RFC 5869) derives from the shared one for
 /// this alone. By OpenSSL. Belongs to one thread.

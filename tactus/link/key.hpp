@@ -25,7 +25,8 @@ class Key {
 Check make_key_file(const std::filesystem::path& file);
 
 /// Reads such a file. Errors: `missing`; `inconsistent` where it is no regular file of the user who asks, or others may
-/// touch it; `syntax` where it holds something else.
+/// touch it, or where it holds a key that was plainly not drawn at random, as zeros; `syntax` where it holds
+/// something else.
 Result<Key> read_key_file(const std::filesystem::path& file);
 
 }  // namespace tactus::link

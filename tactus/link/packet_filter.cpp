@@ -50,14 +50,20 @@ bool admit_records(int descriptor, SiteRole own_site, std::size_t message_bytes,
   constexpr auto longest = static_cast<std::uint32_t>(udp_head + longest_frame_bytes);
   const std::uint32_t other = site_byte(own_site == SiteRole::master ? SiteRole::slave : SiteRole::master);
   const auto record = static_cast<std::uint32_t>(udp_head + message_bytes + SecureChannel::overhead_bytes);
+  // "TCT" and any digit. With a link it is dropped as all else.
+  constexpr std::uint32_t head_of_plain_text =
+      (datagram_magic & 0xff) << 24 | (datagram_magic & 0xff00) << 8 | (datagram_magic >> 8 & 0xff00);
+  const std::uint8_t plain_text_goes = least == 0 ? 13 : 14;
   const auto upper = static_cast<std::uint32_t>(least >> 32), lower = static_cast<std::uint32_t>(least);
   return attach(descriptor, std::array{load(BPF_W, 0),
                                        equal(head_of_a_frame, 0, 5),  // a frame
                                        load(BPF_B, frame_site_at),
-                                       equal(other, 0, 17),
+                                       equal(other, 0, 19),
                                        load_size(),
-                                       at_least(shortest, 0, 15),
-                                       more_than(longest, 14, 13),
+                                       at_least(shortest, 0, 17),
+                                       more_than(longest, 16, 15),
+                                       sock_filter(BPF_STMT(BPF_ALU | BPF_AND | BPF_K, 0xffffff00)),
+                                       equal(head_of_plain_text, plain_text_goes, 0),
                                        load(BPF_B, 0),  // a record
                                        equal(message_type, 0, 12),
                                        load(BPF_H, 1),

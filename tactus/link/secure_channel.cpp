@@ -20,6 +20,8 @@ constexpr std::size_t number_at = 5, number_end = 11;
 constexpr std::uint64_t window = 64;
 /// How often the kernel is told from which number on records are let in.
 constexpr std::int64_t filter_every_ns = 50'000'000;
+/// How often a site without a link shows a stranger that it is there.
+constexpr std::int64_t stranger_every_ns = 1'000'000'000;
 
 /// The number of a record in its epoch.
 std::uint64_t number_of(const Received& packet) noexcept {
@@ -74,7 +76,7 @@ class SecureChannel::Implementation {
   // The thread of the hand-shakes.
   void shake_hands();
   void publish(std::unique_ptr<Connection> connection);
-  void filter(std::int64_t now_ns);
+  void filter(bool silent, std::int64_t now_ns);
 
   SiteRole own_site_;
   const Socket* socket_;
@@ -88,6 +90,7 @@ class SecureChannel::Implementation {
   Handshaker handshaker_;         ///< of the other one, as what follows
   std::uint64_t admitted_ = 0;    ///< the least number that the kernel lets in
   std::int64_t filtered_ns_ = 0;  ///< when it was told
+  std::int64_t answered_ns_ = 0;  ///< when a stranger was shown that there is a site
 
   telemetry::Ring<Proof, 16> proofs_;
   std::atomic<Connection*> ready_{nullptr};    ///< with new keys, for the servo to pick up
@@ -95,6 +98,7 @@ class SecureChannel::Implementation {
   std::atomic<bool> wants_proof_{false};       ///< an open hand-shake may be what a message is sealed for
   std::atomic<std::int64_t> heard_ns_{0};      ///< when the last authentic message came
   std::atomic<std::uint64_t> newest_{0};       ///< number of an authentic record of the current connection
+  std::atomic<bool> stranger_{false};          ///< somebody without the key has sent something
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };
@@ -141,6 +145,10 @@ void SecureChannel::Implementation::take_frame(const Received& packet) noexcept 
   const auto verdict = tags_.read(packet.bytes(), frame);
   if (verdict == FrameTags::Verdict::version) counters_.other_version = frame.version;
   if (verdict == FrameTags::Verdict::joints) counters_.other_joints = frame.joints;
+  const bool plain = verdict == FrameTags::Verdict::none && looks_like_a_datagram(packet.bytes());
+  if (verdict == FrameTags::Verdict::forged) ++counters_.forged;
+  if (plain) ++counters_.plain;
+  if (plain || verdict == FrameTags::Verdict::forged) stranger_.store(true, std::memory_order_relaxed);
   // A site of other joints is greeted back, so that it knows too, and no more.
   const bool greets = verdict == FrameTags::Verdict::joints && own_site_ == SiteRole::slave && frame.records.empty();
   const auto passed =
@@ -182,7 +190,13 @@ void SecureChannel::Implementation::shake_hands() {
     publish(handshaker_.work(silent && ready_.load(std::memory_order_relaxed) == nullptr, now_ns));
     while (proofs_.try_pop(proof)) publish(handshaker_.prove({proof.data.data(), proof.size}));
     wants_proof_.store(handshaker_.wants_proof(), std::memory_order_relaxed);
-    filter(now_ns);
+    // Once a second at most and to the other site's address alone, so that whoever is there learns of another key, and
+    // nobody else gets anything for what he sends.
+    if (silent && now_ns - answered_ns_ > stranger_every_ns && stranger_.exchange(false, std::memory_order_relaxed)) {
+      handshaker_.show_itself();
+      answered_ns_ = now_ns;
+    }
+    filter(silent, now_ns);
     std::this_thread::sleep_for(handshaker_.busy() ? 1ms : 5ms);
   }
 }
@@ -194,9 +208,9 @@ void SecureChannel::Implementation::publish(std::unique_ptr<Connection> connecti
 }
 
 /// What OpenSSL would refuse for its number does not get to the servo's thread. While other keys may come, whose
-/// numbers begin anew, all numbers do. Without a filter more is judged there, that is all.
-void SecureChannel::Implementation::filter(std::int64_t now_ns) {
-  const bool settled = !handshaker_.busy() && ready_.load(std::memory_order_acquire) == nullptr;
+/// numbers begin anew, and while there is no link, all numbers do. Without a filter more is judged there, that is all.
+void SecureChannel::Implementation::filter(bool silent, std::int64_t now_ns) {
+  const bool settled = !silent && !handshaker_.busy() && ready_.load(std::memory_order_acquire) == nullptr;
   const std::uint64_t newest = settled ? newest_.load(std::memory_order_relaxed) : 0;
   const std::uint64_t least = newest > window ? newest - window : 0;
   if (least == admitted_ || (least > 0 && now_ns - filtered_ns_ < filter_every_ns)) return;

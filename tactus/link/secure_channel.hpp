@@ -38,6 +38,8 @@ class SecureChannel {
     std::uint64_t overflowed = 0;         ///< hand-shake packets for which the queue had no room
     std::uint16_t other_version = 0;      ///< of the format that the other site shakes hands in, where it is another
     std::size_t other_joints = 0;         ///< that the other site shakes hands for, where they are others
+    std::uint64_t forged = 0;             ///< frames that were not made with the own key, of those refused
+    std::uint64_t plain = 0;              ///< datagrams in plain text while there was no link, of those refused
   };
 
   /// For datagrams of so many joints. `socket` must outlive the channel. Errors: `failed` where OpenSSL lacks

@@ -97,6 +97,9 @@ Number parse_number(std::string_view text) {
                                                               : "is not a number; write a decimal point, not a comma"};
   }
   if (!std::isfinite(number.value)) return {.fault = "is not finite; fill in the lost sample or remove the line"};
+  if (std::fabs(number.value) > largest_value) {
+    return {.fault = "is beyond 1e30, which is no measurement; correct it, remove the line or rescale the column"};
+  }
   return number;
 }
 

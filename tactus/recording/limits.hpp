@@ -5,6 +5,9 @@
 /// What reading a recording may take, whatever a file says of itself: less than 1 GB of memory and 20 s.
 namespace tactus::recording {
 
+/// Of either sign. No instrument measures more, in any unit, and its powers that are summed up stay finite.
+inline constexpr double largest_value = 1e30;
+
 /// Of one column: 55 min at 5 kHz.
 inline constexpr std::size_t most_samples = std::size_t{1} << 24U;
 

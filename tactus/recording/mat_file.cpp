@@ -234,11 +234,13 @@ Result<Column> MatFile::read(std::string_view variable, std::int64_t column) con
       .values = column_of(data, (static_cast<std::size_t>(column) - 1) * rows, rows), .name = entry.name, .unit = {}};
   if (entry.columns > 1) result.name += "(:," + std::to_string(column) + ")";
   for (std::size_t i = 0; i < rows; ++i) {
-    if (std::isfinite(result.values[i])) continue;
+    if (std::fabs(result.values[i]) <= largest_value) continue;
+    const bool finite = std::isfinite(result.values[i]);
     return Error{.code = ErrorCode::out_of_bounds,
                  .parameter = {},
-                 .message = "sample " + std::to_string(i + 1) + " of '" + result.name +
-                            "' is not finite; fill in the lost sample or cut the recording there",
+                 .message = "sample " + std::to_string(i + 1) + " of '" + result.name + "' is " +
+                            (finite ? "beyond 1e30, which is no measurement; correct it or rescale the variable"
+                                    : "not finite; fill in the lost sample or cut the recording there"),
                  .place = file_.string()};
   }
   return result;

@@ -7,6 +7,10 @@
 #include <system_error>
 #include <utility>
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 namespace tactus::report {
 namespace {
 
@@ -69,13 +73,23 @@ class TemporaryFile {
   [[nodiscard]] std::string name() const { return path_.string(); }
 
   /// True when every byte has been handed to the system. Otherwise errno tells why not.
-  bool write(std::string_view content) {
+  bool write(std::string_view content, bool durable = false) {
     errno = 0;
-    const bool written = std::fwrite(content.data(), 1, content.size(), stream_) == content.size();
+    const bool written = std::fwrite(content.data(), 1, content.size(), stream_) == content.size() &&
+                         (!durable || (std::fflush(stream_) == 0 && fsync(fileno(stream_)) == 0));
     const int write_error = errno;
     const bool closed = std::fclose(std::exchange(stream_, nullptr)) == 0;
     if (!written) errno = write_error;
     return written && closed;
+  }
+
+  /// True when it has the mode and the owner of `other`. Otherwise errno tells why not.
+  bool become_like(const fs::path& other) {
+    struct stat status {};
+    const int descriptor = fileno(stream_);
+    constexpr mode_t all_bits = 07777;
+    return stat(other.c_str(), &status) == 0 && fchown(descriptor, status.st_uid, status.st_gid) == 0 &&
+           fchmod(descriptor, status.st_mode & all_bits) == 0;
   }
 
   std::error_code rename_to(const fs::path& target) {
@@ -141,6 +155,20 @@ Check guarded(const fs::path& path, Job&& job) {
 Check write_file(const fs::path& path, std::string_view content) {
   return guarded(
       path, [&] { return replace_unguarded(path, [content](TemporaryFile& file) { return file.write(content); }); });
+}
+
+Check rewrite_file(const fs::path& path, std::string_view content) {
+  return guarded(path, [&]() -> Check {
+    const auto fill = [&](TemporaryFile& file) { return file.become_like(path) && file.write(content, true); };
+    if (Check error = replace_unguarded(path, fill)) return error;
+    // The new name is on the disk too, where the file system can say so.
+    const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
+    if (const int opened = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); opened >= 0) {
+      static_cast<void>(fsync(opened));
+      close(opened);
+    }
+    return std::nullopt;
+  });
 }
 
 Check replace_file(const fs::path& path, const std::function<bool(const std::string& temporary)>& write) {

@@ -1,6 +1,7 @@
 #include <tactus/runtime/site_link.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace tactus::runtime {
 
@@ -37,13 +38,30 @@ LinkSecond SiteLinkOf<Payload>::end_second() noexcept {
   return second;
 }
 
+/// Of the second that ended. Where anything came over the link, the keys are the same.
+template <class Payload>
+KeyTrouble SiteLinkOf<Payload>::key_trouble(const link::LinkCounters& now) noexcept {
+  const link::LinkCounters before = std::exchange(counted_, now);
+  if (now.inbound.counted > before.inbound.counted) return KeyTrouble::none;
+  if (now.secure.forged > before.secure.forged) return KeyTrouble::other_key;
+  if (now.secure.plain > before.secure.plain) return KeyTrouble::other_none;
+  return now.keyed > before.keyed ? KeyTrouble::own_none : KeyTrouble::none;
+}
+
 template <class Payload>
 void SiteLinkOf<Payload>::tell_misfit(const control::AgreementCheck& agreement, SiteExchange& exchange) noexcept {
   const auto counters = endpoint_.counters();
   const std::int64_t session = agreement.session();
-  // Until all cells have come, or had a second for it.
-  const bool known = agreement.complete() || session == listened_session_;
-  if (counters.other_version != told_version_) {
+  // Until all cells have come, or those that did have shown a difference, or no more are to be waited for.
+  constexpr int longest_s = 10;
+  listened_s_ = session == listened_session_ ? listened_s_ + 1 : 0;
+  const bool shown = listened_s_ > 0 && agreement.first_difference() != 0;
+  const bool known = agreement.complete() || shown || listened_s_ >= longest_s;
+  const KeyTrouble keys = key_trouble(counters);
+  if (keys != KeyTrouble::none && keys != told_keys_) {
+    told_keys_ = keys;
+    exchange.misfits.try_push({.keys = keys});
+  } else if (counters.other_version != told_version_) {
     told_version_ = counters.other_version;
     exchange.misfits.try_push({.other_version = told_version_});
   } else if (counters.other_joints != told_joints_) {

@@ -82,6 +82,7 @@ class SiteLinkOf {
     }
   };
   void count(const Packet& packet, control::PacketVerdict verdict) noexcept;
+  KeyTrouble key_trouble(const link::LinkCounters& now) noexcept;
 
   link::EndpointOf<Payload> endpoint_;
   double longest_age_s_;
@@ -95,9 +96,12 @@ class SiteLinkOf {
   std::uint64_t second_expected_ = 0, second_arrived_ = 0;
   // Of the misfits.
   std::int64_t listened_session_ = 0;  ///< that was heard when the second before ended
+  int listened_s_ = 0;                 ///< for how many seconds
   std::int64_t told_session_ = 0;
   std::uint16_t told_version_ = 0;
   std::size_t told_joints_ = 0;
+  KeyTrouble told_keys_ = KeyTrouble::none;
+  link::LinkCounters counted_;  ///< when the second before ended
 };
 /// A link, and `see(tick, packet)` for each packet that comes on it: the way of a site that leaves a log.
 template <class Payload, class See>

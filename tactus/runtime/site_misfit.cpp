@@ -18,6 +18,17 @@ std::string describe(const SiteMisfit& misfit, control::SiteRole role) {
 std::string describe(const SiteMisfit& misfit, control::SiteRole role, const control::Disagreement* found,
                      std::string_view remedy) {
   const std::string other = role == control::SiteRole::master ? "the slave" : "the master";
+  switch (misfit.keys) {
+    case KeyTrouble::none:
+      break;
+    case KeyTrouble::other_key:
+      return "what comes from the address of " + other +
+             " was made with another key: give both sites the same key file (--key)";
+    case KeyTrouble::other_none:
+      return other + " sends plain text, and this site has a key: start both with --key and the same file";
+    case KeyTrouble::own_none:
+      return other + " has a key, and this site sends plain text: start both with --key and the same file";
+  }
   if (misfit.other_version != 0) {
     return other + " speaks version " + std::to_string(misfit.other_version) + " of the wire format and this site " +
            std::to_string(link::datagram_version) + ": run the same tactus at both";

@@ -120,6 +120,12 @@ Result<Port> Port::serial(const std::string& path, std::int64_t bits_per_s) {
   return port;
 }
 
+Port Port::of_another(int descriptor, std::string path) {
+  Port port(descriptor, Kind::terminal, std::move(path));
+  static_cast<void>(ioctl(descriptor, TCFLSH, TCIFLUSH));
+  return port;
+}
+
 Result<Port> Port::pseudo_terminal() {
   const std::string multiplexer = "/dev/ptmx";
   Port port(open(multiplexer.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC), Kind::terminal, multiplexer);

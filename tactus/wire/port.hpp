@@ -27,6 +27,10 @@ class Port {
   /// kernel has no CAN, or the interface is down.
   static Result<Port> can(const std::string& interface, bool flexible);
 
+  /// A serial port that another process has opened with `serial` and passed on; takes the descriptor. What that process
+  /// has not read yet is thrown away. Both may write to it; only one of them may read at a time.
+  static Port of_another(int descriptor, std::string path);
+
   Port(Port&& other) noexcept;
   Port& operator=(Port&& other) noexcept;
   ~Port();

@@ -1,6 +1,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -249,6 +250,76 @@ TEST_F(ConsoleLost, ASecondSignalEndsAtOnceWhatWaitsForATerminal) {
   EXPECT_FALSE(run.ended()) << "it waits for somebody to read what it prints";
   run.signal(SIGTERM);
   EXPECT_EQ(run.wait(), 128 + SIGTERM);
+}
+
+/// A slave that nobody hears, which runs until it is ended.
+Words lone_slave(int own, int peer, const Words& more) {
+  Words all = Pair::words("slave", "lone", own, peer);
+  for (auto word = all.begin(); word != all.end(); ++word) {
+    if (*word != "--out") continue;
+    all.erase(word, word + 2);
+    break;
+  }
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+TEST_F(ConsoleLost, EverySignalThatCanBeCaughtEndsASiteWithItsReport) {
+  const std::map<std::string, int> signals{
+      {"SIGQUIT", SIGQUIT}, {"SIGUSR2", SIGUSR2}, {"SIGALRM", SIGALRM}, {"SIGVTALRM", SIGVTALRM}, {"SIGPROF", SIGPROF},
+      {"SIGXCPU", SIGXCPU}, {"SIGIO", SIGIO},     {"SIGTSTP", SIGTSTP}, {"SIGPWR", SIGPWR},       {"SIGHUP", SIGHUP}};
+  const auto ports = free_ports(2 * signals.size());
+  std::map<std::string, Running> sites;
+  for (const auto& [name, number] : signals) {
+    const std::size_t i = 2 * sites.size();
+    sites.try_emplace(name, folder(), lone_slave(ports[i], ports[i + 1], {"--out", name}), name + ".log",
+                      Running::Terminal::file);
+  }
+  for (auto& [name, site] : sites) {
+    ASSERT_TRUE(eventually([&, this_name = name] { return shows(this_name + ".log", " configure "); })) << name;
+    // What a site ignores.
+    site.signal(SIGPIPE);
+    site.signal(SIGXFSZ);
+    site.signal(signals.at(name));
+    // Those that come by themselves come more than once; that is not a person who insists.
+    if (name == "SIGXCPU") site.signal(SIGXCPU);
+  }
+  for (auto& [name, site] : sites) {
+    EXPECT_EQ(site.wait(), 0) << name;
+    EXPECT_EQ(results(name)["ended_by"], name);
+    EXPECT_TRUE(fs::exists(folder() / name / "log" / "metadata.yaml")) << name << ": its log is closed";
+  }
+}
+
+TEST_F(ConsoleLost, ARunInRealTimeThatNobodyCanArmIsEndedByTheSignalThatArms) {
+  LongRun run(folder(), quick_experiment(), Running::Terminal::file);
+  run.signal(SIGUSR1);
+  EXPECT_EQ(run.wait(), 128 + SIGUSR1);
+  EXPECT_EQ(results("results")["interrupted"]["taps"], 0);
+}
+
+TEST_F(ConsoleLost, ASiteThatIsInterruptedTwiceAtOnceEndsThoughNobodyReadsEitherOutput) {
+  const auto ports = free_ports(2);
+  Running site(folder(), lone_slave(ports[0], ports[1], {}), "", Running::Terminal::stalled);
+  std::this_thread::sleep_for(1s);
+  site.signal(SIGINT);
+  std::this_thread::sleep_for(20ms);
+  site.signal(SIGINT);
+  EXPECT_EQ(site.wait(), 1) << "its results found no reader";
+}
+
+/// As services and clusters set it: the log reaches the limit, and the site goes on to its end.
+TEST_F(ConsoleLost, ALogThatReachesTheLimitOnFileSizesEndsAloneAndIsSaid) {
+  const auto ports = free_ports(2);
+  std::string command = "cd '" + folder().string() + "' && ulimit -f 100 && exec \"" TACTUS_COMMAND "\"";
+  for (const std::string& word : lone_slave(ports[0], ports[1], {"--out", "full", "--json", "--duration-s", "5"})) {
+    command += " '" + word + "'";
+  }
+  const int status = std::system((command + " >out 2>err </dev/null").c_str());
+  ASSERT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 1) << content("err");
+  EXPECT_TRUE(shows("err", "cannot")) << content("err");
+  EXPECT_FALSE(shows("err", "ended in a fault")) << content("err");
 }
 
 }  // namespace console_lost_test

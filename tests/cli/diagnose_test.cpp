@@ -98,6 +98,13 @@ TEST_F(Diagnose, what_cannot_be_read_is_refused_with_place_and_remedy) {
   refused("irregular.csv", header + "0,0,0\n0.001,0,1\n0.005,0,2\n", "not uniform");
   refused("kilograms.csv", "time_s,slave_position [kg]\n0,0\n0.001,1\n", "--slave-position");
   refused("recording.json", "{}", "must end in");
+  // What no instrument measures, whose squares are no numbers.
+  std::string huge = header;
+  for (int i = 0; i < 1000; ++i) {
+    huge += std::to_string(1e-3 * i) + (i % 7 < 4 ? ",1e308,1e308\n" : ",-1e308,-9e307\n");
+  }
+  refused("huge.csv", huge, "huge.csv:2:10");
+  refused("huge.csv", huge, "is beyond 1e30");
   std::string still = header;
   for (int i = 0; i < 1000; ++i) still += std::to_string(1e-3 * i) + ",0.5,0.5\n";
   refused("still.csv", still, "no position changes");

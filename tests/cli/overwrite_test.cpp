@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -107,6 +108,38 @@ TEST_F(Overwrite, ALinkIsNeverFollowed) {
   EXPECT_TRUE(fs::is_empty(folder() / "elsewhere/log"));
   // Above the folder a link is a part of the path like any other.
   EXPECT_EQ(tactus({"run", file, "--out", "link/new"}).status, 0);
+}
+
+TEST_F(Overwrite, AFolderThatIsNotForResultsIsRefused) {
+  const std::string file = quick_experiment();
+  make_folder("home");
+  setenv("HOME", (folder() / "home").c_str(), 1);
+  make_folder("shared");
+  write("shared/letter.txt", "mine");
+  write("shared/.hidden", "mine");
+  for (const Words& more : {Words{}, Words{"--overwrite"}}) {
+    const auto refused = [&](const char* place, const std::string& why) {
+      Words words{"run", file, "--out", place};
+      words.insert(words.end(), more.begin(), more.end());
+      expect_refusal(words, {why, "name a folder of its own"});
+    };
+    refused("/", "is the root of the file system");
+    refused("/.", "is the root of the file system");
+    refused("/etc", "holds other files");
+    refused("home", "is your home folder");
+    refused("shared", "holds other files, as '.hidden'");
+    refused(".", "holds other files");
+  }
+  // Neither an empty folder, nor one of an earlier run to which a person has added something.
+  make_folder("empty");
+  EXPECT_EQ(tactus({"run", file, "--out", "empty"}).status, 0);
+  write("empty/notes.txt", "mine");
+  EXPECT_EQ(tactus({"run", file, "--out", "empty", "--overwrite"}).status, 0);
+  EXPECT_EQ(content("empty/notes.txt"), "mine");
+  // What a killed map leaves is gone on with.
+  make_folder("killed");
+  write("killed/blocks-0.partial", "");
+  EXPECT_EQ(tactus({"run", file, "--out", "killed"}).status, 0);
 }
 
 TEST_F(Overwrite, AnExportIsKeptLikewise) {

@@ -165,6 +165,12 @@ TEST_F(RigRun, AMotorWithAFaultEndsTheForceOfBothAndIsSaid) {
   EXPECT_NE(said.find("follower active"), std::string::npos) << said;
   EXPECT_NE(said.find("leader hold, follower fault (gate), "), std::string::npos) << said;
   EXPECT_NE(said.find("; follower: joint_2 has the fault hot"), std::string::npos) << said;
+  EXPECT_NE(said.find("\nEnded in a fault: follower (gate); follower: joint_2 has the fault hot"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("\ntactus: the run ended in a fault: follower (gate); follower: joint_2 has the fault hot"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
 }
 
 TEST_F(RigRun, NothingIsDrivenBeforeTheRigIsClean) {
@@ -179,9 +185,13 @@ TEST_F(RigRun, NothingIsDrivenBeforeTheRigIsClean) {
 }
 
 /// HLS servos have no watchdog: what is left of a program that was killed is its last current.
-TEST_F(RigRun, AGuardTakesThePowerFromServosWithoutAWatchdogWhenTheProgramIsKilled) {
-  const std::string killed = R"sh(
-      # Register 40 of servo 1, torque enable, once what was under way has come.
+class GuardedRun : public RigRun {
+ protected:
+  /// In the rest of the script `drive` starts a run in `$run` that writes into run.out, and waits until it is active;
+  /// `$guards` are its guards; `power PORT` prints how servo 1 answers to the question for register 40, torque enable.
+  std::string guarded_until(const std::vector<std::string>& signs, const std::string& rest) {
+    return shell_until(signs, "feetech --model hls3625", "feetech --model hls3625",
+                       pair("feetech", "hls3625", 2, "", "torque_Nm_per_A = 0.8\n"), R"sh(
       power() {
         exec 3<>"$1"
         timeout 0.3 cat <&3 >stale
@@ -190,26 +200,83 @@ TEST_F(RigRun, AGuardTakesThePowerFromServosWithoutAWatchdogWhenTheProgramIsKill
         exec 3>&-
         echo
       }
-      for guarded in yes no; do
+      said() { for try in $(seq 100); do grep -q "$1" run.out && return; sleep 0.1; done; cat run.out; }
+      drive() {
         $RUN --arm <&9 >run.out 2>&1 & run=$!
-        for try in $(seq 100); do grep -q 'follower active' run.out && break; sleep 0.1; done
-        grep -q 'follower active' run.out && active="$active $guarded" || cat run.out
+        said 'follower active'
+        grep -q 'follower active' run.out && active="$active $1"
+        guards=
         for child in /proc/[0-9]*/stat; do
           read -r pid name state parent rest <$child
-          [ $guarded = no ] && [ "$parent" = $run ] && kill -KILL $pid
+          [ "$parent" = $run ] && guards="$guards $pid"
         done 2>/dev/null
-        kill -KILL $run
-        wait $run 2>/dev/null
-        sleep 1
-        echo guarded $guarded $(power $leader) $(power $follower)
-      done
+      }
+      )sh" + rest);
+  }
+  static constexpr const char* off = "ffff01030000fb";
+  static constexpr const char* on = "ffff01030001fa";
+};
+
+TEST_F(GuardedRun, ServosWithoutAWatchdogLoseTheirPowerWhenTheProgramIsKilled) {
+  const std::string said = guarded_until({"active yes no fault\n"}, R"sh(
+      drive yes; kill -KILL $run; wait $run 2>/dev/null; sleep 1
+      echo guarded yes $(power $leader) $(power $follower)
+      # At once, so that the program does not find out that its guards are gone.
+      drive no; kill -KILL $guards $run; wait $run 2>/dev/null; sleep 1
+      echo guarded no $(power $leader) $(power $follower)
+      drive fault; kill -SEGV $run; wait $run 2>/dev/null; sleep 1
+      echo guarded fault $(power $leader) $(power $follower)
       echo active$active
-  )sh";
-  const std::string said = shell_until({"active yes no\n"}, "feetech --model hls3625", "feetech --model hls3625",
-                                       pair("feetech", "hls3625", 2, "", "torque_Nm_per_A = 0.8\n"), killed);
-  EXPECT_NE(said.find("guarded yes ffff01030000fb ffff01030000fb\n"), std::string::npos) << said;
+  )sh");
+  EXPECT_NE(said.find(std::string("guarded yes ") + off + " " + off + "\n"), std::string::npos) << said;
   // The check can fail.
-  EXPECT_NE(said.find("guarded no ffff01030001fa ffff01030001fa\n"), std::string::npos) << said;
+  EXPECT_NE(said.find(std::string("guarded no ") + on + " " + on + "\n"), std::string::npos) << said;
+  EXPECT_NE(said.find(std::string("guarded fault ") + off + " " + off + "\n"), std::string::npos) << said;
+}
+
+TEST_F(GuardedRun, ServosLoseTheirPowerWhileTheProgramIsStoppedAndItNeedsArmingAgain) {
+  // The port is the program's, so power is read after its end: it has none of its own by then.
+  const std::string said = guarded_until({"active stopped\n", "status 0\n", "armed 2 times"}, R"sh(
+      drive stopped
+      kill -STOP $run; sleep 1
+      echo stopped $(power $leader) $(power $follower)
+      kill -CONT $run
+      said 'switched its motors off'
+      # It has no power by itself.
+      sleep 1.5; tail -n 1 run.out >resumed; echo resumed $(cut -d, -f1,2 resumed)
+      echo clear >&9; sleep 1.2; echo arm >&9; sleep 3
+      tail -n 1 run.out
+      kill -INT $run; wait $run; echo status $?
+      grep 'armed 2 times' run.out
+      echo active$active
+  )sh");
+  EXPECT_NE(said.find(std::string("stopped ") + off + " " + off + "\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("guard process switched its motors off"), std::string::npos) << said;
+  const auto resumed = said.find("resumed ");
+  ASSERT_NE(resumed, std::string::npos) << said;
+  const std::string line = said.substr(resumed, said.find('\n', resumed) - resumed);
+  EXPECT_NE(line.find("leader fault, follower fault"), std::string::npos) << line;
+  EXPECT_NE(said.find("armed 2 times"), std::string::npos) << said;
+}
+
+TEST_F(GuardedRun, AProgramWhoseGuardIsGoneReleasesAtOnceAndSaysWhy) {
+  const std::string said = guarded_until({"active gone\n"}, R"sh(
+      drive gone
+      kill -KILL $guards; sleep 0.3; kill -STOP $run; sleep 0.1
+      echo gone $(power $leader) $(power $follower)
+      kill -CONT $run; said 'guard process of its motors is gone'
+      echo clear >&9; sleep 1.2; echo arm >&9; sleep 2
+      tail -n 1 run.out
+      kill -STOP $run; sleep 0.1; echo later $(power $leader) $(power $follower); kill -CONT $run
+      kill -INT $run; wait $run; echo status $?
+      grep 'armed 1 times' run.out
+      echo active$active
+  )sh");
+  EXPECT_NE(said.find(std::string("gone ") + off + " " + off + "\n"), std::string::npos) << said;
+  EXPECT_NE(said.find(std::string("later ") + off + " " + off + "\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("the guard process of its motors is gone, so they get no power: start the run again"),
+            std::string::npos)
+      << said;
 }
 
 /// Arms with their weight behind the motors, held at first 0.15 rad apart.
@@ -258,7 +325,8 @@ TEST_F(ArmRun, AFollowerWhoseMotorsAreGoneIsAFaultAndTheLeaderHoldsItself) {
   EXPECT_NE(said.find("leader hold, follower fault (gate), "), std::string::npos) << said;
   EXPECT_NE(said.find("; follower: its port was closed"), std::string::npos) << said;
   EXPECT_EQ(said.find("leader fault"), std::string::npos) << said;
-  EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("Ended in a fault: follower (gate); follower: its port was closed"), std::string::npos) << said;
+  EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
 }
 
 TEST_F(RigRun, AnArmThatTheRigDoesNotFitIsRefusedBeforeAnythingIsOpened) {

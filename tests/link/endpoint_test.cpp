@@ -183,6 +183,42 @@ TEST(Endpoint, AWrongKeyIsNeverHeard) {
   EXPECT_FALSE(slave.condition(monotonic_ns()).heard);
 }
 
+TEST(Endpoint, BothSitesKnowThatTheOtherHasAnotherKeyOrNone) {
+  const Ports ports;
+  const auto knows = [](auto& master, auto& slave, const auto& told) {
+    return tick_until(
+        master, slave, [&] { return told(master.counters(), slave.counters()); }, 20.0);
+  };
+  {
+    Endpoint master = open(SiteRole::master, ports, test_key(1)), slave = open(SiteRole::slave, ports, test_key(2));
+    EXPECT_TRUE(knows(master, slave, [](const auto& of_master, const auto& of_slave) {
+      return of_master.secure.forged > 0 && of_slave.secure.forged > 0;
+    }));
+    EXPECT_FALSE(master.established() || slave.established());
+  }
+  {
+    Endpoint master = open(SiteRole::master, ports, test_key()), slave = open(SiteRole::slave, ports, std::nullopt);
+    EXPECT_TRUE(knows(master, slave, [](const auto& of_master, const auto& of_slave) {
+      return of_master.secure.plain > 0 && of_slave.keyed > 0;
+    }));
+  }
+  {
+    Endpoint master = open(SiteRole::master, ports, std::nullopt), slave = open(SiteRole::slave, ports, test_key());
+    EXPECT_TRUE(knows(master, slave, [](const auto& of_master, const auto& of_slave) {
+      return of_master.keyed > 0 && of_slave.secure.plain > 0;
+    }));
+  }
+  {
+    Endpoint master = open(SiteRole::master, ports, test_key()), slave = open(SiteRole::slave, ports, test_key());
+    EXPECT_TRUE(tick_until(
+        master, slave, [&] { return master.condition(monotonic_ns()).heard && slave.condition(monotonic_ns()).heard; },
+        20.0));
+    for (const auto& counters : {master.counters(), slave.counters()}) {
+      EXPECT_EQ(counters.secure.forged + counters.secure.plain + counters.keyed, 0U);
+    }
+  }
+}
+
 TEST(Endpoint, ASiteWithAKeyAndOneInPlainTextDoNotMeet) {
   const Ports ports;
   Endpoint master = open(SiteRole::master, ports, std::nullopt);
@@ -190,7 +226,9 @@ TEST(Endpoint, ASiteWithAKeyAndOneInPlainTextDoNotMeet) {
   EXPECT_FALSE(tick_until(
       master, slave, [&] { return master.condition(monotonic_ns()).heard || slave.condition(monotonic_ns()).heard; },
       0.5));
-  EXPECT_GT(slave.socket().dropped(), 0U);
+  // While there is no link they get in, so that the slave can say why.
+  EXPECT_GT(slave.counters().secure.plain, 0U);
+  EXPECT_EQ(slave.counters().secure.opened, 0U);
 }
 
 TEST(Endpoint, PlainTextOffTheLoopbackIsRefused) {

@@ -1,5 +1,6 @@
 #include <tactus/link/key.hpp>
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -20,7 +21,7 @@ class KeyFile : public ::testing::Test {
     chmod(file.c_str(), 0600);
   }
   const std::filesystem::path file = scratch_path();
-  const std::string good = std::string(63, 'a') + "7\n";
+  const std::string good = "9a4f06c2d17be835f0621c8d3eb7594ac86f12e0a5d93b7401fe682c5b90d747\n";
 };
 
 TEST_F(KeyFile, IsReadAsItWasMadeAndOnlyItsOwnerMayTouchIt) {
@@ -52,7 +53,7 @@ TEST_F(KeyFile, IsNeverOverwritten) {
 }
 
 TEST_F(KeyFile, DigitsAreTheBytesOfTheSecret) {
-  write("00ff" + std::string(60, '1') + "\n");
+  write("00ff" + good.substr(4, 58) + "11\n");
   const auto key = read_key_file(file);
   ASSERT_TRUE(key);
   EXPECT_EQ(key->secret[0], 0x00);
@@ -101,6 +102,36 @@ TEST_F(KeyFile, WithAnythingElseInItIsRefused) {
     const auto key = read_key_file(file);
     ASSERT_FALSE(key) << text.size();
     EXPECT_EQ(key.error().code, ErrorCode::syntax);
+  }
+}
+
+TEST_F(KeyFile, ThatWasPlainlyNotDrawnAtRandomIsRefused) {
+  const auto repeated = [](const std::string& word) {
+    std::string text;
+    while (text.size() < 64) text += word;
+    return text + "\n";
+  };
+  std::string counting, falling;
+  for (int i = 0; i < 32; ++i) {
+    char digits[3];
+    std::snprintf(digits, sizeof digits, "%02x", i);
+    counting += digits;
+    std::snprintf(digits, sizeof digits, "%02x", 255 - 7 * i);
+    falling += digits;
+  }
+  for (const std::string& text : {repeated("0"), repeated("f"), repeated("ab"), repeated("0123456789abcdef"),
+                                  repeated(good.substr(0, 32)), counting + "\n", falling + "\n"}) {
+    write(text);
+    const auto key = read_key_file(file);
+    ASSERT_FALSE(key) << text;
+    EXPECT_EQ(key.error().code, ErrorCode::inconsistent);
+    EXPECT_NE(key.error().message.find("not drawn at random"), std::string::npos);
+    EXPECT_EQ(key.error().message.find(text.substr(0, 16)), std::string::npos) << "a secret is never shown";
+  }
+  for (int i = 0; i < 1000; ++i) {
+    std::filesystem::remove(file);
+    ASSERT_EQ(make_key_file(file), std::nullopt);
+    EXPECT_TRUE(read_key_file(file)) << i;
   }
 }
 

@@ -113,6 +113,8 @@ TEST_F(Csv, ADefectIsNamedWithItsLineItsCharacterTheTextAndTheRemedy) {
         Case{"time_s;force_N\n0;1\n1;  1,5\n", ":3:5", "write a decimal point"},
         Case{"time_s,force_N\n0,1\n1,nan\n", ":3:3", "is not finite"},
         Case{"time_s,force_N\n0,1\n1,-inf\n", ":3:3", "is not finite"},
+        Case{"time_s,force_N\n0,1\n1,-9e307\n", ":3:3", "is beyond 1e30"},
+        Case{"time_s,force_N\n0,1\n1,1.1e30\n", ":3:3", "is beyond 1e30"},
         Case{"time_s,force_N\n0,1\n1,1e999\n", ":3:3", "beyond the range"},
         Case{"time_s,force_N\n0,1\n1,\n2,3\n", ":3:3", "is empty"},
         Case{"time_s,force_N\n0,1\n1,2,3\n", ":3", "has 3 fields where the header has 2"},
@@ -121,8 +123,11 @@ TEST_F(Csv, ADefectIsNamedWithItsLineItsCharacterTheTextAndTheRemedy) {
         Case{"time_s,\"force_N\n0,1\n1,2\n", ":1", "quote is not closed"},
         Case{"time_s,force_N\n0,+-1\n1,2\n", ":2:3", "is not a number"},
         Case{"#time_s,force_N\n0,1\n1,2\n", ":2", "a header is needed before the numbers '0,1'"},
-        Case{"time_s,force_N\n0,1\n", "", "holds 1 samples"}, Case{"time_s,force_N\n", "", "holds 0 samples"},
-        Case{"", "", "is empty"}, Case{"# only\n\n", "", "is empty"}, Case{"\xFF\xFEt\n", "", "UTF-16"},
+        Case{"time_s,force_N\n0,1\n", "", "holds 1 samples"},
+        Case{"time_s,force_N\n", "", "holds 0 samples"},
+        Case{"", "", "is empty"},
+        Case{"# only\n\n", "", "is empty"},
+        Case{"\xFF\xFEt\n", "", "UTF-16"},
         Case{"\xFF\xFE", "", "UTF-16"}}) {
     const auto file = write("a.csv", c.text);
     const Result<Signal> result = read({.file = file, .variable = "force"});

@@ -149,9 +149,11 @@ TEST_F(Mat, WhatIsNoMatrixOfRealNumbersIsRefusedWithItsClass) {
 
 TEST_F(Mat, AColumnOutOfRangeTooFewSamplesAndValuesThatAreNotFiniteAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto file = write_mat(
-      path("a.mat"), {matrix("x", 3, 2, {1, 2, 3, 4, nan, 6}), matrix("one", 1, 1, {1}), matrix("none", 0, 0, {})},
-      MAT_COMPRESSION_ZLIB);
+  const auto file = write_mat(path("a.mat"),
+                              {matrix("x", 3, 2, {1, 2, 3, 4, nan, 6}), matrix("one", 1, 1, {1}),
+                               matrix("none", 0, 0, {}), matrix("huge", 2, 1, {1e30, -9e307})},
+                              MAT_COMPRESSION_ZLIB);
+  EXPECT_TRUE(says(refusal({.file = file, .variable = "huge"}), "sample 2 of 'huge' is beyond 1e30"));
   for (const std::int64_t column :
        {std::int64_t{0}, std::int64_t{-1}, std::int64_t{3}, std::numeric_limits<std::int64_t>::max()}) {
     const auto error = read({.file = file, .variable = "x", .column = column}).error();

@@ -199,6 +199,25 @@ Check check(const StatedBus& stated) {
   return made ? Check{} : made.error();
 }
 
+Result<wire::Port> open_port(const StatedBus& stated) {
+  if (Check wrong = check(stated)) return *std::move(wrong);
+  // What an adapter of CAN is set to at its serial side is the same for all; most take no notice of it.
+  constexpr std::int64_t adapter_bits_per_s = 921'600;
+  const bool is_damiao = stated.kind == BusKind::damiao;
+  const bool flexible = stated.framing == name_of(damiao::Framing::socketcan_fd);
+  const bool of_linux = is_damiao && (flexible || stated.framing == name_of(damiao::Framing::socketcan));
+  return of_linux ? wire::Port::can(stated.port, flexible)
+                  : wire::Port::serial(stated.port, is_damiao ? adapter_bits_per_s : stated.bits_per_s);
+}
+
+Result<std::unique_ptr<MotorLink>> start(const StatedBus& stated, wire::Port port) {
+  auto bus = make_bus(stated);
+  if (!bus) return bus.error();
+  auto thread = BusThread::start(*std::move(bus), std::move(port), {});
+  if (!thread) return thread.error();
+  return std::unique_ptr<MotorLink>(*std::move(thread));
+}
+
 Result<std::unique_ptr<MotorLink>> start(const StatedBus& stated) {
   if (stated.kind == BusKind::inverse3) {
     auto link = inverse3::Inverse3Link::start(inverse3_params(stated));
@@ -212,19 +231,8 @@ Result<std::unique_ptr<MotorLink>> start(const StatedBus& stated) {
     if (!link) return link.error();
     return std::unique_ptr<MotorLink>(*std::move(link));
   }
-  auto bus = make_bus(stated);
-  if (!bus) return bus.error();
-  // What an adapter of CAN is set to at its serial side is the same for all; most take no notice of it.
-  constexpr std::int64_t adapter_bits_per_s = 921'600;
-  const bool is_damiao = stated.kind == BusKind::damiao;
-  const bool flexible = stated.framing == name_of(damiao::Framing::socketcan_fd);
-  const bool of_linux = is_damiao && (flexible || stated.framing == name_of(damiao::Framing::socketcan));
-  auto port = of_linux ? wire::Port::can(stated.port, flexible)
-                       : wire::Port::serial(stated.port, is_damiao ? adapter_bits_per_s : stated.bits_per_s);
-  if (!port) return port.error();
-  auto thread = BusThread::start(*std::move(bus), *std::move(port), {});
-  if (!thread) return thread.error();
-  return std::unique_ptr<MotorLink>(*std::move(thread));
+  auto port = open_port(stated);
+  return port ? start(stated, *std::move(port)) : port.error();
 }
 
 std::vector<std::int64_t> bit_rates_of(BusKind kind) {

@@ -4,6 +4,7 @@
 #include <tactus/core/result.hpp>
 #include <tactus/devices/motor_link.hpp>
 #include <tactus/devices/plugin/driver_registry.hpp>
+#include <tactus/wire/port.hpp>
 
 #include <array>
 #include <cstddef>
@@ -59,6 +60,13 @@ MotorAbility ability_of(const StatedBus& bus, const StatedMotor& motor);
 /// That the statement is one, before anything is opened. Errors, with the remedy, under `framing`, `bits_per_s`,
 /// `motors` or `motors[i].id`, `.model` and so on.
 Check check(const StatedBus& stated);
+
+/// Opens the port of a bus that has one, which Haply's service does not. Errors: those of `check`; of the port, with
+/// its path as the place.
+Result<wire::Port> open_port(const StatedBus& stated);
+
+/// Begins to drive it at a port that is open.
+Result<std::unique_ptr<MotorLink>> start(const StatedBus& stated, wire::Port port);
 
 /// Begins to drive it: opens the port, and asks. Errors: those of `check`; of the port, with its path as the place; no
 /// thread.

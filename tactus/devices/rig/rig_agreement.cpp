@@ -17,6 +17,7 @@ constexpr const char* remedy = "start both with the same experiment, the same --
 /// Of both arms' sites.
 struct AgreedArms {
   std::string leader, follower;  ///< digests of what is believed of the arms
+  experiments::ToolPoint leader_tool, follower_tool;
   double rate_Hz = 0.0;
   experiments::ArmControlParams control;
   control::SafetyGate::Params leader_gate, follower_gate;
@@ -29,6 +30,8 @@ struct AgreedArms {
     using P = AgreedArms;
     return List{field("arm", &P::leader, "Dynamics of the leader."),
                 field("arm.follower", &P::follower, "The same of the follower."),
+                field("arm.tool", &P::leader_tool, "Where the leader's hand is."),
+                field("arm.follower.tool", &P::follower_tool, "Where the follower touches."),
                 field("servo.rate_Hz", &P::rate_Hz, units::hertz, positive, "Ticks count at both sites."),
                 field("control", &P::control, "Each site takes the other to be its half."),
                 field("rig.leader_gate", &P::leader_gate, "What the leader's motors do at most."),
@@ -90,19 +93,23 @@ RigAgreement RigAgreement::of(const RigSide& side, const control::ControlParams&
 
 RigAgreement RigAgreement::of(const RigSide& side, const experiments::ArmPairSetup& setup) {
   const experiments::ArmRigParams& rig = setup.params.rig;
-  return RigAgreement(std::make_shared<const Values>("arm-tapping", side,
-                                                     AgreedArms{.leader = digest_of(setup.leader.arm.chain),
-                                                                .follower = digest_of(setup.follower.arm.chain),
-                                                                .rate_Hz = setup.params.servo.rate_Hz,
-                                                                .control = setup.params.control,
-                                                                .leader_gate = rig.leader_gate,
-                                                                .follower_gate = rig.follower_gate,
-                                                                .gripper = rig.gripper,
-                                                                .packets = rig.supervision.packets,
-                                                                .silence = rig.supervision.silence,
-                                                                .watchdog = rig.supervision.watchdog,
-                                                                .answer_within_s = rig.supervision.answer_within_s,
-                                                                .blend_s = rig.supervision.blend_s}));
+  const experiments::ArmPairParams& arms = setup.params.arm;
+  return RigAgreement(
+      std::make_shared<const Values>("arm-tapping", side,
+                                     AgreedArms{.leader = digest_of(setup.leader.arm.chain),
+                                                .follower = digest_of(setup.follower.arm.chain),
+                                                .leader_tool = arms.tool,
+                                                .follower_tool = differs(arms) ? arms.follower.tool : arms.tool,
+                                                .rate_Hz = setup.params.servo.rate_Hz,
+                                                .control = setup.params.control,
+                                                .leader_gate = rig.leader_gate,
+                                                .follower_gate = rig.follower_gate,
+                                                .gripper = rig.gripper,
+                                                .packets = rig.supervision.packets,
+                                                .silence = rig.supervision.silence,
+                                                .watchdog = rig.supervision.watchdog,
+                                                .answer_within_s = rig.supervision.answer_within_s,
+                                                .blend_s = rig.supervision.blend_s}));
 }
 
 control::Agreement RigAgreement::agreement() const { return control::agreement_of(values_->all); }

@@ -122,7 +122,7 @@ Check write_offsets(const std::filesystem::path& file, const std::vector<NewOffs
     if (!changed) return changed.error();
     text = *std::move(changed);
   }
-  return report::write_file(file, text);
+  return report::rewrite_file(file, text);
 }
 
 }  // namespace tactus::devices

@@ -20,8 +20,8 @@ struct NewOffset {
 /// where `motor` does not stand on a line of its own.
 Result<std::string> with_offset(std::string_view text, const std::string& name, const NewOffset& offset);
 
-/// Writes these offsets into the file, all or none: a reader sees the old file or the new one. A symbolic link is not
-/// followed. Errors: those of `with_offset`; `missing` for a file that cannot be read; `unwritable`.
+/// Writes these offsets into the file, all or none: a reader sees the old file or the new one, also after a power
+/// failure. The file keeps its mode and its owner. A symbolic link is not followed. Errors: those of `with_offset`; `missing` for a file that cannot be read; `unwritable`.
 Check write_offsets(const std::filesystem::path& file, const std::vector<NewOffset>& offsets);
 
 }  // namespace tactus::devices

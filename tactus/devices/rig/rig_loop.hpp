@@ -42,6 +42,8 @@ class RigLoop {
   bool operator()(const station::Tick& tick) noexcept;
   /// After the last tick.
   [[nodiscard]] const RigTotals& totals() const noexcept { return totals_; }
+  /// The second that had begun, as it stood at the last tick. After it.
+  [[nodiscard]] const RigSecond& last() const noexcept { return second_; }
   /// The seconds that ended, as they end. One other thread.
   [[nodiscard]] std::optional<RigSecond> next_second() noexcept { return next_of(*shared_); }
 

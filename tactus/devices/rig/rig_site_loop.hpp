@@ -45,6 +45,8 @@ class RigSiteLoop {
   bool operator()(const station::Tick& tick) noexcept;
   /// After the last tick.
   [[nodiscard]] const RigTotals& totals() const noexcept { return totals_; }
+  /// The second that had begun, as it stood at the last tick. After it.
+  [[nodiscard]] const RigSecond& last() const noexcept { return second_; }
   [[nodiscard]] runtime::LinkTotals link_totals() const { return link_.totals(); }
   /// The seconds that ended, as they end; of the other side its state as it tells it, and no more. One other thread.
   [[nodiscard]] std::optional<RigSecond> next_second() noexcept { return next_of(*shared_); }

@@ -29,8 +29,8 @@ struct ArmFaultBench {
 /// Reads the URDFs, from `folder` on. Errors: those of `set_up_arm_pair` and `supervise_arms`.
 Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const std::filesystem::path& folder);
 
-/// The plans of a row.
-std::vector<FaultPlan> draw_arm_plans(const FaultRow& row, const ArmFaultBench& bench);
+/// Plan number `index` of a row.
+FaultPlan draw_arm_plan(const FaultRow& row, const ArmFaultBench& bench, std::int64_t index);
 /// Runs one plan. Until a site carries its arm it stands on something. Once the drives of a site have no power its arm
 /// falls, and who clears the fault catches it first: what is promised of places, speeds and energy is promised of an
 /// arm that has power, forces on people always.

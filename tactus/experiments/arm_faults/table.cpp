@@ -1,11 +1,11 @@
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/experiments/faults/presentation.hpp>
-#include <tactus/simulation/parallel.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -78,16 +78,12 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
                        .follower = {*std::move(follower), follower_limits}};
 }
 
-std::vector<FaultPlan> draw_arm_plans(const FaultRow& row, const ArmFaultBench& bench) {
+FaultPlan draw_arm_plan(const FaultRow& row, const ArmFaultBench& bench, std::int64_t index) {
   const ArmTappingParams& params = bench.setup.params;
   control::SafetyGate::Params gate = params.rig.leader_gate;
   gate.encoder.fastest_m_per_s =
       std::max(gate.encoder.fastest_m_per_s, params.rig.follower_gate.encoder.fastest_m_per_s);
-  std::vector<FaultPlan> plans;
-  for (std::int64_t i = 0; i < params.faults.seeds; ++i) {
-    plans.push_back(draw_arm_plan(row.kind, i, params.task.seed, gate, params.servo.rate_Hz, bench.wired_s()));
-  }
-  return plans;
+  return draw_arm_plan(row.kind, index, params.task.seed, gate, params.servo.rate_Hz, bench.wired_s());
 }
 
 std::string_view broken_arm_rule(const FaultRow& row, const FaultPlan& plan, const FaultOutcome& outcome,
@@ -108,23 +104,33 @@ Result<FaultTable> run_arm_faults(const ArmFaultBench& bench, const Progress& pr
   const std::vector<FaultRow> rows = arm_fault_rows(params.faults.only);
   if (rows.empty()) return unknown_row("faults.only", params.faults.only, arm_fault_rows());
   const auto seeds = static_cast<std::size_t>(params.faults.seeds);
-  std::vector<std::vector<FaultPlan>> plans;
-  for (const FaultRow& row : rows) plans.push_back(draw_arm_plans(row, bench));
-  std::vector<std::vector<FaultOutcome>> outcomes(rows.size(), std::vector<FaultOutcome>(seeds));
-  simulation::for_each_in_parallel(
+  struct Run {
+    std::size_t number = 0;
+    FaultPlan plan{.impairment = {}};
+    FaultOutcome outcome;
+  };
+  std::vector<Run> runs;
+  std::optional<FaultTallier> tallier;
+  FaultTable table;
+  run_in_stretches(
       rows.size() * seeds,
-      [&](std::size_t index) {
-        outcomes[index / seeds][index % seeds] = run_arm_fault(bench, plans[index / seeds][index % seeds]);
+      [&](std::size_t first, std::size_t size) {
+        runs.resize(size);
+        for (std::size_t place = 0; place < size; ++place) {
+          const std::size_t number = first + place;
+          runs[place].number = number;
+          runs[place].plan = draw_arm_plan(rows[number / seeds], bench, static_cast<std::int64_t>(number % seeds));
+        }
+      },
+      [&](std::size_t place) { runs[place].outcome = run_arm_fault(bench, runs[place].plan); },
+      [&](std::size_t place) {
+        const Run& run = runs[place];
+        const FaultRow& row = rows[run.number / seeds];
+        if (run.number % seeds == 0) tallier.emplace(row, params.faults.bounds.given_J);
+        tallier->add(run.plan, run.outcome, broken_arm_rule(row, run.plan, run.outcome, params));
+        if ((run.number + 1) % seeds == 0) table.rows.push_back(std::move(*tallier).finish());
       },
       progress);
-  FaultTable table;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    std::vector<std::string_view> broken;
-    for (std::size_t i = 0; i < seeds; ++i) {
-      broken.push_back(broken_arm_rule(rows[row], plans[row][i], outcomes[row][i], params));
-    }
-    table.rows.push_back(tally(rows[row], plans[row], outcomes[row], broken, params.faults.bounds.given_J));
-  }
   return table;
 }
 

@@ -3,7 +3,6 @@
 #include <tactus/report/json.hpp>
 
 #include <algorithm>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -115,18 +114,10 @@ report::Table rule_table(const std::vector<FaultTally>& tallies, const std::stri
 
 /// What the runs that did not survive broke, and the number of the first of them.
 std::string failures_text(const FaultTally& tally) {
-  struct Found {
-    std::int64_t count = 0;
-    std::int64_t first = 0;
-  };
-  std::map<std::string_view, Found> rules;
-  for (const FaultFailure& failure : tally.failures) {
-    ++rules.try_emplace(failure.rule, Found{.first = failure.number}).first->second.count;
-  }
   std::string text;
-  for (const auto& [rule, found] : rules) {
-    text += std::string(tally.row.name) + ": " + std::to_string(found.count) + " not survived: " + std::string(rule) +
-            " (first: number " + std::to_string(found.first) + ").\n";
+  for (const BrokenRule& broken : tally.broken) {
+    text += std::string(tally.row.name) + ": " + std::to_string(broken.count) +
+            " not survived: " + std::string(broken.rule) + " (first: number " + std::to_string(broken.first) + ").\n";
   }
   return text;
 }

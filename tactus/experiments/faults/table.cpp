@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace tactus::experiments {
 
@@ -43,62 +45,58 @@ void add(FaultOutcome& worst, const FaultOutcome& one) {
 
 }  // namespace
 
-std::vector<FaultPlan> draw_plans(const FaultRow& row, const FaultsParams& params) {
-  std::vector<FaultPlan> plans;
-  for (std::int64_t i = 0; i < params.task.seeds; ++i) {
-    plans.push_back(draw_plan(row.kind, i, params.task.seed, params.task.longest_cut_s));
+FaultPlan PlanSource::next() {
+  while (true) {
+    const FaultPlan plan = draw_plan(row_->kind, drawn_++, params_->task.seed, params_->task.longest_cut_s);
+    if (!controls_ || row_->control.shows(plan, *params_)) return plan;
   }
-  return plans;
 }
 
-std::vector<FaultPlan> draw_control_plans(const FaultRow& row, const FaultsParams& params) {
-  if (row.control.shows == nullptr) return draw_plans(row, params);
+std::vector<FaultPlan> draw_plans(const FaultRow& row, const FaultsParams& params) {
+  PlanSource source(row, params, false);
   std::vector<FaultPlan> plans;
-  for (std::int64_t i = 0; static_cast<std::int64_t>(plans.size()) < params.task.seeds; ++i) {
-    const FaultPlan plan = draw_plan(row.kind, i, params.task.seed, params.task.longest_cut_s);
-    if (row.control.shows(plan, params)) plans.push_back(plan);
-  }
+  for (std::int64_t i = 0; i < params.task.seeds; ++i) plans.push_back(source.next());
   return plans;
 }
 
 FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vector<FaultPlan>& plans,
                  const std::vector<FaultOutcome>& outcomes) {
-  std::vector<std::string_view> broken_rules;
+  FaultTallier tallier(row, params.task.diverged_above_J);
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    broken_rules.push_back(broken_rule(row, plans[i], outcomes[i], params));
+    tallier.add(plans[i], outcomes[i], broken_rule(row, plans[i], outcomes[i], params));
   }
-  return tally(row, plans, outcomes, broken_rules, params.task.diverged_above_J);
+  return std::move(tallier).finish();
 }
 
-FaultTally tally(const FaultRow& row, const std::vector<FaultPlan>& plans, const std::vector<FaultOutcome>& outcomes,
-                 const std::vector<std::string_view>& broken_rules, double diverged_above_J) {
-  FaultTally sum{.row = row, .failures = {}, .worst = {}};
-  std::vector<double> stop_s, detection;
-  for (std::size_t i = 0; i < outcomes.size(); ++i) {
-    const FaultOutcome& one = outcomes[i];
-    ++sum.tried;
-    if (const auto rule = broken_rules[i]; rule.empty()) {
-      ++sum.survived;
-    } else {
-      sum.failures.push_back({plans[i].choice, rule});
-    }
-    sum.diverged += one.given_J > diverged_above_J;
-    sum.simulated_s += plans[i].start_s + plans[i].length_s;
-    if (one.stopped) stop_s.push_back(one.time_to_stop_s);
-    if (one.detection_ticks >= 0) detection.push_back(static_cast<double>(one.detection_ticks));
-    add(sum.worst, one);
+void FaultTallier::add(const FaultPlan& plan, const FaultOutcome& outcome, std::string_view rule) {
+  ++sum_.tried;
+  if (rule.empty()) {
+    ++sum_.survived;
+  } else {
+    if (sum_.failures.size() < FaultTally::most_failures) sum_.failures.push_back({plan.choice, rule});
+    const auto place = std::ranges::lower_bound(sum_.broken, rule, {}, &BrokenRule::rule);
+    const bool known = place != sum_.broken.end() && place->rule == rule;
+    ++(known ? place : sum_.broken.insert(place, {.rule = rule, .first = plan.choice}))->count;
   }
-  sum.stopped = static_cast<std::int64_t>(stop_s.size());
-  sum.detected = static_cast<std::int64_t>(detection.size());
-  if (!stop_s.empty()) {
-    sum.time_to_stop_median_s = simulation::quantile(stop_s, 0.5);
-    sum.time_to_stop_most_s = simulation::quantile(stop_s, 1.0);
+  sum_.diverged += outcome.given_J > diverged_above_J_;
+  sum_.simulated_s += plan.start_s + plan.length_s;
+  if (outcome.stopped) stop_s_.push_back(outcome.time_to_stop_s);
+  if (outcome.detection_ticks >= 0) detection_.push_back(static_cast<double>(outcome.detection_ticks));
+  experiments::add(sum_.worst, outcome);
+}
+
+FaultTally FaultTallier::finish() && {
+  sum_.stopped = static_cast<std::int64_t>(stop_s_.size());
+  sum_.detected = static_cast<std::int64_t>(detection_.size());
+  if (!stop_s_.empty()) {
+    sum_.time_to_stop_median_s = simulation::quantile(stop_s_, 0.5);
+    sum_.time_to_stop_most_s = simulation::quantile(stop_s_, 1.0);
   }
-  if (!detection.empty()) {
-    sum.detection_ticks_median = simulation::quantile(detection, 0.5);
-    sum.detection_ticks_most = simulation::quantile(detection, 1.0);
+  if (!detection_.empty()) {
+    sum_.detection_ticks_median = simulation::quantile(detection_, 0.5);
+    sum_.detection_ticks_most = simulation::quantile(detection_, 1.0);
   }
-  return sum;
+  return std::move(sum_);
 }
 
 Error unknown_row(const std::string& key, const std::string& id, const std::vector<FaultRow>& rows) {
@@ -116,6 +114,19 @@ Result<std::vector<FaultRow>> chosen_rows(const FaultsParams& params) {
   return unknown_row("task.only", params.task.only, fault_rows());
 }
 
+void run_in_stretches(std::size_t count, const std::function<void(std::size_t first, std::size_t size)>& prepare,
+                      const std::function<void(std::size_t place)>& run,
+                      const std::function<void(std::size_t place)>& take, const std::function<void(double)>& progress) {
+  for (std::size_t first = 0; first < count; first += most_runs_at_once) {
+    const std::size_t size = std::min(most_runs_at_once, count - first);
+    prepare(first, size);
+    simulation::for_each_in_parallel(size, run, [&](double share) {
+      progress((static_cast<double>(first) + share * static_cast<double>(size)) / static_cast<double>(count));
+    });
+    for (std::size_t place = 0; place < size; ++place) take(place);
+  }
+}
+
 Result<FaultTable> run_faults(const FaultsParams& params, const std::function<void(double)>& progress) {
   if (auto error = validate(params)) return *std::move(error);
   const auto rows = chosen_rows(params);
@@ -124,40 +135,59 @@ Result<FaultTable> run_faults(const FaultsParams& params, const std::function<vo
     const FaultRow& row;
     bool controls;
     simulation::Teleoperator::Params params;
-    std::vector<FaultPlan> plans;
-    std::vector<FaultOutcome> outcomes;
   };
-  const auto seeds = static_cast<std::size_t>(params.task.seeds);
   std::vector<Block> blocks;
   for (const FaultRow& row : *rows) {
-    Block block{row, false, params_of(row, params), draw_plans(row, params), std::vector<FaultOutcome>(seeds)};
+    Block block{row, false, params_of(row, params)};
     // What can be made once can be made always: a plan changes no parameter of the parts.
     FaultPlan nothing{.start_s = 0.0, .impairment = {}};
     if (const auto tried = run_fault(block.params, nothing); !tried) return tried.error();
     blocks.push_back(block);
     if (row.control.switch_off == nullptr) continue;
     block.controls = true;
-    block.plans = draw_control_plans(row, params);
     simulation::Teleoperator::Params off = block.params;
     row.control.switch_off(off, nothing);
     if (const auto tried = run_fault(off, nothing); !tried) return tried.error();
     blocks.push_back(std::move(block));
   }
-  simulation::for_each_in_parallel(
+  const auto seeds = static_cast<std::size_t>(params.task.seeds);
+  struct Run {
+    std::size_t block = 0;
+    FaultPlan plan{.impairment = {}};
+    FaultOutcome outcome;
+  };
+  std::vector<Run> runs;
+  std::size_t drawn = 0, taken = 0;
+  std::optional<PlanSource> source;
+  std::optional<FaultTallier> tallier;
+  FaultTable table;
+  run_in_stretches(
       blocks.size() * seeds,
-      [&](std::size_t index) {
-        Block& block = blocks[index / seeds];
-        const std::size_t i = index % seeds;
+      [&](std::size_t /*first*/, std::size_t size) {
+        runs.resize(size);
+        for (Run& run : runs) {
+          run.block = drawn / seeds;
+          const Block& block = blocks[run.block];
+          if (drawn++ % seeds == 0) source.emplace(block.row, params, block.controls);
+          run.plan = source->next();
+        }
+      },
+      [&](std::size_t place) {
+        Run& run = runs[place];
+        const Block& block = blocks[run.block];
         simulation::Teleoperator::Params of = block.params;
-        FaultPlan plan = block.plans[i];
+        FaultPlan plan = run.plan;
         if (block.controls) block.row.control.switch_off(of, plan);
-        block.outcomes[i] = run_fault(of, plan).value();
+        run.outcome = run_fault(of, plan).value();
+      },
+      [&](std::size_t place) {
+        const Run& run = runs[place];
+        const Block& block = blocks[run.block];
+        if (taken++ % seeds == 0) tallier.emplace(block.row, params.task.diverged_above_J);
+        tallier->add(run.plan, run.outcome, broken_rule(block.row, run.plan, run.outcome, params));
+        if (taken % seeds == 0) (block.controls ? table.controls : table.rows).push_back(std::move(*tallier).finish());
       },
       progress);
-  FaultTable table;
-  for (const Block& block : blocks) {
-    (block.controls ? table.controls : table.rows).push_back(tally(block.row, params, block.plans, block.outcomes));
-  }
   return table;
 }
 

@@ -18,7 +18,17 @@ struct FaultFailure {
   std::string_view rule;    ///< that it broke
 };
 
+/// How many runs of a row broke a rule, and the number of the first of them.
+struct BrokenRule {
+  std::string_view rule;
+  std::int64_t count = 0;
+  std::int64_t first = 0;
+};
+
 struct FaultTally {
+  /// Failures that are listed one by one; of more only the counts are kept.
+  static constexpr std::size_t most_failures = 1000;
+
   FaultRow row;
   std::int64_t tried = 0;
   std::int64_t survived = 0;
@@ -26,8 +36,9 @@ struct FaultTally {
   std::int64_t stopped = 0;
   std::int64_t detected = 0;
   double simulated_s = 0.0;
-  std::vector<FaultFailure> failures;
-  FaultOutcome worst{};  ///< sums of the counts, largest of the rest
+  std::vector<FaultFailure> failures;  ///< the first `most_failures`
+  std::vector<BrokenRule> broken;      ///< of all failures, by rule in alphabetical order
+  FaultOutcome worst{};                ///< sums of the counts, largest of the rest
   double time_to_stop_median_s = 0.0;
   double time_to_stop_most_s = 0.0;
   double detection_ticks_median = 0.0;
@@ -37,16 +48,42 @@ struct FaultTally {
   [[nodiscard]] bool fails() const { return 2 * survived <= tried; }
 };
 
-/// The plans of a row.
-std::vector<FaultPlan> draw_plans(const FaultRow& row, const FaultsParams& params);
-/// Those of its control: as many, the first that can show what is switched off.
-std::vector<FaultPlan> draw_control_plans(const FaultRow& row, const FaultsParams& params);
+/// The plans of a row, one after the other: a table never holds all of them.
+class PlanSource {
+ public:
+  /// With `controls` those of its control: the first that can show what is switched off.
+  PlanSource(const FaultRow& row, const FaultsParams& params, bool controls)
+      : row_(&row), params_(&params), controls_(controls && row.control.shows != nullptr) {}
+  FaultPlan next();
 
-/// What came of the runs of a row, one outcome for each plan, and the rule that each broke, in words, empty where it
-/// survived. A run `diverged` in which the master gave more energy than this.
-FaultTally tally(const FaultRow& row, const std::vector<FaultPlan>& plans, const std::vector<FaultOutcome>& outcomes,
-                 const std::vector<std::string_view>& broken_rules, double diverged_above_J);
-/// The same of the rules of `params`.
+ private:
+  const FaultRow* row_;
+  const FaultsParams* params_;
+  bool controls_;
+  std::int64_t drawn_ = 0;
+};
+
+/// All plans of a row.
+std::vector<FaultPlan> draw_plans(const FaultRow& row, const FaultsParams& params);
+
+/// Adds the runs of a row up, in the order of their plans. What it keeps of a run is at most two numbers.
+class FaultTallier {
+ public:
+  /// A run `diverged` in which the master gave more energy than this.
+  FaultTallier(const FaultRow& row, double diverged_above_J)
+      : sum_{.row = row, .failures = {}, .broken = {}, .worst = {}}, diverged_above_J_(diverged_above_J) {}
+  /// `rule` is the one that the run broke, empty where it survived.
+  void add(const FaultPlan& plan, const FaultOutcome& outcome, std::string_view rule);
+  /// After the last run.
+  FaultTally finish() &&;
+
+ private:
+  FaultTally sum_;
+  double diverged_above_J_;
+  std::vector<double> stop_s_, detection_;
+};
+
+/// What came of the runs of a row, one outcome for each plan, by the rules of `params`.
 FaultTally tally(const FaultRow& row, const FaultsParams& params, const std::vector<FaultPlan>& plans,
                  const std::vector<FaultOutcome>& outcomes);
 
@@ -60,6 +97,14 @@ struct FaultTable {
 Error unknown_row(const std::string& key, const std::string& id, const std::vector<FaultRow>& rows);
 /// The rows that `params` ask for, or an error that names `task.only`.
 Result<std::vector<FaultRow>> chosen_rows(const FaultsParams& params);
+
+/// Runs `count` items in parallel, at most `most_runs_at_once` at a time, so that memory does not grow with the count:
+/// `prepare(first, size)` makes ready what `run(place)` does for each place below `size`, and `take(place)` adds it up,
+/// in order, on this thread.
+inline constexpr std::size_t most_runs_at_once = 4096;
+void run_in_stretches(std::size_t count, const std::function<void(std::size_t first, std::size_t size)>& prepare,
+                      const std::function<void(std::size_t place)>& run,
+                      const std::function<void(std::size_t place)>& take, const std::function<void(double)>& progress);
 
 /// Runs the rows and their controls in virtual time on all cores; equal parameters give equal results, however many
 /// cores there are. Errors: what cannot be simulated.

@@ -34,6 +34,8 @@ class Handshaker {
   /// Whether the server waits for a message as a proof that the client has its keys. Then `prove` may be given some.
   [[nodiscard]] bool wants_proof() const noexcept { return shaken_; }
   std::unique_ptr<Connection> prove(std::span<const std::byte> record);
+  /// One greeting that answers nobody, by which who has another key or none can see that there is a site.
+  void show_itself() { frames_.send(own_, 0); }
   /// Whether hands are being shaken.
   [[nodiscard]] bool busy() const noexcept { return server_ ? pending_ != nullptr : own_ != 0; }
 

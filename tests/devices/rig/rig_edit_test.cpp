@@ -6,8 +6,10 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <tests/devices/rig/rig_files.hpp>
 #include <tests/scratch_path.hpp>
+#include <unistd.h>
 
 namespace tactus::devices {
 namespace rig_edit_test {
@@ -72,6 +74,30 @@ TEST(RigEdit, AFileIsReplacedWholeAndALinkIsNotFollowed) {
   std::ostringstream untouched;
   untouched << std::ifstream(file).rdbuf();
   EXPECT_EQ(untouched.str(), content.str());
+  std::filesystem::remove_all(folder);
+}
+
+TEST(RigEdit, AFileKeepsItsModeAndItsOwner) {
+  const auto folder = scratch_path();
+  std::filesystem::create_directories(folder);
+  const auto file = folder / "rig.toml";
+  std::ofstream(file) << damiao_side("arm.leader", "/dev/a") + joint("arm.leader.elbow", 1, "DM4310");
+  // Who is not the superuser can give a file to nobody else.
+  constexpr uid_t other = 12345;
+  const bool gives = geteuid() == 0;
+  for (const mode_t mode : {0600U, 0640U, 0444U}) {
+    if (gives) {
+      ASSERT_EQ(chown(file.c_str(), other, other), 0);
+    }
+    ASSERT_EQ(chmod(file.c_str(), mode), 0);
+    const Check wrong = write_offsets(file, {{"arm.leader.elbow", 0.5}});
+    ASSERT_FALSE(wrong) << describe(*wrong);
+    struct stat status {};
+    ASSERT_EQ(stat(file.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 07777U, mode);
+    EXPECT_EQ(status.st_uid, gives ? other : geteuid());
+  }
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1) << "no temporary file is left";
   std::filesystem::remove_all(folder);
 }
 

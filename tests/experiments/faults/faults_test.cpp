@@ -3,11 +3,15 @@
 #include <tactus/experiments/faults/witness.hpp>
 #include <tactus/simulation/bad_number.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <set>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -159,6 +163,54 @@ TEST(Faults, ARunThatDoesNotSurviveIsNamedWithTheRuleThatItBroke) {
   EXPECT_EQ(sum.failures[0].rule, "a stale packet was applied");
   EXPECT_EQ(sum.failures[1].rule, "tripped on clean data");
   EXPECT_EQ(sum.failures[2].rule, "a device left its workspace");
+}
+
+TEST(Faults, OfManyFailuresTheFirstAreListedAndAllAreCounted) {
+  const FaultRow row = fault_rows().front();
+  FaultTallier tallier(row, 0.25);
+  const FaultPlan plan{.impairment = {}};
+  for (std::int64_t i = 0; i < 5000; ++i) {
+    FaultPlan numbered = plan;
+    numbered.choice = i;
+    tallier.add(numbered, {}, i % 2 == 0 ? "stayed" : "fell");
+  }
+  const FaultTally sum = std::move(tallier).finish();
+  EXPECT_EQ(sum.tried, 5000);
+  EXPECT_EQ(sum.survived, 0);
+  ASSERT_EQ(sum.failures.size(), 1000U);
+  EXPECT_EQ(sum.failures.back().number, 999);
+  ASSERT_EQ(sum.broken.size(), 2U);
+  EXPECT_EQ(sum.broken[0].rule, "fell");
+  EXPECT_EQ(sum.broken[0].count, 2500);
+  EXPECT_EQ(sum.broken[0].first, 1);
+  EXPECT_EQ(sum.broken[1].rule, "stayed");
+  EXPECT_EQ(sum.broken[1].first, 0);
+}
+
+/// However many runs there are, memory is that of a stretch of them.
+TEST(Faults, RunsAreMadeReadyInStretchesAndAddedUpInOrder) {
+  constexpr std::size_t count = 2 * most_runs_at_once + 7;
+  std::vector<std::size_t> numbers, results, taken;
+  std::size_t largest = 0;
+  double last = 0.0;
+  run_in_stretches(
+      count,
+      [&](std::size_t first, std::size_t size) {
+        largest = std::max(largest, size);
+        numbers.resize(size);
+        results.assign(size, 0);
+        for (std::size_t place = 0; place < size; ++place) numbers[place] = first + place;
+      },
+      [&](std::size_t place) { results[place] = 3 * numbers[place]; },
+      [&](std::size_t place) { taken.push_back(results[place]); },
+      [&](double share) {
+        EXPECT_GE(share, last);
+        last = share;
+      });
+  EXPECT_EQ(largest, most_runs_at_once);
+  EXPECT_EQ(last, 1.0);
+  ASSERT_EQ(taken.size(), count);
+  for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(taken[i], 3 * i);
 }
 
 TEST(Faults, TicksThatTheMachineMissesAreAStallOfBothSites) {
