@@ -52,7 +52,7 @@ LEADER_FIRST = (r"\b[Mm]asters?\b|\b[Ss]laves?\b", "leader, follower", "the mast
 
 # Pages that are written in the words of the field. This list only grows.
 CHECKED = """
-README.md CODE_OF_CONDUCT.md docs/README.md docs/glossary.md docs/versioning.md docs/tutorial/first-hour.md
+README.md CODE_OF_CONDUCT.md docs/README.md docs/glossary.md docs/versioning.md docs/tutorial/first-hour.md docs/tutorial/two-arms.md
 docs/how-to/my-arm-buzzes.md docs/how-to/compare-methods.md docs/how-to/openarm.md docs/how-to/yam.md
 docs/how-to/gello.md docs/how-to/so101.md docs/how-to/dynamixel-servos.md docs/how-to/feetech-servos.md
 docs/how-to/inverse3.md docs/how-to/damiao-motors.md docs/how-to/how-much-gain-is-safe.md docs/how-to/diagnose.md
