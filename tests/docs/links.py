@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Fails where a link between pages leads nowhere, where docs/README.md does not list a page, and where README.md is longer than
-a page (900 words, as `wc -w` counts them)."""
+"""Fails where a link between pages leads nowhere, where docs/README.md does not list a page, where README.md is longer than
+a page (900 words, as `wc -w` counts them), and where CITATION.cff has another version than the project."""
 import os
 import re
 import sys
@@ -70,6 +70,9 @@ def main():
     words = len(texts[Path("README.md")].split())
     if words > LONGEST_README:
         problems.append(f"README.md has {words} words, more than {LONGEST_README}: move what newcomers do not need to a page of docs")
+    version = re.search(r"project\(tactus VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text())[1]
+    if f"\nversion: {version}\n" not in (root / "CITATION.cff").read_text():
+        problems.append(f"CITATION.cff: the version is not {version}, as in CMakeLists.txt")
     print("\n".join(problems) or f"{len(pages)} pages, README.md of {words} words.")
     return 1 if problems else 0
 

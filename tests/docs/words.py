@@ -36,14 +36,14 @@ RULES = [
     (r"\bwish(?:es|ed)?\b", "request, operator input", "the wish of the operator", "the wash"),
     (r"\bverbs?\b", "command, subcommand", "the verbs of tactus", "verbose"),
     (r"\bpatience\b", "timeout", "its patience is over", "patients"),
-    (r"\bends? at \d", "limited to", "a display that ends at 1 N", "ends at the wall"),
+    (r"\b(?:displays?|force|forces|that) ends? at \d", "limited to", "a display that ends at 1 N", "it ends at 6.2 mm"),
     (r"\bticks?\b", "control cycle", "once a tick", "sticks"),
     (r"\bstations?\b", "control loop", "the station of a site", "stationary"),
     (r"\bonlookers?\b|\blooks? on\b", "observers (log, live page, ROS 2)", "those who look on", "look at it"),
     (r"\bmisfits?\b|\b(?:keep|keeps|these|the) books\b|\bbelie(?:f|fs|ve|ves|ved)\b|\bpassages?\b",
      "mismatch, counters, model parameters, text blocks", "what the model believes", "a bookmark"),
     (r"\bbearable\b", "admissible force", "the bearable force", "bear a gain"),
-    (r"\b(?:soft|softer|firm|firmer) (?:hand|hands|one)\b", "light grip, firm grip", "with a soft hand", "a firm grip"),
+    (r"\b(?:(?:soft|softer|firm|firmer) hands?|soft one)\b", "light grip, firm grip", "with a soft hand", "a firm one"),
     (r"\b(?:is|are|has|have|be) none\b|\bno number\b|\bnothing of it\b", "is not a number, has not been", "nothing of it was tried", "none settles"),
     (r"\bon (?:the )?metal\b", "on hardware", "not tried on metal", "a metal wall"),
 ]
@@ -53,26 +53,26 @@ LEADER_FIRST = (r"\b[Mm]asters?\b|\b[Ss]laves?\b", "leader, follower", "the mast
 # Pages that are written in the words of the field. This list only grows.
 CHECKED = """
 README.md CODE_OF_CONDUCT.md docs/README.md docs/glossary.md docs/versioning.md docs/tutorial/first-hour.md
-docs/how-to/my-arm-buzzes.md docs/how-to/compare-methods.md docs/how-to/openarm.md docs/how-to/yam.md
-docs/how-to/gello.md docs/how-to/so101.md docs/how-to/dynamixel-servos.md docs/how-to/feetech-servos.md
-docs/how-to/inverse3.md docs/how-to/damiao-motors.md docs/how-to/how-much-gain-is-safe.md docs/how-to/diagnose.md
-docs/how-to/your-own-device.md docs/how-to/ros2.md docs/how-to/live-page.md docs/how-to/live-view.md
-docs/how-to/plug-in-your-own.md docs/how-to/two-hosts.md docs/how-to/real-time.md docs/how-to/advise.md
-docs/how-to/combinations.md
+docs/tutorial/two-arms.md docs/how-to/my-arm-buzzes.md docs/how-to/compare-methods.md docs/how-to/openarm.md
+docs/how-to/yam.md docs/how-to/gello.md docs/how-to/so101.md docs/how-to/dynamixel-servos.md
+docs/how-to/feetech-servos.md docs/how-to/inverse3.md docs/how-to/damiao-motors.md
+docs/how-to/how-much-gain-is-safe.md docs/how-to/diagnose.md docs/how-to/your-own-device.md docs/how-to/ros2.md
+docs/how-to/live-page.md docs/how-to/live-view.md docs/how-to/plug-in-your-own.md docs/how-to/two-hosts.md
+docs/how-to/real-time.md docs/how-to/advise.md docs/how-to/combinations.md CONTRIBUTING.md SECURITY.md
+docs/theory/induced-master-motion.md docs/theory/stability.md docs/theory/rivals.md docs/theory/contest.md
+docs/theory/cancellation-models.md docs/theory/force-estimators.md docs/theory/hand-force.md
+docs/theory/frequency-responses.md docs/theory/signal-prediction.md docs/theory/operator-impedance.md
+docs/theory/sensorless-teleoperation.md docs/theory/quick-identification.md docs/theory/diagnosis.md
+docs/theory/servo-hydraulic-slave.md docs/theory/couplings.md docs/theory/four-channel.md docs/theory/simulation.md
+docs/theory/maps.md docs/theory/passivity.md docs/theory/successive-isolation.md docs/validation.md
+docs/theory/arm-margins.md docs/how-to/add-an-element.md docs/how-to/add-an-experiment.md docs/theory/arms.md
+docs/theory/changing-grip.md docs/how-to/identify-your-master.md
 """.split()
 
 # Pages that have yet to be rewritten. This list only shrinks.
 NOT_YET = """
-CONTRIBUTING.md SECURITY.md docs/architecture.md docs/validation.md docs/how-to/add-an-element.md
-docs/how-to/add-an-experiment.md docs/how-to/faults.md docs/how-to/identify-an-arm.md
-docs/how-to/identify-from-a-recording.md docs/how-to/identify-your-master.md docs/how-to/logs.md docs/how-to/rigs.md
-docs/theory/arm-margins.md docs/theory/arms.md docs/theory/cancellation-models.md docs/theory/changing-grip.md
-docs/theory/contest.md docs/theory/couplings.md docs/theory/diagnosis.md docs/theory/force-estimators.md
-docs/theory/four-channel.md docs/theory/frequency-responses.md docs/theory/hand-force.md
-docs/theory/induced-master-motion.md docs/theory/maps.md docs/theory/operator-impedance.md docs/theory/passivity.md
-docs/theory/quick-identification.md docs/theory/rivals.md docs/theory/safety.md
-docs/theory/sensorless-teleoperation.md docs/theory/servo-hydraulic-slave.md docs/theory/signal-prediction.md
-docs/theory/simulation.md docs/theory/stability.md docs/theory/successive-isolation.md
+docs/reference/wire-format.md docs/architecture.md docs/how-to/faults.md docs/how-to/identify-an-arm.md
+docs/how-to/identify-from-a-recording.md docs/how-to/logs.md docs/how-to/rigs.md docs/theory/safety.md
 """.split()
 
 # (page, word as it is found, why it may stay)
@@ -127,7 +127,8 @@ def broken_rules():
 def pages_there():
     folders = ["docs", "docs/how-to", "docs/theory", "docs/tutorial"]
     pages = {str(p.relative_to(root)) for folder in folders for p in (root / folder).glob("*.md")}
-    return pages | {p.name for p in root.glob("*.md")} - {"CHANGELOG.md"}
+    by_hand = {"docs/reference/wire-format.md"}  # the rest of the reference is what the command prints
+    return pages | by_hand | {p.name for p in root.glob("*.md")} - {"CHANGELOG.md"}
 
 
 def main():
