@@ -2,6 +2,7 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/identification/refusal.hpp>
 #include <tactus/recording/recording.hpp>
+#include <tactus/recording/time_base.hpp>
 
 #include <algorithm>
 #include <array>
@@ -24,10 +25,11 @@ struct ArmUnit {
   double factor;
 };
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr std::array arm_position_units{ArmUnit{"", 1.0}, ArmUnit{"rad", 1.0}, ArmUnit{"deg", degree},
-                                        ArmUnit{"m", 1.0}, ArmUnit{"mm", 1e-3}};
-constexpr std::array arm_velocity_units{ArmUnit{"", 1.0}, ArmUnit{"rad/s", 1.0}, ArmUnit{"deg/s", degree},
-                                        ArmUnit{"m/s", 1.0}, ArmUnit{"mm/s", 1e-3}};
+constexpr std::array arm_position_units{ArmUnit{"", 1.0},     ArmUnit{"rad", 1.0}, ArmUnit{"deg", degree},
+                                        ArmUnit{"m", 1.0},    ArmUnit{"cm", 1e-2}, ArmUnit{"mm", 1e-3},
+                                        ArmUnit{"mrad", 1e-3}};
+constexpr std::array arm_velocity_units{ArmUnit{"", 1.0},    ArmUnit{"rad/s", 1.0}, ArmUnit{"deg/s", degree},
+                                        ArmUnit{"m/s", 1.0}, ArmUnit{"cm/s", 1e-2}, ArmUnit{"mm/s", 1e-3}};
 
 Error at_file(Error error, const std::filesystem::path& file) {
   if (error.place.empty()) error.place = file.string();
@@ -111,49 +113,48 @@ std::vector<std::string> names_of(const std::vector<Column>& columns) {
 
 Result<ArmRecording> read_arm(const std::filesystem::path& file, const ArmColumns& columns,
                               const std::vector<std::string>& joints) {
-  std::vector<std::string> choices{columns.time, columns.position, columns.effort};
+  auto times = recording::read_times(file, columns.time, columns.time_unit);
+  if (!times) return at_file(times.error(), file);
+  std::vector<std::string> choices{columns.position, columns.effort};
   if (!columns.velocity.empty()) choices.push_back(columns.velocity);
   auto lists = recording::read_columns(file, choices);
   if (!lists) return at_file(lists.error(), file);
-  std::vector<Column>& times = (*lists)[0];
-  std::vector<Column>& positions = (*lists)[1];
-  std::vector<Column>& efforts = (*lists)[2];
+  std::vector<Column>& positions = (*lists)[0];
+  std::vector<Column>& efforts = (*lists)[1];
   Check wrong = check_count(positions, joints.size(), "position");
   if (!wrong) wrong = check_count(efforts, joints.size(), "effort");
-  if (!wrong && !columns.velocity.empty()) wrong = check_count((*lists)[3], joints.size(), "velocity");
-  if (!wrong && times.size() != 1) {
-    wrong = inconsistent("time", "--time names " + std::to_string(times.size()) + " columns; name one");
-  }
+  if (!wrong && !columns.velocity.empty()) wrong = check_count((*lists)[2], joints.size(), "velocity");
+  const std::vector<double>& time_s = times->since_first_s;
   for (const auto& list : *lists) {
     for (const Column& column : list) {
-      if (wrong || column.values.size() == times[0].values.size()) continue;
+      if (wrong || column.values.size() == time_s.size()) continue;
       wrong = inconsistent("'" + column.name + "' has " + std::to_string(column.values.size()) +
-                           " samples where the times are " + std::to_string(times[0].values.size()));
+                           " samples where the times are " + std::to_string(time_s.size()));
     }
   }
   if (!wrong) wrong = into_si(positions, arm_position_units, "position");
-  if (!wrong && !columns.velocity.empty()) wrong = into_si((*lists)[3], arm_velocity_units, "velocity");
+  if (!wrong && !columns.velocity.empty()) wrong = into_si((*lists)[2], arm_velocity_units, "velocity");
   if (wrong) return at_file(*std::move(wrong), file);
-  const Result<double> second = recording::seconds_in(times[0], file);
-  if (!second) return at_file(second.error(), file);
-
-  std::vector<double>& time_s = times[0].values;
-  const double first = time_s.front();
-  // Times since 1970 have few digits left behind the point.
-  for (double& t : time_s) t = (t - first) * *second;
   if (Check bad = check_times(time_s)) return at_file(*std::move(bad), file);
   const double step_s = time_s.back() / static_cast<double>(time_s.size() - 1);
+  if (Check bad = recording::check_step(step_s, times->unit_stated)) return at_file(*std::move(bad), file);
+  for (std::size_t i = 0; lists->size() > 2 && i < positions.size(); ++i) {
+    const Column& velocity = (*lists)[2][i];
+    if (const auto factor = recording::step_is_too_long_by(positions[i].values, velocity.values, step_s)) {
+      return at_file(recording::contradicted_by_velocity(velocity.name, *factor, step_s), file);
+    }
+  }
   ArmRecording result{.file = file,
                       .position_names = names_of(positions),
                       .effort_names = names_of(efforts),
                       .effort_unit = efforts.front().unit,
-                      .start_s = first * *second,
+                      .start_s = times->first_s,
                       .sample_time = Seconds{step_s}};
   const Steps steps{.first_s = time_s.front(), .step_s = step_s, .count = time_s.size()};
   for (const Column& c : positions) result.position.push_back(at_equal_steps(time_s, c.values, steps));
   for (const Column& c : efforts) result.effort.push_back(at_equal_steps(time_s, c.values, steps));
   if (!columns.velocity.empty()) {
-    for (const Column& c : (*lists)[3]) result.velocity.push_back(at_equal_steps(time_s, c.values, steps));
+    for (const Column& c : (*lists)[2]) result.velocity.push_back(at_equal_steps(time_s, c.values, steps));
   }
   return result;
 }

@@ -13,6 +13,7 @@ namespace tactus::arm_identification {
 /// Which columns of a recording are what: choices as `recording::read_columns` takes them.
 struct ArmColumns {
   std::string time = {};
+  std::string time_unit = {};  ///< s, ms, us or ns, instead of what the file says; empty: as the file says
   std::string position = {};
   std::string velocity = {};  ///< empty: from the positions
   std::string effort = {};    ///< torques or motor currents
@@ -40,8 +41,9 @@ struct ArmRecording {
 /// onto one with the mean step. Positions may be in rad or deg (m or mm), velocities in the same a second.
 ///
 /// Errors: those of `recording::read_columns`; `inconsistent` for another number of columns than of joints, for columns
-/// of different length, for times that do not increase, and for a pause longer than ten steps and 30 ms; `wrong_type`
-/// for a unit that fits no position or velocity. Not real-time safe.
+/// of different length, for times that do not increase or that contradict the measured velocities by a thousand, and
+/// for a pause longer than ten steps and 30 ms; `out_of_bounds` for times in which no arm is recorded; `wrong_type` for
+/// a unit that fits no position or velocity. Not real-time safe.
 Result<ArmRecording> read_arm(const std::filesystem::path& file, const ArmColumns& columns,
                               const std::vector<std::string>& joints);
 

@@ -1,3 +1,4 @@
+#include <tactus/arm_identification/bag_recording.hpp>
 #include <tactus/arm_identification/rig_log.hpp>
 #include <tactus/control/packet.hpp>
 #include <tactus/core/parameters.hpp>
@@ -144,9 +145,15 @@ Result<std::vector<ArmRecording>> read_rig_log(const std::string& file, const st
   if (!site) return site.error();
   const std::vector<std::string> of_rig = rig_joints(site->summary);
   const auto* state = site->tables.empty() ? nullptr : column(site->tables.front(), "state");
+  if (of_rig.empty() && site->tables.empty()) {
+    auto of_bag = read_bag_arm(file, joints);
+    if (of_bag) return std::vector{*std::move(of_bag)};
+    if (of_bag.error().code != ErrorCode::missing) return of_bag.error();
+  }
   if (of_rig.empty() || state == nullptr) {
     return wrong(ErrorCode::missing,
-                 "this is no log of a rig whose joints have names: leave one with 'tactus run ... --realtime --device "
+                 "this is no ROS 2 bag with joint states, and no log of a rig whose joints have names: leave one with "
+                 "'tactus run ... --realtime --device "
                  "RIG.toml --out DIR'",
                  file);
   }

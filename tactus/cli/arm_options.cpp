@@ -1,6 +1,7 @@
 #include <tactus/arm_identification/rig_log.hpp>
 #include <tactus/cli/arm_options.hpp>
 
+#include <iostream>
 #include <tuple>
 #include <utility>
 
@@ -19,6 +20,7 @@ std::string joined_by_commas(const std::vector<std::string>& words) {
 
 arm_identification::ArmColumns ArmOptions::columns() const {
   return {.time = joined_by_commas(time),
+          .time_unit = time_unit,
           .position = joined_by_commas(position),
           .velocity = joined_by_commas(velocity),
           .effort = joined_by_commas(effort)};
@@ -59,7 +61,11 @@ Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options) {
     return error;
   }
   auto arm = urdf::read(options.file, options.tip);
-  if (arm) arm->params.gravity = gravity;
+  if (!arm) return arm;
+  for (const auto* warnings : {&arm->warnings, &arm->doubtful_limits}) {
+    for (const std::string& warning : *warnings) std::cerr << "Warning: " << warning << "\n";
+  }
+  arm->params.gravity = gravity;
   return arm;
 }
 
@@ -77,7 +83,10 @@ void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& com
   const auto add = [&](const char* name, std::vector<std::string>& into, const char* help) {
     return verb.add_option(name, into, help)->type_name("COLUMNS")->allow_extra_args(false);
   };
-  add("--time", options.time, "Column of the times of a table: its name, or its number from 1");
+  add("--time", options.time, "Column of the times of a table: its name, its number from 1, or two as sec,nanosec");
+  verb.add_option("--time-unit", options.time_unit, "Unit of the times, where the file does not state it")
+      ->type_name("UNIT")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
   add("--position", options.position, "Columns of the positions: q1,q2,... or a range as q1:q6 or 2:7");
   add("--velocity", options.velocity, "Columns of the velocities; without it, from the positions");
   add("--effort", options.effort, "Columns of the motors' torques or currents");

@@ -17,6 +17,7 @@ namespace tactus::cli {
 
 struct ArmOptions {
   std::vector<std::string> time, position, velocity, effort;
+  std::string time_unit;
   OutputOptions output;
 
   /// An option that is given more than once names more columns.

@@ -1,5 +1,8 @@
 #include <tactus/cli/axis_options.hpp>
 
+#include <iostream>
+#include <string>
+
 #include <CLI/CLI.hpp>
 
 namespace tactus::cli {
@@ -12,7 +15,10 @@ void add_axis_options(CLI::App& verb, AxisOptions& options, const std::string& c
   verb.add_option("--force", roles.force, "Column of the actuator's force or torque")->type_name("NAME");
   verb.add_option("--external", roles.external, "Column of another force that drives the axis, as a hand's; added")
       ->type_name("NAME");
-  verb.add_option("--time", roles.time, "Column of the times")->type_name("NAME");
+  verb.add_option("--time", roles.time, "Column of the times, or two as sec,nanosec")->type_name("NAME");
+  verb.add_option("--time-unit", roles.time_unit, "Unit of the times, where the file does not state it")
+      ->type_name("UNIT")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
   verb.add_option("--sample-time-s", roles.sample_time_s, "Time between samples, where the file has none")
       ->type_name("S");
   verb.add_option("--position-sign", roles.position_sign, "-1 turns the position round")
@@ -29,7 +35,10 @@ Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool
   identification::AxisRoles roles = options.roles;
   roles.file = options.file;
   auto axis = identification::read_axis(roles, needs_measured);
-  if (axis) return axis;
+  if (axis) {
+    for (const std::string& note : axis->notes) std::cerr << "Note: " << note << "\n";
+    return axis;
+  }
   Error error = axis.error();
   if (error.place.empty()) error.place = options.file;
   return error;

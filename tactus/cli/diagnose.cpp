@@ -46,13 +46,13 @@ void add_diagnose(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<DiagnoseOptions>();
   CLI::App* verb = app.add_subcommand("diagnose", "Why does it shake? Oscillations in a recording, and their loop");
   verb->add_option("RECORDING", options->file,
-                   "Recording: .csv, .tsv, .txt, .mat (version 5), or a log of ours (.mcap)")
+                   "Recording: .csv, .tsv, .txt, .mat (version 5), a log of tactus or a ROS 2 bag (.mcap)")
       ->required();
   for (const diagnosis::Role role : diagnosis::all_roles) {
     const auto index = static_cast<std::size_t>(role);
     const std::string words(diagnosis::words_of(role));
     verb->add_option(diagnosis::option_of(role), options->roles.names[index],
-                     "Column of the " + words + "; in a MATLAB file NAME:COLUMN")
+                     "Column of the " + words + "; in a MATLAB file NAME:COLUMN, in a bag TOPIC/JOINT.position")
         ->type_name("NAME");
   }
   for (const diagnosis::Role role : diagnosis::all_roles) {
@@ -62,7 +62,12 @@ void add_diagnose(CLI::App& app, const std::string& command, int& status) {
         ->type_name("SIGN")
         ->check(CLI::IsMember({-1.0, 1.0}));
   }
-  verb->add_option("--time", options->roles.time, "Column of the times")->type_name("NAME");
+  verb->add_option("--joint", options->roles.joint, "Joint of a ROS 2 bag; without it, the one that moves most roughly")
+      ->type_name("NAME");
+  verb->add_option("--time", options->roles.time, "Column of the times, or two as sec,nanosec")->type_name("NAME");
+  verb->add_option("--time-unit", options->roles.time_unit, "Unit of the times, where the file does not state it")
+      ->type_name("UNIT")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
   verb->add_option("--sample-time-s", options->roles.sample_time_s, "Time between samples, where the file has none")
       ->type_name("S");
   add_output_options(*verb, options->results, command, "Folder for report.html and results.json");

@@ -27,7 +27,7 @@ struct DamiaoOptions {
   std::string framing = name_of(AdapterType::usb2can);
   std::vector<std::string> faults;
   std::uint64_t seed = 1;
-  std::string arm;
+  std::string arm, tip;
   std::vector<double> armature_kg_m2{0.01};
   std::vector<double> held_rad;
   std::vector<double> led;
@@ -40,7 +40,7 @@ Error wrong(const char* option, std::string message) {
 /// The arm that its motors move; null where each moves a joint of its own.
 Result<std::unique_ptr<emulation::EmulatedArm>> make_arm(const DamiaoOptions& options) {
   if (options.arm.empty()) return std::unique_ptr<emulation::EmulatedArm>();
-  auto read = urdf::read(options.arm);
+  auto read = urdf::read(options.arm, options.tip);
   if (!read) return read.error();
   emulation::EmulatedArm::Settings settings{.chain = std::move(read->params)};
   const std::size_t joints = settings.chain.joints.size();
@@ -124,6 +124,9 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
                                      "An arm with its weight, which the first motors move together; the others each "
                                      "turn a joint of their own. It hangs, and without power it falls")
                          ->type_name("URDF");
+  verb.add_option("--tip", options->tip, "Link at which that arm ends, where the URDF goes on or branches")
+      ->type_name("LINK")
+      ->needs(arm);
   verb.add_option("--armature", options->armature_kg_m2,
                   "Inertia of each motor's rotor at its joint, in kg m², with commas between; the last one goes on")
       ->delimiter(',')

@@ -3,6 +3,7 @@
 #include <tactus/core/version.hpp>
 #include <tactus/identification/frequency_response.hpp>
 #include <tactus/recording/recording.hpp>
+#include <tactus/recording/time_base.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/text.hpp>
@@ -31,7 +32,7 @@ using identification::InputOutput;
 
 struct FrfOptions {
   std::vector<std::string> files;
-  std::string input, output, time;
+  std::string input, output, time, time_unit;
   std::optional<double> sample_time_s;
   std::string method = "h1";
   std::optional<std::int64_t> segment_samples;
@@ -59,7 +60,7 @@ Error inconsistent(std::string message, std::string place) {
 
 /// `NAME` or `NAME:COLUMN`, the column counted from 1.
 recording::Source source_of(const FrfOptions& options, const std::string& file, const std::string& column) {
-  recording::Source source{.file = file, .variable = column, .time = options.time};
+  recording::Source source{.file = file, .variable = column, .time = options.time, .time_unit = options.time_unit};
   source.sample_time_s = options.sample_time_s;
   const std::size_t colon = column.rfind(':');
   if (colon == std::string::npos) return source;
@@ -83,6 +84,12 @@ Result<std::vector<Pair>> read_runs(const FrfOptions& options) {
       if (!signal->sample_time_s) {
         return Error{ErrorCode::missing, {}, "the recording states no times; give --sample-time-s", file};
       }
+      if (Check wrong = signal->time_unit_stated
+                            ? std::nullopt
+                            : recording::check_step(*signal->sample_time_s, signal->time_unit_stated)) {
+        wrong->place = file;
+        return *std::move(wrong);
+      }
       const double first_s = runs.empty() ? *input->sample_time_s : *runs.front().input.sample_time_s;
       if (std::abs(*signal->sample_time_s - first_s) > 1e-3 * first_s) {
         return inconsistent("the sample time is " + format_number(*signal->sample_time_s) + " s and not " +
@@ -94,6 +101,9 @@ Result<std::vector<Pair>> read_runs(const FrfOptions& options) {
       return inconsistent("'" + options.input + "' has " + std::to_string(input->values.size()) + " samples and '" +
                               options.output + "' " + std::to_string(output->values.size()),
                           file);
+    }
+    if (const std::string note = recording::jitter_note(input->jitter_s, *input->sample_time_s); !note.empty()) {
+      std::cerr << "Note: " << note << "\n";
     }
     runs.push_back({*std::move(input), *std::move(output)});
   }
@@ -335,7 +345,10 @@ void add_identify_frf(CLI::App& identify_verb, const std::string& name, const st
       ->required()
       ->type_name("NAME");
   verb->add_option("--output", options->output, "Column of the output")->required()->type_name("NAME");
-  verb->add_option("--time", options->time, "Column of the times")->type_name("NAME");
+  verb->add_option("--time", options->time, "Column of the times, or two as sec,nanosec")->type_name("NAME");
+  verb->add_option("--time-unit", options->time_unit, "Unit of the times, where the file does not state it")
+      ->type_name("UNIT")
+      ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
   verb->add_option("--sample-time-s", options->sample_time_s, "Time between samples, where the file has none")
       ->type_name("S");
   verb->add_option("--method", options->method, "h1 (noise on the output), h2 (on the input) or etfe")

@@ -1,4 +1,5 @@
 #include <tactus/diagnosis/columns.hpp>
+#include <tactus/recording/names.hpp>
 
 #include <algorithm>
 #include <array>
@@ -105,6 +106,33 @@ std::string find_column(Role role, const std::vector<Entry>& entries) {
 std::string find_velocity(Role position, const std::vector<Entry>& entries) {
   return the_one_like({of_position(position), {"vel", "speed"}}, {"command", "desired", "target", "goal"}, entries,
                       [](const std::string& unit) { return unit.empty() || unit == "rad/s" || unit == "m/s"; });
+}
+
+std::vector<std::string> notes_on_columns(const SignalRoles& roles, const std::vector<Entry>& entries,
+                                          const Signals& signals) {
+  std::vector<std::string> notes;
+  std::vector<Entry> unused;
+  for (const Entry& entry : entries) {
+    const auto plays = [&](const std::string& name) {
+      return name == entry.name || recording::split_unit(name).name == entry.name;
+    };
+    const auto is_velocity = [&](const std::optional<ToldVelocity>& told) { return told && told->name == entry.name; };
+    const bool used = std::any_of(roles.names.begin(), roles.names.end(), plays) || plays(roles.time) ||
+                      is_velocity(signals.master_velocity) || is_velocity(signals.slave_velocity);
+    if (used || entry.kind != "column" || recording::sounds_like_time(entry.name)) continue;
+    unused.push_back(entry);
+    const std::vector<Entry> by_name{Entry{.name = entry.name, .rows = entry.rows, .columns = 1, .readable = true}};
+    for (const Role role : all_roles) {
+      if (entry.unit.empty() || find_column(role, by_name).empty() ||
+          identification::find_unit(units_of(role), entry.unit) != nullptr) {
+        continue;
+      }
+      notes.push_back("'" + entry.name + "' is called like a " + std::string(words_of(role)) + ", but " + entry.unit +
+                      " is no unit of one");
+    }
+  }
+  if (!unused.empty()) notes.push_back("columns not used: " + recording::enumerate_signals(unused));
+  return notes;
 }
 
 }  // namespace tactus::diagnosis

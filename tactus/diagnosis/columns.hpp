@@ -27,4 +27,8 @@ std::string find_column(Role role, const std::vector<recording::Entry>& entries)
 /// master_position or slave_position.
 std::string find_velocity(Role position, const std::vector<recording::Entry>& entries);
 
+/// The columns of a table that play no role, and why where their unit is the reason, in sentences.
+std::vector<std::string> notes_on_columns(const SignalRoles& roles, const std::vector<recording::Entry>& entries,
+                                          const Signals& signals);
+
 }  // namespace tactus::diagnosis

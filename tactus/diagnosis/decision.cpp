@@ -138,6 +138,16 @@ std::vector<Scored> scores(const Shown& s) {
   return all;
 }
 
+/// Does the hand lead, on purpose, and the slave follow? Where a force tells who gives the energy, it decides instead.
+/// Two devices that shake each other over a delay come half a turn after one another; a follower comes soon after.
+bool is_led(const Signals& signals, const Oscillation& oscillation, const Evidence& evidence) {
+  constexpr double latest_rad = std::numbers::pi / 3.0, alike_from = 0.5, alike_to = 2.0, surely = 0.9;
+  const bool forces_tell = signals.find(Role::hand_force) != nullptr || signals.find(Role::displayed_force) != nullptr;
+  return !forces_tell && oscillation.frequency_Hz < deliberate_below_Hz && evidence.follows.value_or(0.0) > surely &&
+         evidence.master_part && *evidence.master_part > alike_from && *evidence.master_part < alike_to &&
+         evidence.slave_behind_rad && *evidence.slave_behind_rad > 0.0 && *evidence.slave_behind_rad < latest_rad;
+}
+
 std::string text(double value, int digits = 2) { return report::number(value, digits); }
 
 std::vector<std::string> sentences(const Signals& signals, const Oscillation& oscillation, const Evidence& evidence) {
@@ -264,7 +274,8 @@ Decision decide(const Signals& signals, const Oscillation& oscillation, const Ev
   // stick and slip. What ends with the person's motion was a ringing after each reach.
   const bool ends_with_motion = evidence.motion_after && *evidence.motion_after < ends_below;
   const bool needs_motion = shown.contact.value_or(untested) >= untested || decision.mechanism == Mechanism::stick_slip;
-  decision.harmless = (ends_with_motion && !needs_motion) ||
+  decision.led = is_led(signals, oscillation, evidence);
+  decision.harmless = decision.led || (ends_with_motion && !needs_motion) ||
                       (by_hand && (oscillation.frequency_Hz < deliberate_below_Hz || motion.value_or(0.0) < usual)) ||
                       (may_be_tremor && small && shown.tremor_band > 0.0);
   return decision;

@@ -43,6 +43,8 @@ struct Decision {
   std::vector<std::string> evidence;  ///< sentences with numbers
   std::vector<Role> missing;          ///< signals that were not recorded and would tell
   std::vector<Mechanism> possible;    ///< where it is unknown: what is not refuted
+  /// The hand moves the master on purpose and the slave follows it: no fault.
+  bool led = false;
   /// No oscillation to report: what a hand does on purpose, or a tremor as everybody has.
   bool harmless = false;
 };

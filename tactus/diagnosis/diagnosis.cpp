@@ -4,6 +4,7 @@
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -51,6 +52,15 @@ std::string wrong_velocities(const Signals& signals) {
             "that it should damp. ";
   }
   return text;
+}
+
+/// A hand that leads at one frequency, and the slave that follows it.
+std::string how_it_follows(const Finding& finding) {
+  const double f_Hz = finding.oscillation.frequency_Hz;
+  const double late_s = finding.evidence.slave_behind_rad.value_or(0.0) / (2.0 * std::numbers::pi * f_Hz);
+  return " At " + report::number(f_Hz, 3) + " Hz the hand moves the master on purpose and the slave follows, " +
+         report::number(1e3 * late_s, 2) + " ms later and " +
+         report::number(100.0 / finding.evidence.master_part.value_or(1.0), 3) + " % as far: this is no fault.";
 }
 
 std::string verdict_of(const Signals& signals, const std::vector<Finding>& findings) {
@@ -131,10 +141,12 @@ std::vector<std::string> record_next_of(const Signals& signals, const std::vecto
 
 Diagnosis diagnose(const Signals& signals) {
   Diagnosis diagnosis;
+  std::string led;
   for (Oscillation& oscillation : find_oscillations(signals)) {
     Finding finding{.oscillation = std::move(oscillation), .evidence = {}, .decision = {}, .loop_gain = {}};
     finding.evidence = measure(signals, finding.oscillation);
     finding.decision = decide(signals, finding.oscillation, finding.evidence);
+    if (finding.decision.led && led.empty()) led = how_it_follows(finding);
     if (finding.decision.harmless) continue;
     const auto told = std::find_if(diagnosis.findings.begin(), diagnosis.findings.end(),
                                    [&](const Finding& before) { return goes_on(before, finding); });
@@ -150,7 +162,7 @@ Diagnosis diagnose(const Signals& signals) {
     finding.loop_gain = loop_gain_of(signals, finding.oscillation, finding.decision.mechanism);
     diagnosis.findings.push_back(std::move(finding));
   }
-  diagnosis.verdict = wrong_velocities(signals) + verdict_of(signals, diagnosis.findings);
+  diagnosis.verdict = wrong_velocities(signals) + verdict_of(signals, diagnosis.findings) + led;
   diagnosis.record_next = record_next_of(signals, diagnosis.findings);
   return diagnosis;
 }

@@ -194,9 +194,15 @@ Evidence measure(const Signals& signals, const Oscillation& oscillation) {
         std::abs(position_scale(signals)) * *found.of(Role::master_position) / *found.of(Role::slave_position);
   }
   if (const Channel* master = signals.find(Role::master_position); master != nullptr && has(Role::slave_position)) {
-    const double coherence = relation(of(Role::master_position), of(Role::slave_position)).coherence;
+    const Relation slave = relation(of(Role::master_position), of(Role::slave_position));
+    const double coherence = slave.coherence;
     const bool moves = !master->constant() && *found.of(Role::master_position) > 0.7 * master->step;
     found.follows = moves ? coherence : 0.0;
+    constexpr double keeps_a_phase = 0.5;
+    if (moves && coherence > keeps_a_phase) {
+      const double turned = position_scale(signals) < 0.0 ? std::numbers::pi : 0.0;
+      found.slave_behind_rad = std::remainder(turned - slave.angle_rad, 2.0 * std::numbers::pi);
+    }
   }
   if (const Channel* master = signals.find(Role::master_position); master != nullptr && !master->constant()) {
     found.master_steps = steps_within_a_period(part(Role::master_position), f_Hz, master->step, dt);

@@ -18,6 +18,8 @@ struct Evidence {
   std::optional<double> master_part;
   /// 0 to 1: whether the slave keeps a phase to a master that moves by more than its own steps: it may follow it.
   std::optional<double> follows;
+  /// By which phase the slave comes after the scaled master, -pi to pi, where they keep one. [rad]
+  std::optional<double> slave_behind_rad;
   /// Peak to peak within a period, in steps of the position's own column; the median over the blocks.
   std::optional<double> master_steps, slave_steps;
   /// Share of the time in which the slave stands: slower than a tenth of what it reaches.

@@ -88,7 +88,9 @@ std::string to_text(const Signals& signals, const Diagnosis& diagnosis) {
   for (const auto* told : {&signals.master_velocity, &signals.slave_velocity}) {
     if (*told) read += ", " + (*told)->name + " (" + report::number((*told)->scale, 3) + " times its position's)";
   }
-  return text + "Read: " + read + "; every " + report::number(1e3 * signals.sample_time.value, 3) + " ms\n";
+  text += "Read: " + read + "; every " + report::number(1e3 * signals.sample_time.value, 3) + " ms\n";
+  for (const std::string& note : signals.notes) text += "Note: " + note + "\n";
+  return text;
 }
 
 std::string to_json(const Signals& signals, const Diagnosis& diagnosis, const std::string& file) {
@@ -129,6 +131,7 @@ std::string to_json(const Signals& signals, const Diagnosis& diagnosis, const st
   const auto scale = [](const std::optional<ToldVelocity>& told) { return told ? Json(told->scale) : Json(nullptr); };
   document["told_velocity_scale"] = {{"master", scale(signals.master_velocity)},
                                      {"slave", scale(signals.slave_velocity)}};
+  document["notes"] = signals.notes;
   return report::json_text(document);
 }
 
@@ -272,6 +275,7 @@ report::Page to_page(const Signals& signals, const Diagnosis& diagnosis, const s
   if (const auto figure = periods_of(signals, diagnosis)) page.figure(*figure);
   if (!diagnosis.record_next.empty()) page.heading("Record next");
   for (const std::string& next : diagnosis.record_next) page.paragraph(next + ".");
+  for (const std::string& note : signals.notes) page.paragraph("Note: " + note + ".");
   return page;
 }
 

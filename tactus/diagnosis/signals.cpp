@@ -1,4 +1,5 @@
 #include <tactus/core/parameters.hpp>
+#include <tactus/diagnosis/bag_signals.hpp>
 #include <tactus/diagnosis/columns.hpp>
 #include <tactus/diagnosis/signals.hpp>
 #include <tactus/identification/axis_recording.hpp>
@@ -6,6 +7,7 @@
 #include <tactus/recording/limits.hpp>
 #include <tactus/recording/names.hpp>
 #include <tactus/recording/recording.hpp>
+#include <tactus/recording/resample.hpp>
 #include <tactus/recording/time_base.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
@@ -81,8 +83,11 @@ bool names_a_position(const SignalRoles& roles) {
 
 /// `NAME` or `NAME:COLUMN`.
 recording::Source source_of(const SignalRoles& roles, const std::string& name) {
-  recording::Source source{
-      .file = roles.file, .variable = name, .time = roles.time, .sample_time_s = roles.sample_time_s};
+  recording::Source source{.file = roles.file,
+                           .variable = name,
+                           .time = roles.time,
+                           .time_unit = roles.time_unit,
+                           .sample_time_s = roles.sample_time_s};
   if (const auto colon = name.rfind(':'); colon != std::string::npos) {
     std::int64_t column = 0;
     const char* const end = name.data() + name.size();
@@ -99,6 +104,8 @@ recording::Source source_of(const SignalRoles& roles, const std::string& name) {
 struct Found {
   Signals signals;
   std::optional<double> sample_time_s;
+  std::optional<double> jitter_s;
+  bool time_unit_stated = true;
   std::optional<bool> rotary;
 };
 
@@ -142,6 +149,8 @@ Result<Found> read_columns(SignalRoles roles) {
       return error;
     }
     found.sample_time_s = signal->sample_time_s;
+    found.jitter_s = signal->jitter_s;
+    found.time_unit_stated = signal->time_unit_stated;
     if (auto error = take(found, roles, role, name, signal->unit, std::move(signal->values))) return *std::move(error);
   }
   if (identification::is_teleoperator_scope(*entries)) found.rotary = true;
@@ -151,11 +160,15 @@ Result<Found> read_columns(SignalRoles roles) {
     if (position == nullptr || name.empty() || !found.sample_time_s) continue;
     const auto velocity = recording::read(source_of(roles, name));
     if (!velocity) return velocity.error();
+    if (const auto factor = recording::step_is_too_long_by(position->values, velocity->values, *found.sample_time_s)) {
+      return recording::contradicted_by_velocity(name, *factor, *found.sample_time_s);
+    }
     const auto scale = told_scale(position->values, velocity->values, Seconds{*found.sample_time_s});
     if (!scale) continue;
     auto& told = role == Role::master_position ? found.signals.master_velocity : found.signals.slave_velocity;
     told = ToldVelocity{.name = name, .scale = *scale};
   }
+  found.signals.notes = notes_on_columns(roles, *entries, found.signals);
   return found;
 }
 
@@ -174,14 +187,33 @@ std::vector<Entry> entries_of(const telemetry::LogTable& table) {
   return entries;
 }
 
+/// A bag of other ROS 2 programs.
+Result<Found> read_bag(const SignalRoles& roles) {
+  auto bag = read_bag_channels(roles);
+  if (!bag) return bag.error();
+  Found found;
+  found.sample_time_s = bag->sample_time_s;
+  found.jitter_s = bag->jitter_s;
+  for (BagChannel& channel : bag->channels) {
+    if (!channel.velocity.empty()) {
+      const auto scale = told_scale(channel.values, channel.velocity, Seconds{bag->sample_time_s});
+      auto& told = channel.role == Role::master_position ? found.signals.master_velocity : found.signals.slave_velocity;
+      if (scale) told = ToldVelocity{.name = channel.velocity_name, .scale = *scale};
+    }
+    if (auto error = take(found, roles, channel.role, channel.name, channel.unit, std::move(channel.values))) {
+      return *std::move(error);
+    }
+    found.signals.channels[index_of(channel.role)]->step = channel.step;
+  }
+  found.signals.notes = std::move(bag->notes);
+  return found;
+}
+
 Result<Found> read_log(const SignalRoles& wanted) {
   const auto content = telemetry::read_log(wanted.file);
   if (!content) {
     Error error = content.error();
-    if (error.code == ErrorCode::wrong_type) {
-      error.message +=
-          "; a bag of other programs is not read: write its columns to a table (time, positions, forces) and name that";
-    }
+    if (error.code == ErrorCode::wrong_type) return read_bag(wanted);
     return error;
   }
   const telemetry::LogTable* best = nullptr;
@@ -203,6 +235,13 @@ Result<Found> read_log(const SignalRoles& wanted) {
     return no_position(wanted, all);
   }
   Found found;
+  if (!content->summary.complete) {
+    found.signals.notes.push_back("the log has no end: what its recorder had not written yet is missing");
+  }
+  if (content->summary.damaged_chunks > 0) {
+    found.signals.notes.push_back(std::to_string(content->summary.damaged_chunks) +
+                                  " damaged chunks of the log were left out");
+  }
   const std::vector<Entry> entries = entries_of(*best);
   for (const Role role : all_roles) {
     const std::string& name = roles.names[index_of(role)];
@@ -228,10 +267,17 @@ Result<Found> read_log(const SignalRoles& wanted) {
                                            : 1e-9 * static_cast<double>(best->times_ns[i] - best->times_ns[0]));
   }
   if (times_s.size() > 1) {
-    const auto sample_time_s = recording::uniform_sample_time(times_s, [&](std::size_t row) {
+    auto sample_time_s = recording::uniform_sample_time(times_s, [&](std::size_t row) {
       return wanted.file.string() + ", message " + std::to_string(row + 1) + " of " + best->topic;
     });
-    if (!sample_time_s) return sample_time_s.error();
+    if (!sample_time_s) {
+      found.jitter_s = recording::jitter_of(times_s);
+      if (!found.jitter_s) return sample_time_s.error();
+      sample_time_s = (times_s.back() - times_s.front()) / static_cast<double>(times_s.size() - 1);
+      for (auto& channel : found.signals.channels) {
+        if (channel) channel->values = recording::at_equal_steps(times_s, channel->values);
+      }
+    }
     found.sample_time_s = *sample_time_s;
   }
   return found;
@@ -303,7 +349,13 @@ Result<Signals> read_signals(const SignalRoles& roles) {
                   "the recording has no times: state the time between samples with --sample-time-s, or name the column "
                   "of times with --time");
   }
+  if (Check wrong = recording::check_step(*found->sample_time_s, found->time_unit_stated)) {
+    return refuse(wrong->code, roles, wrong->message);
+  }
   signals.sample_time = Seconds{*found->sample_time_s};
+  if (std::string note = recording::jitter_note(found->jitter_s, *found->sample_time_s); !note.empty()) {
+    signals.notes.insert(signals.notes.begin(), std::move(note));
+  }
   signals.rotary = found->rotary.value_or(false);
   if (signals.samples < fewest_samples || signals.duration_s() < shortest_recording_s) {
     return refuse(ErrorCode::inconsistent, roles,

@@ -42,7 +42,9 @@ struct SignalRoles {
   std::filesystem::path file = {};
   std::array<std::string, role_count> names = {};
   std::array<double, role_count> signs = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  ///< 1 or -1
+  std::string joint = {};  ///< of a ROS 2 bag; empty: the one that moves most roughly
   std::string time = {};
+  std::string time_unit = {};  ///< s, ms, us or ns, instead of what the file says; empty: as the file says
   std::optional<double> sample_time_s = {};
 };
 
@@ -64,6 +66,8 @@ struct Signals {
   bool rotary = false;  ///< rad and N m instead of m and N
   /// Of master and slave, where a table has a column of it that goes with the position.
   std::optional<ToldVelocity> master_velocity = {}, slave_velocity = {};
+  /// What a reader of the diagnosis should know of the recording: jitter of its times, columns that were not used.
+  std::vector<std::string> notes = {};
 
   [[nodiscard]] const Channel* find(Role role) const {
     const auto& channel = channels[static_cast<std::size_t>(role)];
@@ -78,7 +82,8 @@ struct Signals {
 };
 
 /// Reads a recording: a table or a MATLAB file as `recording::read` takes it, or a log in MCAP of this project's
-/// programs (a `.mcap` file or the folder that holds it), of which the topic with most roles counts.
+/// programs (a `.mcap` file or the folder that holds it), of which the topic with most roles counts, or a ROS 2 bag in
+/// MCAP: the joint states of leader and follower, found by topic, and what is named as `TOPIC/JOINT.position`.
 ///
 /// Errors: those of reading; `missing` for no position at all (the message lists the columns and the options), for no
 /// sample time; `inconsistent` for columns of different length, a unit that is none of the role, a recording of fewer

@@ -2,6 +2,7 @@
 #include <tactus/identification/axis_units.hpp>
 #include <tactus/recording/names.hpp>
 #include <tactus/recording/recording.hpp>
+#include <tactus/recording/time_base.hpp>
 
 #include <algorithm>
 #include <array>
@@ -135,12 +136,17 @@ struct ReadColumn {
   AxisColumn column;
   std::optional<bool> rotary;
   std::optional<double> sample_time_s;
+  std::optional<double> jitter_s;
+  bool time_unit_stated;
 };
 
 Result<ReadColumn> read_column(const AxisRoles& roles, const std::string& name, std::span<const KnownUnit> units,
                                const char* role, double sign) {
-  recording::Source source{
-      .file = roles.file, .variable = name, .time = roles.time, .sample_time_s = roles.sample_time_s};
+  recording::Source source{.file = roles.file,
+                           .variable = name,
+                           .time = roles.time,
+                           .time_unit = roles.time_unit,
+                           .sample_time_s = roles.sample_time_s};
   if (const auto colon = name.rfind(':'); colon != std::string::npos) {
     std::int64_t column = 0;
     const auto* end = name.data() + name.size();
@@ -154,7 +160,9 @@ Result<ReadColumn> read_column(const AxisRoles& roles, const std::string& name, 
   if (!signal) return signal.error();
   ReadColumn result{.column = {.name = name, .factor = sign, .values = std::move(signal->values)},
                     .rotary = {},
-                    .sample_time_s = signal->sample_time_s};
+                    .sample_time_s = signal->sample_time_s,
+                    .jitter_s = signal->jitter_s,
+                    .time_unit_stated = signal->time_unit_stated};
   if (!signal->unit.empty()) {
     const KnownUnit* unit = find_unit(units, signal->unit);
     if (unit == nullptr) {
@@ -170,6 +178,20 @@ Result<ReadColumn> read_column(const AxisRoles& roles, const std::string& name, 
   }
   for (double& value : result.column.values) value *= result.column.factor;
   return result;
+}
+
+/// The columns of a table that have no role, in a sentence; empty where there are none.
+std::string unused_columns(const AxisRoles& roles, const std::vector<Entry>& entries) {
+  std::vector<Entry> unused;
+  for (const Entry& entry : entries) {
+    const auto plays = [&](const std::string& name) {
+      return !name.empty() && (name == entry.name || recording::split_unit(name).name == entry.name);
+    };
+    if (entry.kind != "column" || recording::sounds_like_time(entry.name) || plays(roles.time)) continue;
+    if (plays(roles.position) || plays(roles.force) || plays(roles.external) || plays(roles.measured)) continue;
+    unused.push_back(entry);
+  }
+  return unused.empty() ? std::string() : "columns not used: " + recording::enumerate_signals(unused);
 }
 
 }  // namespace
@@ -207,6 +229,10 @@ Result<AxisRecording> read_axis(const AxisRoles& wanted, bool needs_measured) {
                  "of times with --time",
                  roles.file.string()};
   }
+  if (Check wrong = recording::check_step(*position->sample_time_s, position->time_unit_stated)) {
+    wrong->place = roles.file.string();
+    return *std::move(wrong);
+  }
   AxisRecording result{.position = std::move(position->column),
                        .force = std::move(force->column),
                        .measured = {},
@@ -237,6 +263,10 @@ Result<AxisRecording> read_axis(const AxisRoles& wanted, bool needs_measured) {
     return Error{
         ErrorCode::inconsistent, {}, "the named columns have different numbers of samples", roles.file.string()};
   }
+  if (std::string note = recording::jitter_note(position->jitter_s, *position->sample_time_s); !note.empty()) {
+    result.notes.push_back(std::move(note));
+  }
+  if (std::string note = unused_columns(roles, *entries); !note.empty()) result.notes.push_back(std::move(note));
   return result;
 }
 

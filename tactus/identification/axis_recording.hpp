@@ -28,6 +28,7 @@ struct AxisRoles {
   std::string external = {};  ///< another force that drives the axis, such as a hand's; none unless named
   std::string measured = {};  ///< of the environment, to compare with
   std::string time = {};
+  std::string time_unit = {};  ///< s, ms, us or ns, instead of what the file says; empty: as the file says
   std::optional<double> sample_time_s = {};
   std::optional<double> position_sign = {};  ///< 1 or -1
   std::optional<double> force_sign = {};     ///< 1 or -1
@@ -47,6 +48,8 @@ struct AxisRecording {
   std::optional<AxisColumn> measured;  ///< force of the environment on the axis
   Seconds sample_time{0.0};
   bool rotary = false;  ///< N m and rad instead of N and m
+  /// What a reader of results should know of the recording: jitter of its times, columns that were not used.
+  std::vector<std::string> notes = {};
 };
 
 /// Does a file hold the struct `scope` of a teleoperator that `AxisRoles` tells of?

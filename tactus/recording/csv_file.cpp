@@ -1,7 +1,9 @@
 #include <tactus/recording/csv_file.hpp>
+#include <tactus/recording/csv_text.hpp>
 #include <tactus/recording/file_bytes.hpp>
 #include <tactus/recording/limits.hpp>
 #include <tactus/recording/names.hpp>
+#include <tactus/recording/times.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -10,103 +12,6 @@
 
 namespace tactus::recording {
 namespace {
-
-/// One field of a line, without blanks and quotes around it, and the character of the line (from 1) where it begins.
-struct CsvField {
-  std::string_view text;
-  std::size_t character;
-};
-
-/// The next line of `text` from `offset`, which moves behind it.
-std::string_view next_line(std::string_view text, std::size_t& offset) {
-  const std::size_t end = std::min(text.find('\n', offset), text.size());
-  const std::string_view line = text.substr(offset, end - offset);
-  offset = std::min(end + 1, text.size());
-  return line;
-}
-
-/// How many fields a line has; none if a quote stays open. No more than a table may have are kept.
-std::optional<std::size_t> split(std::string_view line, char separator, std::vector<CsvField>& fields) {
-  fields.clear();
-  std::size_t count = 0;
-  if (separator == ' ') {
-    constexpr std::string_view blanks = " \t\r";
-    for (std::size_t at = line.find_first_not_of(blanks); at < line.size(); at = line.find_first_not_of(blanks, at)) {
-      const std::size_t end = std::min(line.find_first_of(blanks, at), line.size());
-      if (++count <= most_table_columns) fields.push_back({line.substr(at, end - at), at + 1});
-      at = end;
-    }
-    return count;
-  }
-  std::size_t start = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i <= line.size(); ++i) {
-    if (i < line.size() && line[i] == '"') quoted = !quoted;
-    if (i < line.size() && (quoted || line[i] != separator)) continue;
-    if (++count > most_table_columns) continue;
-    std::string_view field = trim(line.substr(start, i - start));
-    if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
-    fields.push_back({field, field.empty() ? start + 1 : static_cast<std::size_t>(field.data() - line.data()) + 1});
-    start = i + 1;
-  }
-  return quoted ? std::nullopt : std::optional(count);
-}
-
-/// The separator that stands most often outside quotes.
-char separator_of(std::string_view header) {
-  char best = ',';
-  std::ptrdiff_t most = 0;
-  for (const char candidate : {'\t', ';', ','}) {
-    bool quoted = false;
-    const auto count = std::count_if(header.begin(), header.end(), [&](char c) {
-      if (c == '"') quoted = !quoted;
-      return !quoted && c == candidate;
-    });
-    if (count > most) {
-      best = candidate;
-      most = count;
-    }
-  }
-  return best;
-}
-
-std::string without_doubled_quotes(std::string_view field) {
-  std::string text;
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    text += field[i];
-    if (field.substr(i, 2) == "\"\"") ++i;
-  }
-  return text;
-}
-
-/// What `text` says as a number, or the reason why it says none.
-struct Number {
-  double value = 0.0;
-  const char* fault = nullptr;
-};
-Number parse_number(std::string_view text) {
-  if (text.empty()) return {.fault = "is empty; fill in the lost sample or remove the line"};
-  const std::string_view digits = text.front() == '+' ? text.substr(1) : text;
-  Number number;
-  const auto [end, failure] = std::from_chars(digits.data(), digits.data() + digits.size(), number.value);
-  if (failure == std::errc::result_out_of_range)
-    return {.fault = "is beyond the range of a double; rescale the column"};
-  const bool two_signs = digits.data() != text.data() && digits.starts_with('-');
-  if (failure != std::errc{} || end != digits.data() + digits.size() || two_signs) {
-    return {.fault = text.find(',') == std::string_view::npos ? "is not a number; correct it or remove the line"
-                                                              : "is not a number; write a decimal point, not a comma"};
-  }
-  if (!std::isfinite(number.value)) return {.fault = "is not finite; fill in the lost sample or remove the line"};
-  if (std::fabs(number.value) > largest_value) {
-    return {.fault = "is beyond 1e30, which is no measurement; correct it, remove the line or rescale the column"};
-  }
-  return number;
-}
-
-bool only_numbers(const std::vector<CsvField>& fields) {
-  return std::all_of(fields.begin(), fields.end(),
-                     [](const CsvField& field) { return parse_number(field.text).fault == nullptr; });
-}
 
 Error broken(ErrorCode code, std::string message, std::string place) {
   return {.code = code, .parameter = {}, .message = std::move(message), .place = std::move(place)};
@@ -139,58 +44,39 @@ Result<CsvFile> CsvFile::open(const std::filesystem::path& file, Header header) 
 }
 
 Check CsvFile::parse_header(Header wanted) {
-  std::size_t offset = 0;
-  std::size_t line_start = 0;
-  std::size_t line_number = 0;
-  std::string_view header;
-  while (trim(header).empty() && offset < text_.size()) {
-    line_start = offset;
-    header = next_line(text_, offset);
-    if (trim(header).starts_with('#')) header = {};
-    ++line_number;
-  }
-  if (trim(header).empty()) {
+  const std::optional<CsvLayout> layout = find_layout(text_);
+  if (!layout) {
     return broken(ErrorCode::missing, "is empty; write a header with names and units, then a line for each sample",
                   file_.string());
   }
-  separator_ = separator_of(header);
-  std::vector<CsvField> fields;
-  if (wanted == Header::optional && header.find_first_of(",;\t") == std::string_view::npos) {
-    split(header, ' ', fields);
-    if (only_numbers(fields)) separator_ = ' ';
-  }
-  const auto count = split(header, separator_, fields);
-  const std::string place = file_.string() + ":" + std::to_string(line_number);
-  if (!count) return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line", place);
-  if (*count > most_table_columns) {
+  const std::string place = file_.string() + ":" + std::to_string(layout->first_line_number);
+  if (layout->quote_open) return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line", place);
+  if (layout->columns > most_table_columns) {
     return broken(ErrorCode::out_of_bounds,
-                  "the header has " + std::to_string(*count) + " columns, more than the " +
+                  "the header has " + std::to_string(layout->columns) + " columns, more than the " +
                       std::to_string(most_table_columns) + " that are read; keep those that are needed",
                   place);
   }
-  if (only_numbers(fields)) {
-    if (wanted == Header::optional) {
-      for (std::size_t i = 1; i <= fields.size(); ++i) {
-        heads_.push_back(std::to_string(i));
-        entries_.push_back({.name = heads_.back(), .kind = "column", .columns = 1, .readable = true});
-      }
-      data_start_ = line_start;
-      data_line_ = line_number;
-      return {};
-    }
+  separator_ = layout->separator;
+  data_start_ = layout->data_start;
+  data_line_ = layout->data_line;
+  heads_ = layout->heads;
+  if (heads_.empty() && wanted == Header::needed) {
     return broken(ErrorCode::syntax,
-                  "a header is needed before the numbers '" + std::string(trim(header).substr(0, 40)) +
-                      "'; put a line such as 'time [s],force [N]' there, without a # before it",
+                  "a header is needed before the numbers '" + std::string(trim(layout->first_line).substr(0, 40)) +
+                      "'; put a line such as 'time [s],force [N]' there, with a name for each column",
                   place);
   }
-  for (const CsvField& field : fields) {
-    heads_.push_back(without_doubled_quotes(field.text));
-    NameAndUnit head = split_unit(heads_.back());
-    entries_.push_back(
-        {.name = std::move(head.name), .unit = std::move(head.unit), .kind = "column", .columns = 1, .readable = true});
+  const bool numbered = heads_.empty();
+  for (std::size_t i = 1; numbered && i <= layout->columns; ++i) heads_.push_back(std::to_string(i));
+  std::vector<NameAndUnit> names = split_units(heads_);
+  for (std::size_t i = 0; i < heads_.size(); ++i) {
+    entries_.push_back({.name = numbered ? heads_[i] : std::move(names[i].name),
+                        .unit = numbered ? std::string() : std::move(names[i].unit),
+                        .kind = "column",
+                        .columns = 1,
+                        .readable = true});
   }
-  data_start_ = offset;
-  data_line_ = line_number + 1;
   return {};
 }
 
@@ -206,7 +92,7 @@ Check CsvFile::count_rows() {
                         " samples that are read; cut it into smaller files, or keep fewer samples a second",
                     file_.string());
     }
-    const auto count = split(line, separator_, fields);
+    const auto count = split_fields(line, separator_, fields);
     if (!count) return broken(ErrorCode::syntax, "a quote is not closed; close it on the same line", place_of(rows_));
     if (*count == heads_.size()) continue;
     return broken(ErrorCode::syntax,
@@ -219,6 +105,7 @@ Check CsvFile::count_rows() {
     return broken(ErrorCode::missing, "holds " + std::to_string(rows_) + " samples; a signal needs two or more",
                   file_.string());
   }
+  decimal_comma_ = has_decimal_commas(std::string_view(text_).substr(data_start_), separator_);
   for (Entry& entry : entries_) entry.rows = static_cast<std::int64_t>(rows_);
   return {};
 }
@@ -307,10 +194,10 @@ Result<std::vector<Column>> CsvFile::read(std::span<const std::size_t> columns) 
   std::vector<CsvField> fields;
   std::size_t offset = data_start_;
   for (std::size_t row = 0; row < rows_; ++row) {
-    split(next_line(text_, offset), separator_, fields);
+    split_fields(next_line(text_, offset), separator_, fields);
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const CsvField& field = fields[columns[i]];
-      const Number number = parse_number(trim(field.text));
+      const CsvNumber number = parse_number(trim(field.text), decimal_comma_);
       if (number.fault != nullptr) {
         return broken(ErrorCode::syntax,
                       in_quotes(field.text.substr(0, 40)) + " in column '" + heads_[columns[i]] + "' " + number.fault,
@@ -322,12 +209,84 @@ Result<std::vector<Column>> CsvFile::read(std::span<const std::size_t> columns) 
   return result;
 }
 
+Result<Column> CsvFile::read_times(std::string_view choice) const {
+  if (const auto comma = choice.find(','); comma != std::string_view::npos && !find(choice)) {
+    std::vector<std::size_t> places;
+    for (const std::string_view part : {choice.substr(0, comma), choice.substr(comma + 1)}) {
+      const Result<std::vector<std::size_t>> some = choose(trim(part));
+      if (!some) return some.error();
+      places.insert(places.end(), some->begin(), some->end());
+    }
+    const auto worth =
+        places.size() == 2 ? part_of_second(heads_[places[0]], heads_[places[1]]) : std::optional<double>();
+    if (!worth) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = {},
+                   .message = in_quotes(choice) + " of '" + file_.string() +
+                              "' is no pair of seconds and parts of them; name one column of times, or two such as "
+                              "sec,nanosec",
+                   .place = {}};
+    }
+    Result<std::vector<Column>> pair = read(places);
+    if (!pair) return pair.error();
+    Column& whole = (*pair)[0];
+    const double first = whole.values.front();
+    for (std::size_t i = 0; i < rows_; ++i) {
+      whole.values[i] = (whole.values[i] - first) + *worth * (*pair)[1].values[i];
+    }
+    return Column{.values = std::move(whole.values), .name = std::string(choice), .unit = "s"};
+  }
+  const Result<std::vector<std::size_t>> places = choose(choice);
+  if (!places) return places.error();
+  if (places->size() != 1) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = in_quotes(choice) + " names " + std::to_string(places->size()) +
+                            " columns of times; name one, or two such as sec,nanosec",
+                 .place = {}};
+  }
+  const std::size_t index = places->front();
+  std::vector<CsvField> fields;
+  std::size_t offset = data_start_;
+  split_fields(next_line(text_, offset), separator_, fields);
+  if (!parse_instant(fields[index].text)) {
+    Result<std::vector<Column>> column = read(*places);
+    if (!column) return column.error();
+    return std::move(column->front());
+  }
+  Column times{.values = {}, .name = entries_[index].name, .unit = "s"};
+  std::optional<std::int64_t> first;
+  offset = data_start_;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    split_fields(next_line(text_, offset), separator_, fields);
+    const std::optional<Instant> instant = parse_instant(fields[index].text);
+    if (!instant) {
+      return broken(ErrorCode::syntax,
+                    in_quotes(fields[index].text.substr(0, 40)) + " in column '" + heads_[index] +
+                        "' is not a time of day; write it as in the lines before, or remove the line",
+                    place_of(data_line_ + row, fields[index].character));
+    }
+    if (!first) first = instant->seconds;
+    times.values.push_back(static_cast<double>(instant->seconds - *first) + instant->fraction_s);
+  }
+  return times;
+}
+
 std::optional<std::string> CsvFile::time_beside(std::string_view, std::size_t) const {
-  for (std::size_t i = 0; i < entries_.size(); ++i) {
-    std::string name = entries_[i].name;
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (name == "time" || entries_[i].name == "t") return heads_[i];
+  const auto is_time_unit = [](const Entry& entry) {
+    return entry.unit.empty() || entry.unit == "s" || entry.unit == "ms" || entry.unit == "us" || entry.unit == "ns";
+  };
+  for (std::size_t i = 0; i + 1 < heads_.size(); ++i) {
+    if (part_of_second(heads_[i], heads_[i + 1])) return heads_[i] + "," + heads_[i + 1];
+  }
+  for (const bool exactly : {true, false}) {
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+      std::string name = entries_[i].name;
+      std::transform(name.begin(), name.end(), name.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      if (name == "time" || entries_[i].name == "t") return heads_[i];
+      if (!exactly && is_time_unit(entries_[i]) && sounds_like_time(name)) return heads_[i];
+    }
   }
   return std::nullopt;
 }

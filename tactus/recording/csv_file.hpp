@@ -13,10 +13,11 @@
 
 namespace tactus::recording {
 
-/// A table of comma, semicolon or tab separated text, held in memory. `read` documents the format and the errors.
+/// A table of text whose fields commas, semicolons, tabs or blanks separate, held in memory. `read` documents the
+/// format and the errors.
 class CsvFile {
  public:
-  /// Without a header the columns are called 1, 2 and so on, and blanks may stand between numbers.
+  /// Without a header the columns are called 1, 2 and so on.
   enum class Header { needed, optional };
   static Result<CsvFile> open(const std::filesystem::path& file, Header header = Header::needed);
 
@@ -27,7 +28,9 @@ class CsvFile {
   [[nodiscard]] Result<std::vector<std::size_t>> choose(std::string_view choice) const;
   /// The samples of several columns, in one pass.
   [[nodiscard]] Result<std::vector<Column>> read(std::span<const std::size_t> columns) const;
-  /// The column that holds times if nobody names one.
+  /// The samples of the column or columns of times that `Source::time` names.
+  [[nodiscard]] Result<Column> read_times(std::string_view choice) const;
+  /// The column or columns that hold times if nobody names one.
   [[nodiscard]] std::optional<std::string> time_beside(std::string_view variable, std::size_t samples) const;
   /// `file:line` of a sample.
   [[nodiscard]] std::string place_of(std::size_t row) const;
@@ -48,6 +51,7 @@ class CsvFile {
   std::size_t data_line_ = 0;   ///< its line, from 1
   std::size_t rows_ = 0;
   char separator_ = ',';
+  bool decimal_comma_ = false;
 };
 
 }  // namespace tactus::recording

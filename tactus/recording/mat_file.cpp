@@ -40,14 +40,23 @@ std::string kind_of(const matvar_t& variable) {
   return variable.rank > 2 ? name + " of " + std::to_string(variable.rank) + " dimensions" : name;
 }
 
-/// A variable as samples by columns; a row vector stands up.
+/// Whether a matrix has its signals in rows, as Simulink's To File block writes them: far fewer rows than columns.
+bool has_signals_in_rows(const matvar_t& variable) {
+  constexpr std::size_t most_signals = 64, least_samples_per_signal = 10;
+  return is_real_matrix(variable) && variable.dims[0] > 1 && variable.dims[0] <= most_signals &&
+         variable.dims[1] >= least_samples_per_signal * variable.dims[0];
+}
+
+/// A variable as samples by columns; a row vector stands up, and so do signals in rows.
 Entry entry_of(std::string name, const matvar_t& variable) {
   Entry entry{.name = std::move(name), .unit = {}, .kind = kind_of(variable)};
   if (variable.rank >= 2) {
     entry.rows = static_cast<std::int64_t>(variable.dims[0]);
     entry.columns = static_cast<std::int64_t>(variable.dims[1]);
   }
-  if (is_real_matrix(variable) && entry.rows == 1) std::swap(entry.rows, entry.columns);
+  if (is_real_matrix(variable) && (entry.rows == 1 || has_signals_in_rows(variable))) {
+    std::swap(entry.rows, entry.columns);
+  }
   entry.readable = is_real_matrix(variable) && entry.rows >= 2 && entry.columns >= 1;
   return entry;
 }
@@ -94,36 +103,41 @@ std::string without_needless_index(std::string_view path, const std::vector<Leaf
   return shortened;
 }
 
+/// `count` numbers of a variable's data, from `first` on, each `stride` behind the one before.
+struct Samples {
+  std::size_t first, count, stride;
+};
+
 template <class Number>
-std::vector<double> numbers_of(const matvar_t& variable, std::size_t first, std::size_t count) {
-  const auto* start = static_cast<const Number*>(variable.data) + first;
-  std::vector<double> values(count);
-  std::transform(start, start + count, values.begin(), [](Number number) { return static_cast<double>(number); });
+std::vector<double> numbers_of(const matvar_t& variable, const Samples& samples) {
+  const auto* at = static_cast<const Number*>(variable.data) + samples.first;
+  std::vector<double> values(samples.count);
+  for (std::size_t i = 0; i < samples.count; ++i) values[i] = static_cast<double>(at[i * samples.stride]);
   return values;
 }
 
-std::vector<double> column_of(const matvar_t& variable, std::size_t first, std::size_t count) {
+std::vector<double> column_of(const matvar_t& variable, const Samples& samples) {
   switch (variable.class_type) {
     case MAT_C_SINGLE:
-      return numbers_of<float>(variable, first, count);
+      return numbers_of<float>(variable, samples);
     case MAT_C_INT8:
-      return numbers_of<std::int8_t>(variable, first, count);
+      return numbers_of<std::int8_t>(variable, samples);
     case MAT_C_UINT8:
-      return numbers_of<std::uint8_t>(variable, first, count);
+      return numbers_of<std::uint8_t>(variable, samples);
     case MAT_C_INT16:
-      return numbers_of<std::int16_t>(variable, first, count);
+      return numbers_of<std::int16_t>(variable, samples);
     case MAT_C_UINT16:
-      return numbers_of<std::uint16_t>(variable, first, count);
+      return numbers_of<std::uint16_t>(variable, samples);
     case MAT_C_INT32:
-      return numbers_of<std::int32_t>(variable, first, count);
+      return numbers_of<std::int32_t>(variable, samples);
     case MAT_C_UINT32:
-      return numbers_of<std::uint32_t>(variable, first, count);
+      return numbers_of<std::uint32_t>(variable, samples);
     case MAT_C_INT64:
-      return numbers_of<std::int64_t>(variable, first, count);
+      return numbers_of<std::int64_t>(variable, samples);
     case MAT_C_UINT64:
-      return numbers_of<std::uint64_t>(variable, first, count);
+      return numbers_of<std::uint64_t>(variable, samples);
     default:
-      return numbers_of<double>(variable, first, count);
+      return numbers_of<double>(variable, samples);
   }
 }
 
@@ -230,9 +244,16 @@ Result<Column> MatFile::read(std::string_view variable, std::int64_t column) con
                  .place = file_.string()};
   }
   const auto rows = static_cast<std::size_t>(entry.rows);
-  Column result{
-      .values = column_of(data, (static_cast<std::size_t>(column) - 1) * rows, rows), .name = entry.name, .unit = {}};
-  if (entry.columns > 1) result.name += "(:," + std::to_string(column) + ")";
+  const auto index = static_cast<std::size_t>(column) - 1;
+  const bool in_rows = has_signals_in_rows(data);
+  const Samples samples = in_rows ? Samples{.first = index, .count = rows, .stride = data.dims[0]}
+                                  : Samples{.first = index * rows, .count = rows, .stride = 1};
+  Column result{.values = column_of(data, samples), .name = entry.name, .unit = {}};
+  if (in_rows) {
+    result.name += "(" + std::to_string(column) + ",:)";
+  } else if (entry.columns > 1) {
+    result.name += "(:," + std::to_string(column) + ")";
+  }
   for (std::size_t i = 0; i < rows; ++i) {
     if (std::fabs(result.values[i]) <= largest_value) continue;
     const bool finite = std::isfinite(result.values[i]);
@@ -279,6 +300,14 @@ Result<std::vector<Column>> MatFile::read_choice(std::string_view choice) const 
     columns.push_back(*std::move(column));
   }
   return columns;
+}
+
+Result<Column> MatFile::read_times(std::string_view choice) const {
+  Result<Column> times = read(choice, 1);
+  if (times || choice.find(':') == std::string_view::npos) return times;
+  Result<std::vector<Column>> columns = read_choice(choice);
+  if (!columns || columns->size() != 1) return times.error();
+  return std::move(columns->front());
 }
 
 std::optional<std::string> MatFile::time_beside(std::string_view variable, std::size_t samples) const {

@@ -25,6 +25,8 @@ class MatFile {
   [[nodiscard]] Result<Column> read(std::string_view variable, std::int64_t column) const;
   /// The columns that `read_columns` calls a choice.
   [[nodiscard]] Result<std::vector<Column>> read_choice(std::string_view choice) const;
+  /// The samples of the variable that `Source::time` names.
+  [[nodiscard]] Result<Column> read_times(std::string_view choice) const;
   /// The variable that holds times if nobody names one.
   [[nodiscard]] std::optional<std::string> time_beside(std::string_view variable, std::size_t samples) const;
   /// The file: a sample of it has no line.

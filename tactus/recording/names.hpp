@@ -9,16 +9,27 @@
 
 namespace tactus::recording {
 
-/// The name and the unit in the head of a column: `force [N]`, `force (N)` and `force_N` all give `force` and `N`. The
-/// unit is empty where none is stated. A suffix counts as a unit if it is one of the suffixes that this project writes.
+/// The name and the unit in the head of a column: `force [N]`, `force (Newton)` and `force_N` all give `force` and `N`.
+/// The unit is empty where none is stated, and has the spelling of this project where it is known (`N m` for `Nm`).
+///
+/// A number in brackets is an index and belongs to the name (`q[0]`); so does a word that describes, as in
+/// `force (filtered)`. A suffix of one letter is a unit only where it fits the quantity: `x_m` is in metres, but `x_s`,
+/// `F_m` and `tau_J` have names of their own.
 struct NameAndUnit {
   std::string name;
   std::string unit;
 };
 NameAndUnit split_unit(std::string_view head);
 
+/// The same of all columns of a table. Where its names tell master and slave by `_m` and `_s`, as in `x_m` and `x_s`,
+/// neither is a unit.
+std::vector<NameAndUnit> split_units(std::span<const std::string> heads);
+
 /// `text` in single quotes.
 std::string in_quotes(std::string_view text);
+
+/// A number of so many significant digits for a message: `0.005`, `1700000`, `3.5e+09`.
+std::string rounded_number(double value, int digits = 3);
 
 /// `text` without blanks at either end.
 std::string_view trim(std::string_view text);

@@ -3,6 +3,7 @@
 #include <tactus/recording/mat_file.hpp>
 #include <tactus/recording/names.hpp>
 #include <tactus/recording/recording.hpp>
+#include <tactus/recording/resample.hpp>
 #include <tactus/recording/time_base.hpp>
 
 #include <algorithm>
@@ -15,12 +16,20 @@
 namespace tactus::recording {
 namespace {
 
+/// What the times of a signal say.
+struct TimeBase {
+  std::optional<double> sample_time_s = {};
+  std::vector<double> unequal_s = {};  ///< the times where they jitter; empty where the steps are equal
+  std::optional<double> jitter_s = {};
+  bool unit_stated = false;
+};
+
 template <class File>
-Result<std::optional<double>> find_sample_time(const File& file, const Source& source, std::size_t samples) {
+Result<TimeBase> find_time_base(const File& file, const Source& source, std::size_t samples) {
   const std::optional<std::string> name =
       source.time.empty() ? file.time_beside(source.variable, samples) : source.time;
-  if (!name) return source.sample_time_s;
-  Result<Column> time = file.read(*name, 1);
+  if (!name) return TimeBase{.sample_time_s = source.sample_time_s, .unit_stated = true};
+  Result<Column> time = file.read_times(*name);
   if (!time) return under("time", time.error());
   if (time->values.size() != samples) {
     return Error{.code = ErrorCode::inconsistent,
@@ -30,12 +39,20 @@ Result<std::optional<double>> find_sample_time(const File& file, const Source& s
                             std::to_string(samples) + "; name the times that belong to it",
                  .place = {}};
   }
-  const Result<double> scale = seconds_in(*time, source.file);
-  if (!scale) return scale.error();
-  for (double& value : time->values) value *= *scale;
-  const Result<double> found = uniform_sample_time(time->values, [&](std::size_t row) { return file.place_of(row); });
-  if (!found) return found.error();
-  return agree(source.sample_time_s, *found);
+  Result<Times> times = to_seconds(*std::move(time), source.file, source.time_unit);
+  if (!times) return times.error();
+  TimeBase base{.unit_stated = times->unit_stated || source.sample_time_s};
+  Result<double> found = uniform_sample_time(times->since_first_s, [&](std::size_t row) { return file.place_of(row); });
+  if (!found) {
+    base.jitter_s = jitter_of(times->since_first_s);
+    if (!base.jitter_s) return found.error();
+    base.unequal_s = std::move(times->since_first_s);
+    found = base.unequal_s.back() / static_cast<double>(samples - 1);
+  }
+  const Result<std::optional<double>> agreed = agree(source.sample_time_s, *found);
+  if (!agreed) return agreed.error();
+  base.sample_time_s = *agreed;
+  return base;
 }
 
 template <class File>
@@ -46,12 +63,15 @@ Result<Signal> read_from(const Result<File>& file, const Source& source) {
     const Error& error = column.error();
     return error.parameter.empty() ? under("variable", error) : error;
   }
-  const Result<std::optional<double>> sample_time = find_sample_time(*file, source, column->values.size());
-  if (!sample_time) return sample_time.error();
+  const Result<TimeBase> base = find_time_base(*file, source, column->values.size());
+  if (!base) return base.error();
+  if (!base->unequal_s.empty()) column->values = at_equal_steps(base->unequal_s, column->values);
   return Signal{.values = std::move(column->values),
                 .name = std::move(column->name),
                 .unit = std::move(column->unit),
-                .sample_time_s = *sample_time};
+                .sample_time_s = base->sample_time_s,
+                .jitter_s = base->jitter_s,
+                .time_unit_stated = base->unit_stated};
 }
 
 /// Calls `use` with the opened file, whatever its format; errors in opening it concern the parameter `file`.
@@ -95,6 +115,17 @@ Result<std::vector<Column>> read_choice(const CsvFile& file, std::string_view ch
   return file.read(*places);
 }
 
+Result<Column> one_column_of_times(const CsvFile& file, const std::string& choice) { return file.read_times(choice); }
+Result<Column> one_column_of_times(const MatFile& file, const std::string& choice) {
+  Result<std::vector<Column>> columns = file.read_choice(choice);
+  if (!columns) return columns.error();
+  if (columns->size() == 1) return std::move(columns->front());
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "time",
+               .message = in_quotes(choice) + " has " + std::to_string(columns->size()) + " columns; name one of times",
+               .place = {}};
+}
+
 template <class File>
 Result<std::vector<Column>> read_list(const File& file, std::string_view list) {
   std::vector<Column> all;
@@ -110,21 +141,16 @@ Result<std::vector<Column>> read_list(const File& file, std::string_view list) {
 
 }  // namespace
 
-Result<double> seconds_in(const Column& time, const std::filesystem::path& file) {
-  struct Scale {
-    std::string_view unit;
-    double seconds;
-  };
-  constexpr std::array<Scale, 6> scales{
-      {{"", 1.0}, {"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"µs", 1e-6}, {"ns", 1e-9}}};
-  for (const Scale& scale : scales) {
-    if (scale.unit == time.unit) return scale.seconds;
-  }
-  return Error{.code = ErrorCode::wrong_type,
-               .parameter = "time",
-               .message = in_quotes(time.name) + " of '" + file.string() + "' is in '" + time.unit +
-                          "'; times are in s, ms, us or ns",
-               .place = {}};
+Result<Times> read_times(const std::filesystem::path& file, const std::string& choice, std::string_view unit) {
+  return with_file<Times>(
+      file,
+      [&](const auto& opened) -> Result<Times> {
+        if (!opened) return opened.error();
+        Result<Column> column = one_column_of_times(*opened, choice);
+        if (!column) return column.error();
+        return to_seconds(*std::move(column), file, unit);
+      },
+      CsvFile::Header::optional);
 }
 
 Result<std::vector<std::vector<Column>>> read_columns(const std::filesystem::path& file,
@@ -143,6 +169,18 @@ Result<std::vector<std::vector<Column>>> read_columns(const std::filesystem::pat
         return lists;
       },
       CsvFile::Header::optional);
+}
+
+std::string jitter_note(std::optional<double> jitter_s, double sample_time_s) {
+  if (!jitter_s) return {};
+  // A sine of f Hz gets an error of 2 pi f times the jitter, relative to its amplitude.
+  constexpr double relative_error = 0.1, full_turn = 6.283185307179586;
+  const double limit_Hz = std::min(relative_error / (full_turn * *jitter_s), 0.5 / sample_time_s);
+  return "the times jitter by " + rounded_number(1e3 * *jitter_s, 2) + " ms rms, " +
+         rounded_number(100.0 * *jitter_s / sample_time_s, 2) +
+         " % of a step, so the samples were interpolated to equal steps of " + rounded_number(1e3 * sample_time_s) +
+         " ms: above " + rounded_number(limit_Hz, 2) +
+         " Hz amplitudes are uncertain by more than 10 %, and delays shorter than the jitter cannot be told";
 }
 
 Result<Signal> read(const Source& source) {

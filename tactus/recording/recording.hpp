@@ -2,6 +2,7 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/recording/column.hpp>
+#include <tactus/recording/times.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -17,13 +18,15 @@ namespace tactus::recording {
 ///
 /// The ending of the file's name tells the format: `.csv`, `.tsv` or `.txt` for a table, `.mat` for a MATLAB file.
 ///
-/// A table is UTF-8 text, its fields separated by commas, semicolons or tabs (found from the header) and quoted where
-/// needed; numbers have a decimal point in any locale. The first line that is neither empty nor begins with `#` is the
-/// header: a name and a unit for each column, as `force [N]`, `force (N)` or `force_N`. Every line after it is a
-/// sample.
+/// A table is UTF-8 text, its fields separated by commas, semicolons, tabs or blanks (found from header and first
+/// sample) and quoted where needed. Numbers have a decimal point in any locale, or throughout a decimal comma where
+/// commas do not separate. The first line that is neither empty nor begins with `#` or `%` is the header: a name and a
+/// unit for each column, as `force [N]`, `force (Newton)` or `force_N` (`split_unit` tells the rules). Where that line
+/// holds numbers, the last comment before it with as many words is the header. Every line after it is a sample.
 ///
 /// A MATLAB file is of version 5 (what `save` writes with `-v7` or `-v6`), compressed or not. The signal is a real,
-/// full vector or matrix of numbers of any class.
+/// full vector or matrix of numbers of any class. Signals are its columns; its rows where there are ten times as many
+/// columns as rows, and at most 64 rows.
 struct Source {
   std::filesystem::path file = {};
 
@@ -32,14 +35,20 @@ struct Source {
   /// and a unit at the end of a name may be left out (`log.force` for `log.force_N`).
   std::string variable = {};
 
-  /// MATLAB file: 1-based column of the variable. A row vector counts as one column. Table: 1, for the name is enough.
+  /// MATLAB file: 1-based column of the variable, or its row where its signals are rows. A row vector counts as one
+  /// column. Table: 1, for the name is enough.
   std::int64_t column = 1;
 
   /// The time of each sample, named like `variable` (its first column). In a table in the unit of its header (s, ms, us
-  /// or ns; s if none), in a MATLAB file in seconds. Empty: the column `time` or `t`, or the variable `time` that
+  /// or ns), as ISO 8601 dates and times, or as two columns of seconds and parts of them (`sec,nanosec`). Without a
+  /// unit and in a MATLAB file: seconds, but times since 1970 in s, ms, us or ns, which their size tells apart. Empty:
+  /// the column `time`, `t`, `timestamp` or the like, or such a pair, or the variable `time` that
   /// stands nearest (for `scope.signals(2).values`: `scope.signals(2).time`, `scope.time`, `time`) and has as many
   /// samples, `time_s` where there is no `time`; no time if there is none.
   std::string time = {};
+
+  /// The unit of the times (s, ms, us or ns) instead of what the file says of it; empty: as the file says.
+  std::string time_unit = {};
 
   /// What the sample time is known to be, in seconds, greater than 0. Where the file has times too, they must agree
   /// with it within one part in a thousand.
@@ -55,15 +64,23 @@ struct Signal {
   std::string unit = {};
   /// Time between samples in seconds; none where neither the source nor the file states it.
   std::optional<double> sample_time_s = {};
+  /// Where the times of the file jitter by more than a tenth of a step without a lost sample, the values are
+  /// interpolated to equal steps, and this is the rms distance of the times from equal steps in seconds.
+  std::optional<double> jitter_s = {};
+  /// Whether the file or the source states the unit of the times.
+  bool time_unit_stated = false;
 };
+
+/// What jitter of the times means for a signal, in a sentence; empty where there is none.
+std::string jitter_note(std::optional<double> jitter_s, double sample_time_s);
 
 /// Reads one signal.
 ///
 /// Errors: the file is missing, of unknown format, damaged or empty; there is no such variable (the message lists what
 /// there is and the nearest name); the variable is not a vector or matrix of real numbers; the column is out of range;
-/// a value is not a finite number; there are fewer than two samples; the times are not strictly increasing, leave a
-/// uniform grid by more than a tenth of a sample, or contradict the stated sample time. Parameters in errors are the
-/// members of `Source`; a place in a table is `file:line:column`.
+/// a value is not a finite number; there are fewer than two samples; the times are not strictly increasing, a sample is
+/// lost or doubled (or the times leave a uniform grid by more than 0.45 of a step), or they contradict the stated
+/// sample time. Parameters in errors are the members of `Source`; a place in a table is `file:line:column`.
 ///
 /// Not real-time safe. Independent calls may run in several threads.
 Result<Signal> read(const Source& source);
@@ -80,8 +97,9 @@ Result<Signal> read(const Source& source);
 Result<std::vector<std::vector<Column>>> read_columns(const std::filesystem::path& file,
                                                       std::span<const std::string> choices);
 
-/// Seconds in one unit of a column of times: s (also where it states none), ms, us or ns. Errors: `wrong_type`.
-Result<double> seconds_in(const Column& time, const std::filesystem::path& file);
+/// Reads the times that `Source::time` and `Source::time_unit` name, as `Source` says. Errors: as for `read`, without
+/// those of steps. Not real-time safe.
+Result<Times> read_times(const std::filesystem::path& file, const std::string& choice, std::string_view unit = {});
 
 /// One variable or column of a file.
 struct Entry {

@@ -31,7 +31,46 @@ Error cannot(ErrorCode code, std::string message) {
   return {.code = code, .parameter = "sample_time_s", .message = std::move(message), .place = {}};
 }
 
+/// Slope of the parabola through sample `i` and its neighbours, per second.
+double slope_at(std::span<const double> t, std::span<const double> y, std::size_t i) {
+  const std::size_t last = y.size() - 1;
+  const auto rise = [&](std::size_t k) { return (y[k + 1] - y[k]) / (t[k + 1] - t[k]); };
+  if (i == 0) return rise(0);
+  if (i == last) return rise(last - 1);
+  const double before_s = t[i] - t[i - 1];
+  const double after_s = t[i + 1] - t[i];
+  return (rise(i - 1) * after_s + rise(i) * before_s) / (before_s + after_s);
+}
+
 }  // namespace
+
+std::vector<double> at_steps(std::span<const double> time_s, std::span<const double> values, double first_s,
+                             double step_s, std::size_t count) {
+  std::vector<double> result(count);
+  const std::size_t last = values.size() - 1;
+  std::size_t before = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double at_s = first_s + static_cast<double>(k) * step_s;
+    while (before + 1 < last && time_s[before + 1] <= at_s) ++before;
+    const double length_s = time_s[before + 1] - time_s[before];
+    const double share = std::clamp((at_s - time_s[before]) / length_s, 0.0, 1.0);
+    const double rest = 1.0 - share;
+    const double rise = values[before + 1] - values[before];
+    const double excess_before = slope_at(time_s, values, before) * length_s - rise;
+    const double excess_after = rise - slope_at(time_s, values, before + 1) * length_s;
+    result[k] = values[before] + share * (rise + rest * (excess_before * rest + excess_after * share));
+  }
+  return result;
+}
+
+std::vector<double> at_equal_steps(std::span<const double> time_s, std::span<const double> values) {
+  const std::size_t last = values.size() - 1;
+  const double step_s = (time_s[last] - time_s[0]) / static_cast<double>(last);
+  std::vector<double> result = at_steps(time_s, values, time_s[0], step_s, values.size());
+  result.front() = values.front();
+  result.back() = values.back();
+  return result;
+}
 
 Result<Signal> resample(const Signal& signal, Seconds sample_time) {
   constexpr double equal_share = 1e-6;

@@ -3,6 +3,9 @@
 #include <tactus/core/units.hpp>
 #include <tactus/recording/recording.hpp>
 
+#include <span>
+#include <vector>
+
 namespace tactus::recording {
 
 /// The signal at another sample time, from its first sample to its last and not beyond.
@@ -20,5 +23,15 @@ namespace tactus::recording {
 /// Errors: a signal without a sample time; a sample time out of bounds; a result of more than 1e8 samples. Not
 /// real-time safe. Source: Catmull and Rom, A class of local interpolating splines, 1974.
 Result<Signal> resample(const Signal& signal, Seconds sample_time);
+
+/// Samples that were taken at unequal times, at as many equal steps from the first to the last of them, on a cubic
+/// curve whose slope at each sample is that of the parabola through it and its neighbours. `time_s` must increase
+/// strictly. Not real-time safe.
+std::vector<double> at_equal_steps(std::span<const double> time_s, std::span<const double> values);
+
+/// The same at `count` steps of `step_s` from `first_s` on, which lie between the first and the last sample; beyond
+/// them the value of the nearest. At least two samples.
+std::vector<double> at_steps(std::span<const double> time_s, std::span<const double> values, double first_s,
+                             double step_s, std::size_t count);
 
 }  // namespace tactus::recording

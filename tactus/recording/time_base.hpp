@@ -18,6 +18,23 @@ namespace tactus::recording {
 Result<double> uniform_sample_time(std::span<const double> time_s,
                                    const std::function<std::string(std::size_t)>& place_of);
 
+/// The rms distance of times from equal steps, in seconds, where no sample is lost or doubled: what a computer makes of
+/// them that stamps samples when it comes to it. None where some step is a lost or doubled sample, where times do not
+/// increase strictly, and where they leave equal steps by more than 0.45 of one. Slow changes of the rate do not count.
+std::optional<double> jitter_of(std::span<const double> time_s);
+
+/// Refuses a mean step in which no device of this kind is recorded (outside 2 us to 0.5 s): the times are in another
+/// unit. The message says in which unit they would make sense. `unit_stated`: the file or the caller states the unit.
+Check check_step(double sample_time_s, bool unit_stated);
+
+/// By how much too long a step is, as a power of ten (1000 for times in ms that are taken for seconds, 1e-3 for the
+/// reverse), which a velocity shows that was measured beside the position. None where they agree or tell nothing.
+std::optional<double> step_is_too_long_by(std::span<const double> position, std::span<const double> velocity,
+                                          double sample_time_s);
+
+/// The refusal of such times.
+Error contradicted_by_velocity(const std::string& velocity, double too_long_by, double sample_time_s);
+
 /// The sample time in seconds from what was stated and what was found in the file, either of which may be absent. Where
 /// both are there, they must agree within one part in a thousand, and the stated one, which no printing has rounded,
 /// counts.

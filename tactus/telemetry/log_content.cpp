@@ -1,5 +1,6 @@
 #include <tactus/telemetry/cdr.hpp>
 #include <tactus/telemetry/log_reader.hpp>
+#include <tactus/telemetry/ros_bag.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -33,20 +34,6 @@ bool sort_parts(std::vector<std::filesystem::path>& files) {
   if (!are_parts) return false;
   std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return *part_number(a) < *part_number(b); });
   return true;
-}
-
-Result<std::vector<std::filesystem::path>> log_files(const std::filesystem::path& file_or_folder) {
-  std::error_code failed;
-  if (!std::filesystem::is_directory(file_or_folder, failed)) return std::vector{file_or_folder};
-  std::vector<std::filesystem::path> logs;
-  for (const auto& entry : std::filesystem::directory_iterator(file_or_folder, failed)) {
-    if (entry.path().extension() == ".mcap") logs.push_back(entry.path());
-  }
-  if (logs.size() == 1 || (!logs.empty() && sort_parts(logs))) return logs;
-  return Error{.code = ErrorCode::missing,
-               .parameter = {},
-               .message = "the folder holds " + std::to_string(logs.size()) + " .mcap files, not one: name the file",
-               .place = file_or_folder.string()};
 }
 
 /// A table while it is filled.
@@ -152,6 +139,20 @@ class Tables {
 };
 
 }  // namespace
+
+Result<std::vector<std::filesystem::path>> log_files(const std::filesystem::path& file_or_folder) {
+  std::error_code failed;
+  if (!std::filesystem::is_directory(file_or_folder, failed)) return std::vector{file_or_folder};
+  std::vector<std::filesystem::path> logs;
+  for (const auto& entry : std::filesystem::directory_iterator(file_or_folder, failed)) {
+    if (entry.path().extension() == ".mcap") logs.push_back(entry.path());
+  }
+  if (logs.size() == 1 || (!logs.empty() && sort_parts(logs))) return logs;
+  return Error{.code = ErrorCode::missing,
+               .parameter = {},
+               .message = "the folder holds " + std::to_string(logs.size()) + " .mcap files, not one: name the file",
+               .place = file_or_folder.string()};
+}
 
 Result<LogContent> read_log(const std::filesystem::path& file_or_folder, const std::optional<std::string>& topic) {
   const auto files = log_files(file_or_folder);

@@ -1,4 +1,5 @@
 #include <tactus/telemetry/log_reader.hpp>
+#include <tactus/telemetry/lz4.hpp>
 #include <tactus/telemetry/mcap_format.hpp>
 
 #include <algorithm>
@@ -76,6 +77,19 @@ class Scan {
       take(opcode, buffer_, crc_before);
     }
     return error_;
+  }
+
+  /// A file none of whose chunks can be read is no empty log.
+  Check check_content() const {
+    if (summary_.messages > 0 || summary_.damaged_chunks == 0) return std::nullopt;
+    return Error{
+        .code = ErrorCode::syntax,
+        .parameter = {},
+        .message = "not one of its " + std::to_string(summary_.damaged_chunks) + " chunks can be read, for " +
+                   (unknown_compression_.empty() ? "their bytes or their checksums are wrong: copy the log anew"
+                                                 : "they are compressed as '" + unknown_compression_ +
+                                                       "', and zstd, lz4 and none are read: compress the log anew"),
+        .place = {}};
   }
 
   LogSummary summary() && { return std::move(summary_); }
@@ -230,8 +244,16 @@ class Scan {
         sound = got == size;
         records = chunk_;
       }
+    } else if (sound && compression == "lz4") {
+      if (!may_unpack(size)) return;
+      chunk_.resize(static_cast<std::size_t>(size));
+      sound = unpack_lz4(records, chunk_);
+      records = chunk_;
     } else {
       sound = sound && compression.empty() && records.size() == size;
+    }
+    if (cursor.ok() && compression != "zstd" && compression != "lz4" && !compression.empty()) {
+      unknown_compression_ = compression.substr(0, 32);
     }
     if (!sound || (stated_crc != 0 && crc32_of(records) != stated_crc)) {
       ++summary_.damaged_chunks;
@@ -265,6 +287,7 @@ class Scan {
   std::uint64_t work_left_ = most_unpacked_bytes;
   std::string buffer_;
   std::string chunk_;
+  std::string unknown_compression_;
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, LogChannel> channels_;
   LogSummary summary_;
@@ -287,6 +310,7 @@ Result<LogSummary> scan_log(const std::filesystem::path& file,
   Scan scan(stream.get(), size, visit);
   auto error = scan.begin();
   if (!error) error = scan.run();
+  if (!error) error = scan.check_content();
   if (error) {
     if (error->place.empty()) error->place = file.string();
     return *std::move(error);

@@ -45,11 +45,11 @@ struct LogSummary {
 /// those of a file that was cut at any byte included. No index is needed or believed.
 ///
 /// Memory and time are bounded whatever the file says: a record beyond 64 MiB, before or after decompression, is
-/// skipped as damaged, and so is what a file declares beyond 16 MiB. Compression: zstd or none. `visit` may end the
+/// skipped as damaged, and so is what a file declares beyond 16 MiB. Compression: zstd, lz4, none. `visit` may end the
 /// reading by returning an error.
 ///
-/// Errors: `missing` for a file that is not there, `syntax` for one that does not begin as an MCAP file,
-/// `out_of_bounds` for one that takes more than 4 GiB unpacked; any of `visit`.
+/// Errors: `missing` for a file that is not there, `syntax` for one that does not begin as an MCAP file or of
+/// whose chunks none can be read, `out_of_bounds` for one beyond 4 GiB unpacked; any of `visit`.
 Result<LogSummary> scan_log(const std::filesystem::path& file,
                             const std::function<Check(const LogChannel&, const LogMessage&)>& visit);
 

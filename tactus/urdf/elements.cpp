@@ -94,7 +94,15 @@ class Reader {
     return found;
   }
 
+  /// What is wrong with numbers that can be read is left in the result: a body that moves no joint may have it.
   Inertial inertial(const XMLElement& element, const std::string& of) {
+    const bool right_before = !error_;
+    Inertial found = numbers_of_inertial(element, of);
+    if (right_before && error_ && error_->code != ErrorCode::syntax) std::swap(found.fault, error_);
+    return found;
+  }
+
+  Inertial numbers_of_inertial(const XMLElement& element, const std::string& of) {
     Inertial found;
     found.line = element.GetLineNum();
     found.origin = origin(element, "the inertial of " + of);
@@ -140,10 +148,15 @@ class Reader {
     numbers(element.FirstChildElement("axis"), "xyz", "the axis of " + of, axis);
     const XMLElement* limit = element.FirstChildElement("limit");
     if (found.type != "continuous") {
+      found.has_range =
+          limit != nullptr && (limit->Attribute("lower") != nullptr || limit->Attribute("upper") != nullptr);
       number(limit, "lower", "the limit of " + of, found.limits.lower_rad);
       number(limit, "upper", "the limit of " + of, found.limits.upper_rad);
     }
     number(limit, "velocity", "the limit of " + of, found.limits.velocity_rad_per_s);
+    // What URDF takes where only one of the two is written.
+    if (found.has_range && limit->Attribute("lower") == nullptr) found.limits.lower_rad = 0.0;
+    if (found.has_range && limit->Attribute("upper") == nullptr) found.limits.upper_rad = 0.0;
     number(limit, "effort", "the limit of " + of, found.limits.effort_N_m);
     const XMLElement* dynamics = element.FirstChildElement("dynamics");
     number(dynamics, "damping", "the dynamics of " + of, found.damping);
@@ -175,6 +188,24 @@ Error not_xml(const std::filesystem::path& file, const tinyxml2::XMLDocument& do
           .message = std::string("is not whole XML (") + tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID()) +
                      "); is the file cut off?",
           .place = place(file, document.ErrorLineNum())};
+}
+
+/// The first element of xacro at or below `root`, in the order of the file; null where there is none. Comments and
+/// texts may hold what they like.
+const XMLElement* first_macro(const XMLElement& root) {
+  const XMLElement* at = &root;
+  while (at != nullptr) {
+    if (std::string_view(at->Name()).starts_with("xacro:")) return at;
+    const XMLElement* next = at->FirstChildElement();
+    while (next == nullptr && at != nullptr && at != &root) {
+      next = at->NextSiblingElement();
+      if (next != nullptr) break;
+      const tinyxml2::XMLNode* const parent = at->Parent();
+      at = parent == nullptr ? nullptr : parent->ToElement();
+    }
+    at = next;
+  }
+  return nullptr;
 }
 
 void read_links(const XMLElement& robot, Reader& reader, Robot& into) {
@@ -244,11 +275,13 @@ Check load(const std::string& text, const std::filesystem::path& file, tinyxml2:
   if (root == nullptr || std::string_view(root->Name()) != "robot") {
     return Error{ErrorCode::syntax, {}, "is no URDF: its outermost element must be <robot>", file.string()};
   }
-  if (text.find("<xacro:") != std::string::npos) {
+  if (const XMLElement* macro = first_macro(*root)) {
     return Error{ErrorCode::syntax,
                  {},
-                 "is xacro, from which URDF is made: run `xacro FILE > arm.urdf` of ROS first",
-                 file.string()};
+                 "is xacro, from which URDF is made, for it has the element <" +
+                     std::string(macro->Name()).substr(0, longest_quote) +
+                     ">: run `xacro FILE > arm.urdf` of ROS first",
+                 place(file, macro->GetLineNum())};
   }
   return {};
 }

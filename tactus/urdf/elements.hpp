@@ -23,6 +23,8 @@ struct Inertial {
   /// About the centre: only the moments are set.
   arm::Body moments = {};
   int line = 0;
+  /// Why no body can be like this; of no concern for one that moves no joint.
+  Check fault = {};
 };
 
 struct Link {
@@ -40,6 +42,7 @@ struct Joint {
   arm::JointOrigin origin = {};
   arm::JointAxis axis = {};
   arm::JointLimits limits = {};
+  bool has_range = false;  ///< lower or upper is written
   double damping = 0.0;
   double friction = 0.0;
   int line = 0;

@@ -1,3 +1,4 @@
+#include <tactus/core/parameters.hpp>
 #include <tactus/urdf/elements.hpp>
 #include <tactus/urdf/urdf.hpp>
 
@@ -112,6 +113,7 @@ class Walk {
     arm::BodyVector body = arm::BodyVector::Zero();
     bool has_body = false;
     std::vector<LinkFrame> frames;
+    std::vector<Error> impossible;  ///< bodies that cannot be
     std::vector<std::pair<std::size_t, LinkPose>>
         onward;  ///< joints that move, and the frames of the links they are on
   };
@@ -130,8 +132,10 @@ class Walk {
       found.frames.push_back({name, pose.position_m});
       if (link.inertial) {
         const arm::Body body = placed(*link.inertial, pose);
-        if (Check wrong = arm::check(link.inertial->moments)) {
-          return error(wrong->code, link.inertial->line, "link '" + name + "': " + wrong->message);
+        if (link.inertial->fault) {
+          found.impossible.push_back(*link.inertial->fault);
+        } else if (Check wrong = arm::check(link.inertial->moments)) {
+          found.impossible.push_back(error(wrong->code, link.inertial->line, "link '" + name + "': " + wrong->message));
         }
         found.body += arm::linear_parameters(body);
         found.has_body = true;
@@ -174,6 +178,41 @@ Check check_joint(const Walk& walk, const Joint& joint) {
                         "'; a joint of the chain must be revolute, continuous, prismatic or fixed");
 }
 
+/// A limit of 0 is what exporters write where nobody entered one.
+Check take_limits(const Walk& walk, const Joint& joint, Arm& into, arm::JointLimits& limits) {
+  const bool slides = joint.type == "prismatic";
+  const std::string of = "joint '" + joint.name + "'";
+  const std::string unit = slides ? " m" : " rad";
+  if (limits.lower_rad > limits.upper_rad) {
+    return walk.error(ErrorCode::inconsistent, joint.line,
+                      of + " has the limits lower=" + format_number(limits.lower_rad) + " and upper=" +
+                          format_number(limits.upper_rad) + unit + ", which leave no position; exchange them");
+  }
+  const auto doubt = [&](const std::string& why) {
+    into.doubtful_limits.push_back(describe(walk.error(ErrorCode::inconsistent, joint.line, of + why)));
+  };
+  const arm::JointLimits unstated;
+  if (limits.lower_rad == limits.upper_rad) {
+    doubt(" has a range from " + format_number(limits.lower_rad) + " to " + format_number(limits.upper_rad) + unit +
+          ", in which it cannot move: its range counts as not stated; write lower and upper");
+    limits.lower_rad = unstated.lower_rad;
+    limits.upper_rad = unstated.upper_rad;
+  } else if (joint.type != "continuous" && !joint.has_range) {
+    doubt(" states no range; write <limit lower=\"\" upper=\"\" velocity=\"\" effort=\"\"/>");
+  }
+  if (limits.effort_N_m == 0.0) {
+    doubt(std::string(" has an effort limit of 0 ") + (slides ? "N" : "N m") +
+          ", with which it cannot move: it counts as not stated; write effort");
+    limits.effort_N_m = unstated.effort_N_m;
+  }
+  if (limits.velocity_rad_per_s == 0.0) {
+    doubt(" has a velocity limit of 0" + unit +
+          "/s, with which it cannot move: it counts as not stated; write velocity");
+    limits.velocity_rad_per_s = unstated.velocity_rad_per_s;
+  }
+  return {};
+}
+
 arm::JointParams params_of(const Joint& joint, const LinkPose& frame, const arm::BodyVector& body) {
   arm::JointParams params;
   params.kind = joint.type == "prismatic" ? arm::JointKind::prismatic : arm::JointKind::revolute;
@@ -208,6 +247,11 @@ Result<Arm> parse(const std::string& text, const std::filesystem::path& file, co
   Arm made{.name = robot->name, .base = *root};
   std::vector<arm::JointParams> joints;
   Result<Walk::Group> group = walk.group(*root, tip.empty() ? nullptr : &path);
+  if (group) {
+    for (const Error& wrong : group->impossible) {
+      made.warnings.push_back(describe(wrong) + " (this body moves no joint, so it does not count)");
+    }
+  }
   while (group && !group->onward.empty()) {
     const auto [index, frame] = group->onward.front();
     const Joint& joint = robot->joints[index];
@@ -233,7 +277,9 @@ Result<Arm> parse(const std::string& text, const std::filesystem::path& file, co
                         "link '" + link.name + "', which joint '" + joint.name +
                             "' moves, has no <inertial>, nor has anything fixed to it; add mass, centre and inertia");
     }
+    if (!group->impossible.empty()) return group->impossible.front();
     joints.push_back(params_of(joint, frame, group->body));
+    if (Check wrong = take_limits(walk, joint, made, joints.back().limits)) return *std::move(wrong);
     made.joints.push_back(joint.name);
     made.links.push_back(joint.child);
     made.frames.push_back(group->frames);

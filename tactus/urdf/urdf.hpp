@@ -28,6 +28,12 @@ struct Arm {
   /// Gravity is 9.81 m/s² along −z of the base. Limits and `dynamics` are taken over; `friction` is Coulomb's,
   /// `damping` viscous.
   arm::Chain::Params params = {};
+  /// What the file says that cannot be and does not count, each with `file:line`: an impossible body that moves no
+  /// joint.
+  std::vector<std::string> warnings = {};
+  /// Limits that are 0 and so count as not stated, and ranges that are absent, each with `file:line`, joint and limit:
+  /// what drives or simulates the arm needs them.
+  std::vector<std::string> doubtful_limits = {};
 };
 
 /// Reads the chain of moving joints from the root of the file to its end.
@@ -39,9 +45,10 @@ struct Arm {
 /// Errors, each with `file:line`, the joint or link, the value and the remedy: `missing` for the file, a link, a
 /// joint's parent or child, an `inertial` of a body that moves; `syntax` for text that is not XML or no robot, and for
 /// what is not a number; `inconsistent` for a chain that branches, has no single root or goes in a circle, for more
-/// than eight moving joints, for a joint of the chain that is floating, planar or mimics another, and for an inertia
-/// that no body can have; `out_of_bounds` for a number that is not finite, a negative mass, and a file beyond 4 MiB,
-/// 1,000 links or 1,000 joints. Not real-time safe. Source: the URDF specification, http://wiki.ros.org/urdf/XML.
+/// than eight moving joints, for a joint of the chain that is floating, planar or mimics another or whose lower limit
+/// is above its upper one, and for an inertia that no body can have, unless that body moves no joint; `out_of_bounds`
+/// for a number that is not finite, a negative mass, and a file beyond 4 MiB, 1,000 links or 1,000 joints. Not
+/// real-time safe. Source: the URDF specification, http://wiki.ros.org/urdf/XML.
 Result<Arm> read(const std::filesystem::path& file, const std::string& tip = {});
 
 /// The same in two parts: the text of the file, and the chain of the text, where errors name `file`.

@@ -47,6 +47,31 @@ Mechanism named(const Evidence& evidence, double frequency_Hz) {
   return decide(everything(), line(frequency_Hz), evidence).mechanism;
 }
 
+TEST(Decide, AHandThatLeadsSlowlyWithAFollowerSoonBehindIsNoFaultWherePositionsAloneTell) {
+  Signals positions{.channels = {}, .sample_time = Seconds{5e-3}, .samples = 2000, .rotary = true};
+  for (const Role role : {Role::master_position, Role::slave_position}) {
+    positions.channels[static_cast<std::size_t>(role)] = Channel{.name = "q", .values = {}, .step = 1e-5};
+  }
+  Evidence led;
+  led.amplitude = {0.4, 0.39, {}, {}, {}, {}};
+  led.master_part = 1.03;
+  led.follows = 0.99;
+  led.slave_behind_rad = 0.3;
+  led.master_steps = led.slave_steps = 1000.0;
+  EXPECT_TRUE(decide(positions, line(1.0), led).led);
+  EXPECT_TRUE(decide(positions, line(1.0), led).harmless);
+  EXPECT_FALSE(decide(positions, line(6.0), led).led) << "no hand does this on purpose";
+  Evidence other = led;
+  other.slave_behind_rad = 3.0;
+  EXPECT_FALSE(decide(positions, line(1.0), other).led) << "half a turn behind, as over a delay";
+  other.slave_behind_rad = -0.3;
+  EXPECT_FALSE(decide(positions, line(1.0), other).led) << "the slave leads";
+  other = led;
+  other.master_part = 0.1;
+  EXPECT_FALSE(decide(positions, line(1.0), other).led) << "the slave moves by itself";
+  EXPECT_FALSE(decide(everything(), line(1.0), led).led) << "forces tell";
+}
+
 TEST(Decide, NamesEachMechanismByWhatItMustShow) {
   EXPECT_EQ(named(in_contact(), 80.0), Mechanism::induced_motion);
   EXPECT_EQ(named(slave_alone(), 25.0), Mechanism::slave_servo);

@@ -71,6 +71,28 @@ TEST_F(Mat, ARowVectorIsOneColumnOfSamples) {
   EXPECT_TRUE(says(refusal({.file = file, .variable = "row", .column = 2}), "has 1 columns of 3 samples"));
 }
 
+TEST_F(Mat, SignalsInRowsAreReadAsSignals) {
+  // Time and two signals in the rows of one variable, as Simulink's To File block writes them.
+  std::vector<double> columns;
+  for (int i = 0; i < 50; ++i) columns.insert(columns.end(), {0.002 * i, 10.0 + i, -20.0 - i});
+  for (const matio_compression compression : both) {
+    const auto file = write_mat(path("a.mat"), {matrix("ans", 3, 50, columns)}, compression);
+    const auto signal = read({.file = file, .variable = "ans", .column = 3, .time = "ans"});
+    ASSERT_TRUE(signal) << describe(signal.error());
+    ASSERT_EQ(signal->values.size(), 50U);
+    EXPECT_EQ(signal->values[7], -27.0);
+    EXPECT_EQ(signal->name, "ans(3,:)");
+    EXPECT_DOUBLE_EQ(signal->sample_time_s.value_or(0.0), 0.002);
+    EXPECT_EQ(read({.file = file, .variable = "ans", .column = 2, .time = "ans:1"})->values[49], 59.0);
+    EXPECT_EQ(contents(file)->front().rows, 50);
+    EXPECT_EQ(contents(file)->front().columns, 3);
+    const auto lists = read_columns(file, std::vector<std::string>{"ans:1", "ans:2:3"});
+    ASSERT_TRUE(lists) << describe(lists.error());
+    EXPECT_EQ((*lists)[1][1].values[0], -20.0);
+    EXPECT_TRUE(says(refusal({.file = file, .variable = "ans", .column = 4}), "has 3 columns of 50 samples"));
+  }
+}
+
 TEST_F(Mat, AFileInTheOtherByteOrderReadsAlike) {
   // Written by hand after the format's specification: a 2 x 1 matrix of doubles called `x`, values 1 and -2.
   std::string text(124, ' ');

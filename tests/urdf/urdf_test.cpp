@@ -204,6 +204,74 @@ TEST_F(Urdf, WhatIsWrongIsSaidWithItsLineNameAndRemedy) {
   EXPECT_EQ(read("no/such.urdf").error().code, ErrorCode::missing);
 }
 
+TEST_F(Urdf, XacroInACommentOrATextDoesNoHarmAndAnElementOfItIsNamedWithItsLine) {
+  std::string text = arm_text();
+  text.insert(text.find("</robot>"),
+              "<!-- <xacro:gripper name='j1'/> -->\n<note>run &lt;xacro:arm&gt;</note>\n"
+              "<transmission><!-- <xacro:x/> --></transmission>\n");
+  const Result<Arm> arm = read_text(text);
+  ASSERT_TRUE(arm) << describe(arm.error());
+  EXPECT_EQ(arm->joints.size(), 3U);
+  text.insert(text.find("</robot>"), "<gazebo>\n<xacro:property name='a'/></gazebo>\n");
+  const std::string told = complaint(text);
+  EXPECT_NE(told.find("<xacro:property>"), std::string::npos) << told;
+  EXPECT_NE(told.find(".urdf:"), std::string::npos) << told;
+}
+
+TEST_F(Urdf, AnImpossibleBodyThatMovesNoJointIsWarnedOfAndDoesNotCount) {
+  for (const char* numbers :
+       {"1e-6 0 0 0 1e-6 1e-6 1e-6 1e-6 1e-6 1e-6", "-1 0 0 0 1 1 1 0 0 0", "1 0 0 0 1 1 9 0 0 0"}) {
+    // The body of the base, and one that is fixed to it.
+    for (const bool fixed : {false, true}) {
+      const std::string base =
+          fixed ? "<link name='base'/>" + link("stand", numbers) + joint("to_stand", "fixed", "base", "stand")
+                : link("base", numbers);
+      const Result<Arm> arm = read_text(robot(base + link("one") + joint("j1", "continuous", "base", "one")));
+      ASSERT_TRUE(arm) << numbers << describe(arm.error());
+      ASSERT_EQ(arm->warnings.size(), 1U) << numbers;
+      EXPECT_NE(arm->warnings[0].find(fixed ? "'stand'" : "'base'"), std::string::npos) << arm->warnings[0];
+      EXPECT_NE(arm->warnings[0].find(".urdf:"), std::string::npos) << arm->warnings[0];
+      EXPECT_NEAR(arm->params.joints[0].body.mass_kg, 1.5, 1e-12);
+    }
+    EXPECT_NE(complaint(robot(link("base") + link("one", numbers) + joint("j1", "continuous", "base", "one"))),
+              "nothing");
+  }
+  EXPECT_TRUE(read_text(arm_text())->warnings.empty());
+}
+
+TEST_F(Urdf, LimitsThatCannotBeAreNamedWithTheirJoint) {
+  const auto with_limit = [&](const std::string& limit, const std::string& type = "revolute") {
+    return robot(link("base") + link("one") + joint("j1", type, "base", "one", limit));
+  };
+  const std::string reversed = complaint(with_limit("<limit lower='1' upper='-1' effort='10' velocity='3'/>"));
+  for (const char* words : {"'j1'", "lower=1", "upper=-1", "exchange"}) {
+    EXPECT_NE(reversed.find(words), std::string::npos) << words << " in " << reversed;
+  }
+  struct Case {
+    const char* limit;
+    std::vector<std::string> said;
+  };
+  for (const Case& c :
+       {Case{"<limit lower='-1' upper='1' effort='0' velocity='3'/>", {"'j1' has an effort limit of 0 N m"}},
+        Case{"<limit lower='-1' upper='1' effort='1' velocity='0'/>", {"'j1' has a velocity limit of 0 rad/s"}},
+        Case{"<limit lower='0' upper='0' effort='1' velocity='3'/>", {"'j1' has a range from 0 to 0 rad"}},
+        Case{"<limit lower='0' upper='0' effort='0' velocity='0'/>", {"range", "effort", "velocity"}},
+        Case{"<limit effort='1' velocity='3'/>", {"'j1' states no range"}}, Case{"", {"'j1' states no range"}},
+        Case{"<limit lower='-1' upper='1' effort='1' velocity='3'/>", {}}}) {
+    const Result<Arm> arm = read_text(with_limit(c.limit));
+    ASSERT_TRUE(arm) << c.limit << describe(arm.error());
+    ASSERT_EQ(arm->doubtful_limits.size(), c.said.size()) << c.limit;
+    for (std::size_t i = 0; i < c.said.size(); ++i) {
+      EXPECT_NE(arm->doubtful_limits[i].find(c.said[i]), std::string::npos) << arm->doubtful_limits[i];
+    }
+    EXPECT_GT(arm->params.joints[0].limits.effort_N_m, 0.0);
+    EXPECT_LT(arm->params.joints[0].limits.lower_rad, arm->params.joints[0].limits.upper_rad);
+  }
+  EXPECT_TRUE(read_text(with_limit("<limit effort='1' velocity='3'/>", "continuous"))->doubtful_limits.empty());
+  EXPECT_EQ(read_text(with_limit("<limit upper='1' effort='1' velocity='3'/>"))->params.joints[0].limits.lower_rad,
+            0.0);
+}
+
 /// Neither a file that is cut off nor one in which a letter is another one ends the program.
 TEST_F(Urdf, DamagedFilesAreReadOrRefused) {
   const std::string whole = arm_text();

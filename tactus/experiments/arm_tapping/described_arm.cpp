@@ -1,4 +1,5 @@
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/core/parameters.hpp>
 #include <tactus/experiments/arm_tapping/described_arm.hpp>
 #include <tactus/urdf/urdf.hpp>
 
@@ -25,6 +26,9 @@ Result<DescribedArm> described(const ArmParams& params, const std::string& key, 
   if (!urdf) return refused(urdf.error());
   const auto read = urdf::parse(urdf->text, urdf->file);
   if (!read) return refused(read.error());
+  if (!read->doubtful_limits.empty()) {
+    return Error{ErrorCode::inconsistent, key, read->doubtful_limits.front() + ": an arm that moves needs it", {}};
+  }
   const std::size_t joints = read->joints.size();
   const Joints<ArmJoint> of_file = params.joints.of(joints);
   DescribedArm found{.urdf = params.urdf,
@@ -46,6 +50,23 @@ Result<DescribedArm> described(const ArmParams& params, const std::string& key, 
   }
   found.arm.tool_m = arm::Vector3(params.tool.x_m, params.tool.y_m, params.tool.z_m);
   return found;
+}
+
+/// Refuses a start that a joint cannot have.
+Check check_start(const DescribedArm& of, const std::string& key) {
+  for (std::size_t i = 0; i < of.joints.size(); ++i) {
+    const double start_rad = of.start[static_cast<Eigen::Index>(i)];
+    const arm::JointLimits& limits = of.arm.chain.joints[i].limits;
+    if (start_rad >= limits.lower_rad && start_rad <= limits.upper_rad) continue;
+    return Error{.code = ErrorCode::out_of_bounds,
+                 .parameter = key,
+                 .message = "joint '" + of.joints[i] + "' starts at " + format_number(start_rad) +
+                            ", outside its range from " + format_number(limits.lower_rad) + " to " +
+                            format_number(limits.upper_rad) + " in " + of.urdf + ": set start_rad of joint_" +
+                            std::to_string(i + 1) + " within it",
+                 .place = {}};
+  }
+  return std::nullopt;
 }
 
 std::string listed(const DescribedArm& of) {
@@ -83,7 +104,10 @@ Result<DescribedArm> describe_arm(const ArmParams& params, const Urdfs& urdfs) {
                  .message = "which arm? Name its URDF file, such as arms/openarm-class.urdf",
                  .place = {}};
   }
-  return described(params, "arm.urdf", urdfs);
+  auto found = described(params, "arm.urdf", urdfs);
+  if (!found) return found;
+  if (Check wrong = check_start(*found, "arm.urdf")) return *std::move(wrong);
+  return found;
 }
 
 Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Coupling coupling, const Urdfs& urdfs) {
@@ -108,6 +132,7 @@ Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Co
     if (const auto axes = arm_control::ToolCoupling::axes_of(leader->arm.chain); !axes) {
       return Error{axes.error().code, "arm.urdf", axes.error().message, {}};
     }
+    if (Check wrong = check_start(*follower, "arm.follower.urdf")) return *std::move(wrong);
     return DescribedPair{.leader = *std::move(leader), .follower = *std::move(follower)};
   }
   if (follower->joints.size() != leader->joints.size()) {
@@ -124,6 +149,7 @@ Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Co
                         "tool (control.follower.coupling)");
   }
   follower->start = leader->start;
+  if (Check wrong = check_start(*follower, "arm.follower.urdf")) return *std::move(wrong);
   return DescribedPair{.leader = *std::move(leader), .follower = *std::move(follower)};
 }
 
