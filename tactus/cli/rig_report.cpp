@@ -1,5 +1,6 @@
 #include <tactus/cli/internal/link_json.hpp>
 #include <tactus/cli/rig_report.hpp>
+#include <tactus/cli/support_words.hpp>
 #include <tactus/experiments/presentation.hpp>
 #include <tactus/report/figure.hpp>
 #include <tactus/report/json.hpp>
@@ -74,6 +75,17 @@ std::string words_of_fault(const RigSecond& second, const RigPair& pair) {
   return std::string("; gate of ") + joint_of(side, second.fault_joint).path + ": " + name_of(second.fault);
 }
 
+/// The joint whose support is at fault.
+const devices::RigJoint& support_joint(const RigSecond& second, const RigPair& pair) {
+  return joint_of(second.support_of_leader ? *pair.leader : *pair.follower, second.support.joint);
+}
+
+/// What is wrong with gravity compensation, as the rest of a line.
+std::string words_of_support(const RigSecond& second, const RigPair& pair) {
+  if (second.support.fault == control::SupportFault::none) return {};
+  return words_of(second.support, support_joint(second, pair));
+}
+
 /// What a person does next, where there is something.
 std::string advice(const RigSecond& second, const RigPair& pair, std::optional<control::SiteRole> only) {
   using control::SiteState;
@@ -108,7 +120,7 @@ std::string line_of(const RigSecond& second, const RigPair& pair, std::optional<
   }
   if (only != control::SiteRole::slave) line += words_of(second.leader_trouble, "leader", *pair.leader);
   if (only != control::SiteRole::master) line += words_of(second.follower_trouble, "follower", *pair.follower);
-  return line + words_of_fault(second, pair) + advice(second, pair, only) + "\n";
+  return line + words_of_fault(second, pair) + words_of_support(second, pair) + advice(second, pair, only) + "\n";
 }
 
 std::string fault_of(const RigRun& run, const RigPair& pair) {
@@ -166,6 +178,20 @@ std::string gate_joint(const RigSecond& second, const RigPair& pair) {
   return joint_of(second.fault_of_leader ? *pair.leader : *pair.follower, second.fault_joint).path;
 }
 
+/// What was found wrong with gravity compensation; null where nothing was.
+nlohmann::ordered_json json_of_support(const RigSecond& second, const RigPair& pair) {
+  const control::SupportFinding& found = second.support;
+  if (found.fault == control::SupportFault::none) return nullptr;
+  return {{"fault", name_of(found.fault)},
+          {"joint", support_joint(second, pair).path},
+          {"share", found.share},
+          {"moved", found.moved_m},
+          {"speed", found.speed_m_per_s},
+          {"excess_torque", found.excess_N},
+          {"gravity_torque", found.weight_N},
+          {"torque_limit", found.limit_N}};
+}
+
 nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
   const devices::RigTotals& totals = run.totals;
   nlohmann::ordered_json document{
@@ -197,6 +223,7 @@ nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
     }
     one.update({{"gate_fault", name_of(second.fault)},
                 {"gate_joint", gate_joint(second, pair)},
+                {"support", json_of_support(second, pair)},
                 {"most_torque", second.most_torque},
                 {"farthest", second.farthest},
                 {"joint", farthest_joint(second, pair).name()},

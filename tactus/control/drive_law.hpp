@@ -30,6 +30,22 @@ struct DriveLaw {
   }
 };
 
+/// What holds a joint where it is while its support comes in (`SupportCheck`): the force of a spring, and a damper for
+/// the drive.
+struct HoldingLaw {
+  double force_N = 0.0;
+  double damping_N_s_per_m = 0.0;
+
+  [[nodiscard]] bool acts() const noexcept { return force_N != 0.0 || damping_N_s_per_m != 0.0; }
+  /// Adds it to a force and a law. Real-time safe.
+  void add_to(double& to_N, DriveLaw& law) const noexcept {
+    to_N += force_N;
+    const double damping = law.damping_N_s_per_m + damping_N_s_per_m;
+    if (damping > 0.0) law.velocity_m_per_s *= law.damping_N_s_per_m / damping;
+    law.damping_N_s_per_m = damping;
+  }
+};
+
 /// Makes a command of a force and a law, which together want `wanted_N` where the motor is, one that gives `passed_N`
 /// there. Force and gains keep one share, so none of them grows, and the drive goes on by the same law, weaker. Where
 /// what passes is no part of what is wanted, as when it falls no faster than a rate limit, it is a force alone.

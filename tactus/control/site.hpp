@@ -169,13 +169,18 @@ class Site {
   using Controller = SiteController<Sensors, Output>;
   using Gates = Each<In, JointGates>;
   using Forces = Each<In, double>;  ///< in N
+  using Laws = Each<In, HoldingLaw>;
 
   Site(std::unique_ptr<Controller> controller, const Gates& gates)
-      : controller_(std::move(controller)), gates_(gates), believed_(nothing()) {}
+      : controller_(std::move(controller)),
+        gates_(gates),
+        believed_(nothing()),
+        weight_N_(same_for_each(gates, 0.0)) {}
   Site(const Site& other)
       : controller_(other.controller_->clone()),
         gates_(other.gates_),
         believed_(other.believed_),
+        weight_N_(other.weight_N_),
         pushes_(other.pushes_),
         carried_(other.carried_) {}
   Site(Site&&) noexcept = default;
@@ -183,6 +188,7 @@ class Site {
     std::swap(controller_, other.controller_);
     gates_ = other.gates_;
     believed_ = other.believed_;
+    weight_N_ = other.weight_N_;
     pushes_ = other.pushes_;
     carried_ = other.carried_;
     return *this;
@@ -196,6 +202,11 @@ class Site {
   }
   /// The same with a share of its own for what carries the device, and `added_N` comes to it at the motor.
   Output step(const Sensors& input, const Shares& shares, std::int64_t elapsed_ticks, const Forces& added_N) noexcept {
+    return step(input, shares, elapsed_ticks, added_N, same_for_each(gates_, HoldingLaw{}));
+  }
+  /// The same with a law that `holds` the device.
+  Output step(const Sensors& input, const Shares& shares, std::int64_t elapsed_ticks, const Forces& added_N,
+              const Laws& holds) noexcept {
     // A site that reads nonsense lets go until it is re-armed, even where the nonsense would not have reached a force,
     // and its controller goes on with what was read last: no number that is none gets into its state.
     for_each_joint(
@@ -209,17 +220,24 @@ class Site {
     pushes_ = carried_ = false;
     for_each_joint(
         [this, &shares](JointGates& gates, JointOf<Out>& joint, const JointOf<In>& believed, double added,
-                        double& force) noexcept {
-          const double wanted_support_N = joint.support_N;
+                        const HoldingLaw& hold, double& weight_N, double& force) noexcept {
+          const double wanted_support_N = weight_N = joint.support_N;
           carried_ = carried_ || wanted_support_N != 0.0;
           scale(joint, shares);
           if (added != 0.0) joint.motor_force_N += added;
-          gates.pass(joint, believed);
-          pushes_ = pushes_ || pushes(joint);
-          force = joint.motor_force_N;
+          if (hold.acts()) {
+            pushes_ = pushes_ || pushes(joint);
+            hold.add_to(joint.motor_force_N, joint.law);
+            gates.pass(joint, believed);
+          } else {
+            gates.pass(joint, believed);
+            pushes_ = pushes_ || pushes(joint);
+          }
+          // The controller knows of its own command alone.
+          force = joint.motor_force_N - hold.force_N;
           if (shares.support != 1.0) force += wanted_support_N - joint.support_N;
         },
-        gates_, output, believed_, added_N, passed);
+        gates_, output, believed_, added_N, holds, weight_N_, passed);
     if constexpr (has_joints<In>) {
       if (const GateFault found = fault(); found != GateFault::none && found != GateFault::energy) let_go();
     }
@@ -279,6 +297,9 @@ class Site {
   [[nodiscard]] bool works() const noexcept { return pushes_; }
   /// Whether the controller carries the device (`support_N`), at the latest tick.
   [[nodiscard]] bool is_carried() const noexcept { return carried_; }
+  /// What the controller takes each joint to weigh where it is, in N, whatever share of it is given: its support at the
+  /// latest tick.
+  [[nodiscard]] const Forces& weight_N() const noexcept { return weight_N_; }
   /// To look at.
   [[nodiscard]] const Gates& gates() const noexcept { return gates_; }
 
@@ -319,6 +340,7 @@ class Site {
   std::unique_ptr<Controller> controller_;
   Gates gates_;
   Sensors believed_;
+  Forces weight_N_;
   bool pushes_ = false;   ///< beyond the support, at the latest tick
   bool carried_ = false;  ///< by the controller's support, at the latest tick
 };

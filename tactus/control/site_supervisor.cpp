@@ -33,7 +33,8 @@ void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
   const bool master = role_ == SiteRole::master;
   // An energy latch is no obstacle: arming empties the account.
   const bool may =
-      input.heard && !input.disagrees && !input.silent && !input.stalled && !input.overloaded && !input.device_silent;
+      input.heard && !input.disagrees && !input.silent && !input.stalled && !input.overloaded && !input.device_silent &&
+      !input.too_heavy;
   if (!may || !(master ? asked : input.peer_armings != over_ && input.peer == SiteState::armed)) return;
   armings_ = master ? std::max(armings_, input.peer_armings) + 1 : input.peer_armings;
   state_ = SiteState::armed;
@@ -71,7 +72,14 @@ SiteState SiteSupervisor::step(const Input& input) noexcept {
     const bool works = state_ != SiteState::configure && state_ != SiteState::fault;
     if (works) go(SiteState::configure, SiteCause::dead_man, input);
   } else if (state_ == SiteState::configure) {
-    if (align) state_ = SiteState::align;
+    if (align && !input.too_heavy) state_ = SiteState::align;
+    if (align && input.too_heavy) {
+      cause_ = SiteCause::weight;
+    } else if (align && cause_ == SiteCause::weight) {
+      cause_ = SiteCause::started;
+    }
+  } else if (input.support_moves && state_ != SiteState::fault) {
+    go(SiteState::hold, SiteCause::support, input);
   } else if (state_ == SiteState::align || state_ == SiteState::hold) {
     arm_where_asked(input, arm);
     if (input.disagrees) {
@@ -81,7 +89,7 @@ SiteState SiteSupervisor::step(const Input& input) noexcept {
     }
   } else if (state_ == SiteState::fault) {
     // The gate is re-armed on the way out; a cause that is still there closes it again.
-    if (clear && !emergency_stop) go(SiteState::align, cause_, input);
+    if (clear && !emergency_stop && !input.too_heavy) go(SiteState::align, cause_, input);
   } else if (const SiteCause cause = other_session ? SiteCause::other_session : reason_to_hold(input);
              cause != SiteCause::none) {
     go(SiteState::hold, cause, input);

@@ -29,7 +29,9 @@ enum class SiteCause {
   emergency_stop,
   disagreement,
   pace,
-  device
+  device,
+  support,
+  weight
 };
 constexpr auto enumerators(SiteCause) {
   return std::array{Enumerator{SiteCause::none, "none"},
@@ -50,7 +52,9 @@ constexpr auto enumerators(SiteCause) {
                     Enumerator{SiteCause::emergency_stop, "emergency-stop"},
                     Enumerator{SiteCause::disagreement, "disagreement"},
                     Enumerator{SiteCause::pace, "pace"},
-                    Enumerator{SiteCause::device, "device"}};
+                    Enumerator{SiteCause::device, "device"},
+                    Enumerator{SiteCause::support, "support"},
+                    Enumerator{SiteCause::weight, "weight"}};
 }
 
 enum class SiteRole { master, slave };
@@ -75,6 +79,7 @@ struct SiteRequests {
 ///     configure –align→ align –arm→ armed –sign probe, dead-man, and the other site armed→ active
 ///     active –dead-man let go→ armed
 ///     armed, active –silence, stall, overload, device, other site, sensor, energy→ hold –arm→ armed
+///     align, armed, active, hold –motion while its support comes in→ hold
 ///     armed –no answer, sign probe not passed→ hold
 ///     any –safety gate, emergency stop→ fault –clear→ align
 ///     any but fault –about to end→ configure
@@ -85,7 +90,8 @@ struct SiteRequests {
 /// under any while this one is active, or was restarted; so one that was cut off alone does not come back with an
 /// arming that is over, and nothing but a new one leads out. An arming that the slave does not answer is given up. A
 /// site whose motor is tried on arming follows only after the sign probe.
-/// While the other site works by other parameters, nothing is armed; it must be started anew.
+/// While the other site works by other parameters, nothing is armed; it must be started anew. Nor does a site leave
+/// `configure`, `hold` or `fault` whose device is heavier, by its model, than its motors may carry.
 class SiteSupervisor {
  public:
   struct Params {
@@ -108,6 +114,8 @@ class SiteSupervisor {
     bool force_sensor = false;          ///< the force sensor cannot be right
     SiteCause probe = SiteCause::none;  ///< why the sign probe was not passed
     bool proved = true;                 ///< the sign probe was passed, or nobody asks for one
+    bool support_moves = false;         ///< a joint moved as no right support moves it
+    bool too_heavy = false;             ///< the device is heavier than its motors may carry; it has no support yet
     bool energy = false;                ///< the passivity monitor has latched
     bool fault = false;                 ///< the safety gate has, for any other reason
   };

@@ -77,10 +77,45 @@ Result<Supervised<Gated>> supervise(Gated site, const Settings& settings, SiteRo
   return Supervised<Gated>(std::move(site), *supervision, *check);
 }
 
+/// What supervision judges the support of a device by.
+template <class Raise, class Gated, class Sensors>
+typename Raise::Sight sight_of(const Gated& site, const Sensors& sensors, std::int64_t elapsed_ticks) noexcept {
+  typename Raise::Sight sight{.position_m = member_of_each(sensors, &JointOf<Sensors>::motor_position_m),
+                              .velocity_m_per_s = same_for_each(sensors, 0.0),
+                              .weight_N = site.weight_N(),
+                              .carried = site.is_carried(),
+                              .seen = true,
+                              .elapsed_ticks = elapsed_ticks};
+  for_each_joint(
+      [&sight](const JointOf<Sensors>& joint, double& velocity_m_per_s) noexcept {
+        const double told = joint.motor_tells.velocity_m_per_s;
+        if (can_be_told(told)) velocity_m_per_s = told;
+        sight.seen = sight.seen && std::isfinite(joint.motor_position_m);
+      },
+      sensors, sight.velocity_m_per_s);
+  return sight;
+}
+
+/// The law that holds each joint while its support comes in, by its share.
+template <class Payload>
+Each<Payload, HoldingLaw> holding_law(const SupportRaiseOf<Payload>& support, double share,
+                                      const Each<Payload, double>& at_m) noexcept {
+  Each<Payload, HoldingLaw> laws = same_for_each(at_m, HoldingLaw{});
+  if (share == 0.0) return laws;
+  for_each_joint(
+      [share](HoldingLaw& law, const SupportCheck& check, double position_m) noexcept {
+        law = {.force_N = share * check.spring_N(position_m),
+               .damping_N_s_per_m = share * check.params().damping_N_s_per_m};
+      },
+      laws, support.checks(), at_m);
+  return laws;
+}
+
 }  // namespace
 
 template <class Gated>
 typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const Input& input) noexcept {
+  supervision_.look(sight_of<SupportRaiseOf<Payload>>(site_, input.sensors, input.elapsed_ticks));
   const SiteState state = supervision_.decide(
       {.requests = input.requests,
        .elapsed_ticks = input.elapsed_ticks,
@@ -96,11 +131,13 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
 
   const Sensors sensors = with(input.sensors, supervision_.arrival(offset_m_));
   const bool sinks = site_.is_carried() && !supervision_.carries();
-  const auto probe_N =
-      supervision_.probe(member_of_each(sensors, &MasterInput::motor_position_m), site_.works(), sinks);
-  const Shares shares{.force = supervision_.blend(follows), .support = supervision_.carry()};
-  Output output{
-      .site = site_.step(sensors, shares, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
+  const auto here_m = member_of_each(sensors, &MasterInput::motor_position_m);
+  const auto probe_N = supervision_.probe(here_m, site_.works(), sinks);
+  const Shares shares{.force = supervision_.blend(follows), .support = supervision_.carry(here_m)};
+  const auto holds = holding_law(supervision_.support(), supervision_.hold(), here_m);
+  Output output{.site = site_.step(sensors, shares, input.elapsed_ticks, probe_N, holds),
+                .packet = {},
+                .record = supervision_.record()};
   Payload message = member_of_each(output.site, &MasterOutput::message);
   for_each_joint(
       [&](Message& told, double& told_m, double& offset_m) noexcept {
@@ -121,6 +158,7 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
 
 template <class Gated>
 typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const Input& input) noexcept {
+  supervision_.look(sight_of<SupportRaiseOf<Payload>>(site_, input.sensors, input.elapsed_ticks));
   const SiteState state = supervision_.decide(
       {.requests = input.requests,
        .elapsed_ticks = input.elapsed_ticks,
@@ -146,10 +184,13 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
   const bool sinks = site_.is_carried() && !supervision_.carries();
   const auto probe_N = supervision_.probe(here_m, site_.works(), sinks);
   const bool stands = state == SiteState::align || state == SiteState::armed;
-  const Shares shares{.force = supervision_.blend((stands || state == SiteState::active) && !supervision_.probes()),
-                      .support = supervision_.carry()};
-  Output output{
-      .site = site_.step(sensors, shares, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
+  const double support = supervision_.carry(here_m);
+  const bool pulls = (stands || state == SiteState::active) && !supervision_.probes() && !supervision_.is_held();
+  const Shares shares{.force = supervision_.blend(pulls), .support = support};
+  const auto holds = holding_law(supervision_.support(), supervision_.hold(), here_m);
+  Output output{.site = site_.step(sensors, shares, input.elapsed_ticks, probe_N, holds),
+                .packet = {},
+                .record = supervision_.record()};
   output.packet = supervision_.packet(member_of_each(output.site, &SlaveOutput::message));
   fill(output.record, site_, supervision_);
   return output;

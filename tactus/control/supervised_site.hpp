@@ -47,6 +47,8 @@ class SupervisedMasterOf {
   [[nodiscard]] SiteState state() const noexcept { return supervision_.state(); }
   [[nodiscard]] SiteCause cause() const noexcept { return supervision_.cause(); }  ///< why it does not follow
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
+  /// How the support of the device comes in, and what was found wrong with it.
+  [[nodiscard]] const SupportRaiseOf<Payload>& support() const noexcept { return supervision_.support(); }
   /// The packet of the other site that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
   [[nodiscard]] const Gated& site() const noexcept { return site_; }
@@ -92,6 +94,8 @@ class SupervisedSlaveOf {
   [[nodiscard]] SiteState state() const noexcept { return supervision_.state(); }
   [[nodiscard]] SiteCause cause() const noexcept { return supervision_.cause(); }  ///< why it does not follow
   [[nodiscard]] const AgreementCheck& agreement() const noexcept { return supervision_.agreement(); }
+  /// How the support of the device comes in, and what was found wrong with it.
+  [[nodiscard]] const SupportRaiseOf<Payload>& support() const noexcept { return supervision_.support(); }
   /// The packet of the other site that was applied last; of session 0 before any.
   [[nodiscard]] const Packet& heard() const noexcept { return supervision_.heard(); }
   [[nodiscard]] const Gated& site() const noexcept { return site_; }

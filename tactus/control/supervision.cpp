@@ -47,6 +47,7 @@ Check check_shared(const SupervisionParams& site, SupervisionParams joint) {
   joint.force_sensor = site.force_sensor;
   joint.hand_sensor = site.hand_sensor;
   joint.probe = site.probe;
+  joint.support = site.support;
   const std::string other = first_difference(site, joint);
   if (other.empty()) return {};
   return Error{.code = ErrorCode::inconsistent,
@@ -61,7 +62,11 @@ template <class Payload>
 Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, SiteRole role, std::int64_t session,
                                                             Seconds dt, const Agreement& agreement) {
   const SupervisionParams& params = joint_of(all, 0);
-  double tried_after_s = params.blend_s;
+  double carried_after_s = params.blend_s;
+  for (std::size_t joint = 0; joint < joints_of(all); ++joint) {
+    carried_after_s = std::max(carried_after_s, joint_of(all, joint).support.raise_s);
+  }
+  double tried_after_s = carried_after_s;
   for (std::size_t joint = 0; joint < joints_of(all); ++joint) {
     const SupervisionParams& own = joint_of(all, joint);
     if (auto error = signal::check(own, dt)) return under_joint<Payload>(joint, *std::move(error));
@@ -89,18 +94,22 @@ Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, S
   if (!pace) return pace.error();
   const auto probe = make_each<SignProbe>(member_of_each(all, &SupervisionParams::probe), dt);
   if (!probe) return under("probe", probe.error());
-  if (tried_after_s > params.blend_s && params.answer_within_s <= tried_after_s) {
+  if (tried_after_s > carried_after_s && params.answer_within_s <= tried_after_s) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "answer_within_s",
-                 .message = format_number(params.answer_within_s) +
-                            " s must be more than blend_s and probe.duration_s together, " +
+                 .message = format_number(params.answer_within_s) + " s must be more than " +
+                            (carried_after_s > params.blend_s ? "support.raise_s" : "blend_s") +
+                            " and probe.duration_s together, " +
                             format_number(tried_after_s) + " s: a slave answers once its motor was tried",
                  .place = {}};
   }
+  const auto support =
+      SupportRaiseOf<Payload>::make(member_of_each(all, &SupervisionParams::support), params.blend_s, dt);
+  if (!support) return under("support", support.error());
   const auto supervisor = SiteSupervisor::make({.role = role}, dt);
   if (!supervisor) return supervisor.error();
-  return SupervisionOf(*judge, *follower, *watchdog, *answer, *overload, *pace, *probe, *supervisor, role, all, session,
-                       dt, agreement);
+  return SupervisionOf(*judge, *follower, *watchdog, *answer, *overload, *pace, *probe, *support, *supervisor, role,
+                       all, session, dt, agreement);
 }
 
 /// A packet tells the cell that its number names. One that does not is an old one under a new number, and so may be the
@@ -169,9 +178,12 @@ SiteState SupervisionOf<Payload>::decide(const Sight& sight) noexcept {
        .force_sensor = sight.force_sensor,
        .probe = probe_failed(),
        .proved = proved_,
+       .support_moves = support_.failed(),
+       .too_heavy = support_.too_heavy(),
        .energy = sight.fault == GateFault::energy,
        .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
-  cannot_hold_ = state() == SiteState::hold && (cannot_hold_ || overloaded || sight.device_silent);
+  cannot_hold_ =
+      state() == SiteState::hold && (cannot_hold_ || overloaded || sight.device_silent || support_.failed());
   if (arms_from_rest()) {
     proved_ = true;
     for_each_joint([this](bool tried) noexcept { proved_ = proved_ && !tried; }, tried_);
@@ -254,10 +266,8 @@ double SupervisionOf<Payload>::blend(bool in) noexcept {
 }
 
 template <class Payload>
-double SupervisionOf<Payload>::carry() noexcept {
-  if (lets_go()) return carried_ = 0.0;
-  if (state() != SiteState::configure) return carried_ = std::min(carried_ + blend_step_, 1.0);
-  return carried_ = std::max(carried_ - blend_step_ * static_cast<double>(elapsed_ticks_), 0.0);
+double SupervisionOf<Payload>::carry(const Lengths& at_m) noexcept {
+  return support_.step(state() != SiteState::configure, lets_go(), at_m, elapsed_ticks_);
 }
 
 template <class Payload>

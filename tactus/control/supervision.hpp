@@ -8,6 +8,7 @@
 #include <tactus/control/packet.hpp>
 #include <tactus/control/sign_probe.hpp>
 #include <tactus/control/site_supervisor.hpp>
+#include <tactus/control/support_raise.hpp>
 #include <tactus/control/watchdog.hpp>
 #include <tactus/core/signals.hpp>
 
@@ -43,6 +44,8 @@ struct SupervisionParams {
   double longest_stall_s = 0.02;
   double answer_within_s = 1.0;
   double blend_s = 0.1;
+  /// Of what carries a joint; no key of this group, for it follows from the arm and its rig.
+  SupportCheck::Params support = {};
   static constexpr auto fields() {
     return List{
         field("packets", &SupervisionParams::packets, "Which packets of the other site count."),
@@ -176,6 +179,11 @@ class SupervisionOf {
 
   /// A packet that has come; any number of them before `decide`. Real-time safe.
   PacketVerdict take(const Packet& packet) noexcept;
+  /// What was read of a device that something carries. Once, before `decide`.
+  void look(typename SupportRaiseOf<Payload>::Sight sight) noexcept {
+    sight.tried = probing_;
+    support_.look(sight);
+  }
   /// The state for this tick. Real-time safe.
   SiteState decide(const Sight& sight) noexcept;
   /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
@@ -192,9 +200,18 @@ class SupervisionOf {
   double blend(bool in) noexcept;
   /// The share of what carries the device: on its way to 1 wherever the site has power and does not let go, to 0 in
   /// `configure`; where it lets go 0 at once, for the gate to ramp. Once, after `decide`.
-  double carry() noexcept;
-  /// Whether all of it has come in, at the latest tick.
-  [[nodiscard]] bool carries() const noexcept { return carried_ == 1.0; }
+  double carry(const Lengths& at_m) noexcept;
+  /// The share of the law that holds the device while its support comes in. Once, after `blend` and `carry`.
+  double hold() noexcept { return support_.hold(share_); }
+  /// Whether all of it has come in, at the latest tick, and was judged where that is wanted.
+  [[nodiscard]] bool carries() const noexcept { return support_.share() == 1.0 && !support_.rises(); }
+  [[nodiscard]] const SupportRaiseOf<Payload>& support() const noexcept { return support_; }
+  /// Whether the device is held until its support has come in and its motors were tried: nothing else may pull it.
+  [[nodiscard]] bool is_held() const noexcept {
+    bool trial = false;
+    for_each_joint([&trial](bool tried) noexcept { trial = trial || tried; }, tried_);
+    return support_.holds() && (support_.rises() || (trial && !proved_));
+  }
   /// The packet that says `message`. Once a tick.
   Packet packet(const Payload& message) noexcept;
   /// A slave's command is `position_m` until it follows.
@@ -206,8 +223,8 @@ class SupervisionOf {
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
   [[nodiscard]] SiteCause cause() const noexcept { return supervisor_.cause(); }
   /// Whether the motor must get no force any more: in `fault`, and in a `hold` in which the site misses too many ticks
-  /// to close a loop, or does not hear its device, or because motor and force sensor contradict one another, when
-  /// either may be wrong.
+  /// to close a loop, or does not hear its device, or because its support moved it, or because motor and force sensor
+  /// contradict one another, when either may be wrong.
   [[nodiscard]] bool lets_go() const noexcept { return state() == SiteState::fault || cannot_hold_ || contradicted(); }
   /// Whether that is because motor and force sensor contradict one another.
   [[nodiscard]] bool contradicted() const noexcept {
@@ -231,8 +248,9 @@ class SupervisionOf {
   [[nodiscard]] bool probe_passed() const noexcept;
   SupervisionOf(const PacketJudgeOf<Payload>& judge, const Each<Payload, MessageFollower>& follower,
                 const Watchdog& watchdog, const Watchdog& answer, const OverloadCheck& overload, const PaceCheck& pace,
-                const Each<Payload, SignProbe>& probe, const SiteSupervisor& supervisor, SiteRole role,
-                const Params& all, std::int64_t session, Seconds dt, const Agreement& agreement)
+                const Each<Payload, SignProbe>& probe, const SupportRaiseOf<Payload>& support,
+                const SiteSupervisor& supervisor, SiteRole role, const Params& all, std::int64_t session, Seconds dt,
+                const Agreement& agreement)
       : judge_(judge),
         follower_(follower),
         watchdog_(watchdog),
@@ -240,6 +258,7 @@ class SupervisionOf {
         overload_(overload),
         pace_(pace),
         probe_(probe),
+        support_(support),
         supervisor_(supervisor),
         role_(role),
         dt_s_(dt.value),
@@ -262,6 +281,7 @@ class SupervisionOf {
   OverloadCheck overload_;
   PaceCheck pace_;
   Each<Payload, SignProbe> probe_;
+  SupportRaiseOf<Payload> support_;
   SiteSupervisor supervisor_;
   SiteRole role_;
   double dt_s_;
@@ -283,9 +303,8 @@ class SupervisionOf {
   std::int64_t answered_arming_ = 0;  ///< that packets tell: a slave's only once its motor was tried
   bool proved_ = false;               ///< the motor was tried since the site was armed, or need not be
   bool probing_ = false;              ///< the trial is under way
-  bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, or its device was silent
+  bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, its device was silent or moved
   double share_ = 0.0;
-  double carried_ = 0.0;  ///< share of the support
   SiteState before_ = SiteState::configure;
 };
 using Supervision = SupervisionOf<Message>;

@@ -62,6 +62,13 @@ control::SiteRequests RigLoop::asked(const control::SiteRequests& pressed) noexc
   if (second_.too_far) request.arm = false;
   const bool unaligned = second_.leader == SiteState::configure || second_.follower == SiteState::configure;
   request.align = false;
+  // Neither gets power where the other can't carry itself.
+  if (pair_.sites().master().support().too_heavy() || pair_.sites().slave().support().too_heavy()) {
+    refused_ = refused_ || request.arm;
+    request.arm = request.clear = arming_ = false;
+    return request;
+  }
+  refused_ = false;
   if (unaligned) {
     arming_ = arming_ || request.arm;
     request.align = arming_;
@@ -141,6 +148,10 @@ void RigLoop::keep_books(const station::JointLocalTeleoperator::Output& done) no
   second_.cause = cause(of_follower ? done.slave.output.record.cause : done.master.output.record.cause);
   note_troubles();
   note_fault();
+  second_.support = {};
+  note_support(second_, pair_.sites().master(), true);
+  note_support(second_, pair_.sites().slave(), false);
+  if (refused_) second_.cause = control::SiteCause::weight;
   for (std::size_t joint = 0; joint < scales_.size(); ++joint) {
     second_.most_torque = std::max({second_.most_torque, std::fabs(done.master.output.site[joint].motor_force_N),
                                     std::fabs(done.slave.output.site[joint].motor_force_N)});

@@ -40,6 +40,8 @@ class RigLoop {
   void leave_in(runtime::JointStreams& streams) { streams_ = &streams; }
   /// One tick; false once the sites were to end and have no force any more.
   bool operator()(const station::Tick& tick) noexcept;
+  /// To look at, between ticks.
+  [[nodiscard]] const station::JointSupervisedPair& sites() const noexcept { return pair_.sites(); }
   /// After the last tick.
   [[nodiscard]] const RigTotals& totals() const noexcept { return totals_; }
   /// The second that had begun, as it stood at the last tick. After it.
@@ -69,6 +71,7 @@ class RigLoop {
   bool seen_ = false;    ///< both were read
   bool active_ = false;  ///< the follower, at the tick before
   bool arming_ = false;  ///< asked for where they had not been aligned yet
+  bool refused_ = false;  ///< because an arm is heavier than its motors may carry
 };
 
 }  // namespace tactus::devices

@@ -2,6 +2,7 @@
 
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/site_supervisor.hpp>
+#include <tactus/control/support_raise.hpp>
 #include <tactus/devices/motor_bus_device.hpp>
 #include <tactus/runtime/site_link.hpp>
 #include <tactus/telemetry/ring.hpp>
@@ -24,6 +25,8 @@ struct RigSecond {
   control::GateFault fault = control::GateFault::none;  ///< what a gate latched, of the leader first
   bool fault_of_leader = false;
   std::size_t fault_joint = 0;
+  control::SupportFinding support;  ///< while its support is what stops a side, of the leader first
+  bool support_of_leader = false;
   double most_torque = 0.0;  ///< of any motor of the second, either way
   double farthest = 0.0;     ///< of a joint from its leader
   std::size_t joint = 0;     ///< which one
@@ -70,6 +73,15 @@ inline void count(RigTotals& totals, control::SiteState before, control::SiteSta
   using control::SiteState;
   if (now == SiteState::armed && before != SiteState::armed) ++totals.armings;
   if (now == SiteState::hold && before != SiteState::hold) ++totals.holds;
+}
+/// Notes what stops a side whose support is at fault.
+template <class Site>
+void note_support(RigSecond& second, const Site& site, bool of_leader) noexcept {
+  const bool refused = site.cause() == control::SiteCause::weight || site.support().too_heavy();
+  if (second.support.fault != control::SupportFault::none) return;
+  if (!refused && site.cause() != control::SiteCause::support) return;
+  second.support = site.support().found();
+  second.support_of_leader = of_leader;
 }
 /// Begins anew what a second gathers. What stopped the sites is told until they are armed again.
 inline void begin_anew(RigSecond& second, bool stands) noexcept {

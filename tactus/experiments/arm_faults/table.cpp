@@ -55,7 +55,9 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
   const Joints<station::DeviceLimits> leader_limits = limits_of(setup->leader),
                                       follower_limits = limits_of(setup->follower);
   // What can be made once can be made always: a plan changes no parameter of the parts.
-  if (const auto sites = supervise_arms(*setup, leader_limits, follower_limits, {}); !sites) return sites.error();
+  if (const auto sites = supervise_arms(*setup, leader_limits, follower_limits, {.judges_support = false}); !sites) {
+    return sites.error();
+  }
   arm_plants::ArmPlant::Params held = setup->leader.arm;
   held.carried_kg = params.person.hand.mass_kg;
   auto leader = arm_plants::ArmPlant::make(held, setup->leader.start);

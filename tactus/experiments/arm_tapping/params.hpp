@@ -164,11 +164,33 @@ struct GripperParams : arm_control::DriveGains {
   }
 };
 
+/// How the motors of an arm take over its weight on arming (`control::SupportCheck`).
+struct ArmSupportParams {
+  double raise_s = 2.0;
+  double weight_share = 0.3;
+  double most_rad = 0.02;
+  double most_rad_per_s = 0.4;
+  static constexpr auto fields() {
+    using P = ArmSupportParams;
+    return List{
+        field("raise_s", &P::raise_s, units::second, between(0.5, 30.0),
+              "Time in which gravity compensation comes in, from nothing to all of it."),
+        field("weight_share", &P::weight_share, units::none, positive_up_to(1.0),
+              "Share of a joint's gravity torque by which it may be wrong; or else the torque with which the motor is "
+              "tried, whichever is more. Beyond it the arm is released."),
+        field("most_rad", &P::most_rad, arm::units::radian, positive_up_to(0.03),
+              "Travel of a joint meanwhile beyond which the arm is released; m of one that slides."),
+        field("most_rad_per_s", &P::most_rad_per_s, arm::units::radian_per_second, positive_up_to(0.5),
+              "Speed of a joint meanwhile beyond which it is; m/s of one that slides.")};
+  }
+};
+
 /// What stands between the sites and the motors of a rig, and in `tactus faults`. Taps in virtual time have none of it.
 struct ArmRigParams {
   control::SafetyGate::Params leader_gate;
   control::SafetyGate::Params follower_gate;
   control::SupervisionParams supervision;
+  ArmSupportParams support;
   arm_control::EachJoint<ProbeTorque> probe_torque;
   GripperParams gripper{{.stiffness_N_m_per_rad = 0.0, .damping_N_m_s_per_rad = 0.0}};
   static constexpr auto fields() {
@@ -178,6 +200,7 @@ struct ArmRigParams {
               "The safety gate of each of the leader's joints; what the rig file allows a joint holds beside it."),
         field("follower_gate", &P::follower_gate, "The same of the follower's."),
         field("supervision", &P::supervision, "What the sites make of one another and of their own state."),
+        field("support", &P::support, "How gravity compensation comes in on arming, and how it is judged."),
         field("probe_torque", &P::probe_torque, "With which torque each motor's sign is tried on arming."),
         field("gripper", &P::gripper,
               "How joints of the rig are driven that the arm does not have; with no gains such a joint is refused.")};

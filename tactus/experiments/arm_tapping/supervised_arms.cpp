@@ -1,5 +1,6 @@
 #include <tactus/arm_control/arm_sites.hpp>
 #include <tactus/control/protective_limits.hpp>
+#include <tactus/control/support_law.hpp>
 #include <tactus/experiments/arm_tapping/supervised_arms.hpp>
 #include <tactus/station/wall.hpp>
 
@@ -45,6 +46,45 @@ Result<Joints<control::SupervisionParams>> joint_supervision(const ArmRigParams&
   return each;
 }
 
+/// The damping that the drives run while a site is coupled, of each joint of its arm.
+Joints<double> own_damping(const ArmPairSetup& setup, bool leads) {
+  const auto& sites = setup.params.control;
+  const std::size_t joints = setup.leader.joints.size();
+  const auto gains = sites.follower.gains.of(joints);
+  const auto of_leader = sites.drive_damping.of(joints);
+  const bool pulls = sites.method == arm_control::ArmMethod::position_position;
+  Joints<double> damping(joints);
+  for (std::size_t i = 0; i < joints; ++i) {
+    const double pulling = gains[i].damping_N_m_s_per_rad;
+    damping[i] = !leads ? pulling : pulls ? sites.force_gain * pulling : of_leader[i].damping_N_m_s_per_rad;
+  }
+  return damping;
+}
+
+/// How the support of each of the arm's joints is judged.
+void judge_support(const ArmPairSetup& setup, bool leads, const Joints<SafetyGate::Params>& gates,
+                   const Joints<station::DeviceLimits>& limits, Joints<control::SupervisionParams>& supervision) {
+  const ArmSupportParams& asked = setup.params.rig.support;
+  const auto damping = own_damping(setup, leads);
+  const auto& chain = (leads ? setup.leader : setup.follower).arm.chain;
+  for (std::size_t i = 0; i < damping.size(); ++i) {
+    const auto& probe = supervision[i].probe;
+    supervision[i].support = control::with_holding_law(
+        {.raise_s = asked.raise_s,
+         .weight_share = asked.weight_share,
+         .weight_limit_N =
+             std::clamp(std::min(gates[i].force_limit_N, chain.joints[i].limits.effort_N_m), 1e-9, 100.0),
+         .most_m = asked.most_rad,
+         .most_m_per_s = asked.most_rad_per_s},
+        {.own_damping_N_s_per_m = damping[i],
+         .damping_limit_N_s_per_m = limits[i].damping_N_s_per_m,
+         .force_limit_N = gates[i].force_limit_N,
+         .trial_force_N = probe.force_N,
+         .trial_least_m = probe.least_m},
+        Seconds{1.0 / setup.params.servo.rate_Hz});
+  }
+}
+
 /// What a site begins with.
 struct Begun {
   std::size_t of_arm;  ///< joints
@@ -53,8 +93,10 @@ struct Begun {
   Joints<control::SupervisionParams> supervision;
 };
 
-Result<Begun> begin(const ArmPairSetup& setup, const SafetyGate::Params& gate, const std::string& name,
-                    const Joints<station::DeviceLimits>& limits, const ArmSiteStart& start) {
+Result<Begun> begin(const ArmPairSetup& setup, bool leads, const Joints<station::DeviceLimits>& limits,
+                    const ArmSiteStart& start) {
+  const SafetyGate::Params& gate = leads ? setup.params.rig.leader_gate : setup.params.rig.follower_gate;
+  const std::string name = leads ? "rig.leader_gate" : "rig.follower_gate";
   if (setup.params.control.method == arm_control::ArmMethod::four_channel) {
     return Error{
         .code = ErrorCode::inconsistent,
@@ -77,8 +119,10 @@ Result<Begun> begin(const ArmPairSetup& setup, const SafetyGate::Params& gate, c
   if (!start.tries_motors) {
     for (control::SupervisionParams& joint : *supervised) joint.probe.force_N = 0.0;
   }
-  return Begun{
+  Begun begun{
       .of_arm = of_arm, .tick = tick, .gates = joint_gates(gate, limits), .supervision = *std::move(supervised)};
+  if (start.judges_support) judge_support(setup, leads, begun.gates, limits, begun.supervision);
+  return begun;
 }
 
 }  // namespace
@@ -99,7 +143,7 @@ Joints<SafetyGate::Params> joint_gates(const SafetyGate::Params& of_all, const J
 Result<control::JointSupervisedMaster> arm_leader_site(const ArmPairSetup& setup,
                                                        const Joints<station::DeviceLimits>& limits,
                                                        const ArmSiteStart& start) {
-  const auto begun = begin(setup, setup.params.rig.leader_gate, "rig.leader_gate", limits, start);
+  const auto begun = begin(setup, true, limits, start);
   if (!begun) return begun.error();
   const auto& sites = setup.params.control;
   const Joints<arm_control::DriveGains> beside(limits.size() - begun->of_arm, beside_the_arm(setup, true));
@@ -118,7 +162,7 @@ Result<control::JointSupervisedMaster> arm_leader_site(const ArmPairSetup& setup
 Result<control::JointSupervisedSlave> arm_follower_site(const ArmPairSetup& setup,
                                                         const Joints<station::DeviceLimits>& limits,
                                                         const ArmSiteStart& start) {
-  const auto begun = begin(setup, setup.params.rig.follower_gate, "rig.follower_gate", limits, start);
+  const auto begun = begin(setup, false, limits, start);
   if (!begun) return begun.error();
   const Joints<arm_control::DriveGains> beside(limits.size() - begun->of_arm, beside_the_arm(setup, false));
   auto follows =
@@ -137,10 +181,13 @@ Result<control::JointSupervisedSlave> arm_follower_site(const ArmPairSetup& setu
 
 Result<SupervisedArms> supervise_arms(const ArmPairSetup& setup, const Joints<station::DeviceLimits>& leader,
                                       const Joints<station::DeviceLimits>& follower, const ArmStart& start) {
-  auto leads = arm_leader_site(setup, leader, {.session = start.leader_session, .tries_motors = start.tries_motors});
+  ArmSiteStart own{.session = start.leader_session,
+                   .tries_motors = start.tries_motors,
+                   .judges_support = start.judges_support};
+  auto leads = arm_leader_site(setup, leader, own);
   if (!leads) return leads.error();
-  auto follows =
-      arm_follower_site(setup, follower, {.session = start.follower_session, .tries_motors = start.tries_motors});
+  own.session = start.follower_session;
+  auto follows = arm_follower_site(setup, follower, own);
   if (!follows) return follows.error();
   return SupervisedArms{*std::move(leads), *std::move(follows)};
 }

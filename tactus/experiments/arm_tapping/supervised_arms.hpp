@@ -21,6 +21,7 @@ struct ArmSiteStart {
   std::int64_t session = 1;           ///< not 0, and of no start before
   control::Agreement agreement = {};  ///< as in `control::supervise_master`
   bool tries_motors = true;           ///< on arming
+  bool judges_support = true;         ///< the same; false: it comes in over `blend_s`, whatever moves
 };
 
 /// One site before a device of these limits, joint by joint, those of the arm first: its gates are within them, and so
@@ -39,6 +40,7 @@ struct ArmStart {
   std::int64_t leader_session = 1;  ///< not 0, and of no start before
   std::int64_t follower_session = 2;
   bool tries_motors = true;  ///< on arming
+  bool judges_support = true;
 };
 struct SupervisedArms {
   control::JointSupervisedMaster leader;

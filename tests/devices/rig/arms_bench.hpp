@@ -149,10 +149,14 @@ struct Bench {
   RigSecond last;
   std::int64_t number = 0;
 
-  explicit Bench(Faults of_follower = {}) : faults(std::move(of_follower)) {
+  /// `believed` is what the sites take both arms for; without it they are right.
+  explicit Bench(Faults of_follower = {}, const std::optional<arm::Chain::Params>& believed = {})
+      : faults(std::move(of_follower)) {
     // Motors are asked before a tick is.
     advance(400 * ms);
-    auto sites = arm_sites(setup, leader->limits(), follower->limits());
+    ArmPairSetup of_sites = setup;
+    if (believed) of_sites.leader.arm.chain = of_sites.follower.arm.chain = *believed;
+    auto sites = arm_sites(of_sites, leader->limits(), follower->limits());
     EXPECT_TRUE(sites) << describe(sites.error());
     auto made = RigLoop::around(*std::move(sites), Seconds{1e-9 * tick_ns},
                                 {.listen_before_arming_s = 0.1, .arm_at_once = true}, exchange, *leader, *follower);

@@ -32,6 +32,57 @@ TEST(RigArms, AlignCarryThemselvesTryEachMotorAndTheFollowerGoesToItsLeader) {
   EXPECT_GT(Bench::torques(*bench.leader_link).cwiseAbs().maxCoeff(), 1.0) << "it has a weight";
 }
 
+/// The arm with masses and lengths that are so many times as large.
+arm::Chain::Params scaled(double masses, double lengths) {
+  arm::Chain::Params model = setup_of().leader.arm.chain;
+  for (auto& joint : model.joints) {
+    joint.body.mass_kg *= masses;
+    for (double* of : {&joint.origin.x_m, &joint.origin.y_m, &joint.origin.z_m, &joint.body.centre_x_m,
+                       &joint.body.centre_y_m, &joint.body.centre_z_m}) {
+      *of *= lengths;
+    }
+  }
+  return model;
+}
+
+TEST(RigArms, AUrdfInMillimetresGetsNoPower) {
+  Bench bench({}, scaled(1.0, 1000.0));
+  for (int i = 0; i < 20; ++i) {
+    bench.run(0.1);
+    for (std::size_t motor = 0; motor <= joints; ++motor) {
+      EXPECT_FALSE(bench.leader_link->peer->motor(motor).enabled()) << motor;
+      EXPECT_FALSE(bench.follower_link->peer->motor(motor).enabled()) << motor;
+    }
+  }
+  EXPECT_EQ(bench.last.leader, SiteState::configure);
+  EXPECT_EQ(bench.last.follower, SiteState::configure);
+  EXPECT_EQ(bench.last.cause, control::SiteCause::weight);
+  EXPECT_EQ(bench.last.support.fault, control::SupportFault::weight);
+  EXPECT_TRUE(bench.last.support_of_leader);
+  EXPECT_GT(std::fabs(bench.last.support.weight_N), bench.last.support.limit_N);
+}
+
+TEST(RigArms, AnArmWhoseModelIsHalfAsHeavyAgainIsReleasedBeforeAJointLeaps) {
+  Bench bench({}, scaled(1.5, 1.0));
+  const arm::JointVector began = Bench::positions(*bench.leader_link);
+  double farthest_rad = 0.0;
+  for (int i = 0; i < 2000 && bench.last.support.fault == control::SupportFault::none; ++i) {
+    farthest_rad = std::max(farthest_rad, (Bench::positions(*bench.leader_link) - began).cwiseAbs().maxCoeff());
+    bench.run(0.002);
+    const auto& site = bench.loop->sites().master();
+    if (site.state() == SiteState::hold) break;
+  }
+  bench.run(1.0);
+  EXPECT_LT(farthest_rad, 0.03);
+  EXPECT_EQ(bench.last.cause, control::SiteCause::support);
+  EXPECT_EQ(bench.last.support.joint, 1U) << "the shoulder bears most";
+  EXPECT_GT(bench.last.support.share, 0.66);
+  EXPECT_GT(bench.last.support.excess_N * bench.last.support.weight_N, 0.0) << "it rose";
+  for (std::size_t motor = 0; motor <= joints; ++motor) {
+    EXPECT_FALSE(bench.leader_link->peer->motor(motor).enabled()) << motor;
+  }
+}
+
 TEST(RigArms, TheFollowerFollowsAHandAndItsContactComesBack) {
   Bench bench;
   ASSERT_TRUE(bench.couple());
