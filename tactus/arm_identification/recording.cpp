@@ -1,6 +1,7 @@
 #include <tactus/arm_identification/recording.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/identification/refusal.hpp>
+#include <tactus/recording/limits.hpp>
 #include <tactus/recording/recording.hpp>
 #include <tactus/recording/time_base.hpp>
 
@@ -159,6 +160,17 @@ Result<ArmRecording> read_arm(const std::filesystem::path& file, const ArmColumn
   return result;
 }
 
+namespace {
+
+/// Whether all of it can have been measured.
+bool is_measured(const ToldJoint& joint) {
+  const auto measured = [](double value) { return std::fabs(value) <= recording::largest_value; };
+  return std::ranges::all_of(joint.position, measured) && std::ranges::all_of(joint.velocity, measured) &&
+         std::ranges::all_of(joint.effort, measured);
+}
+
+}  // namespace
+
 Result<ArmRecording> recording_of(const std::filesystem::path& file, const std::vector<ToldJoint>& joints,
                                   const std::vector<std::string>& names, Seconds sample_time) {
   double first_s = -std::numeric_limits<double>::infinity(), last_s = std::numeric_limits<double>::infinity();
@@ -169,6 +181,12 @@ Result<ArmRecording> recording_of(const std::filesystem::path& file, const std::
                      file);
     }
     if (Check wrong = check_times(joint.time_s)) return at_file(*std::move(wrong), file);
+    if (!is_measured(joint)) {
+      return at_file(inconsistent("joint '" + names[static_cast<std::size_t>(&joint - joints.data())] +
+                                  "' has a value that is not finite, or is beyond 1e30, which is no measurement: cut "
+                                  "the recording there, or record again"),
+                     file);
+    }
     first_s = std::max(first_s, joint.time_s.front());
     last_s = std::min(last_s, joint.time_s.back());
   }

@@ -2,7 +2,6 @@
 #include <tactus/arm_identification/rig_log.hpp>
 #include <tactus/control/packet.hpp>
 #include <tactus/core/parameters.hpp>
-#include <tactus/recording/limits.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
 #include <algorithm>
@@ -116,13 +115,6 @@ ToldJoint within(const ToldJoint& all, const Interval& stretch) {
   return {part(all.time_s), part(all.position), part(all.velocity), part(all.effort)};
 }
 
-/// Whether all of it can have been measured.
-bool is_measured(const ToldJoint& joint) {
-  const auto measured = [](double value) { return std::fabs(value) <= recording::largest_value; };
-  return std::ranges::all_of(joint.position, measured) && std::ranges::all_of(joint.velocity, measured) &&
-         std::ranges::all_of(joint.effort, measured);
-}
-
 /// The names of the rig's joints, in the order of their topics; empty where the log does not tell.
 std::vector<std::string> rig_joints(const telemetry::LogSummary& summary) {
   std::vector<std::string> names;
@@ -195,14 +187,7 @@ Result<std::vector<ArmRecording>> read_rig_log(const std::string& file, const st
   std::vector<ArmRecording> recordings;
   for (const Interval& stretch : stretches) {
     std::vector<ToldJoint> here;
-    for (const ToldJoint& joint : told) {
-      here.push_back(within(joint, stretch));
-      if (is_measured(here.back())) continue;
-      return wrong(ErrorCode::out_of_bounds,
-                   "the follower's " + joints[here.size() - 1] +
-                       " has a value that is not finite, or beyond 1e30, which is no measurement: record it anew",
-                   file);
-    }
+    for (const ToldJoint& joint : told) here.push_back(within(joint, stretch));
     auto recording = recording_of(file, here, joints, tick);
     if (!recording) return recording.error();
     recordings.push_back(*std::move(recording));

@@ -1,5 +1,6 @@
 #include <tactus/diagnosis/bag_signals.hpp>
 #include <tactus/diagnosis/columns.hpp>
+#include <tactus/recording/limits.hpp>
 #include <tactus/recording/names.hpp>
 #include <tactus/recording/resample.hpp>
 #include <tactus/recording/time_base.hpp>
@@ -185,8 +186,9 @@ Check check_signal(const SignalRoles& roles, const BagSignal& signal) {
   const double step_s = (t.back() - t.front()) / static_cast<double>(t.size() - 1);
   for (std::size_t i = 0; i < t.size(); ++i) {
     const std::string where = "message " + std::to_string(i + 1) + " of " + signal.name();
-    if (!std::isfinite(signal.values[i])) {
-      return wrong_bag(ErrorCode::inconsistent, roles, where + " is not a finite number: cut the bag there");
+    if (!(std::fabs(signal.values[i]) <= recording::largest_value)) {
+      return wrong_bag(ErrorCode::inconsistent, roles,
+                       where + " is not finite, or is beyond 1e30, which is no measurement: cut the bag there");
     }
     if (i == 0) continue;
     if (!(t[i] > t[i - 1])) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -120,6 +121,23 @@ TEST_F(RigLog, WhatCannotBeReadIsRefusedWithTheRemedy) {
   expect(complaint({}, {"lift", "elbow"}), "the arm's joint 'elbow' is none of the rig's, which are lift, turn: call");
   expect(complaint({.joints = ""}, {"lift"}), "no log of a rig whose joints have names: leave one with 'tactus run");
   expect(complaint({.active_to_s = 1.5}, {"lift"}), "the follower did not follow for 1 s");
+}
+
+TEST(ToldJoints, ValuesThatCannotBeMeasuredAreRefused) {
+  for (const double value : {9e307, -2e30, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    for (int signal = 0; signal < 3; ++signal) {
+      ToldJoint joint{.time_s = {0.0, 0.001, 0.002},
+                      .position = {0.0, 0.1, 0.2},
+                      .velocity = {1.0, 1.0, 1.0},
+                      .effort = {0.5, 0.5, 0.5}};
+      (signal == 0 ? joint.position : signal == 1 ? joint.velocity : joint.effort)[1] = value;
+      const auto read = recording_of("rig.mcap", {joint}, {"elbow"}, Seconds{0.001});
+      ASSERT_FALSE(read) << value;
+      EXPECT_NE(describe(read.error()).find("joint 'elbow' has a value that is not finite, or is beyond 1e30"),
+                std::string::npos)
+          << describe(read.error());
+    }
+  }
 }
 
 }  // namespace rig_log_test
