@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <vector>
 
 namespace tactus::devices {
 
@@ -39,6 +40,7 @@ class BusThread final : public MotorLink {
   void stop() override;
   Check wait_until_asked(Seconds longest) override;
   [[nodiscard]] MotorSheet sheet(std::size_t motor) const override { return bus_->sheet(motor); }
+  [[nodiscard]] std::vector<PoweredMotor> powered_motors() const override;
 
  private:
   class Exchange;

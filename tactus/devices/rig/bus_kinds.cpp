@@ -3,6 +3,7 @@
 #include <tactus/devices/dynamixel/dynamixel_bus.hpp>
 #include <tactus/devices/feetech/feetech_bus.hpp>
 #include <tactus/devices/inverse3/inverse3_link.hpp>
+#include <tactus/devices/inverse3/messages.hpp>
 #include <tactus/devices/rig/bus_kinds.hpp>
 #include <tactus/wire/port.hpp>
 
@@ -155,6 +156,19 @@ MotorAbility ability_of(BusKind kind, const StatedMotor& motor) {
     }
     case BusKind::inverse3:
       return {.torque_Nm = std::numeric_limits<double>::infinity()};
+  }
+  return {};
+}
+
+std::string status_text(BusKind kind, std::int64_t status) {
+  switch (kind) {
+    case BusKind::damiao:
+      return damiao::status_text(status);
+    case BusKind::dynamixel:
+    case BusKind::feetech:
+      return servo_status_text(status);
+    case BusKind::inverse3:
+      return inverse3::status_text(status);
   }
   return {};
 }

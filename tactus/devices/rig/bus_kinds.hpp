@@ -55,6 +55,9 @@ struct MotorAbility {
 /// Of a motor that `check` passed.
 MotorAbility ability_of(BusKind kind, const StatedMotor& motor);
 
+/// The status of a motor as a person reads it, as `status 0x7 (unknown)`.
+std::string status_text(BusKind kind, std::int64_t status);
+
 /// That the statement is one, before anything is opened. Errors, with the remedy, under `framing`, `bits_per_s`,
 /// `motors` or `motors[i].id`, `.model` and so on.
 Check check(const StatedBus& stated);
