@@ -1,3 +1,4 @@
+#include <tactus/devices/off_watch.hpp>
 #include <tactus/devices/rig/rig.hpp>
 
 #include <algorithm>
@@ -42,6 +43,17 @@ Joints<MotorJoint> RigSide::motor_joints() const {
   Joints<MotorJoint> all(joints.size());
   for (std::size_t i = 0; i < joints.size(); ++i) all[i] = joints[i].joint;
   return all;
+}
+
+std::string describe_powered(const RigSide& side, const PoweredMotor& motor) {
+  const RigJoint& joint = side.joints[motor.motor];
+  const auto seconds = [](std::int64_t ns) { return format_number(static_cast<double>(ns) * 1e-9) + " s"; };
+  const std::string what =
+      motor.off ? " did not switch off within " + seconds(off_within_ns) + " when it was told to, and is off now"
+                : " did not report within " + seconds(farewell_ns) + " that it is off";
+  return joint.path + ": motor " + std::to_string(joint.motor.id) + " at " + side.bus.port + " (" +
+         name_of(side.bus.kind) + ")" + what + " (" + status_text(side.bus.kind, motor.status) +
+         "): switch off the supply of " + side.path + ", and keep clear of it until then";
 }
 
 Result<Rig> Rig::load(const std::filesystem::path& file) {
