@@ -8,6 +8,7 @@
 #include <tactus/wire/port.hpp>
 
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace tactus::devices {
@@ -17,6 +18,11 @@ namespace {
 using damiao::DamiaoBus;
 using dynamixel::DynamixelBus;
 using feetech::FeetechBus;
+
+/// A servo knows where it is within one turn when it starts; no joint of an arm turns farther than twice, either way.
+constexpr double servo_position_rad = 4.0 * std::numbers::pi;
+/// More than the arms of the device are long.
+constexpr double inverse3_reach_m = 1.0;
 
 template <NamedEnum E>
 std::vector<std::string> words_of() {
@@ -141,21 +147,24 @@ MotorAbility ability_of(BusKind kind, const StatedMotor& motor) {
       const damiao::Scale scale = damiao::scale_of(model ? *model : damiao::Model{});
       return {.torque_Nm = scale.torque_Nm,
               .velocity_rad_per_s = scale.velocity_rad_per_s,
+              .position_rad = scale.position_rad,
               .stiffness_Nm_per_rad = damiao::largest_stiffness_Nm_per_rad,
               .damping_Nms_per_rad = damiao::largest_damping_Nms_per_rad};
     }
     case BusKind::dynamixel: {
       const auto model = value_of<dynamixel::DynamixelModel>("model", motor.model);
       const ServoModel& servo = dynamixel::servo_model(model ? *model : dynamixel::DynamixelModel{});
-      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * servo.torque_Nm_per_A};
+      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * servo.torque_Nm_per_A,
+              .position_rad = servo_position_rad};
     }
     case BusKind::feetech: {
       const auto model = value_of<feetech::FeetechModel>("model", motor.model);
       const ServoModel& servo = feetech::servo_model(model ? *model : feetech::FeetechModel{});
-      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * motor.torque_Nm_per_A};
+      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * motor.torque_Nm_per_A,
+              .position_rad = servo_position_rad};
     }
     case BusKind::inverse3:
-      return {.torque_Nm = std::numeric_limits<double>::infinity()};
+      return {.torque_Nm = std::numeric_limits<double>::infinity(), .position_rad = inverse3_reach_m};
   }
   return {};
 }

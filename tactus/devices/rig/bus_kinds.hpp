@@ -49,6 +49,7 @@ constexpr bool has_watchdog(BusKind kind) { return kind != BusKind::feetech; }
 struct MotorAbility {
   double torque_Nm = 0.0;           ///< 0: it takes no command; infinite: not known
   double velocity_rad_per_s = 0.0;  ///< that its numbers end at; 0: not known
+  double position_rad = 0.0;        ///< to where a joint of it may have limits, either way from its zero
   /// The largest gains of the law that it runs by itself; both 0: it runs none.
   double stiffness_Nm_per_rad = 0.0, damping_Nms_per_rad = 0.0;
 };
