@@ -62,6 +62,7 @@ Check read(const json& filters, const char* filter, const char* name, std::optio
 
 /// Its mode, as services from 3.5 on call it, or those before.
 Check read_mode(const json& state, std::string& mode) {
+  mode.clear();
   for (const char* name : {"control_mode", "mode"}) {
     const json* told = member(state, name);
     if (told == nullptr) continue;

@@ -45,7 +45,7 @@ struct Device {
   bool ready = false;
   bool supplied = true;     ///< false only where the service says that it has no supply of power
   bool told_force = false;  ///< in the latest message
-  std::string mode;         ///< what drives it, as `idle` or `force`; empty where nothing was told of it
+  std::string mode;         ///< what drives it, as `idle` or `force`; empty where the latest message does not say
   /// Filters of the service in the way of the force; empty where nothing was told of them. What is not 0 belongs to the
   /// model or has to be switched off.
   std::optional<double> force_gate, damping;
