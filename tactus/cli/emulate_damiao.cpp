@@ -117,7 +117,8 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
           "--fault", options->faults,
           "What goes wrong, as KIND[:MOTOR][@SECONDS][+SECONDS]: of which motor, from when and how long; may be "
           "given again. Kinds: silence, wrong-scale, over-voltage, under-voltage, over-current, hot-drive, "
-          "hot-winding, communication-lost, overload, register-answer, twin, wrap, garbage, heartbeat, bus-off, split")
+          "hot-winding, communication-lost, overload, status=0x7 (one that it does not have), ignores-disable, "
+          "register-answer, twin, wrap, garbage, heartbeat, bus-off, split")
       ->type_name("FAULT");
   verb.add_option("--seed", options->seed, "Of delays and garbage");
   CLI::Option* arm = verb.add_option("--arm", options->arm,

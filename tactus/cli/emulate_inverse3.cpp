@@ -32,6 +32,9 @@ std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_option
   verb.add_option("--garbage", options->service.garbage, "Share of answers that are cut off")
       ->check(real_between(0.0, 1.0));
   verb.add_option("--closes-after", options->service.closes_after, "Closes in place of this answer; 0: never");
+  verb.add_flag("--keeps-force", options->service.keeps_force, "A message without a command does not end a force");
+  verb.add_option("--mode", options->service.mode, "Mode that each state reports in place of its own")
+      ->type_name("WORD");
   verb.add_option("--seed", options->service.seed, "Of what is cut off");
   return [options] {
     Inverse3Service::Params params = options->service;

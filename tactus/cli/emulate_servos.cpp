@@ -64,6 +64,7 @@ Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Par
       if (fault->id >= 0 && fault->id != servo.id) continue;
       servo.fault = fault->servo;
       servo.fault_from_ns = fault->from_ns;
+      servo.error = fault->error;
     }
   }
   auto peer = Peer::make(params);
@@ -86,7 +87,8 @@ std::shared_ptr<ServoOptions> add_servo_options(CLI::App& verb, const std::strin
   verb.add_option(
           "--fault", options->faults,
           "What goes wrong, as KIND[:ID][@SECONDS]: of which servo, and from when; may be given again. Kinds of "
-          "a servo: silent, power-cycle, hot, wrong-model, low-limit, twin, clash; of the line, without id and time: "
+          "a servo: silent, power-cycle, hot, wrong-model, low-limit, twin, clash, error=0x24 (an error byte), "
+          "ignores-disable; of the line, without id and time: "
           "corrupt, garbage, split, echo")
       ->type_name("FAULT");
   verb.add_option("--seed", options->seed, "Of what goes wrong on the line");

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace tactus::cli {
 
@@ -30,6 +31,8 @@ class GuardedLink final : public devices::MotorLink {
   void stop() override;
   Check wait_until_asked(Seconds longest) override { return link_->wait_until_asked(longest); }
   [[nodiscard]] devices::MotorSheet sheet(std::size_t motor) const override { return link_->sheet(motor); }
+  [[nodiscard]] std::vector<devices::PoweredMotor> powered_motors() const override { return link_->powered_motors(); }
+  [[nodiscard]] Check problem() const override { return link_->problem(); }
 
  private:
   [[nodiscard]] devices::GuardState state() const noexcept;

@@ -54,7 +54,8 @@ std::string words_of(const devices::DeviceTrouble& trouble, const char* name, co
              (stood ? ", no cycle of its bus for " + report::fixed(1e3 * trouble.cycle_age_s, 1) + " ms" : "");
     }
     case Trouble::motor_fault:
-      return place + joint + " has the fault " + name_of(trouble.fault);
+      return place + joint + " has the fault " + name_of(trouble.fault) + " (" +
+             devices::status_text(side.bus.kind, trouble.status) + ")";
     case Trouble::guard_gone:
       return place + "the guard process of its motors is gone, so they get no power: start the run again";
     case Trouble::guard_acted:

@@ -146,6 +146,31 @@ Result<Driven> drive(const Rig& rig, const RigSide& side) {
   return driven;
 }
 
+/// Takes the power from all motors and ends their links. Errors: `failed` where a motor did not report in time that it
+/// is off; each of these has its line.
+Check switch_off(std::array<std::optional<Driven>, 2>& driven, const std::vector<const RigSide*>& sides,
+                 LineWriter& errors) {
+  bool all_off = true;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (!driven[i]) continue;
+    const RigSide& side = *sides[i];
+    driven[i]->device.reset();
+    driven[i]->link->stop();
+    if (const Check problem = driven[i]->link->problem()) {
+      errors.say("tactus: " + side.path + ": " + describe(*problem) + "\n");
+    }
+    for (const devices::PoweredMotor& one : driven[i]->link->powered_motors()) {
+      all_off = false;
+      errors.say("tactus: " + describe_powered(side, one) + "\n");
+    }
+  }
+  if (all_off) return std::nullopt;
+  return Error{.code = ErrorCode::failed,
+               .parameter = {},
+               .message = "a motor did not report that it is off: switch off its supply",
+               .place = {}};
+}
+
 /// What is there before the loop, and outlives it.
 struct RigSurroundings {
   const experiments::Request& request;
@@ -308,13 +333,17 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
                                .errors = errors,
                                .names = names,
                                .driven = driven};
+  Check wrong;
   if (only) {
     auto loop = RigSiteLoop::make(*std::move(site), *std::move(endpoint), Seconds{1.0 / found->rate_Hz},
                                   found->settings, exchange, *driven[0]->device, found->control);
-    return loop ? run_rig_loop(*std::move(loop), around) : request.document.locate(loop.error());
+    wrong = loop ? run_rig_loop(*std::move(loop), around) : request.document.locate(loop.error());
+  } else {
+    auto loop = found->loop(exchange, *driven[0]->device, *driven[1]->device);
+    wrong = loop ? run_rig_loop(*std::move(loop), around) : request.document.locate(loop.error());
   }
-  auto loop = found->loop(exchange, *driven[0]->device, *driven[1]->device);
-  return loop ? run_rig_loop(*std::move(loop), around) : request.document.locate(loop.error());
+  Check powered = switch_off(driven, sides, errors);
+  return wrong ? wrong : powered;
 }
 
 }  // namespace tactus::cli

@@ -12,11 +12,11 @@ namespace tactus::devices {
 
 namespace {
 
-/// For the motors to say that they have no power.
-constexpr std::int64_t farewell_ns = 100'000'000;
 /// Before all that is not real time, so that no other program makes a motor look silent; after the servo thread.
 constexpr int priority = 70;
 constexpr int any_core = -1;
+/// For what a bus that is not ready has to say.
+constexpr std::int64_t unready_farewell_ns = 50'000'000;
 
 }  // namespace
 
@@ -36,11 +36,13 @@ class BusThread::Exchange final : public wire::WireEnd {
 
   /// All motors without power, for good.
   void leave() noexcept { leaving_ = true; }
-  [[nodiscard]] bool has_power() const noexcept {
+  /// Whether all motors have reported that they are off, or the bus has nothing more to tell them.
+  [[nodiscard]] bool is_done() const noexcept {
+    if (bus_->state() != BusState::ready) return bus_->wakes_ns() == wire::never_ns;
     for (std::size_t motor = 0; motor < owner_->motors_; ++motor) {
-      if (bus_->reading(motor).enabled != 0) return true;
+      if (bus_->reading(motor).off == 0) return false;
     }
-    return false;
+    return true;
   }
 
  private:
@@ -106,8 +108,10 @@ void BusThread::run() noexcept {
   failed_ = wire::talk(exchange, port_, [this] { return stopping_.load(std::memory_order_relaxed); });
   if (!failed_) {
     exchange.leave();
-    const std::int64_t until_ns = wire::monotonic_ns() + farewell_ns;
-    failed_ = wire::talk(exchange, port_, [&] { return !exchange.has_power() || wire::monotonic_ns() > until_ns; });
+    // A bus that still asks who is there has given nobody power, and has told those that it knows to switch off.
+    const std::int64_t longest_ns = bus_->state() == BusState::ready ? farewell_ns : unready_farewell_ns;
+    const std::int64_t until_ns = wire::monotonic_ns() + longest_ns;
+    failed_ = wire::talk(exchange, port_, [&] { return exchange.is_done() || wire::monotonic_ns() > until_ns; });
   }
   running_.store(false, std::memory_order_release);
 }
@@ -115,6 +119,14 @@ void BusThread::run() noexcept {
 void BusThread::stop() {
   stopping_.store(true, std::memory_order_relaxed);
   if (thread_.joinable()) thread_.join();
+}
+
+std::vector<PoweredMotor> BusThread::powered_motors() const {
+  std::vector<PoweredMotor> found;
+  for (std::size_t motor = 0; bus_->state() == BusState::ready && motor < motors_; ++motor) {
+    if (const auto one = powered(motor, bus_->reading(motor))) found.push_back(*one);
+  }
+  return found;
 }
 
 Check BusThread::wait_until_asked(Seconds longest) {

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <vector>
 
 namespace tactus::devices {
 
@@ -39,6 +40,8 @@ class BusThread final : public MotorLink {
   void stop() override;
   Check wait_until_asked(Seconds longest) override;
   [[nodiscard]] MotorSheet sheet(std::size_t motor) const override { return bus_->sheet(motor); }
+  [[nodiscard]] std::vector<PoweredMotor> powered_motors() const override;
+  [[nodiscard]] Check problem() const override { return failed_; }
 
  private:
   class Exchange;

@@ -16,22 +16,29 @@ namespace tactus::devices {
 /// What stands between a motor and a force.
 enum class MotorFault : std::int64_t {
   none,
-  silent,       ///< it did not answer for longer than the bus allows
-  voltage,      ///< too high or too low
-  current,      ///< too high
-  hot,          ///< the drive or the winding
-  lost_master,  ///< the motor's own watchdog: it did not hear from us
-  overload,     ///< too much torque for too long, or a shock
-  encoder,      ///< it does not know where it is
-  refused       ///< it refused what was asked of it
+  silent,          ///< it did not answer for longer than the bus allows
+  voltage,         ///< too high or too low
+  current,         ///< too high
+  hot,             ///< the drive or the winding
+  lost_master,     ///< the motor's own watchdog: it did not hear from us
+  overload,        ///< too much torque for too long, or a shock
+  encoder,         ///< it does not know where it is
+  refused,         ///< it refused what was asked of it
+  unknown_status,  ///< it reports a status that this driver does not know, and counts as one with power
+  stays_on         ///< it was told to switch off and has not reported in time that it is off
 };
 constexpr auto enumerators(MotorFault) {
-  return std::array{Enumerator{MotorFault::none, "none"},         Enumerator{MotorFault::silent, "silent"},
-                    Enumerator{MotorFault::voltage, "voltage"},   Enumerator{MotorFault::current, "current"},
-                    Enumerator{MotorFault::hot, "hot"},           Enumerator{MotorFault::lost_master, "lost-master"},
-                    Enumerator{MotorFault::overload, "overload"}, Enumerator{MotorFault::encoder, "encoder"},
-                    Enumerator{MotorFault::refused, "refused"}};
+  return std::array{
+      Enumerator{MotorFault::none, "none"},         Enumerator{MotorFault::silent, "silent"},
+      Enumerator{MotorFault::voltage, "voltage"},   Enumerator{MotorFault::current, "current"},
+      Enumerator{MotorFault::hot, "hot"},           Enumerator{MotorFault::lost_master, "lost-master"},
+      Enumerator{MotorFault::overload, "overload"}, Enumerator{MotorFault::encoder, "encoder"},
+      Enumerator{MotorFault::refused, "refused"},   Enumerator{MotorFault::unknown_status, "unknown-status"},
+      Enumerator{MotorFault::stays_on, "stays-on"}};
 }
+
+/// The status of a motor that has not reported one.
+inline constexpr std::int64_t no_status = -1;
 
 /// What a motor said last, in its own sense of turning, at the output of its gear. Positions go on where the wire's
 /// number wraps. Trivially copyable: it crosses from the bus thread to the tick.
@@ -42,9 +49,11 @@ struct MotorReading {
   double temperature_C =
       std::numeric_limits<double>::quiet_NaN();  ///< the hotter of those that it tells; NaN: not told
   MotorFault fault = MotorFault::none;
-  std::int64_t enabled = 0;    ///< 1 where the drive has power
-  std::int64_t heard_ns = -1;  ///< when its last good answer arrived; negative: never
-  std::int64_t answers = 0;    ///< good ones, since the start
+  std::int64_t enabled = 0;         ///< 1 where the drive has power, or a status that is not known
+  std::int64_t off = 0;             ///< 1 once it has reported that it has no power, since it was last to have any
+  std::int64_t status = no_status;  ///< as its protocol has it, see `status_text`
+  std::int64_t heard_ns = -1;       ///< when its last good answer arrived; negative: never
+  std::int64_t answers = 0;         ///< good ones, since the start
 };
 
 /// The law that a motor runs by itself beside the torque that it is told, at the rate of its current loop and without
@@ -93,6 +102,9 @@ constexpr auto enumerators(BusState) {
 /// The driver of all motors behind one wire. As soon as it is driven, it asks who is there and checks what they say,
 /// then it runs cycles: commands to all motors at once, answers collected until all are there or a deadline passed, and
 /// the next. A motor that is silent costs no other its data.
+///
+/// A motor that is to have no power is told so in every cycle until it has reported that it has none (`OffWatch`):
+/// before it is asked anything, without a command that enables it, with a fault, and while the thread ends.
 ///
 /// Real-time safe but for `problem` and `sheet`. Thread: that of the wire; `tactus/devices/bus_thread.hpp` exchanges
 /// with a tick.

@@ -83,6 +83,12 @@ DeviceTrouble MotorBusDevice::found() noexcept {
   bool silent = found.age_s > params_.silence_s;
   for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
     const MotorReading& motor = last_.motors[joint];
+    if (motor.fault == MotorFault::stays_on) {
+      found.joint = joint;
+      found.fault = motor.fault;
+      found.status = motor.status;
+      return with(Trouble::motor_fault);
+    }
     if (commands_.motors[joint].enabled == 0) continue;
     if (motor.enabled != 0) had_power_[joint] = true;
     const MotorJoint& own = params_.joints[joint];
@@ -108,6 +114,7 @@ DeviceTrouble MotorBusDevice::found() noexcept {
     if (what == Trouble::none) continue;
     found.joint = joint;
     found.fault = motor.fault;
+    found.status = motor.status;
     return with(what);
   }
   if (silent) return with(Trouble::silent);

@@ -46,7 +46,8 @@ struct DeviceTrouble {
   Trouble what = Trouble::none;
   std::size_t joint = 0;  ///< the first that has it, or the one whose answer is oldest
   MotorFault fault = MotorFault::none;
-  double age_s = 0.0;        ///< of the oldest answer
+  std::int64_t status = no_status;  ///< of its motor, as its protocol has it
+  double age_s = 0.0;               ///< of the oldest answer
   double cycle_age_s = 0.0;  ///< since a cycle of the bus ended, whoever answered: old where our own thread stood still
 };
 

@@ -12,13 +12,15 @@ namespace tactus::emulation {
 /// What may be wrong with an emulated servo.
 enum class ServoFault : std::int64_t {
   none,
-  silent,       ///< it hears and does not answer
-  power_cycle,  ///< it is off for 0.3 s, and begins anew
-  hot,          ///< it tells so, and takes its own torque away
-  wrong_model,  ///< it is another one than its owner believes
-  low_limit,    ///< it was set to a tenth of its current
-  twin,         ///< another servo has its id and answers behind it
-  clash         ///< another servo has its id and answers at the same time, so that no answer is whole
+  silent,          ///< it hears and does not answer
+  power_cycle,     ///< it is off for 0.3 s, and begins anew
+  hot,             ///< it tells so, and takes its own torque away
+  wrong_model,     ///< it is another one than its owner believes
+  low_limit,       ///< it was set to a tenth of its current
+  twin,            ///< another servo has its id and answers behind it
+  clash,           ///< another servo has its id and answers at the same time, so that no answer is whole
+  error,           ///< its answers have an error byte that is not its own, and it goes on
+  ignores_disable  ///< it answers to what switches its torque off, and keeps it
 };
 constexpr auto enumerators(ServoFault) {
   return std::array{Enumerator{ServoFault::none, "none"},
@@ -28,7 +30,9 @@ constexpr auto enumerators(ServoFault) {
                     Enumerator{ServoFault::wrong_model, "wrong-model"},
                     Enumerator{ServoFault::low_limit, "low-limit"},
                     Enumerator{ServoFault::twin, "twin"},
-                    Enumerator{ServoFault::clash, "clash"}};
+                    Enumerator{ServoFault::clash, "clash"},
+                    Enumerator{ServoFault::error, "error"},
+                    Enumerator{ServoFault::ignores_disable, "ignores-disable"}};
 }
 
 /// What may be wrong with the line of emulated servos. Shares are those of all answers, drawn from a seed.
@@ -44,9 +48,11 @@ struct WrittenFault {
   ServoFault servo = ServoFault::none;
   std::int64_t id = -1;      ///< of the servo; negative: of all
   std::int64_t from_ns = 0;  ///< after the first byte that the peer hears
+  std::uint8_t error = 0;    ///< that `ServoFault::error` reports
   LineFaults line;           ///< where it is one of the line
 };
-/// Reads `KIND[:ID][@SECONDS]`: an enumerator of `ServoFault`, of which servo and from when, as `hot:2@5`; or
+/// Reads `KIND[:ID][@SECONDS]`: an enumerator of `ServoFault`, of which servo and from when, as `hot:2@5`, `error` with
+/// its byte, as `error=0x24:2@5`; or
 /// `corrupt`, `garbage` and `split` for a hundredth of all answers, or `echo`. Errors: `syntax`, with the text and what
 /// there is.
 Result<WrittenFault> parse_servo_fault(std::string_view text);

@@ -46,6 +46,7 @@ class FakeLink final : public devices::MotorLink {
   void stop() override {}
   Check wait_until_asked(Seconds /*longest*/) override { return std::nullopt; }
   [[nodiscard]] devices::MotorSheet sheet(std::size_t /*motor*/) const override { return {}; }
+  [[nodiscard]] std::vector<devices::PoweredMotor> powered_motors() const override { return {}; }
 
  private:
   Motor* motor_;

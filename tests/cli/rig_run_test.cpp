@@ -155,7 +155,42 @@ TEST_F(RigRun, AMotorThatFallsSilentHoldsBothWithoutForceAndIsSaid) {
   EXPECT_NE(said.find("; follower: joint_2 unheard for "), std::string::npos) << said;
   EXPECT_NE(said.find("; the follower is silent: look at 'tactus device check'\n"), std::string::npos) << said;
   EXPECT_EQ(said.find("silent in 0,"), std::string::npos) << said;
-  EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
+  // Nobody knows whether it is off: its last status was another.
+  EXPECT_NE(said.find("tactus: arm.follower.joint_2: motor 2 at "), std::string::npos) << said;
+  EXPECT_NE(said.find(" (damiao) did not report within 0.5 s that it is off (status 0x1 (enabled)): switch off the "
+                      "supply of arm.follower, and keep clear of it until then\n"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
+}
+
+TEST_F(RigRun, AStatusThatIsNotKnownEndsTheForceOfBothAndTheMotorIsToldAtTheEnd) {
+  const std::string said =
+      shell_until({"follower active"}, "damiao", "damiao --fault status=0x7:2@4", pair("damiao", "DM4310", 2, ""),
+                  "$RUN --arm --duration-s 6 <&9; echo status $?");
+  EXPECT_NE(said.find("follower active"), std::string::npos) << said;
+  EXPECT_NE(said.find("leader hold, follower fault (gate), "), std::string::npos) << said;
+  EXPECT_NE(said.find("; follower: joint_2 has the fault "), std::string::npos) << said;
+  EXPECT_NE(said.find(" (status 0x7 (unknown))"), std::string::npos) << said;
+  EXPECT_NE(said.find("tactus: arm.follower.joint_2: motor 2 at "), std::string::npos) << said;
+  EXPECT_NE(said.find("tactus: a motor did not report that it is off: switch off its supply\nstatus 1\n"),
+            std::string::npos)
+      << said;
+}
+
+TEST_F(RigRun, AMotorThatIgnoresDisableIsToldWhenTheRunIsInterrupted) {
+  const std::string said = shell_until({"follower active"}, "damiao", "damiao --fault ignores-disable:2",
+                                       pair("damiao", "DM4310", 2, ""), R"sh(
+      $RUN --arm <&9 >run.out 2>&1 & run=$!
+      for try in $(seq 100); do grep -q 'follower active' run.out && break; sleep 0.1; done
+      kill -INT $run
+      wait $run; echo status $?
+      cat run.out)sh");
+  EXPECT_NE(said.find("follower active"), std::string::npos) << said;
+  EXPECT_NE(said.find("tactus: arm.follower.joint_2: motor 2 at "), std::string::npos) << said;
+  EXPECT_EQ(said.find("tactus: arm.follower.joint_1: "), std::string::npos) << said;
+  EXPECT_EQ(said.find("tactus: arm.leader"), std::string::npos) << said;
+  EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
 }
 
 TEST_F(RigRun, AMotorWithAFaultEndsTheForceOfBothAndIsSaid) {
@@ -326,6 +361,7 @@ TEST_F(ArmRun, AFollowerWhoseMotorsAreGoneIsAFaultAndTheLeaderHoldsItself) {
   EXPECT_NE(said.find("; follower: its port was closed"), std::string::npos) << said;
   EXPECT_EQ(said.find("leader fault"), std::string::npos) << said;
   EXPECT_NE(said.find("Ended in a fault: follower (gate); follower: its port was closed"), std::string::npos) << said;
+  EXPECT_NE(said.find(" (damiao) did not report within 0.5 s that it is off ("), std::string::npos) << said;
   EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
 }
 

@@ -154,6 +154,7 @@ TEST(BusThread, MotorsBecomeADeviceAndLoseTheirPowerWhenItEnds) {
   }));
   EXPECT_EQ(device->health(), DeviceHealth::good);
   bus->stop();
+  EXPECT_TRUE(bus->powered_motors().empty());
   motors.fall_silent();
   for (const std::size_t motor : {0U, 1U}) {
     EXPECT_FALSE(motors.peer().motor(motor).enabled());
@@ -233,6 +234,47 @@ TEST(BusThread, AMotorWithAFaultUnderPowerIsLost) {
   EXPECT_EQ(device->trouble().what, Trouble::motor_fault);
   EXPECT_EQ(device->trouble().joint, 1U);
   EXPECT_EQ(device->trouble().fault, MotorFault::hot);
+}
+
+TEST(BusThread, AStatusThatIsNotKnownUnderPowerIsLostAndTheMotorIsOffAndToldAtTheEnd) {
+  Motors motors({{.kind = FaultKind::status, .motor = 2, .from_ns = 1'500'000'000, .status = 0x7}});
+  auto bus = bus_at(motors);
+  ASSERT_FALSE(bus->wait_until_asked(long_enough));
+  auto device = device_of(*bus);
+  ASSERT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::good; }));
+  EXPECT_TRUE(tick_until(*device, 0.1, true, [&] { return device->health() == DeviceHealth::lost; }));
+  EXPECT_EQ(device->trouble().what, Trouble::motor_fault);
+  EXPECT_EQ(device->trouble().joint, 1U);
+  EXPECT_EQ(device->trouble().fault, MotorFault::unknown_status);
+  EXPECT_EQ(device->trouble().status, 0x7);
+  // Released, and after a while it is a motor that does not switch off, so nobody can arm.
+  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->trouble().fault == MotorFault::stays_on; }));
+  EXPECT_EQ(device->health(), DeviceHealth::lost);
+  bus->stop();
+  const auto powered = bus->powered_motors();
+  ASSERT_EQ(powered.size(), 1U);
+  EXPECT_EQ(powered[0].motor, 1U);
+  EXPECT_EQ(powered[0].status, 0x7);
+  EXPECT_FALSE(powered[0].off);
+  motors.fall_silent();
+  for (const std::size_t motor : {0U, 1U}) EXPECT_FALSE(motors.peer().motor(motor).enabled());
+}
+
+TEST(BusThread, AMotorThatIgnoresDisableIsToldWhenTheBusIsStoppedAtOnce) {
+  Motors motors({{.kind = FaultKind::ignores_disable, .motor = 1}});
+  auto bus = bus_at(motors);
+  ASSERT_FALSE(bus->wait_until_asked(long_enough));
+  auto device = device_of(*bus);
+  ASSERT_TRUE(tick_until(*device, 0.1, true, [&] {
+    const auto now = bus->newest();
+    return now && now->motors[0].enabled != 0 && now->motors[1].enabled != 0;
+  }));
+  device.reset();
+  bus->stop();
+  const auto powered = bus->powered_motors();
+  ASSERT_EQ(powered.size(), 1U);
+  EXPECT_EQ(powered[0].motor, 0U);
+  EXPECT_EQ(powered[0].status, 0x1);
 }
 
 TEST(BusThread, APortThatIsUnpluggedEndsItAndTheDeviceIsLost) {

@@ -69,6 +69,7 @@ DamiaoBus::DamiaoBus(const DamiaoBusParams& params)
       shortest_cycle_ns_(ns_of(params.shortest_cycle_s)),
       silence_ns_(ns_of(params.watchdog_s)),
       ask_absent_ns_(std::min(absent_asked_every_ns, silence_ns_ / 4)),
+      rest_ns_(silence_ns_ + silence_ns_ / 2),
       reader_(params.framing),
       outbox_(params.motors.size() * 128) {
   const auto timeout = static_cast<std::uint32_t>(std::lround(params.watchdog_s / timeout_unit_s));
@@ -77,7 +78,8 @@ DamiaoBus::DamiaoBus(const DamiaoBusParams& params)
                        .scale = scale_of(motor.model),
                        .questions = Questions(motor, timeout),
                        .reading = {.fault = MotorFault::silent},
-                       .command = {}});
+                       .command = {},
+                       .off = {}});
   }
 }
 
@@ -211,7 +213,7 @@ void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t 
     motor.turns -= std::round((told->position_rad - motor.wrapped_rad) / turn_rad);
   }
   motor.wrapped_rad = told->position_rad;
-  motor.status = told->status;
+  motor.off.reported(means_off(told->status));
   if (motor.owed > 0) {
     --motor.owed;
     progress_ns_ = now_ns;
@@ -221,7 +223,8 @@ void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t 
   reading.velocity_rad_per_s = told->velocity_rad_per_s;
   reading.torque_Nm = told->torque_Nm;
   reading.temperature_C = std::max(told->drive_C, told->winding_C);
-  reading.enabled = told->status == status_enabled ? 1 : 0;
+  reading.status = told->status;
+  reading.enabled = means_off(told->status) ? 0 : 1;
   reading.heard_ns = now_ns;
   ++reading.answers;
   judge(motor, now_ns);
@@ -236,16 +239,21 @@ bool DamiaoBus::is_silent(const Motor& motor, std::int64_t now_ns) const noexcep
 
 /// Which fault it has, and whether that stays.
 void DamiaoBus::judge(Motor& motor, std::int64_t now_ns) noexcept {
+  MotorReading& reading = motor.reading;
   const bool silent = is_silent(motor, now_ns);
-  const MotorFault now = silent ? MotorFault::silent : fault_of(motor.status);
+  const bool told = reading.status != no_status;
+  const MotorFault of_status = told ? fault_of(static_cast<std::uint8_t>(reading.status)) : MotorFault::none;
+  const MotorFault now = silent ? MotorFault::silent : of_status;
   if (motor.was_wanted && motor.latched == MotorFault::none) {
-    if (motor.status == status_enabled) motor.had_power = true;
-    const bool lost_power = motor.had_power && motor.status == status_disabled;
+    if (reading.status == status_enabled) motor.had_power = true;
+    const bool lost_power = motor.had_power && reading.status == status_disabled;
     const bool refuses = motor.tries >= most_tries;
     if (now != MotorFault::none && (motor.had_power || refuses || silent)) motor.latched = now;
     if (now == MotorFault::none && (lost_power || refuses)) motor.latched = MotorFault::refused;
   }
-  motor.reading.fault = motor.latched != MotorFault::none ? motor.latched : now;
+  if (motor.off.stays_on(now_ns)) motor.latched = MotorFault::stays_on;
+  reading.off = motor.off.confirmed() ? 1 : 0;
+  reading.fault = motor.latched != MotorFault::none ? motor.latched : now;
 }
 
 bool DamiaoBus::all_answered() const noexcept {
@@ -266,9 +274,11 @@ void DamiaoBus::begin_cycle(std::int64_t now_ns) noexcept {
     for (Motor& motor : motors_) {
       if (is_absent(motor) != absent) continue;
       if (absent && now_ns < motor.asked_again_ns) continue;
+      const bool driven = drives(motor, now_ns);
+      if (!driven && !motor.off.due(now_ns, rest_ns_)) continue;
       motor.asked_again_ns = now_ns + ask_absent_ns_;
       ++motor.owed;
-      send(frame_for(motor, now_ns), now_ns);
+      send(driven ? frame_that_drives(motor) : frame_that_stops(motor, now_ns), now_ns);
     }
   }
 }
@@ -287,11 +297,12 @@ void DamiaoBus::end_cycle(std::int64_t now_ns) noexcept {
   }
 }
 
-CanFrame DamiaoBus::frame_for(Motor& motor, std::int64_t now_ns) noexcept {
-  const auto id = static_cast<std::uint16_t>(motor.params.id);
+/// Whether it is to have power now.
+bool DamiaoBus::drives(Motor& motor, std::int64_t now_ns) const noexcept {
   const bool wanted = motor.command.enabled != 0;
   if (wanted && !motor.was_wanted) {
-    if (motor.latched != MotorFault::encoder) motor.latched = MotorFault::none;
+    const bool for_good = motor.latched == MotorFault::encoder || motor.latched == MotorFault::stays_on;
+    if (!for_good) motor.latched = MotorFault::none;
     motor.had_power = false;
     motor.tries = 0;
   }
@@ -300,10 +311,21 @@ CanFrame DamiaoBus::frame_for(Motor& motor, std::int64_t now_ns) noexcept {
   if (holds && std::fabs(motor.wrapped_rad) > motor.scale.position_rad - near_the_end_rad) {
     motor.latched = motor.reading.fault = MotorFault::encoder;
   }
-  if (!wanted || motor.latched != MotorFault::none || is_silent(motor, now_ns)) {
-    return motor.status == status_enabled ? order_frame(id, Order::disable) : refresh_frame(id);
-  }
-  if (motor.status == status_enabled) {
+  return wanted && motor.latched == MotorFault::none && !is_silent(motor, now_ns);
+}
+
+CanFrame DamiaoBus::frame_that_stops(Motor& motor, std::int64_t now_ns) noexcept {
+  const auto id = static_cast<std::uint16_t>(motor.params.id);
+  if (motor.off.confirmed()) return refresh_frame(id);
+  motor.off.told(now_ns);
+  return order_frame(id, Order::disable);
+}
+
+CanFrame DamiaoBus::frame_that_drives(Motor& motor) noexcept {
+  const auto id = static_cast<std::uint16_t>(motor.params.id);
+  motor.off.start_over();
+  motor.reading.off = 0;
+  if (motor.reading.status == status_enabled) {
     const MotorLaw& law = motor.command.law;
     const double unseen_rad = law.acts() ? motor.turns * 2.0 * motor.scale.position_rad : 0.0;
     return mit_frame(id, motor.scale,
@@ -313,8 +335,10 @@ CanFrame DamiaoBus::frame_for(Motor& motor, std::int64_t now_ns) noexcept {
                       .damping_Nms_per_rad = law.damping_Nms_per_rad,
                       .torque_Nm = motor.command.torque_Nm});
   }
+  // Nobody knows what it does before it has reported.
+  if (motor.reading.status == no_status) return order_frame(id, Order::disable);
   ++motor.tries;
-  return order_frame(id, motor.status == status_disabled ? Order::enable : Order::clear_fault);
+  return order_frame(id, motor.reading.status == status_disabled ? Order::enable : Order::clear_fault);
 }
 
 }  // namespace tactus::devices::damiao

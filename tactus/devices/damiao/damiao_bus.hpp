@@ -3,6 +3,7 @@
 #include <tactus/devices/damiao/framing.hpp>
 #include <tactus/devices/damiao/questions.hpp>
 #include <tactus/devices/motor_bus.hpp>
+#include <tactus/devices/off_watch.hpp>
 #include <tactus/wire/outbox.hpp>
 
 #include <cstddef>
@@ -39,9 +40,16 @@ struct DamiaoBusParams {
 /// that is not what the parameters say makes the bus `refused`. Then each cycle sends one frame to every motor at once,
 /// each of which is answered by feedback, and ends when all have answered or the next one keeps it waiting too long.
 ///
-/// Power: a motor gets it when its command asks for it anew; a fault from before is cleared first. A fault under power,
-/// no answer for longer than its own watchdog waits, or power lost without being asked latch its fault: it is switched
-/// off and stays so until the command asks anew. One that was silent for so long that it could have turned by half the
+/// Power: a motor gets it when its command asks for it anew; a fault from before is cleared first. A fault or a status
+/// that is not known under power, no answer for longer than its own watchdog waits, or power lost without being asked
+/// latch its fault: it is switched off and stays so until the command asks anew.
+///
+/// Off: a motor that is to have no power is sent `disable` in every cycle until it has reported three times in a row
+/// that it is off; only then is it asked by `refresh`. One that does not within 0.1 s has the fault `stays_on` for good
+/// if it answers, and is then sent `disable` only at times that are farther apart than its own watchdog waits, so that
+/// this may take its power.
+///
+/// One that was silent for so long that it could have turned by half the
 /// range of its number has the fault `encoder` for good. A motor that missed three cycles is asked rarely, with the
 /// same command, so that it costs the others nothing; a stall of the machine ends as it began.
 ///
@@ -76,7 +84,7 @@ class DamiaoBus final : public MotorBus {
     Questions questions;
     MotorReading reading;
     MotorCommand command;
-    std::uint8_t status = 0;
+    OffWatch off;
     MotorFault latched = MotorFault::none;
     bool was_wanted = false;
     bool had_power = false;           ///< since it was wanted
@@ -100,10 +108,12 @@ class DamiaoBus final : public MotorBus {
   void begin_cycle(std::int64_t now_ns) noexcept;
   void end_cycle(std::int64_t now_ns) noexcept;
   [[nodiscard]] bool all_answered() const noexcept;
-  [[nodiscard]] CanFrame frame_for(Motor& motor, std::int64_t now_ns) noexcept;
+  [[nodiscard]] bool drives(Motor& motor, std::int64_t now_ns) const noexcept;
+  [[nodiscard]] static CanFrame frame_that_drives(Motor& motor) noexcept;
+  [[nodiscard]] static CanFrame frame_that_stops(Motor& motor, std::int64_t now_ns) noexcept;
 
   Framing framing_;
-  std::int64_t patience_ns_, shortest_cycle_ns_, silence_ns_, ask_absent_ns_;
+  std::int64_t patience_ns_, shortest_cycle_ns_, silence_ns_, ask_absent_ns_, rest_ns_;
   FrameReader reader_;
   wire::Outbox outbox_;
   std::vector<Motor> motors_;

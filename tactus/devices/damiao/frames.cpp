@@ -96,8 +96,26 @@ MotorFault fault_of(std::uint8_t status) noexcept {
     case 0xe:
       return MotorFault::overload;
     default:
-      return MotorFault::refused;
+      return MotorFault::unknown_status;
   }
+}
+
+bool means_off(std::uint8_t status) noexcept {
+  return status != status_enabled && fault_of(status) != MotorFault::unknown_status;
+}
+
+std::string status_text(std::int64_t status) {
+  constexpr std::array<const char*, 16> names{"disabled",      "enabled",
+                                              "unknown",       "unknown",
+                                              "unknown",       "unknown",
+                                              "unknown",       "unknown",
+                                              "over-voltage",  "under-voltage",
+                                              "over-current",  "drive too hot",
+                                              "rotor too hot", "communication lost",
+                                              "overload",      "unknown"};
+  if (status < 0) return "no status";
+  const auto number = static_cast<std::size_t>(status) % names.size();
+  return std::string("status 0x") + "0123456789abcdef"[number] + " (" + names[number] + ")";
 }
 
 std::optional<RegisterAnswer> register_answer_of(const CanFrame& frame) noexcept {

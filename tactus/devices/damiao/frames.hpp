@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 /// What Damiao's motors are told and what they answer, in frames of CAN. Source: the maker's protocol, as openarm_can,
 /// i2rt, lerobot and python-damiao-driver speak it. Real-time safe.
@@ -70,8 +71,13 @@ struct Feedback {
 std::optional<Feedback> feedback_of(const CanFrame& frame, const Scale& scale) noexcept;
 
 inline constexpr std::uint8_t status_disabled = 0, status_enabled = 1;
-/// What a status means; one that the protocol does not have counts as `refused`.
+/// What a status means; one that the protocol does not have is an `unknown_status`.
 MotorFault fault_of(std::uint8_t status) noexcept;
+/// Whether a motor with this status has no power: disabled, or a fault of the protocol, which disables it. A status
+/// that the protocol does not have counts as power.
+bool means_off(std::uint8_t status) noexcept;
+/// `status 0x7 (unknown)`, for a person; `no status` where that is negative. Not real-time safe.
+std::string status_text(std::int64_t status);
 
 struct RegisterAnswer {
   std::uint16_t motor = 0;

@@ -64,7 +64,7 @@ std::optional<CanFrame> Questions::next(std::int64_t now_ns) noexcept {
   if (now_ns < deadline_ns_ || done()) return std::nullopt;
   if (tries_ == most_questions) {
     // One that does not answer to this answers to nothing.
-    blame(Wrong::silent, steps[at_].which, 0.0, 0.0);
+    blame(on_status_ < 0 ? Wrong::silent : Wrong::stays_on, steps[at_].which, on_status_, status_disabled);
     at_ = steps.size();
     return std::nullopt;
   }
@@ -90,8 +90,11 @@ bool Questions::take(const CanFrame& frame) noexcept {
   if (step.what == What::disable) {
     // Wherever its feedback comes from: that is compared when the register is known.
     const bool own = !answer && frame.size == 8 && (frame.data[0] & 0x0f) == stated_.id && tries_ > 0;
-    if (own) go_on();
-    return own;
+    if (!own) return false;
+    const auto status = static_cast<std::uint8_t>(frame.data[0] >> 4);
+    on_status_ = means_off(status) ? -1 : status;
+    if (means_off(status)) go_on();
+    return true;
   }
   if (!answer || answer->motor != stated_.id) return false;
   const auto answers = [&answer](const Step& question) {
@@ -191,6 +194,12 @@ Check Questions::problem() const {
                 ": look at its power, its two wires, 120 ohm at both ends of them, its identifier (two motors with one "
                 "destroy "
                 "each other's answers) and the bit rate";
+      break;
+    case Wrong::stays_on:
+      message = motor + " was told " + std::to_string(most_questions) +
+                " times to switch off and does not report that it is off (" +
+                status_text(static_cast<std::int64_t>(found_)) +
+                "): switch off its supply, wait until it stands still, and switch it on again";
       break;
     case Wrong::twice:
       message = motor + " answers twice to one question: two motors have the identifier " + std::to_string(stated_.id) +

@@ -29,9 +29,9 @@ struct MotorFacts {
   std::int64_t timeout = -1;       ///< 50 µs each
 };
 
-/// Asks one motor, one thing after the other, and compares: first it is switched off, then its registers are read, then
-/// mode and watchdog are set, until it loses its power. What is not answered is asked again, five times in all.
-/// Real-time safe but for `problem`. Drives nothing by itself.
+/// Asks one motor, one thing after the other, and compares: first it is switched off, which it has to report, then its
+/// registers are read, then mode and watchdog are set, until it loses its power. What is not answered is asked again,
+/// five times in all. Real-time safe but for `problem`. Drives nothing by itself.
 class Questions {
  public:
   Questions(const MotorParams& stated, std::uint32_t timeout) noexcept : stated_(stated), wanted_timeout_(timeout) {}
@@ -63,7 +63,7 @@ class Questions {
       Step{What::read, Register::position_scale}, Step{What::read, Register::velocity_scale},
       Step{What::read, Register::torque_scale},   Step{What::read, Register::software_version},
       Step{What::write, Register::control_mode},  Step{What::write, Register::timeout}};
-  enum class Wrong { nothing, silent, twice, feedback_id, scale, written };
+  enum class Wrong { nothing, silent, stays_on, twice, feedback_id, scale, written };
 
   [[nodiscard]] double scale_stated(Register which) const noexcept;
   [[nodiscard]] std::uint32_t wanted(Register which) const noexcept;
@@ -76,6 +76,7 @@ class Questions {
   std::size_t at_ = 0;
   int tries_ = 0;
   bool asked_once_ = false;  ///< the step before this one
+  int on_status_ = -1;       ///< that it reported when it was told to switch off; negative: none that is not off
   std::int64_t deadline_ns_ = 0;
   MotorFacts facts_;
   Wrong wrong_ = Wrong::nothing;

@@ -26,7 +26,8 @@ using enum ServoStep::Kind;
 constexpr std::array hush{ServoStep{write, torque_enable, 0}, ServoStep{write, status_return_level, 2}};
 constexpr std::array asking{ServoStep{check, model_number, 0},  ServoStep{check, firmware, 0},
                             ServoStep{check, current_limit, 0}, ServoStep{write, torque_enable, 0},
-                            ServoStep{keep, return_delay, 0},   ServoStep{keep, operating_mode, 0}};
+                            ServoStep{check, torque_enable, 0}, ServoStep{keep, return_delay, 0},
+                            ServoStep{keep, operating_mode, 0}};
 // The watchdog's 0 undoes its latch, behind which a goal is refused. Goal current is the limit when power comes on.
 constexpr std::array enabling{ServoStep{write, bus_watchdog, 0}, ServoStep{write, goal_current, 0},
                               ServoStep{write, bus_watchdog, 5}, ServoStep{write, torque_enable, 1}};
@@ -40,7 +41,8 @@ constexpr ServoTable table{.hush = hush,
                            .goal = goal_current,
                            .steps_per_turn = 4096,
                            .steps_until_wrap = std::int64_t{1} << 32,
-                           .silence_ns = 100'000'000};  // that of the watchdog
+                           .silence_ns = 100'000'000,  // that of the watchdog
+                           .rest_ns = 150'000'000};
 
 constexpr std::int64_t plain_cycles = 1000;
 constexpr std::int64_t latched_watchdog = 0xff;  // -1
@@ -117,7 +119,7 @@ void DynamixelBus::take(std::span<const std::uint8_t> packet) noexcept {
   const auto content = packet_heard.parameters();
   if (packet_heard.instruction != Instruction::status || content.empty()) return;  // an echo
   const auto answered = [&](std::uint8_t id, std::uint8_t error, std::span<const std::uint8_t> data) {
-    heard({id, (error & alert) != 0, static_cast<std::uint8_t>(error & ~alert), data});
+    heard({id, error, (error & alert) != 0, static_cast<std::uint8_t>(error & ~alert), data});
   };
   if (packet_heard.id != broadcast) return answered(packet_heard.id, content[0], content.subspan(1));
   // A block for each servo; the CRC of the last one is the packet's.
@@ -143,15 +145,21 @@ ServoPacket DynamixelBus::write(std::uint8_t id, Register place, std::int64_t va
   return encode(id, Instruction::write, parameters.bytes());
 }
 
-ServoPacket DynamixelBus::write_all(Register place, std::span<const std::int64_t> values) const noexcept {
+ServoPacket DynamixelBus::write_all(Register place, std::span<const std::int64_t> values, Whom whom) const noexcept {
   ServoPacket parameters;
   parameters.put(place.address, 2);
   parameters.put(place.bytes, 2);
   for (std::size_t i = 0; i < motors(); ++i) {
+    if ((whom >> i & 1U) == 0) continue;
     parameters.put(id(i));
     parameters.put(values[i], place.bytes);
   }
   return encode(broadcast, Instruction::sync_write, parameters.bytes());
+}
+
+bool DynamixelBus::knows_refusal(std::uint8_t refusal) const noexcept {
+  constexpr std::uint8_t last = 7;  // access error
+  return refusal <= last;
 }
 
 ServoPacket DynamixelBus::read_states() noexcept {
@@ -203,10 +211,12 @@ ServoBus::Wrong DynamixelBus::check(std::size_t motor, Register place, std::int6
 void DynamixelBus::looked(std::size_t motor, Register place, std::int64_t value) noexcept {
   if (place.address == hardware_error.address) {
     const auto has = [value](std::int64_t bits) { return (value & bits) != 0; };
+    set_condition(motor, value);
     ails(motor, has(4)         ? MotorFault::hot
                 : has(1)       ? MotorFault::voltage
                 : has(8)       ? MotorFault::encoder
                 : has(16 | 32) ? MotorFault::overload
+                : value != 0   ? MotorFault::unknown_status
                                : MotorFault::none);
   } else if (place.address == torque_enable.address) {
     if (value == 0 && has_power(motor)) lost_power(motor, MotorFault::refused);

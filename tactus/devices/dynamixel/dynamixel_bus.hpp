@@ -60,7 +60,8 @@ class DynamixelBus final : public ServoBus {
   void give_up() noexcept override;
   ServoPacket read(std::uint8_t id, Register place) noexcept override;
   ServoPacket write(std::uint8_t id, Register place, std::int64_t value) noexcept override;
-  ServoPacket write_all(Register place, std::span<const std::int64_t> values) const noexcept override;
+  ServoPacket write_all(Register place, std::span<const std::int64_t> values, Whom whom) const noexcept override;
+  [[nodiscard]] bool knows_refusal(std::uint8_t refusal) const noexcept override;
   ServoPacket read_states() noexcept override;
   void read_ended(bool all_answered) noexcept override;
   [[nodiscard]] std::size_t answer_bytes(std::size_t data) const noexcept override;

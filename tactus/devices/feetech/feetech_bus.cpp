@@ -25,12 +25,13 @@ constexpr auto keep_it = ServoStep::Kind::keep;
 constexpr auto write_it = ServoStep::Kind::write;
 // What is kept stands in memory behind a lock. Without answers to writes every write would seem lost.
 constexpr std::array hush{ServoStep{write_it, torque_enable, 0}, ServoStep{write_it, memory_lock, 0}};
-constexpr std::array asking_sts{ServoStep{check_it, model_number, 0}, ServoStep{keep_it, answer_level, 1},
-                                ServoStep{keep_it, return_delay, 0}, ServoStep{write_it, memory_lock, 1},
-                                ServoStep{write_it, torque_enable, 0}};
+constexpr std::array asking_sts{ServoStep{check_it, model_number, 0},  ServoStep{keep_it, answer_level, 1},
+                                ServoStep{keep_it, return_delay, 0},   ServoStep{write_it, memory_lock, 1},
+                                ServoStep{write_it, torque_enable, 0}, ServoStep{check_it, torque_enable, 0}};
 constexpr std::array asking_hls{ServoStep{check_it, model_number, 0},       ServoStep{keep_it, answer_level, 1},
                                 ServoStep{check_it, protection_current, 0}, ServoStep{keep_it, operating_mode, 2},
-                                ServoStep{write_it, memory_lock, 1},        ServoStep{write_it, torque_enable, 0}};
+                                ServoStep{write_it, memory_lock, 1},        ServoStep{write_it, torque_enable, 0},
+                                ServoStep{check_it, torque_enable, 0}};
 // When power comes on, the goal is the protection current.
 constexpr std::array enabling{ServoStep{write_it, goal_current, 0}, ServoStep{write_it, torque_enable, 1}};
 constexpr std::array looks{condition, torque_enable};
@@ -44,7 +45,8 @@ constexpr ServoTable table{.hush = hush,
                            .goal = goal_current,
                            .steps_per_turn = steps_per_turn,
                            .steps_until_wrap = steps_per_turn,
-                           .silence_ns = 100'000'000};
+                           .silence_ns = 100'000'000,
+                           .rest_ns = 0};
 
 constexpr std::size_t status_bytes = 6;  // of an answer without data
 constexpr int sign_bit = 15;
@@ -135,7 +137,7 @@ void FeetechBus::take(std::span<const std::uint8_t> packet) noexcept {
     }
   }
   const std::uint8_t error = packet[4];
-  heard({packet[2], error != 0, 0, packet.subspan(5, packet.size() - status_bytes)});
+  heard({packet[2], error, error != 0, 0, packet.subspan(5, packet.size() - status_bytes)});
 }
 
 ServoPacket FeetechBus::read(std::uint8_t id, Register place) noexcept {
@@ -156,11 +158,15 @@ ServoPacket FeetechBus::write(std::uint8_t id, Register place, std::int64_t valu
   return question_;
 }
 
-ServoPacket FeetechBus::write_all(Register place, std::span<const std::int64_t> values) const noexcept {
+/// It refuses nothing: its error byte says what is wrong with the servo.
+bool FeetechBus::knows_refusal(std::uint8_t refusal) const noexcept { return refusal == 0; }
+
+ServoPacket FeetechBus::write_all(Register place, std::span<const std::int64_t> values, Whom whom) const noexcept {
   ServoPacket parameters;
   parameters.put(static_cast<std::uint8_t>(place.address));
   parameters.put(place.bytes);
   for (std::size_t i = 0; i < motors(); ++i) {
+    if ((whom >> i & 1U) == 0) continue;
     if (place.address == goal_current.address && model(i).current_limit == 0) continue;
     parameters.put(id(i));
     parameters.put(to_sign_magnitude(values[i], sign_bit), place.bytes);
@@ -203,12 +209,14 @@ ServoBus::Wrong FeetechBus::check(std::size_t motor, Register place, std::int64_
 void FeetechBus::looked(std::size_t motor, Register place, std::int64_t value) noexcept {
   if (place.address == condition.address) {
     const auto has = [value](std::int64_t bit) { return (value & bit) != 0; };
-    ails(motor, has(4)    ? MotorFault::hot
-                : has(1)  ? MotorFault::voltage
-                : has(2)  ? MotorFault::encoder
-                : has(8)  ? MotorFault::current
-                : has(32) ? MotorFault::overload
-                          : MotorFault::none);
+    set_condition(motor, value);
+    ails(motor, has(4)       ? MotorFault::hot
+                : has(1)     ? MotorFault::voltage
+                : has(2)     ? MotorFault::encoder
+                : has(8)     ? MotorFault::current
+                : has(32)    ? MotorFault::overload
+                : value != 0 ? MotorFault::unknown_status
+                             : MotorFault::none);
   } else if (value == 0 && has_power(motor)) {
     lost_power(motor, MotorFault::refused);
   }

@@ -1,6 +1,7 @@
 #include <tactus/devices/inverse3/internal/service_connection.hpp>
 #include <tactus/devices/inverse3/inverse3_link.hpp>
 #include <tactus/devices/inverse3/messages.hpp>
+#include <tactus/devices/off_watch.hpp>
 #include <tactus/runtime/shared_slots.hpp>
 #include <tactus/wire/talk.hpp>
 
@@ -24,6 +25,10 @@ constexpr std::int64_t longest_connecting_ns = 1'000'000'000;
 constexpr std::int64_t longest_answer_ns = 1'000'000'000;
 constexpr std::chrono::milliseconds between_tries{100};
 constexpr std::size_t axis_count = 3;
+/// A service ends a force for want of messages within some milliseconds.
+constexpr std::int64_t rest_ns = 150'000'000;
+/// States that say `idle` under commands of force, before that is a fault.
+constexpr int most_idle = 20;
 
 Error link_error(ErrorCode code, std::string parameter, std::string message) {
   return {.code = code, .parameter = std::move(parameter), .message = std::move(message), .place = {}};
@@ -91,6 +96,13 @@ class Inverse3Link::Worker {
   /// Once it does not run.
   [[nodiscard]] const std::string& version() const { return version_; }
   [[nodiscard]] const std::optional<Device>& device() const { return device_; }
+  [[nodiscard]] std::vector<PoweredMotor> powered_motors() const {
+    std::vector<PoweredMotor> found;
+    for (std::size_t i = 0; told_readings_.state == BusState::ready && i < params_.axes.size(); ++i) {
+      if (const auto one = powered(i, told_readings_.motors[i])) found.push_back(*one);
+    }
+    return found;
+  }
 
  private:
   void run() {
@@ -123,17 +135,31 @@ class Inverse3Link::Worker {
     const Device* device = find(devices);
     if (device == nullptr) return unknown_device(devices);
     note(*device, true);
+    std::int64_t leave_ns = wire::never_ns;
     for (std::int64_t due_ns = wire::monotonic_ns();; due_ns = std::max(due_ns + cycle_ns_, wire::monotonic_ns())) {
       wait_until(due_ns);
       const bool leaving = stopping_.load(std::memory_order_relaxed);
-      const std::string question = leaving ? probe_message(device->id) : next_message(*device, *dialect);
+      const std::int64_t now_ns = wire::monotonic_ns();
+      if (leaving && leave_ns == wire::never_ns) leave_ns = now_ns + farewell_ns;
+      if (leaving && (off_.confirmed() || now_ns > leave_ns)) return std::nullopt;
+      if (leaving) {
+        gives_.fill(false);
+        pushes_ = false;
+      }
+      std::string question = leaving ? probe_message(device->id) : next_message(*device, *dialect);
+      if (gives_force()) {
+        off_.start_over();
+      } else if (!off_.due(now_ns, rest_ns)) {
+        continue;
+      } else if (!off_.confirmed()) {
+        off_.told(now_ns);
+      }
       if (Check error = connection->send(question, longest_answer_ns)) return error;
       const auto heard = connection->receive(longest_answer_ns);
       if (!heard) return heard.error();
       const bool whole = !devices.take(**heard);
       device = find(devices);
       note(*device, whole);
-      if (leaving) return std::nullopt;
     }
   }
 
@@ -154,26 +180,45 @@ class Inverse3Link::Worker {
   }
 
   std::string next_message(const Device& device, Dialect dialect) {
+    pushes_ = false;
     if (const auto newest = commands.newest()) wanted_ = *newest;
     const bool heard = watch_.trusts(wanted_, wire::monotonic_ns());
     told_readings_.unheard = heard ? 0 : 1;
-    if (!heard || !device.calibrated) {
+    bool wanted = false;
+    for (std::size_t i = 0; i < params_.axes.size(); ++i) wanted = wanted || wanted_.motors[i].enabled != 0;
+    if (!wanted) refuses_ = false;
+    if (!heard || !device.calibrated || refuses_ || stays_on_) {
       gives_.fill(false);
       return probe_message(device.id);
     }
     Vector force_N{};
     bool any = false;
+    constexpr double felt_N = 0.01;
     for (std::size_t i = 0; i < params_.axes.size(); ++i) {
       gives_[i] = wanted_.motors[i].enabled != 0 && !wanted_.motors[i].law.acts();
       if (gives_[i]) force_N[static_cast<std::size_t>(params_.axes[i] - 1)] = wanted_.motors[i].torque_Nm;
       any = any || gives_[i];
+      pushes_ = pushes_ || (gives_[i] && std::fabs(wanted_.motors[i].torque_Nm) > felt_N);
     }
     return any ? force_message(device.id, force_N, dialect) : probe_message(device.id);
+  }
+
+  [[nodiscard]] bool gives_force() const {
+    return std::ranges::any_of(gives_, [](bool gives) { return gives; });
   }
 
   void note(const Device& device, bool whole) {
     device_ = device;
     if (!whole) return;
+    const bool off = reports_off(device);
+    off_.reported(off);
+    stays_on_ = stays_on_ || off_.stays_on(wire::monotonic_ns());
+    judge_idle(pushes_ && device.mode == "idle", wire::monotonic_ns());
+    const MotorFault fault = stays_on_            ? MotorFault::stays_on
+                             : !device.calibrated ? MotorFault::encoder
+                             : !device.supplied   ? MotorFault::voltage
+                             : refuses_           ? MotorFault::refused
+                                                  : MotorFault::none;
     told_readings_.time_ns = wire::monotonic_ns();
     told_readings_.state = BusState::ready;
     ++told_readings_.cycles;
@@ -183,12 +228,21 @@ class Inverse3Link::Worker {
       reading.position_rad = device.position_m[axis];
       reading.velocity_rad_per_s = device.velocity_m_per_s[axis];
       reading.torque_Nm = device.force_N[axis];
-      reading.fault = device.calibrated ? MotorFault::none : MotorFault::encoder;
+      reading.fault = fault;
+      reading.status = status_of(device);
+      reading.off = off_.confirmed() ? 1 : 0;
       reading.enabled = gives_[i] && device.calibrated ? 1 : 0;
       reading.heard_ns = told_readings_.time_ns;
       ++reading.answers;
     }
     readings.publish(told_readings_);
+  }
+
+  /// A device that is idle though it is to give a force.
+  void judge_idle(bool idle, std::int64_t now_ns) {
+    idle_ = idle ? idle_ + 1 : 0;
+    if (idle_ == 1) idle_since_ns_ = now_ns;
+    refuses_ = refuses_ || (idle_ > most_idle && now_ns - idle_since_ns_ > off_within_ns);
   }
 
   static void wait_until(std::int64_t due_ns) {
@@ -203,6 +257,11 @@ class Inverse3Link::Worker {
   BusCommands wanted_;
   BusReadings told_readings_;
   std::array<bool, axis_count> gives_{};
+  OffWatch off_;
+  bool stays_on_ = false, refuses_ = false;
+  bool pushes_ = false;  ///< the last message has a force
+  int idle_ = 0;         ///< states in a row that say so under commands of force
+  std::int64_t idle_since_ns_ = 0;
   std::string version_;
   std::optional<Device> device_;
   std::mutex told_;
@@ -241,6 +300,8 @@ Check Inverse3Link::wait_until_asked(Seconds longest) {
   if (wrong->place.empty()) wrong->place = worker_->params().address;
   return wrong;
 }
+
+std::vector<PoweredMotor> Inverse3Link::powered_motors() const { return worker_->powered_motors(); }
 
 MotorSheet Inverse3Link::sheet(std::size_t) const {
   const auto& device = worker_->device();

@@ -25,6 +25,12 @@ Check check(const LinkParams& params);
 /// An Inverse3 behind Haply's Inverse Service, by a thread of its own: one message for each state, as fast as the
 /// service answers and at most once a cycle. Axes are in m and N. An axis that no joint has gets no force.
 ///
+/// A tick without force sends a message without a command, which ends the force, until the device has reported three
+/// times in a row that it is idle; then the same keeps its state fresh. A device that still gives a force after 0.1 s
+/// has the fault `stays_on` for good, and is then spoken to every 150 ms alone, so that the service may end the force
+/// for want of messages. One that is idle for 0.1 s under commands of force has the fault `refused` until none is asked
+/// for.
+///
 /// There is no force before the device is calibrated. The service ends a force by itself when messages stop, so a
 /// program that was killed leaves none. Where the connection ends, it is made anew, for ever; meanwhile readings grow
 /// old. A message that is none is left out. Not tried on hardware.
@@ -43,6 +49,7 @@ class Inverse3Link final : public MotorLink {
   void stop() override;
   Check wait_until_asked(Seconds longest) override;
   [[nodiscard]] MotorSheet sheet(std::size_t motor) const override;
+  [[nodiscard]] std::vector<PoweredMotor> powered_motors() const override;
 
  private:
   class Worker;

@@ -1,4 +1,5 @@
 #include <tactus/devices/inverse3/messages.hpp>
+#include <tactus/devices/motor_bus.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -59,6 +60,19 @@ Check read(const json& filters, const char* filter, const char* name, std::optio
   return std::nullopt;
 }
 
+/// Its mode, as services from 3.5 on call it, or those before.
+Check read_mode(const json& state, std::string& mode) {
+  mode.clear();
+  for (const char* name : {"control_mode", "mode"}) {
+    const json* told = member(state, name);
+    if (told == nullptr) continue;
+    if (!told->is_string()) return wrong(name, "word");
+    mode = told->get<std::string>();
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
 Check merge(const json& told, Device& device) {
   const json nothing = json::object();
   const auto part = [&nothing](const json& whole, const char* name) -> const json& {
@@ -73,6 +87,9 @@ Check merge(const json& told, Device& device) {
   if (!error) error = read(state, "current_cursor_force", device.force_N);
   if (!error) error = read(status, "calibrated", device.calibrated);
   if (!error) error = read(status, "ready", device.ready);
+  if (!error) error = read(status, "power_supply", device.supplied);
+  if (!error) error = read_mode(state, device.mode);
+  device.told_force = member(state, "current_cursor_force") != nullptr;
   if (!error) error = read(filters, "force_gate", "gain", device.force_gate);
   if (!error) error = read(filters, "damping", "scalar", device.damping);
   return error;
@@ -103,6 +120,34 @@ std::string force_message(std::string_view device_id, const Vector& force_N, Dia
 
 std::string probe_message(std::string_view device_id) {
   return message_of(device_id, "probe_position", json::object());
+}
+
+bool reports_off(const Device& device) noexcept {
+  constexpr double none_N = 1e-6;
+  const bool forceless = std::ranges::all_of(device.force_N, [](double force) { return std::fabs(force) <= none_N; });
+  if (device.told_force && !forceless) return false;
+  return device.mode == "idle" || (device.mode.empty() && device.told_force);
+}
+
+std::int64_t status_of(const Device& device) noexcept {
+  constexpr std::size_t most_letters = 7;
+  if (device.mode.empty()) return no_status;
+  std::int64_t status = 0;
+  for (std::size_t i = std::min(device.mode.size(), most_letters); i > 0; --i) {
+    status = status << 8 | static_cast<std::uint8_t>(device.mode[i - 1]);
+  }
+  return status;
+}
+
+std::string status_text(std::int64_t status) {
+  if (status < 0) return "no mode";
+  std::string mode;
+  // It may be any bytes that a service sends.
+  for (; status > 0; status >>= 8) {
+    const auto letter = static_cast<char>(status & 0xff);
+    mode += letter >= ' ' && letter <= '~' ? letter : '?';
+  }
+  return "mode '" + mode + "'";
 }
 
 Check Devices::take(std::string_view message) {

@@ -43,10 +43,21 @@ struct Device {
   Vector force_N{};         ///< that the service says to give
   bool calibrated = false;  ///< no force before it is
   bool ready = false;
+  bool supplied = true;     ///< false only where the service says that it has no supply of power
+  bool told_force = false;  ///< in the latest message
+  std::string mode;         ///< what drives it, as `idle` or `force`; empty where the latest message does not say
   /// Filters of the service in the way of the force; empty where nothing was told of them. What is not 0 belongs to the
   /// model or has to be switched off.
   std::optional<double> force_gate, damping;
 };
+
+/// Whether it reports, in the latest message, that it gives no force: its mode is `idle`, or, where the service tells
+/// no mode, its force is. A mode that is not known counts as a force.
+bool reports_off(const Device& device) noexcept;
+/// The first seven letters of a mode as a number (`MotorReading::status`); `no_status` where there is none.
+std::int64_t status_of(const Device& device) noexcept;
+/// `mode 'force'`, for a person; `no mode` where that is negative. Not real-time safe.
+std::string status_text(std::int64_t status);
 
 /// All devices of a service. The first message tells all, later ones what changed: what one leaves out stays as it was.
 class Devices {

@@ -13,6 +13,8 @@ namespace tactus::devices {
 struct MotorAbility {
   double torque_Nm = 0.0;           ///< largest torque; 0: it accepts no command; infinite: not known
   double velocity_rad_per_s = 0.0;  ///< largest velocity that its messages can represent; 0: not known
+  /// Farthest position of a joint, either way from the motor's zero; infinite: not known.
+  double position_rad = std::numeric_limits<double>::infinity();
   /// Largest gains of the law that it runs by itself; both 0: it runs none.
   double stiffness_Nm_per_rad = 0.0, damping_Nms_per_rad = 0.0;
 };

@@ -21,8 +21,6 @@ namespace tactus::devices {
 
 namespace {
 
-/// For the device to report that its motors have no torque.
-constexpr std::int64_t driver_farewell_ns = 100'000'000;
 /// As that of `BusThread`: before all that is not real time, after the servo thread.
 constexpr int driver_priority = 70;
 constexpr int any_core_of_driver = -1;
@@ -68,8 +66,8 @@ class BlockingLink::Shared {
     told_.state = error ? BusState::refused : BusState::ready;
     publish();
     while (!error && !stopping_.load(std::memory_order_relaxed)) error = cycle(true);
-    const std::int64_t until_ns = wire::monotonic_ns() + driver_farewell_ns;
-    while (!error && has_power() && wire::monotonic_ns() < until_ns) error = cycle(false);
+    const std::int64_t until_ns = wire::monotonic_ns() + farewell_ns;
+    while (!error && has_power_left() && wire::monotonic_ns() < until_ns) error = cycle(false);
     driver_->close();
     {
       const std::scoped_lock lock(mutex_);
@@ -116,6 +114,7 @@ class BlockingLink::Shared {
     if (error) return error;
     const std::int64_t end_ns = wire::monotonic_ns();
     for (std::size_t i = 0; i < motors_; ++i) {
+      told_.motors[i].off = told_.motors[i].enabled == 0 && commands[i].enabled == 0 ? 1 : 0;
       told_.motors[i].heard_ns = end_ns;
       ++told_.motors[i].answers;
     }
@@ -131,9 +130,9 @@ class BlockingLink::Shared {
     readings_.publish(told_);
   }
 
-  [[nodiscard]] bool has_power() const noexcept {
+  [[nodiscard]] bool has_power_left() const noexcept {
     for (std::size_t i = 0; i < motors_; ++i) {
-      if (told_.motors[i].enabled != 0) return true;
+      if (told_.motors[i].off == 0) return true;
     }
     return false;
   }
@@ -200,6 +199,17 @@ Check BlockingLink::wait_until_asked(Seconds longest) {
   return driver_failed("the driver did not complete a cycle within " + format_number(longest.value) +
                        " s: check that the device is on and reachable");
 }
+
+std::vector<PoweredMotor> BlockingLink::powered_motors() const {
+  std::vector<PoweredMotor> found;
+  const auto last = newest();
+  for (std::size_t motor = 0; last && last->state == BusState::ready && motor < motors(); ++motor) {
+    if (const auto one = powered(motor, last->motors[motor])) found.push_back(*one);
+  }
+  return found;
+}
+
+Check BlockingLink::problem() const { return shared_->problem(); }
 
 MotorSheet BlockingLink::sheet(std::size_t motor) const {
   return {.model = {}, .scales = {}, .firmware = {}, .torque_limit_Nm = shared_->torque_limit_Nm(motor), .problem = {}};

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <vector>
 
 namespace tactus::devices {
 
@@ -30,6 +31,9 @@ class BlockingLink final : public MotorLink {
   void stop() override;
   Check wait_until_asked(Seconds longest) override;
   [[nodiscard]] MotorSheet sheet(std::size_t motor) const override;
+  /// A driver that is still blocked counts as one whose motors have power.
+  [[nodiscard]] std::vector<PoweredMotor> powered_motors() const override;
+  [[nodiscard]] Check problem() const override;
 
  private:
   class Shared;

@@ -3,12 +3,14 @@
 #include <tactus/devices/dynamixel/dynamixel_bus.hpp>
 #include <tactus/devices/feetech/feetech_bus.hpp>
 #include <tactus/devices/inverse3/inverse3_link.hpp>
+#include <tactus/devices/inverse3/messages.hpp>
 #include <tactus/devices/plugin/blocking_link.hpp>
 #include <tactus/devices/rig/bus_kinds.hpp>
 #include <tactus/wire/port.hpp>
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace tactus::devices {
@@ -18,6 +20,11 @@ namespace {
 using damiao::DamiaoBus;
 using dynamixel::DynamixelBus;
 using feetech::FeetechBus;
+
+/// A servo knows where it is within one turn when it starts; no joint of an arm turns farther than twice, either way.
+constexpr double servo_position_rad = 4.0 * std::numbers::pi;
+/// More than the arms of the device are long.
+constexpr double inverse3_reach_m = 1.0;
 
 template <NamedEnum E>
 std::vector<std::string> words_of() {
@@ -164,27 +171,45 @@ MotorAbility ability_of(const StatedBus& bus, const StatedMotor& motor) {
       const damiao::Scale scale = damiao::scale_of(model ? *model : damiao::Model{});
       return {.torque_Nm = scale.torque_Nm,
               .velocity_rad_per_s = scale.velocity_rad_per_s,
+              .position_rad = scale.position_rad,
               .stiffness_Nm_per_rad = damiao::largest_stiffness_Nm_per_rad,
               .damping_Nms_per_rad = damiao::largest_damping_Nms_per_rad};
     }
     case BusKind::dynamixel: {
       const auto model = value_of<dynamixel::DynamixelModel>("model", motor.model);
       const ServoModel& servo = dynamixel::servo_model(model ? *model : dynamixel::DynamixelModel{});
-      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * servo.torque_Nm_per_A};
+      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * servo.torque_Nm_per_A,
+              .position_rad = servo_position_rad};
     }
     case BusKind::feetech: {
       const auto model = value_of<feetech::FeetechModel>("model", motor.model);
       const ServoModel& servo = feetech::servo_model(model ? *model : feetech::FeetechModel{});
-      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * motor.torque_Nm_per_A};
+      return {.torque_Nm = static_cast<double>(servo.current_limit) * servo.current_unit_A * motor.torque_Nm_per_A,
+              .position_rad = servo_position_rad};
     }
     case BusKind::inverse3:
-      return {.torque_Nm = std::numeric_limits<double>::infinity()};
+      return {.torque_Nm = std::numeric_limits<double>::infinity(), .position_rad = inverse3_reach_m};
     case BusKind::plugged: {
       const auto place = std::ranges::find(bus.motors, motor.id, &StatedMotor::id) - bus.motors.begin();
       const auto driver = make_driver(bus);
       const auto index = static_cast<std::size_t>(place);
       return driver && index < bus.motors.size() ? (*driver)->ability(index) : MotorAbility{};
     }
+  }
+  return {};
+}
+
+std::string status_text(BusKind kind, std::int64_t status) {
+  switch (kind) {
+    case BusKind::damiao:
+      return damiao::status_text(status);
+    case BusKind::dynamixel:
+    case BusKind::feetech:
+      return servo_status_text(status);
+    case BusKind::inverse3:
+      return inverse3::status_text(status);
+    case BusKind::plugged:
+      return status == no_status ? "no status" : "status " + std::to_string(status);
   }
   return {};
 }

@@ -57,6 +57,9 @@ constexpr bool has_watchdog(BusKind kind) { return kind != BusKind::feetech; }
 /// Of a motor of a bus that `check` passed.
 MotorAbility ability_of(const StatedBus& bus, const StatedMotor& motor);
 
+/// The status of a motor as a person reads it, as `status 0x7 (unknown)`.
+std::string status_text(BusKind kind, std::int64_t status);
+
 /// That the statement is one, before anything is opened. Errors, with the remedy, under `framing`, `bits_per_s`,
 /// `motors` or `motors[i].id`, `.model` and so on.
 Check check(const StatedBus& stated);

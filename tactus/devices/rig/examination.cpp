@@ -102,6 +102,11 @@ const char* remedy_of(MotorFault fault) {
       return "does not know where it is: start anew";
     case MotorFault::refused:
       return "refused what it was asked: switch it off and on";
+    case MotorFault::unknown_status:
+      return "reports a status that is not known: switch it off and on, and look at its firmware";
+    case MotorFault::stays_on:
+      return "was told to switch off and does not report that it is off: switch off its supply, wait until it stands "
+             "still, and switch it on again";
   }
   return "";
 }
@@ -138,8 +143,13 @@ Result<BusFinding> examine(const StatedBus& stated) {
       problem.parameter = motor_key(i, motor.sheet.model.empty() ? "id" : "model");
       motor.problems.push_back(std::move(problem));
     } else if (const std::string remedy = found.heard ? remedy_of(motor.reading.fault) : ""; !remedy.empty()) {
-      motor.problems.push_back(
-          {ErrorCode::failed, motor_key(i, "id"), "motor " + std::to_string(stated.motors[i].id) + ": " + remedy, {}});
+      const MotorFault fault = motor.reading.fault;
+      const bool named = fault == MotorFault::unknown_status || fault == MotorFault::stays_on;
+      const std::string status = named ? " (" + status_text(stated.kind, motor.reading.status) + ")" : std::string();
+      motor.problems.push_back({ErrorCode::failed,
+                                motor_key(i, "id"),
+                                "motor " + std::to_string(stated.motors[i].id) + status + ": " + remedy,
+                                {}});
     }
   }
   if (wrong && !refused) found.problems.push_back(*wrong);

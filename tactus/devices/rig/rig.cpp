@@ -1,6 +1,8 @@
+#include <tactus/devices/off_watch.hpp>
 #include <tactus/devices/rig/rig.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <numbers>
@@ -34,6 +36,34 @@ std::string own_port(const std::string& port) {
   return problem ? port : real.string();
 }
 
+/// What a number may be where it is too large by far: in degrees, or in millimetres.
+std::string in_another_unit(const RigJoint& one, double value) {
+  const auto rounded = [](double number) { return format_number(std::round(number * 1e4) * 1e-4); };
+  if (one.slides) return format_number(value) + " mm are " + rounded(value * 1e-3) + " m";
+  return format_number(value) + " degrees are " + rounded(value * std::numbers::pi / 180.0) + " rad";
+}
+
+/// That a joint's limits, and its offset, are where its motor can be: `farthest` either way from the motor's zero.
+Check check_positions(const RigJoint& one, double farthest) {
+  const MotorJoint& joint = one.joint;
+  const JointWords& words = one.words();
+  const double range = farthest / joint.gear;
+  // A motor may be mounted anywhere within its range, and a joint may be anywhere within that of its own.
+  const double first = joint.offset_rad - range, last = joint.offset_rad + range;
+  for (const auto& [key, value, least, most] :
+       {std::tuple{words.offset, joint.offset_rad, -2.0 * range, 2.0 * range},
+        std::tuple{words.lower, joint.lower_rad, first, last}, std::tuple{words.upper, joint.upper_rad, first, last}}) {
+    if (value >= least && value <= most) continue;
+    const std::string unit = std::string(" ") + words.position_unit;
+    const auto rounded = [](double number) { return format_number(std::round(number * 1e4) * 1e-4); };
+    return at(join(one.path, key), ErrorCode::inconsistent,
+              format_number(value) + unit + " is beyond where a joint with a " + one.motor.model + " can be, from " +
+                  rounded(least) + " to " + rounded(most) + unit + ": state it in " + words.position_unit + " (" +
+                  in_another_unit(one, value) + ")");
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 const JointWords& RigJoint::words() const { return slides ? sliding : turning; }
@@ -42,6 +72,18 @@ Joints<MotorJoint> RigSide::motor_joints() const {
   Joints<MotorJoint> all(joints.size());
   for (std::size_t i = 0; i < joints.size(); ++i) all[i] = joints[i].joint;
   return all;
+}
+
+std::string describe_powered(const RigSide& side, const PoweredMotor& motor) {
+  const RigJoint& joint = side.joints[motor.motor];
+  const auto seconds = [](std::int64_t ns) { return format_number(static_cast<double>(ns) * 1e-9) + " s"; };
+  const std::string what =
+      motor.off ? " did not switch off within " + seconds(off_within_ns) + " when it was told to, and is off now"
+                : " did not report within " + seconds(farewell_ns) + " that it is off";
+  return joint.path + ": motor " + std::to_string(joint.motor.id) +
+         (side.bus.port.empty() ? std::string() : " at " + side.bus.port) + " (" + std::string(bus_name(side.bus)) +
+         ")" + what + " (" + status_text(side.bus.kind, motor.status) + "): switch off the supply of " + side.path +
+         ", and keep clear of it until then";
 }
 
 Result<Rig> Rig::load(const std::filesystem::path& file) {
@@ -149,6 +191,7 @@ Check Rig::check_side(const RigSide& side) const {
                 format_number(joint.upper_rad) + " " + words.position_unit + " must be above " + words.lower + ", " +
                     format_number(joint.lower_rad) + " " + words.position_unit);
     }
+    if (Check error = check_positions(one, ability.position_rad)) return error;
     const auto beyond = [&](const char* key, double limit, double most, const char* unit) {
       return at(join(one.path, key), ErrorCode::inconsistent,
                 format_number(limit) + unit + " is beyond what a " + one.motor.model +

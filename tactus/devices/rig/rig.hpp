@@ -46,6 +46,11 @@ struct RigPair {
   std::optional<RigSide> leader, follower;
 };
 
+/// A motor of a side that did not switch off at the end, with bus, last status and remedy, as
+/// `arm.follower.elbow: motor 2 at /dev/ttyACM0 (damiao) did not report within 0.5 s that it is off (status 0x1
+/// (enabled)): switch off the supply of arm.follower and keep clear of it until then`.
+std::string describe_powered(const RigSide& side, const PoweredMotor& motor);
+
 /// What stands on the desk, as a file tells it: one or two pairs of leader and follower, their buses, motors and
 /// joints.
 ///

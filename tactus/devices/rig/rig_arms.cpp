@@ -2,6 +2,8 @@
 #include <tactus/experiments/arm_tapping/supervised_arms.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,6 +68,23 @@ Check check_joint(const RigJoint& joint, const DriveGains& asked) {
   return below("damping_limit_Nms_per_rad", may.damping_limit_Nms_per_rad, asked.damping_N_m_s_per_rad, " N m s/rad");
 }
 
+/// That the limits of a joint of the rig are where the arm's can be. Half a turn beyond them may be how it is mounted;
+/// more is another unit, or another joint.
+Check check_limits(const RigJoint& joint, const arm::JointLimits& can_be, const std::string& urdf) {
+  constexpr double farther_rad = std::numbers::pi;
+  for (const auto& [key, value_rad] :
+       {std::pair{joint.words().lower, joint.joint.lower_rad}, std::pair{joint.words().upper, joint.joint.upper_rad}}) {
+    if (value_rad >= can_be.lower_rad - farther_rad && value_rad <= can_be.upper_rad + farther_rad) continue;
+    return problem_at(join(joint.path, key), ErrorCode::inconsistent,
+                      format_number(value_rad) + " rad is far beyond where " + urdf + " lets this joint be, from " +
+                          format_number(can_be.lower_rad) + " to " + format_number(can_be.upper_rad) +
+                          " rad: state it in rad (" + format_number(value_rad) + " degrees are " +
+                          format_number(std::round(value_rad * std::numbers::pi / 180.0 * 1e4) * 1e-4) +
+                          " rad), or name the joint that the motor moves");
+  }
+  return std::nullopt;
+}
+
 /// The side with its joints in the arm's order, then the others.
 Result<RigSide> in_order(const RigSide& side, const experiments::DescribedArm& arm,
                          const experiments::GripperParams& gripper, const Joints<DriveGains>& asked,
@@ -87,6 +106,7 @@ Result<RigSide> in_order(const RigSide& side, const experiments::DescribedArm& a
                             join(side.path, arm.joints[i]) + "]");
     }
     if (Check error = add(*found, asked[i])) return *std::move(error);
+    if (Check error = check_limits(*found, arm.arm.chain.joints[i].limits, arm.urdf)) return *std::move(error);
   }
   const bool driven = gripper.stiffness_N_m_per_rad > 0.0 || gripper.damping_N_m_s_per_rad > 0.0;
   for (const RigJoint& joint : side.joints) {

@@ -9,12 +9,10 @@ namespace tactus::devices {
 namespace servo {
 namespace {
 
-/// Beyond the time of the bytes: a USB adapter collects for a millisecond and hands over in the next frame.
-constexpr std::int64_t patience_ns = 2'000'000;
 /// How often a silent servo is asked again: each time the others wait for it.
 constexpr std::int64_t again_ns = 50'000'000;
-/// How often a servo is asked in a row before it counts as one that does not answer.
-constexpr std::size_t most_tries = 10;
+/// How often all are told to switch off where the bus is refused.
+constexpr int most_refusals = 5;
 /// One look at one servo in so many cycles: a cycle with a look is a sixth longer, and few may be.
 constexpr std::int64_t cycles_per_look = 256;
 
@@ -43,10 +41,14 @@ void ServoBus::command(std::size_t motor, const MotorCommand& wanted) noexcept {
 }
 
 std::int64_t ServoBus::goal(const Servo& servo) noexcept {
-  if (servo.reading.enabled == 0 || servo.reading.fault != MotorFault::none || !wants_power(servo)) return 0;
+  if (servo.reading.enabled == 0 || !may_have_power(servo)) return 0;
   const double units = servo.wanted.torque_Nm / (servo.model.torque_Nm_per_A * servo.model.current_unit_A);
   const auto limit = static_cast<double>(servo.limit);
   return std::llround(std::clamp(units, -limit, limit));
+}
+
+bool ServoBus::anybody_may_have_power() const noexcept {
+  return std::any_of(servos_.begin(), servos_.begin() + static_cast<std::ptrdiff_t>(count_), may_have_power);
 }
 
 void ServoBus::fail(Servo& servo, MotorFault fault) noexcept {
@@ -55,10 +57,12 @@ void ServoBus::fail(Servo& servo, MotorFault fault) noexcept {
 
 void ServoBus::ails(std::size_t motor, MotorFault fault) noexcept {
   Servo& servo = servos_[motor];
+  // An alert for which the servo gives no reason; once is not enough, the reason may have passed meanwhile.
+  if (fault == MotorFault::none && servo.alert && ++servo.empty_looks > 1) fault = MotorFault::unknown_status;
   if (servo.ails == MotorFault::none && fault != MotorFault::none) servo.looks = 0xff;
   servo.ails = fault;
   // What ails it says more than that it lost power or did not answer for it.
-  if (fault != MotorFault::none) servo.reading.fault = fault;
+  if (fault != MotorFault::none && servo.reading.fault != MotorFault::stays_on) servo.reading.fault = fault;
 }
 
 void ServoBus::lost_power(std::size_t motor, MotorFault fault) noexcept { fail(servos_[motor], fault); }
@@ -77,13 +81,19 @@ void ServoBus::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) no
 void ServoBus::heard(const Answer& answer) noexcept {
   const auto found = std::find(ids_.begin(), ids_.begin() + static_cast<std::ptrdiff_t>(count_), answer.id);
   const auto motor = static_cast<std::size_t>(found - ids_.begin());
-  if (motor == count_ || waiting_ == Waiting::nothing) return;
+  if (motor == count_ || waiting_ == Waiting::nothing || waiting_ == Waiting::rest) return;
   if (waiting_ == Waiting::second_answer) {
     // Where it was asked again, both answers may be of one servo.
     if (motor == errand_.motor && asked_once_) found_wrong(Wrong::twice, 0);
     return;
   }
   Servo& servo = servos_[motor];
+  servo.status.error = answer.error;
+  servo.reading.status = servo.status.number();
+  servo.spoke = true;
+  servo.alert = answer.alert;
+  if (!answer.alert) servo.empty_looks = 0;
+  if (answer.refusal != 0 && !knows_refusal(answer.refusal)) fail(servo, MotorFault::unknown_status);
   if (answer.alert != (servo.ails != MotorFault::none)) servo.looks |= 1;  // else it is known
   if (waiting_ == Waiting::errand) {
     if (motor != errand_.motor) return;
@@ -102,6 +112,18 @@ void ServoBus::heard(const Answer& answer) noexcept {
   }
   servo.answered = true;
   if (--missing_ == 0) cycle_ended();
+}
+
+/// Whether one that is to have no power has kept it for too long.
+void ServoBus::judge_power(Servo& servo) noexcept {
+  if (!may_have_power(servo) && servo.off.stays_on(now_ns_)) servo.reading.fault = MotorFault::stays_on;
+}
+
+void ServoBus::reported_power(Servo& servo, bool off) noexcept {
+  servo.off.reported(off);
+  servo.reading.off = servo.off.confirmed() ? 1 : 0;
+  if (servo.off.confirmed()) servo.reading.enabled = 0;
+  judge_power(servo);
 }
 
 void ServoBus::take(Servo& servo, const State& state) noexcept {
@@ -136,12 +158,12 @@ void ServoBus::wait(Waiting for_what, std::size_t answer_bytes) noexcept {
   const auto bits = 10 * (said_bytes_ + static_cast<std::int64_t>(packet_.size() + answer_bytes));
   said_bytes_ = 0;
   waiting_ = for_what;
-  deadline_ns_ = now_ns_ + bits * 1'000'000'000 / bits_per_s_ + servo::patience_ns;
+  deadline_ns_ = now_ns_ + bits * 1'000'000'000 / bits_per_s_ + patience_ns;
 }
 
 std::int64_t ServoBus::wakes_ns() const noexcept {
   if (waiting_ != Waiting::nothing) return deadline_ns_;
-  return state_ == BusState::refused && refused_said_ ? wire::never_ns : now_ns_;
+  return state_ == BusState::refused && refused_said_ == servo::most_refusals ? wire::never_ns : now_ns_;
 }
 
 std::span<const std::uint8_t> ServoBus::say(std::int64_t now_ns) noexcept {
@@ -149,85 +171,82 @@ std::span<const std::uint8_t> ServoBus::say(std::int64_t now_ns) noexcept {
   if (waiting_ != Waiting::nothing) {
     if (now_ns < deadline_ns_) return {};
     give_up();
-    if (waiting_ == Waiting::second_answer) waiting_ = Waiting::nothing;
+    if (waiting_ == Waiting::second_answer || waiting_ == Waiting::rest) waiting_ = Waiting::nothing;
     if (waiting_ == Waiting::states) cycle_ended();
     if (waiting_ == Waiting::errand) errand_failed(Wrong::silent, 0);
+    if (waiting_ == Waiting::rest) return {};
   }
   if (state_ == BusState::asking) {
     const auto question = ask();
     if (!question.empty()) return question;
   }
   if (state_ == BusState::ready) return cycle();
-  if (refused_said_) return {};
-  refused_said_ = true;
-  packet_ = write_all(table_.power, std::array<std::int64_t, most_servos>{});
+  return refuse();
+}
+
+/// Nobody answers to it, so it is said several times.
+std::span<const std::uint8_t> ServoBus::refuse() noexcept {
+  if (refused_said_ == servo::most_refusals) return {};
+  ++refused_said_;
+  packet_ = write_all(table_.power, std::array<std::int64_t, most_servos>{}, everybody);
+  wait(Waiting::rest, 0);
   return sent();
-}
-
-std::span<const std::uint8_t> ServoBus::send_errand(const Errand& errand, std::int64_t value) noexcept {
-  errand_ = errand;
-  const std::uint8_t id = servos_[errand.motor].id;
-  packet_ = errand.reads ? read(id, errand.place) : write(id, errand.place, value);
-  heard_bytes_ = 0;
-  wait(Waiting::errand, answer_bytes(errand.reads ? errand.place.bytes : 0U));
-  // Each time longer, for nothing is driven yet: this program or the adapter may stand still for a moment.
-  if (errand.purpose == Purpose::asking) {
-    deadline_ns_ += static_cast<std::int64_t>(servos_[errand.motor].tries) * servo::patience_ns;
-  }
-  return sent();
-}
-
-std::span<const std::uint8_t> ServoBus::ask() noexcept {
-  if (hushed_ < table_.hush.size()) {
-    const ServoStep& step = table_.hush[hushed_++];
-    std::array<std::int64_t, most_servos> values{};
-    values.fill(step.value);
-    packet_ = write_all(step.place, values);
-    said_bytes_ += static_cast<std::int64_t>(packet_.size());
-    return sent();
-  }
-  if (asked_ < count_) {
-    const ServoStep& step = servos_[asked_].asking[asked_step_];
-    const bool reads = step.kind != ServoStep::Kind::write && !keeping_;
-    if (servos_[asked_].tries == 0) heard_noise_ = false;
-    return send_errand({Purpose::asking, asked_, step.place, reads, asked_step_}, step.value);
-  }
-  const bool right = std::all_of(servos_.begin(), servos_.begin() + static_cast<std::ptrdiff_t>(count_),
-                                 [](const Servo& servo) { return servo.wrong == Wrong::nothing; });
-  state_ = right ? BusState::ready : BusState::refused;
-  for (Servo& servo : servos_) servo.looks = 0xff;
-  return {};
-}
-
-void ServoBus::ask_next(bool same_servo) noexcept {
-  keeping_ = false;
-  servos_[asked_].tries = 0;
-  if (same_servo && ++asked_step_ < servos_[asked_].asking.size()) return;
-  asked_step_ = 0;
-  ++asked_;
 }
 
 std::span<const std::uint8_t> ServoBus::cycle() noexcept {
-  if (errand_turn_) {
-    errand_turn_ = false;
+  if (part_ == Part::power_off) {
+    part_ = Part::errand;
+    const auto power_off = say_power_off();
+    if (!power_off.empty()) return power_off;
+  }
+  if (part_ == Part::errand) {
+    part_ = Part::goals;
     const auto errand = next_errand();
     if (!errand.empty()) return errand;
   }
-  if (!read_due_) {
+  if (part_ == Part::goals) {
+    part_ = Part::states;
     std::array<std::int64_t, most_servos> goals{};
     for (std::size_t i = 0; i < count_; ++i) {
       goals[i] = goal(servos_[i]);
     }
-    packet_ = write_all(table_.goal, goals);
-    read_due_ = true;
+    packet_ = write_all(table_.goal, goals, everybody);
     said_bytes_ += static_cast<std::int64_t>(packet_.size());
     if (packet_.size() > 0) return sent();
   }
-  read_due_ = false;
   ask_for_states();
   packet_ = read_states();
   wait(Waiting::states, states_bytes());
   return sent();
+}
+
+/// To all that are to have no power and have not reported that they have none.
+std::span<const std::uint8_t> ServoBus::say_power_off() noexcept {
+  Whom whom = 0;
+  for (std::size_t i = 0; i < count_; ++i) {
+    Servo& servo = servos_[i];
+    if (may_have_power(servo)) continue;
+    servo.step = servo.tries = 0;
+    if (servo.off.confirmed()) continue;
+    servo.off.told(now_ns_);
+    whom |= Whom{1} << i;
+  }
+  if (whom == 0) return {};
+  packet_ = write_all(table_.power, std::array<std::int64_t, most_servos>{}, whom);
+  said_bytes_ += static_cast<std::int64_t>(packet_.size());
+  return sent();
+}
+
+/// A servo that does not switch off when it is told to may have a watchdog that does, if nobody says anything. The look
+/// at its power comes first after that.
+void ServoBus::rest_if_useful() noexcept {
+  if (table_.rest_ns == 0 || anybody_may_have_power()) return;
+  const auto stays_on = [](const Servo& servo) {
+    return servo.reading.fault == MotorFault::stays_on && !servo.off.confirmed();
+  };
+  if (!std::any_of(servos_.begin(), servos_.begin() + static_cast<std::ptrdiff_t>(count_), stays_on)) return;
+  waiting_ = Waiting::rest;
+  deadline_ns_ = now_ns_ + table_.rest_ns;
 }
 
 void ServoBus::ask_for_states() noexcept {
@@ -235,8 +254,8 @@ void ServoBus::ask_for_states() noexcept {
   if (again) asked_again_ns_ = now_ns_;
   missing_ = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    servos_[i].heard = servos_[i].answered = false;
-    servos_[i].asked = again || servos_[i].missed < servo::most_tries;
+    servos_[i].heard = servos_[i].answered = servos_[i].spoke = false;
+    servos_[i].asked = again || servos_[i].missed < most_tries;
     if (servos_[i].asked) asked_ids_[missing_++] = servos_[i].id;
   }
   for (std::size_t i = 0; missing_ == 0 && i < count_; ++i) servos_[i].asked = true;  // all are silent
@@ -246,7 +265,8 @@ void ServoBus::ask_for_states() noexcept {
 
 void ServoBus::cycle_ended() noexcept {
   waiting_ = Waiting::nothing;
-  errand_turn_ = true;
+  part_ = Part::power_off;
+  looks_at_power_ = 0;
   ++cycles_;
   for (std::size_t i = 0; i < count_; ++i) {
     Servo& servo = servos_[i];
@@ -258,118 +278,24 @@ void ServoBus::cycle_ended() noexcept {
     }
     if (servo.asked) {
       servo.missed = servo.answered ? 0 : servo.missed + 1;
-      servo.owed = servo.answered ? 0 : std::min(servo.owed + 1, servo::most_tries);
+      servo.owed = servo.answered ? 0 : std::min(servo.owed + 1, most_tries);
     }
     // Once is not enough: where this program stood still, it was not the servo that was silent.
-    if (servo.missed > 1 && now_ns_ - servo.reading.heard_ns > table_.silence_ns) fail(servo, MotorFault::silent);
+    if (servo.missed > 1 && now_ns_ - servo.reading.heard_ns > table_.silence_ns) {
+      fail(servo, servo.spoke ? MotorFault::refused : MotorFault::silent);
+    }
+    judge_power(servo);
     const bool gone = servo.answered && servo.ails == MotorFault::none && servo.looks == 0;
-    if (gone && !servo.power && !wants_power(servo)) servo.reading.fault = MotorFault::none;
+    const bool for_good = servo.reading.fault == MotorFault::stays_on;
+    if (gone && servo.off.confirmed() && !wants_power(servo) && !for_good) servo.reading.fault = MotorFault::none;
   }
   read_ended(missing_ == 0);
+  rest_if_useful();
   if (cycles_ % servo::cycles_per_look != 0) return;
   const std::size_t looks = table_.looks.size() - table_.announced;
   servos_[look_turn_ / looks % count_].looks |=
       static_cast<std::uint8_t>(1U << (table_.announced + look_turn_ % looks));
   ++look_turn_;
-}
-
-std::span<const std::uint8_t> ServoBus::next_errand() noexcept {
-  // Whose power must go comes before all others; who did not answer the cycle would not answer now.
-  const std::size_t turn = turn_;
-  for (std::size_t k = 0; k < count_; ++k) {
-    const std::size_t i = (turn + k) % count_;
-    const Servo& servo = servos_[i];
-    if (!servo.answered || !servo.power || (wants_power(servo) && servo.reading.fault == MotorFault::none)) continue;
-    turn_ = i + 1;
-    return send_errand({Purpose::power_off, i, table_.power, false, 0}, 0);
-  }
-  for (std::size_t k = 0; k < count_; ++k) {
-    const std::size_t i = (turn + k) % count_;
-    Servo& servo = servos_[i];
-    if (!servo.answered) continue;
-    turn_ = i + 1;
-    for (std::size_t look = 0; look < table_.looks.size(); ++look) {
-      if ((servo.looks >> look & 1U) != 0) return send_errand({Purpose::look, i, table_.looks[look], true, look}, 0);
-    }
-    servo.looks = 0;  // also those that this make does not have
-    const bool may = wants_power(servo) && servo.reading.fault == MotorFault::none;
-    if (!may) servo.step = servo.tries = 0;
-    if (!may || servo.reading.enabled != 0) continue;
-    const ServoStep& step = table_.enabling[servo.step];
-    // From now on it may have power, whether or not it says so.
-    if (servo.step + 1 == table_.enabling.size()) servo.power = true;
-    return send_errand({Purpose::enabling, i, step.place, false, servo.step}, step.value);
-  }
-  return {};
-}
-
-void ServoBus::errand_answered(std::span<const std::uint8_t> data) noexcept {
-  waiting_ = Waiting::nothing;
-  Servo& servo = servos_[errand_.motor];
-  answered(servo);
-  const std::int64_t value = little_endian(data);
-  switch (errand_.purpose) {
-    case Purpose::asking: {
-      const ServoStep& step = servo.asking[errand_.which];
-      Wrong wrong = Wrong::nothing;
-      if (errand_.reads && step.kind == ServoStep::Kind::check) wrong = check(errand_.motor, errand_.place, value);
-      if (wrong != Wrong::nothing) return found_wrong(wrong, value);
-      if (errand_.reads && step.kind == ServoStep::Kind::keep && value != step.value) {
-        keeping_ = true;
-        return;
-      }
-      asked_once_ = servo.tries == 0;
-      ask_next(true);
-      if (errand_.which == 0) {
-        // Another servo with this id answers too; later its answer would be taken for that to another question.
-        waiting_ = Waiting::second_answer;
-        deadline_ns_ = now_ns_ + servo::patience_ns;
-      }
-      return;
-    }
-    case Purpose::enabling:
-      servo.tries = 0;
-      if (++servo.step < table_.enabling.size()) return;
-      servo.step = 0;
-      servo.reading.enabled = 1;
-      return;
-    case Purpose::power_off:
-      servo.power = false;
-      servo.reading.enabled = 0;
-      return;
-    case Purpose::look:
-      servo.looks = static_cast<std::uint8_t>(servo.looks & ~(1U << errand_.which));
-      return looked(errand_.motor, errand_.place, value);
-  }
-}
-
-void ServoBus::errand_failed(Wrong how, std::uint8_t code) noexcept {
-  waiting_ = Waiting::nothing;
-  Servo& servo = servos_[errand_.motor];
-  switch (errand_.purpose) {
-    case Purpose::asking:
-      if (how == Wrong::silent && ++servo.tries < servo::most_tries) return;
-      return found_wrong(how == Wrong::silent && heard_noise_ ? Wrong::garbled : how, code);
-    case Purpose::enabling:
-      if (how == Wrong::silent && ++servo.tries < servo::most_tries) return;
-      return fail(servo, MotorFault::refused);
-    case Purpose::power_off:
-      return;  // until it is off
-    case Purpose::look:
-      if (how == Wrong::refused) servo.looks = static_cast<std::uint8_t>(servo.looks & ~(1U << errand_.which));
-      return;
-  }
-}
-
-void ServoBus::found_wrong(Wrong wrong, std::int64_t value) noexcept {
-  waiting_ = Waiting::nothing;
-  Servo& servo = servos_[asked_];
-  servo.wrong = wrong;
-  servo.found = value;
-  servo.found_at = errand_.place;
-  if (wrong == Wrong::silent || wrong == Wrong::garbled) fail(servo, MotorFault::silent);
-  if (wrong == Wrong::refused) fail(servo, MotorFault::refused);
-  ask_next(false);
 }
 
 }  // namespace tactus::devices

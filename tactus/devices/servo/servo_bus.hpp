@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/devices/motor_bus.hpp>
+#include <tactus/devices/off_watch.hpp>
 #include <tactus/devices/servo/servo_packet.hpp>
 
 #include <array>
@@ -49,14 +50,36 @@ struct ServoTable {
   std::int64_t steps_per_turn;
   std::int64_t steps_until_wrap;  ///< of the position on the wire
   std::int64_t silence_ns;        ///< after that long without an answer a servo is silent
+  std::int64_t rest_ns;           ///< longer than the servo's own watchdog waits for any packet; 0: it has none
 };
+
+/// The status of a servo in one number (`MotorReading::status`): the error byte of its last answer, its error register
+/// and its register of power as they were read last.
+struct ServoStatus {
+  std::uint8_t error = 0, condition = 0, power = 0;
+  [[nodiscard]] std::int64_t number() const noexcept { return error | condition << 8 | power << 16; }
+  static ServoStatus of(std::int64_t number) noexcept {
+    return {static_cast<std::uint8_t>(number & 0xff), static_cast<std::uint8_t>(number >> 8 & 0xff),
+            static_cast<std::uint8_t>(number >> 16 & 0xff)};
+  }
+};
+/// `error byte 0x24, error register 0x20, torque enable 1`, for a person; `no status` where that is negative. Not
+/// real-time safe.
+std::string servo_status_text(std::int64_t status);
 
 /// The bus of servos on one half-duplex line: what is the same whatever their make. A cycle is one packet with the
 /// goals of all, one that asks all for their state, and their answers; now and then one question to one servo stands
 /// between two cycles. A make gives its packets and its table.
 ///
 /// A fault takes the power of its servo until a command asks for none and the cause is gone; it does not come back by
-/// itself. Real-time safe but for `problem` and `sheet`.
+/// itself. An error byte or an error register that no page explains is a fault (`unknown_status`).
+///
+/// A servo that is to have no power is told so in every cycle, in one packet for all of them, whether it answers or
+/// not, until its register of power reads 0. One that does not within 0.1 s has the fault `stays_on` for good; where no
+/// servo is to have power and servos have a watchdog, the bus then falls silent for longer than that waits, again and
+/// again.
+///
+/// Real-time safe but for `problem` and `sheet`.
 class ServoBus : public MotorBus {
  public:
   static constexpr std::size_t most_servos = 16;
@@ -79,6 +102,7 @@ class ServoBus : public MotorBus {
   /// What came from a servo.
   struct Answer {
     std::uint8_t id;
+    std::uint8_t error;    ///< as on the wire
     bool alert;            ///< something is wrong with the servo
     std::uint8_t refusal;  ///< what was wrong with the question; 0: nothing
     std::span<const std::uint8_t> data;
@@ -89,7 +113,7 @@ class ServoBus : public MotorBus {
     double temperature_C;  ///< NaN: not told
   };
   /// What was found while asking.
-  enum class Wrong : std::uint8_t { nothing, silent, garbled, twice, model, limit, refused };
+  enum class Wrong : std::uint8_t { nothing, silent, garbled, twice, model, limit, refused, stays_on };
 
   ServoBus(const ServoTable& table, std::int64_t bits_per_s) : table_(table), bits_per_s_(bits_per_s) {}
   /// Before anything is said, with what it is asked before the bus is ready. At most `most_servos`.
@@ -106,6 +130,9 @@ class ServoBus : public MotorBus {
   /// It has power no more, or gives no force for its power, though nothing ails it.
   void lost_power(std::size_t motor, MotorFault fault) noexcept;
   void set_temperature(std::size_t motor, double celsius) noexcept { servos_[motor].reading.temperature_C = celsius; }
+  void set_condition(std::size_t motor, std::int64_t value) noexcept {
+    servos_[motor].status.condition = static_cast<std::uint8_t>(value);
+  }
   void set_firmware(std::size_t motor, std::int64_t version) noexcept { servos_[motor].firmware = version; }
   /// Whether it said that it has.
   [[nodiscard]] bool has_power(std::size_t motor) const noexcept { return servos_[motor].reading.enabled != 0; }
@@ -118,8 +145,13 @@ class ServoBus : public MotorBus {
   virtual void give_up() noexcept = 0;
   virtual ServoPacket read(std::uint8_t id, Register place) noexcept = 0;
   virtual ServoPacket write(std::uint8_t id, Register place, std::int64_t value) noexcept = 0;
-  /// Each servo's value, but for those that take no goal; empty where none does.
-  virtual ServoPacket write_all(Register place, std::span<const std::int64_t> values) const noexcept = 0;
+  /// Servo 0 is bit 0.
+  using Whom = std::uint32_t;
+  static constexpr Whom everybody = ~Whom{0};
+  /// The value of each of these servos, but for those that take no goal; empty where none does.
+  virtual ServoPacket write_all(Register place, std::span<const std::int64_t> values, Whom whom) const noexcept = 0;
+  /// Whether a refusal is one that a page explains.
+  [[nodiscard]] virtual bool knows_refusal(std::uint8_t refusal) const noexcept = 0;
   /// Asks those that are `asked` for their state.
   virtual ServoPacket read_states() noexcept = 0;
   /// The cycle that `read_states` began is over.
@@ -146,8 +178,12 @@ class ServoBus : public MotorBus {
     std::int64_t limit = 0;
     std::int64_t place = 0, last = 0;  ///< unwrapped, and as on the wire
     bool placed = false;
-    bool power = false;                                   ///< it may have power; `reading.enabled` says that it told so
+    OffWatch off{2};  ///< by its register of power; one report may be the late answer to another question
+    ServoStatus status;
+    bool alert = false;                                   ///< of its last answer
+    int empty_looks = 0;                                  ///< that gave no reason for its alert, in a row
     bool asked = false, heard = false, answered = false;  ///< in this cycle
+    bool spoke = false;                                   ///< in this cycle, whatever it said
     std::size_t owed = 0;                                 ///< answers to cycles before, which may still come
     std::size_t missed = 0;                               ///< cycles in a row
     MotorFault ails = MotorFault::none;
@@ -159,7 +195,9 @@ class ServoBus : public MotorBus {
     std::int64_t found = 0;  ///< the value that is wrong, or the code of the refusal
     Register found_at{};
   };
-  enum class Waiting : std::uint8_t { nothing, states, errand, second_answer };
+  enum class Waiting : std::uint8_t { nothing, states, errand, second_answer, rest };
+  /// What a cycle says, one after the other.
+  enum class Part : std::uint8_t { power_off, errand, goals, states };
   enum class Purpose : std::uint8_t { asking, enabling, power_off, look };
   struct Errand {
     Purpose purpose;
@@ -173,20 +211,39 @@ class ServoBus : public MotorBus {
   std::span<const std::uint8_t> cycle() noexcept;
   std::span<const std::uint8_t> send_errand(const Errand& errand, std::int64_t value) noexcept;
   std::span<const std::uint8_t> next_errand() noexcept;
+  std::span<const std::uint8_t> next_look_at_power() noexcept;
+  std::span<const std::uint8_t> say_power_off() noexcept;
+  [[nodiscard]] std::span<const std::uint8_t> refuse() noexcept;
   void ask_next(bool same_servo) noexcept;
   void wait(Waiting for_what, std::size_t answer_bytes) noexcept;
   void ask_for_states() noexcept;
+  void rest_if_useful() noexcept;
   void cycle_ended() noexcept;
   void errand_answered(std::span<const std::uint8_t> data) noexcept;
   void errand_failed(Wrong how, std::uint8_t code) noexcept;
   void take(Servo& servo, const State& state) noexcept;
   void answered(Servo& servo) noexcept;
   void fail(Servo& servo, MotorFault fault) noexcept;
+  void judge_power(Servo& servo) noexcept;
+  void reported_power(Servo& servo, bool off) noexcept;
+  void looked_at_power(Servo& servo, std::int64_t value) noexcept;
   [[nodiscard]] static bool wants_power(const Servo& servo) noexcept;
+  /// Whether it is to have power: it wants it, and nothing is wrong with it.
+  [[nodiscard]] static bool may_have_power(const Servo& servo) noexcept {
+    return wants_power(servo) && servo.reading.fault == MotorFault::none;
+  }
+  [[nodiscard]] bool anybody_may_have_power() const noexcept;
   [[nodiscard]] static std::int64_t goal(const Servo& servo) noexcept;
   void found_wrong(Wrong wrong, std::int64_t value) noexcept;
   [[nodiscard]] Check problem(std::size_t motor) const;
   [[nodiscard]] std::span<const std::uint8_t> sent() const noexcept { return packet_.bytes(); }
+
+  /// Beyond the time of the bytes: a USB adapter collects for a millisecond and hands over in the next frame.
+  static constexpr std::int64_t patience_ns = 2'000'000;
+  /// How often a servo is asked in a row before it counts as one that does not answer.
+  static constexpr std::size_t most_tries = 10;
+  /// One look at the power of a servo that stays on in so many cycles.
+  static constexpr std::int64_t cycles_per_late_look = 16;
 
   ServoTable table_;
   std::int64_t bits_per_s_;
@@ -198,10 +255,10 @@ class ServoBus : public MotorBus {
   ServoPacket packet_;
   Errand errand_{};
   Waiting waiting_ = Waiting::nothing;
-  bool read_due_ = false;      ///< goals are said, states are not asked for yet
-  bool errand_turn_ = false;   ///< a cycle ended, one question to one servo may follow
-  bool refused_said_ = false;  ///< all were told to let go
-  bool keeping_ = false;       ///< the register that was read is to be written
+  Part part_ = Part::goals;
+  std::size_t looks_at_power_ = 0;  ///< since the last cycle
+  int refused_said_ = 0;            ///< how often all were told to switch off
+  bool keeping_ = false;            ///< the register that was read is to be written
   std::size_t hushed_ = 0, asked_ = 0, asked_step_ = 0;
   std::size_t turn_ = 0, look_turn_ = 0;
   std::size_t heard_bytes_ = 0;  ///< since the latest errand

@@ -6,6 +6,19 @@
 /// What a bus of servos tells a person.
 namespace tactus::devices {
 
+std::string servo_status_text(std::int64_t status) {
+  if (status < 0) return "no status";
+  const auto in_hex = [](std::uint8_t byte) {
+    constexpr const char* digits = "0123456789abcdef";
+    return std::string("0x") + digits[byte >> 4] + digits[byte & 0xf];
+  };
+  const ServoStatus parts = ServoStatus::of(status);
+  std::string text = "error byte " + in_hex(parts.error);
+  if (parts.condition != 0) text += ", error register " + in_hex(parts.condition);
+  if (parts.power != 0) text += ", torque enable " + std::to_string(parts.power);
+  return text;
+}
+
 Check ServoBus::problem() const {
   for (std::size_t i = 0; state_ == BusState::refused && i < count_; ++i) {
     if (Check found = problem(i)) return found;
@@ -66,6 +79,13 @@ Check ServoBus::problem(std::size_t motor) const {
                        " is answered for by bytes that are no packet: two servos have this id and talk at once, or "
                        "the line is disturbed: plug in one servo after the other, give each its own id, and look at "
                        "cable and ground",
+                   {}};
+    case Wrong::stays_on:
+      return Error{ErrorCode::failed,
+                   {},
+                   who + " was told to switch off and does not report that it is off (" +
+                       servo_status_text(servo.status.number()) +
+                       "): switch off its supply, wait until it stands still, and switch it on again",
                    {}};
     case Wrong::silent:
       break;

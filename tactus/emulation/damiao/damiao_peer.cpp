@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -191,6 +192,16 @@ void DamiaoPeer::turn_together_until(std::int64_t now_ns) noexcept {
 
 /// What happens to motors by itself, up to this time.
 void DamiaoPeer::inject(std::int64_t at_ns) noexcept {
+  for (Motor& motor : motors_) {
+    const std::uint32_t id = motor.settings().id;
+    std::optional<std::uint8_t> reported;
+    for (const Fault& fault : settings_.faults) {
+      const bool lasts = fault.concerns(id) && fault.lasts_at(at_ns - start_ns_);
+      if (fault.kind == FaultKind::status && lasts) reported = fault.status;
+    }
+    motor.report(reported);
+    motor.ignore_disable(suffers(FaultKind::ignores_disable, id, at_ns));
+  }
   for (const Fault& fault : settings_.faults) {
     const std::uint8_t status = status_of(fault.kind);
     if (status == 0 || at_ns - start_ns_ < fault.from_ns) continue;

@@ -19,6 +19,17 @@ std::optional<std::string_view> cut(std::string_view& text, char mark) {
   return found;
 }
 
+/// `0x7`, or `7`.
+std::optional<std::uint8_t> status_number(std::string_view text) {
+  constexpr std::string_view prefix = "0x";
+  const bool hexadecimal = text.starts_with(prefix);
+  if (hexadecimal) text.remove_prefix(prefix.size());
+  std::uint8_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, hexadecimal ? 16 : 10);
+  if (error != std::errc() || end != text.data() + text.size() || value > 0xf) return std::nullopt;
+  return value;
+}
+
 std::optional<double> number(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -38,7 +49,7 @@ Result<Fault> parse_fault(std::string_view text) {
         .place = {}};
   };
   Fault fault;
-  const auto lasts = cut(text, '+'), from = cut(text, '@'), motor = cut(text, ':');
+  const auto lasts = cut(text, '+'), from = cut(text, '@'), motor = cut(text, ':'), status = cut(text, '=');
   constexpr Bounds seconds = between(0.0, 1e6), motors = between(1.0, 15.0);
   for (const auto& [part, bounds, what] :
        {std::tuple{from, seconds, "its beginning"}, {lasts, seconds, "its length"}, {motor, motors, "the motor"}}) {
@@ -51,11 +62,19 @@ Result<Fault> parse_fault(std::string_view text) {
   if (motor) fault.motor = static_cast<std::uint32_t>(*number(*motor));
   std::string known;
   for (const auto& entry : enumerators(FaultKind{})) {
+    const bool has_status = entry.value == FaultKind::status;
     if (entry.name == text) {
       fault.kind = entry.value;
+      if (has_status != status.has_value()) {
+        return refuse(has_status ? "state which status, as in status=0x7" : "it has no status");
+      }
+      if (!has_status) return fault;
+      const auto value = status_number(*status);
+      if (!value) return refuse("the status must be a number between 0x0 and 0xf");
+      fault.status = *value;
       return fault;
     }
-    known += known.empty() ? entry.name : std::string(", ") + entry.name;
+    known += (known.empty() ? std::string() : std::string(", ")) + entry.name + (has_status ? "=0x7" : "");
   }
   return refuse("there is no such fault (" + known + ")");
 }

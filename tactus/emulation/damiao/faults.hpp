@@ -19,6 +19,8 @@ enum class FaultKind : std::int64_t {
   hot_winding,
   communication_lost,
   overload,
+  status,           ///< its feedback has a status that is not its own, which it goes on by
+  ignores_disable,  ///< it answers the order and keeps its power
   register_answer,  ///< among feedback, as if another program asked
   twin,             ///< another motor has its identifiers and answers too
   wrap,             ///< turns steadily beyond the end of its number; from the start
@@ -37,6 +39,8 @@ constexpr auto enumerators(FaultKind) {
                     Enumerator{FaultKind::hot_winding, "hot-winding"},
                     Enumerator{FaultKind::communication_lost, "communication-lost"},
                     Enumerator{FaultKind::overload, "overload"},
+                    Enumerator{FaultKind::status, "status"},
+                    Enumerator{FaultKind::ignores_disable, "ignores-disable"},
                     Enumerator{FaultKind::register_answer, "register-answer"},
                     Enumerator{FaultKind::twin, "twin"},
                     Enumerator{FaultKind::wrap, "wrap"},
@@ -51,6 +55,7 @@ struct Fault {
   std::uint32_t motor = 0;   ///< its identifier; 0: all
   std::int64_t from_ns = 0;  ///< after the peer's first call
   std::int64_t until_ns = wire::never_ns;
+  std::uint8_t status = 0;  ///< that `FaultKind::status` reports, 0 to 15
 
   /// A motor of this identifier; 0: the adapter.
   [[nodiscard]] bool concerns(std::uint32_t id) const noexcept { return motor == 0 || id == 0 || motor == id; }
@@ -59,8 +64,8 @@ struct Fault {
   }
 };
 
-/// Reads `KIND[:MOTOR][@SECONDS][+SECONDS]`: of which motor, from when and how long, as `silence:2@5+0.1`. Errors:
-/// `syntax`, `out_of_bounds`.
+/// Reads `KIND[:MOTOR][@SECONDS][+SECONDS]`: of which motor, from when and how long, as `silence:2@5+0.1`; the kind
+/// `status` with its number, as `status=0x7:2@5`. Errors: `syntax`, `out_of_bounds`.
 Result<Fault> parse_fault(std::string_view text);
 
 }  // namespace tactus::emulation::damiao

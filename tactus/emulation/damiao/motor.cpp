@@ -147,7 +147,7 @@ void Motor::obey(const Frame& heard) noexcept {
       status_ = enabled_status;
       break;
     case 0xfd:
-      if (!faulty) status_ = disabled;
+      if (!faulty && !ignores_disable_) status_ = disabled;
       break;
     case 0xfe:
       zero_rad_ += position_rad_;
@@ -175,9 +175,9 @@ Frame Motor::feedback() const noexcept {
                       v = code(velocity_rad_per_s_, real(v_max), 4095), t = code(torque_Nm_, real(t_max), 4095);
   const auto byte = [](std::uint32_t value) { return static_cast<std::uint8_t>(value & 0xff); };
   return {.id = registers_[mst_id],
-          .bytes = {byte(static_cast<std::uint32_t>(status_ << 4) | (settings_.id & 0xf)), byte(p >> 8), byte(p),
-                    byte(v >> 4), byte((v & 0xf) << 4 | t >> 8), byte(t), byte(status_ == too_hot_drive ? 121U : 30U),
-                    byte(status_ == too_hot_winding ? 111U : 28U)}};
+          .bytes = {byte(static_cast<std::uint32_t>(reported_.value_or(status_) << 4) | (settings_.id & 0xf)),
+                    byte(p >> 8), byte(p), byte(v >> 4), byte((v & 0xf) << 4 | t >> 8), byte(t),
+                    byte(status_ == too_hot_drive ? 121U : 30U), byte(status_ == too_hot_winding ? 111U : 28U)}};
 }
 
 void Motor::live_until(std::int64_t now_ns) noexcept {

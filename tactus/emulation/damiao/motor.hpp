@@ -91,6 +91,10 @@ class Motor {
   /// A fault, as a status of the protocol, which an order to clear takes away unless it `stays`.
   void fail(std::uint8_t status, bool stays) noexcept;
   void recover() noexcept { stays_ = false; }
+  /// From now on its feedback has this status, whatever it does; none: its own.
+  void report(std::optional<std::uint8_t> status) noexcept { reported_ = status; }
+  /// Whether it keeps its power when it is told to disable.
+  void ignore_disable(bool ignores) noexcept { ignores_disable_ = ignores; }
   /// A motor whose velocity register is not that of its type.
   void scale_velocity(double factor) noexcept;
 
@@ -118,8 +122,10 @@ class Motor {
   std::array<std::uint32_t, 128> registers_{};
   std::uint8_t status_ = 0;
   bool alone_ = true;
-  double zero_rad_ = 0.0;                         ///< of one that turns with others
-  bool stays_ = false;                            ///< its fault, whatever it is told
+  double zero_rad_ = 0.0;  ///< of one that turns with others
+  bool stays_ = false;     ///< its fault, whatever it is told
+  bool ignores_disable_ = false;
+  std::optional<std::uint8_t> reported_;          ///< in place of its status
   std::int64_t now_ns_ = -1, spoken_to_ns_ = -1;  ///< negative: not yet
   double aim_rad_ = 0.0, aim_rad_per_s_ = 0.0, stiffness_ = 0.0, damping_ = 0.0, feedforward_Nm_ = 0.0;
   double position_rad_, velocity_rad_per_s_, torque_Nm_ = 0.0;

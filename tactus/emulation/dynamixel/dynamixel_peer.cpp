@@ -67,6 +67,7 @@ DynamixelPeer::DynamixelPeer(const Params& params)
     servo.id = static_cast<std::uint8_t>(each.id);
     servo.fault = each.fault;
     servo.fault_from_ns = each.fault_from_ns;
+    servo.error = each.error;
     const std::size_t stated = make_of(each.model_number);
     const Make& make = makes[each.fault == ServoFault::wrong_model ? (stated + 1) % makes.size() : stated];
     servo.current_torque_Nm = make.unit_A * make.stall_torque_Nm / make.stall_current_A;
@@ -253,7 +254,7 @@ void DynamixelPeer::obey(State& servo, std::uint8_t instruction, Bytes parameter
     }
     case 0x03: {
       const std::uint8_t error =
-          parameters.size() < 3 ? wrong_length : write(servo, word(parameters, 0), parameters.subspan(2));
+          parameters.size() < 3 ? wrong_length : write(servo, word(parameters, 0), parameters.subspan(2), now_ns);
       return level < 2 ? void() : refuse(error);
     }
     case 0x08:
@@ -275,7 +276,7 @@ std::uint8_t DynamixelPeer::check_read(std::size_t address, std::size_t bytes) n
 }
 
 /// All of it, or nothing.
-std::uint8_t DynamixelPeer::write(State& servo, std::size_t address, Bytes data) const noexcept {
+std::uint8_t DynamixelPeer::write(State& servo, std::size_t address, Bytes data, std::int64_t now_ns) const noexcept {
   for (std::size_t at = 0; at < data.size();) {
     const Field* field = field_at(address + at);
     if (field == nullptr || !field->writable) return no_access;
@@ -293,13 +294,16 @@ std::uint8_t DynamixelPeer::write(State& servo, std::size_t address, Bytes data)
     if (field->address == 64 && value != 0 && servo.table[70] != 0) return fails;
     at += field->bytes;
   }
+  const bool switches_off = address == 64 && data[0] == 0;
+  if (switches_off && suffers(servo, ServoFault::ignores_disable, now_ns)) return fine;
   std::copy(data.begin(), data.end(), servo.table.begin() + static_cast<std::ptrdiff_t>(address));
   if (address == 11) put(servo, 102, 2, get(servo, 38, 2));
   return fine;
 }
 
 void DynamixelPeer::status(const State& servo, std::uint8_t error, Bytes data, std::int64_t at_ns) noexcept {
-  const auto mark = static_cast<std::uint8_t>(error | (servo.table[70] != 0 ? alert : 0));
+  const auto own = static_cast<std::uint8_t>(error | (servo.table[70] != 0 ? alert : 0));
+  const std::uint8_t mark = suffers(servo, ServoFault::error, at_ns) ? servo.error : own;
   Packet packet;
   const auto put_stuffed = [&packet](std::uint8_t byte) {
     packet.put(byte);
@@ -348,7 +352,8 @@ void DynamixelPeer::sync_read(Bytes parameters, bool fast, std::int64_t now_ns) 
   for (const std::uint8_t id : ids) {
     const State* servo = find(id);
     if (servo == nullptr || !answers(*servo, now_ns) || servo->table[68] < 1) break;  // who is behind waits for it
-    packet.put(servo->table[70] != 0 ? alert : fine);
+    const std::uint8_t own = servo->table[70] != 0 ? alert : fine;
+    packet.put(suffers(*servo, ServoFault::error, now_ns) ? servo->error : own);
     packet.put(id);
     packet.put(Bytes(servo->table).subspan(address, bytes));
     packet.put_crc();
@@ -364,7 +369,7 @@ void DynamixelPeer::sync_write(Bytes parameters, std::int64_t now_ns) noexcept {
   for (Bytes rest = parameters.subspan(4); !rest.empty(); rest = rest.subspan(bytes + 1)) {
     State* servo = find(rest[0]);
     if (servo == nullptr || now_ns < servo->off_until_ns) continue;
-    if (write(*servo, address, rest.subspan(1, bytes)) != fine && address == 102) ++lost_goals_;
+    if (write(*servo, address, rest.subspan(1, bytes), now_ns) != fine && address == 102) ++lost_goals_;
   }
 }
 

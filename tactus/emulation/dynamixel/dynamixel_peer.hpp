@@ -29,6 +29,7 @@ class DynamixelPeer final : public wire::WireEnd {
     std::int64_t model_number = 1200;  ///< as its maker numbers it
     ServoFault fault = ServoFault::none;
     std::int64_t fault_from_ns = 0;  ///< after the first byte that the peer hears, where the fault is one that begins
+    std::uint8_t error = 0;          ///< that `ServoFault::error` reports
   };
   struct Params {
     std::vector<Servo> servos{{.id = 1}, {.id = 2}};
@@ -68,7 +69,8 @@ class DynamixelPeer final : public wire::WireEnd {
     double current_torque_Nm = 0.0;  ///< of one unit of current
     ServoFault fault = ServoFault::none;
     std::int64_t fault_from_ns = 0;
-    bool broke = false;  ///< the fault that happens once has happened
+    std::uint8_t error = 0;  ///< of that fault
+    bool broke = false;      ///< the fault that happens once has happened
     std::int64_t off_until_ns = 0;
     std::int64_t largest = 0;
   };
@@ -96,10 +98,15 @@ class DynamixelPeer final : public wire::WireEnd {
   void sync_read(Bytes parameters, bool fast, std::int64_t now_ns) noexcept;
   void sync_write(Bytes parameters, std::int64_t now_ns) noexcept;
   [[nodiscard]] static std::uint8_t check_read(std::size_t address, std::size_t bytes) noexcept;
-  std::uint8_t write(State& servo, std::size_t address, Bytes data) const noexcept;
+  std::uint8_t write(State& servo, std::size_t address, Bytes data, std::int64_t now_ns) const noexcept;
   void status(const State& servo, std::uint8_t error, Bytes data, std::int64_t at_ns) noexcept;
   [[nodiscard]] static std::int64_t delay_ns(const State& servo) noexcept;
   State* find(std::uint8_t id) noexcept;
+
+  /// Whether it has this fault then.
+  [[nodiscard]] static bool suffers(const State& servo, ServoFault fault, std::int64_t at_ns) noexcept {
+    return servo.fault == fault && at_ns >= servo.fault_from_ns;
+  }
 
   std::vector<State> servos_;
   std::int64_t bits_per_s_;

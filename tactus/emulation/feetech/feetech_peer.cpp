@@ -50,6 +50,7 @@ FeetechPeer::FeetechPeer(const Params& params)
     servo.takes_current = each.make == Make::hls3625;
     servo.fault = each.fault;
     servo.fault_from_ns = each.fault_from_ns;
+    servo.error = each.error;
     const bool tells_hls = servo.takes_current != (each.fault == ServoFault::wrong_model);
     put(servo, model, tells_hls ? 0x0d0a : 777);
     servo.table[own_id] = static_cast<std::uint8_t>(each.id);
@@ -176,7 +177,7 @@ void FeetechPeer::packet_came(Bytes packet, std::int64_t now_ns) noexcept {
   if (packet[2] != all) {
     State* servo = find(packet[2]);
     if (servo == nullptr || now_ns < servo->off_until_ns) return;
-    if (instruction == 0x03 && given.size() >= 2) write(*servo, given);
+    if (instruction == 0x03 && given.size() >= 2) write(*servo, given, now_ns);
     if (!answers(*servo, now_ns)) return;
     const std::int64_t at_ns = now_ns + delay_ns(*servo);
     if (instruction == 0x01 || (instruction == 0x03 && servo->table[level] != 0)) status(*servo, {}, at_ns);
@@ -202,7 +203,7 @@ void FeetechPeer::packet_came(Bytes packet, std::int64_t now_ns) noexcept {
       if (servo == nullptr || now_ns < servo->off_until_ns) continue;
       std::array<std::uint8_t, 256> one{given[0]};
       std::copy_n(rest.begin() + 1, stride - 1, one.begin() + 1);
-      write(*servo, Bytes(one).first(stride));
+      write(*servo, Bytes(one).first(stride), now_ns);
     }
   }
   if (instruction == 0x82 && given.size() > 2 && given[0] + given[1] <= static_cast<int>(table_bytes)) {
@@ -219,12 +220,13 @@ void FeetechPeer::packet_came(Bytes packet, std::int64_t now_ns) noexcept {
 }
 
 /// What may not be written stays as it is; the answer does not tell.
-void FeetechPeer::write(State& servo, Bytes address_and_data) noexcept {
+void FeetechPeer::write(State& servo, Bytes address_and_data, std::int64_t now_ns) noexcept {
   std::size_t address = address_and_data[0];
   for (const std::uint8_t byte : address_and_data.subspan(1)) {
     const bool writable = (address >= lasting_from && address < position) || (address >= 80 && address < table_bytes);
     // Who is hot or takes too much stays off until it was without power.
-    const bool refused = address == power && byte != 0 && servo.table[condition] != 0;
+    const bool stays = address == power && byte == 0 && suffers(servo, ServoFault::ignores_disable, now_ns);
+    const bool refused = stays || (address == power && byte != 0 && servo.table[condition] != 0);
     if (writable && !refused) servo.table[address] = byte;
     if (writable && address < lasting_bytes && servo.table[lock] == 0) servo.lasting[address] = byte;
     ++address;
@@ -234,6 +236,7 @@ void FeetechPeer::write(State& servo, Bytes address_and_data) noexcept {
 void FeetechPeer::status(const State& servo, Bytes data, std::int64_t at_ns) noexcept {
   std::array<std::uint8_t, 6 + table_bytes> packet{0xff, 0xff, servo.table[own_id],
                                                    static_cast<std::uint8_t>(data.size() + 2), servo.table[condition]};
+  if (suffers(servo, ServoFault::error, at_ns)) packet[4] = servo.error;
   std::copy(data.begin(), data.end(), packet.begin() + 5);
   unsigned sum = 0;
   for (std::size_t i = 2; i < 5 + data.size(); ++i) sum += packet[i];

@@ -34,6 +34,7 @@ class FeetechPeer final : public wire::WireEnd {
     Make make = Make::hls3625;
     ServoFault fault = ServoFault::none;
     std::int64_t fault_from_ns = 0;  ///< after the first byte that the peer hears, where the fault is one that begins
+    std::uint8_t error = 0;          ///< that `ServoFault::error` reports
   };
   struct Params {
     std::vector<Servo> servos{{.id = 1}, {.id = 2}};
@@ -67,6 +68,7 @@ class FeetechPeer final : public wire::WireEnd {
     bool takes_current = false;
     ServoFault fault = ServoFault::none;
     std::int64_t fault_from_ns = 0;
+    std::uint8_t error = 0;  ///< of that fault
     bool broke = false;
     std::int64_t off_until_ns = 0;
     std::int64_t largest = 0;
@@ -79,11 +81,16 @@ class FeetechPeer final : public wire::WireEnd {
   static std::int64_t current(const State& servo) noexcept;
   static void live(State& servo, std::int64_t now_ns) noexcept;
   static bool answers(const State& servo, std::int64_t now_ns) noexcept;
-  static void write(State& servo, Bytes address_and_data) noexcept;
+  static void write(State& servo, Bytes address_and_data, std::int64_t now_ns) noexcept;
   static std::int64_t delay_ns(const State& servo) noexcept;
   State* find(std::uint8_t id) noexcept;
   void packet_came(Bytes packet, std::int64_t now_ns) noexcept;
   void status(const State& servo, Bytes data, std::int64_t at_ns) noexcept;
+
+  /// Whether it has this fault then.
+  [[nodiscard]] static bool suffers(const State& servo, ServoFault fault, std::int64_t at_ns) noexcept {
+    return servo.fault == fault && at_ns >= servo.fault_from_ns;
+  }
 
   std::vector<State> servos_;
   std::int64_t bits_per_s_;

@@ -75,6 +75,7 @@ void Inverse3Service::advance(std::int64_t now_ns) {
 void Inverse3Service::obey(std::string_view message, std::int64_t now_ns) {
   message_ns_ = now_ns;
   for (Device& device : devices_) {
+    if (params_.keeps_force) continue;
     device.force_N = {};  // a command is for its tick
     device.driven = false;
   }
@@ -109,7 +110,7 @@ std::string Inverse3Service::told(bool with_config) const {
                {"angular_velocity", {{"a0", 0.0}, {"a1", 0.0}, {"a2", 0.0}}},
                {"current_cursor_force", of_axes(device.told_force_N)}};
     if (!params_.partial) state["body_orientation"] = {{"w", 1.0}, {"x", 0.0}, {"y", 0.0}, {"z", 0.0}};
-    const char* mode = device.driven ? "force" : "idle";
+    const std::string mode = !params_.mode.empty() ? params_.mode : device.driven ? "force" : "idle";
     if (new_keys) {
       state["control_domain"] = device.driven ? "cartesian" : "idle";
       state["control_mode"] = mode;

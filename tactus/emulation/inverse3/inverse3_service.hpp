@@ -38,6 +38,8 @@ class Inverse3Service {
     std::int64_t late_ns = 0;              ///< each answer comes so much later
     double garbage = 0.0;                  ///< share of answers that are cut off
     std::int64_t closes_after = 0;         ///< closes in place of that answer; 0: never
+    bool keeps_force = false;              ///< a message without a command does not end a force
+    std::string mode = {};                 ///< that each state tells in place of its own; empty: its own
     std::int64_t seed = 1;
   };
   /// `out_of_bounds` for a number of devices outside 1 to 4.

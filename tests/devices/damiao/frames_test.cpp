@@ -121,12 +121,32 @@ TEST(DamiaoFrames, EachNumberOfFeedbackIsReadFromItsBits) {
 }
 
 TEST(DamiaoFrames, EveryStatusHasAMeaning) {
-  const std::array<MotorFault, 16> expected{
-      MotorFault::none,    MotorFault::none,        MotorFault::refused,  MotorFault::refused,
-      MotorFault::refused, MotorFault::refused,     MotorFault::refused,  MotorFault::refused,
-      MotorFault::voltage, MotorFault::voltage,     MotorFault::current,  MotorFault::hot,
-      MotorFault::hot,     MotorFault::lost_master, MotorFault::overload, MotorFault::refused};
+  constexpr MotorFault unknown = MotorFault::unknown_status;
+  const std::array<MotorFault, 16> expected{MotorFault::none,
+                                            MotorFault::none,
+                                            unknown,
+                                            unknown,
+                                            unknown,
+                                            unknown,
+                                            unknown,
+                                            unknown,
+                                            MotorFault::voltage,
+                                            MotorFault::voltage,
+                                            MotorFault::current,
+                                            MotorFault::hot,
+                                            MotorFault::hot,
+                                            MotorFault::lost_master,
+                                            MotorFault::overload,
+                                            unknown};
   for (std::uint8_t status = 0; status < 16; ++status) EXPECT_EQ(fault_of(status), expected[status]) << int{status};
+  // What the protocol does not have counts as power.
+  for (std::uint8_t status = 0; status < 16; ++status) {
+    EXPECT_EQ(means_off(status), status != status_enabled && expected[status] != unknown) << int{status};
+  }
+  EXPECT_EQ(status_text(0x7), "status 0x7 (unknown)");
+  EXPECT_EQ(status_text(0x1), "status 0x1 (enabled)");
+  EXPECT_EQ(status_text(0xd), "status 0xd (communication lost)");
+  EXPECT_EQ(status_text(no_status), "no status");
 }
 
 TEST(DamiaoFrames, ARegisterAnswerIsUnderstoodAndFeedbackOfAMotorThatRestsIsNone) {

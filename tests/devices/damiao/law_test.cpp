@@ -233,6 +233,7 @@ class FakeLink final : public MotorLink {
   void stop() override {}
   Check wait_until_asked(Seconds) override { return std::nullopt; }
   [[nodiscard]] MotorSheet sheet(std::size_t) const override { return {}; }
+  [[nodiscard]] std::vector<PoweredMotor> powered_motors() const override { return {}; }
 
   BusCommands wanted;
   BusReadings told;

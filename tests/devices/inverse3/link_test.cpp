@@ -1,4 +1,5 @@
 #include <tactus/devices/inverse3/inverse3_link.hpp>
+#include <tactus/devices/inverse3/messages.hpp>
 #include <tactus/devices/motor_bus_device.hpp>
 #include <tactus/emulation/inverse3/inverse3_server.hpp>
 #include <tactus/wire/talk.hpp>
@@ -165,6 +166,81 @@ TEST(Inverse3Link, CommandsThatStopEndTheForce) {
   for (int tries = 0; powered() && tries < 5000; ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_FALSE(powered());
   EXPECT_TRUE(link->running());
+}
+
+/// A link whose first axis has been given a force.
+std::unique_ptr<Inverse3Link> pushed(const Inverse3Server& server) {
+  auto link = link_to(server);
+  EXPECT_FALSE(link->wait_until_asked(long_enough));
+  BusCommands push{.motors = {}, .time_ns = wire::monotonic_ns()};
+  push.motors[0] = {.torque_Nm = 0.1, .enabled = 1};
+  link->command(push);
+  for (int tries = 0; link->newest()->motors[0].torque_Nm == 0.0 && tries < 5000; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(link->newest()->motors[0].torque_Nm, 0.1);
+  EXPECT_EQ(link->newest()->motors[0].off, 0);
+  return link;
+}
+
+TEST(Inverse3Link, ADeviceSaysThatItIsIdleBeforeTheLinkEnds) {
+  for (const auto& [dialect, version] : enumerators(emulation::inverse3::Dialect{})) {
+    const auto server = serve({.dialect = dialect});
+    const auto link = pushed(server);
+    link->stop();
+    EXPECT_TRUE(link->powered_motors().empty()) << version;
+  }
+}
+
+TEST(Inverse3Link, AForceThatDoesNotEndOrAModeThatIsNotKnownIsToldAtTheEnd) {
+  struct Case {
+    Inverse3Service::Params service;
+    const char* told;
+  };
+  // The first ends its force for want of messages at the earliest after ten seconds.
+  const Case keeps{{.silence_ns = 10'000'000'000, .keeps_force = true}, "mode 'force'"};
+  for (const Case& each : {keeps, Case{{.mode = "spinning"}, "mode 'spinnin'"}}) {
+    const auto server = serve(each.service);
+    const auto link = pushed(server);
+    BusCommands none{.motors = {}, .time_ns = wire::monotonic_ns()};
+    link->command(none);
+    for (int tries = 0; link->newest()->motors[0].fault != MotorFault::stays_on && tries < 5000; ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_EQ(link->newest()->motors[0].fault, MotorFault::stays_on);
+    link->stop();
+    const auto powered = link->powered_motors();
+    ASSERT_EQ(powered.size(), 3U);
+    EXPECT_EQ(status_text(powered[0].status), each.told);
+  }
+}
+
+TEST(Inverse3Link, AForceThatEndsOnlyForWantOfMessagesEndsSo) {
+  const auto server = serve({.keeps_force = true});  // 20 ms without a message end it
+  const auto link = pushed(server);
+  const BusCommands none{.motors = {}, .time_ns = wire::monotonic_ns()};
+  link->command(none);
+  for (int tries = 0; link->newest()->motors[0].torque_Nm != 0.0 && tries < 5000; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(link->newest()->motors[0].torque_Nm, 0.0);
+  link->stop();
+  ASSERT_FALSE(link->powered_motors().empty()) << "late is told too";
+  EXPECT_EQ(link->newest()->motors[0].fault, MotorFault::stays_on);
+}
+
+TEST(Inverse3Link, ADeviceThatIsIdleUnderCommandsOfForceHasAFault) {
+  const auto server = serve({.mode = "idle"});
+  const auto link = link_to(server);
+  ASSERT_FALSE(link->wait_until_asked(long_enough));
+  BusCommands push{.motors = {}, .time_ns = 0};
+  push.motors[0] = {.torque_Nm = 0.1, .enabled = 1};
+  link->command(push);
+  for (int tries = 0; link->newest()->motors[0].fault == MotorFault::none && tries < 5000; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(link->newest()->motors[0].fault, MotorFault::refused);
+  EXPECT_EQ(status_text(link->newest()->motors[0].status), "mode 'idle'");
 }
 
 TEST(Inverse3Link, AServiceThatIsNotThereOrHasNoSuchDeviceIsToldWithTheRemedy) {

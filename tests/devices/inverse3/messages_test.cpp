@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -79,6 +80,31 @@ TEST(Inverse3Messages, WhatIsWrongIsNamedAndChangesNothing) {
   }
   EXPECT_EQ(describe(*devices.take(R"({"inverse3":[{"device_id":"049D","status":{"ready":1}}]})")),
             "049D.ready: the service tells no true or false");
+}
+
+TEST(Inverse3Messages, ADeviceIsOffWhereTheLatestMessageSaysSoAndNothingSaysOtherwise) {
+  const std::string force = R"("current_cursor_force":{"x":0,"y":0.5,"z":0})";
+  const std::string none = R"("current_cursor_force":{"x":0,"y":0,"z":0})";
+  for (const auto& [state, off, text] : {std::tuple{R"("control_mode":"idle",)" + none, true, "mode 'idle'"},
+                                         {R"("control_mode":"idle")", true, "mode 'idle'"},
+                                         {R"("mode":"idle",)" + none, true, "mode 'idle'"},
+                                         {none, true, "no mode"},
+                                         {R"("control_mode":"idle",)" + force, false, "mode 'idle'"},
+                                         {R"("control_mode":"force",)" + none, false, "mode 'force'"},
+                                         {R"("control_mode":"something",)" + none, false, "mode 'somethi'"},
+                                         {R"("control_mode":"\u001b[2J",)" + none, false, "mode '?[2J'"},
+                                         {force, false, "no mode"},
+                                         {std::string(R"("cursor_position":{"x":0,"y":0,"z":0})"), false, "no mode"}}) {
+    Devices devices;
+    // What an earlier message said counts no more.
+    ASSERT_FALSE(devices.take(R"({"inverse3":[{"device_id":"049D","state":{"mode":"idle",)" + none + "}}]}"));
+    EXPECT_TRUE(reports_off(devices.all().front()));
+    ASSERT_FALSE(devices.take(R"({"inverse3":[{"device_id":"049D","state":{)" + state + "}}]}")) << state;
+    EXPECT_EQ(reports_off(devices.all().front()), off) << state;
+    EXPECT_EQ(status_text(status_of(devices.all().front())), text) << state;
+  }
+  Devices devices;
+  EXPECT_TRUE(devices.take(R"({"inverse3":[{"device_id":"049D","state":{"mode":7}}]})"));
 }
 
 TEST(Inverse3Messages, TheEmulatedServiceObeysAndIsUnderstoodInBothDialects) {

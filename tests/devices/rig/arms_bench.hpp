@@ -108,6 +108,7 @@ class VirtualLink final : public MotorLink {
   void stop() override {}
   Check wait_until_asked(Seconds) override { return std::nullopt; }
   [[nodiscard]] MotorSheet sheet(std::size_t motor) const override { return bus->sheet(motor); }
+  [[nodiscard]] std::vector<PoweredMotor> powered_motors() const override { return {}; }
 
   EmulatedArm* arm = nullptr;
   std::unique_ptr<damiao::DamiaoBus> bus;

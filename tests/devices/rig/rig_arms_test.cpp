@@ -266,6 +266,25 @@ std::string rig_text(const std::string& follower_more, int count, const std::str
   return text;
 }
 
+TEST(RigArms, LimitsFarBeyondThoseOfTheUrdfAreRefused) {
+  const ArmPairSetup setup = setup_of();
+  const std::string stiff = "stiffness_limit_Nm_per_rad = 240.0\n";
+  const auto with = [&](const std::string& upper) {
+    std::string text = rig_text(stiff, 7);
+    const std::string line = "upper_rad = 1.5";
+    text.replace(text.find(line, text.find("[arm.follower.joint_4]")), line.size(), "upper_rad = " + upper);
+    return problem_of(text, setup);
+  };
+  EXPECT_EQ(with("3.1"), "");
+  EXPECT_EQ(with("6.2"), "") << "half a turn beyond it";
+  EXPECT_NE(
+      with("10.0").find("arm.follower.joint_4.upper_rad: 10 rad is far beyond where "
+                        "../../experiments/arms/openarm-class.urdf lets this joint be, from -3.1 to 3.1 rad: state "
+                        "it in rad (10 degrees are 0.1745 rad), or name the joint that the motor moves"),
+      std::string::npos)
+      << with("10.0");
+}
+
 TEST(RigArms, JointsAreThoseOfTheArmByName) {
   const ArmPairSetup setup = setup_of();
   const std::string stiff = "stiffness_limit_Nm_per_rad = 240.0\n";

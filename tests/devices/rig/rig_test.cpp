@@ -129,6 +129,47 @@ TEST(Rig, ALimitBeyondTheMotorsIsRefused) {
             "rig.toml:8:13: arm.leader.elbow.upper_rad: -1.5 rad must be above lower_rad, -1.5 rad");
 }
 
+TEST(Rig, PositionsInDegreesAreRefusedWithTheRangeAndTheRemedy) {
+  const auto with = [](const std::string& side, const std::string& text, const std::string& line,
+                       const std::string& other) {
+    std::string whole = side + text;
+    whole.replace(whole.find(line), line.size(), other);
+    return problem_of(whole);
+  };
+  const std::string damiao = damiao_side("arm.leader", "/dev/a"), elbow = joint("arm.leader.elbow", 1, "DM4310");
+  // The page: the position of a DM4310 ends at 12.5 rad.
+  EXPECT_EQ(with(damiao, elbow, "upper_rad = 1.5", "upper_rad = 170.0"),
+            "rig.toml:8:13: arm.leader.elbow.upper_rad: 170 rad is beyond where a joint with a DM4310 can be, from "
+            "-12.5 to 12.5 rad: state it in rad (170 degrees are 2.9671 rad)");
+  EXPECT_EQ(with(damiao, elbow, "lower_rad = -1.5", "lower_rad = -170.0"),
+            "rig.toml:7:13: arm.leader.elbow.lower_rad: -170 rad is beyond where a joint with a DM4310 can be, from "
+            "-12.5 to 12.5 rad: state it in rad (-170 degrees are -2.9671 rad)");
+  EXPECT_EQ(with(damiao, elbow, "upper_rad = 1.5", "upper_rad = 12.5"), "");
+  EXPECT_NE(with(damiao, elbow, "upper_rad = 1.5", "upper_rad = 12.51"), "");
+  // Behind a gear it goes less far, and where the motor is mounted moves its range.
+  EXPECT_NE(with(damiao, elbow, "upper_rad = 1.5", "upper_rad = 6.5\ngear = 2.0"), "");
+  EXPECT_EQ(with(damiao, elbow, "upper_rad = 1.5", "upper_rad = 6.5\ngear = 2.0\noffset_rad = 0.5"), "");
+  EXPECT_NE(with(damiao, elbow, "lower_rad = -1.5", "lower_rad = -6.0\ngear = 2.0\noffset_rad = 0.5"), "");
+  EXPECT_EQ(with(damiao, elbow, "upper_rad = 1.5", "upper_rad = 1.5\noffset_rad = 90.0"),
+            "rig.toml:9:14: arm.leader.elbow.offset_rad: 90 rad is beyond where a joint with a DM4310 can be, from -25 "
+            "to 25 rad: state it in rad (90 degrees are 1.5708 rad)");
+  const std::string servos = "[arm.leader]\nbus = \"dynamixel\"\nport = \"/dev/a\"\n";
+  EXPECT_NE(
+      with(servos, joint("arm.leader.elbow", 1, "xm430-w210"), "upper_rad = 1.5", "upper_rad = 90.0")
+          .find("upper_rad: 90 rad is beyond where a joint with a xm430-w210 can be, from -12.5664 to 12.5664 rad: "
+                "state it in rad (90 degrees are 1.5708 rad)"),
+      std::string::npos);
+  // At the end of a lever of 0.1 m, in millimetres.
+  const std::string lever =
+      "[arm.leader.elbow]\nmotor = 1\nmodel = \"DM4310\"\nlever_m = 0.1\nlower_m = -0.1\nupper_m = "
+      "5.0\nvelocity_limit_m_per_s = 1.0\nforce_limit_N = 2.0\nforce_rate_limit_N_per_s = 50.0\n";
+  EXPECT_NE(problem_of(damiao + lever)
+                .find("upper_m: 5 m is beyond where a joint with a DM4310 can be, from -1.25 to "
+                      "1.25 m: state it in m (5 mm are 0.005 m)"),
+            std::string::npos)
+      << problem_of(damiao + lever);
+}
+
 TEST(Rig, AStiffnessThatItsMotorCannotRunIsRefused) {
   const std::string damiao = damiao_side("arm.leader", "/dev/a");
   const auto with = [&damiao](const std::string& more) {

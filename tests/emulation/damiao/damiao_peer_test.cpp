@@ -178,8 +178,15 @@ TEST(DamiaoPeer, AFaultIsReadFromAWord) {
   ASSERT_TRUE(all);
   EXPECT_EQ(all->motor, 0U);
   EXPECT_EQ(all->until_ns, wire::never_ns);
-  for (const char* wrong :
-       {"", "silent", "silence:", "silence:x", "silence:16", "silence@-1", "silence@1e9", "silence+x"}) {
+  const auto status = parse_fault("status=0xe:2@5");
+  ASSERT_TRUE(status) << describe(status.error());
+  EXPECT_EQ(status->kind, FaultKind::status);
+  EXPECT_EQ(status->status, 0xe);
+  EXPECT_EQ(status->motor, 2U);
+  EXPECT_EQ(parse_fault("status=7")->status, 7);
+  EXPECT_EQ(parse_fault("ignores-disable:1")->kind, FaultKind::ignores_disable);
+  for (const char* wrong : {"", "silent", "silence:", "silence:x", "silence:16", "silence@-1", "silence@1e9",
+                            "silence+x", "status", "status=", "status=0x10", "status=x", "silence=1"}) {
     const auto fault = parse_fault(wrong);
     ASSERT_FALSE(fault) << wrong;
     EXPECT_NE(fault.error().message.find("KIND[:MOTOR][@SECONDS][+SECONDS]"), std::string::npos);

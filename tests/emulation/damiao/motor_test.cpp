@@ -35,6 +35,29 @@ TEST(DamiaoMotor, FeedbackIsThatOfTheProtocolPage) {
   EXPECT_EQ(motor.answer(ask(0xcc), 2 * ms)->bytes[0], 0x11);
 }
 
+TEST(DamiaoMotor, AStatusThatIsNotItsOwnIsReportedAndChangesNothingElse) {
+  Motor motor = motor_with({});
+  motor.answer(order(0xfc), 0);
+  motor.report(std::uint8_t{7});
+  EXPECT_EQ(motor.answer(ask(0xcc), ms)->bytes[0], 0x71);
+  EXPECT_EQ(motor.answer(ask(0x33, 10), ms)->bytes[0], 1) << "an answer of a register begins with the identifier";
+  EXPECT_TRUE(motor.enabled());
+  motor.answer(order(0xfd), 2 * ms);
+  EXPECT_FALSE(motor.enabled());
+  motor.report(std::nullopt);
+  EXPECT_EQ(motor.answer(ask(0xcc), 3 * ms)->bytes[0], 0x01);
+}
+
+TEST(DamiaoMotor, OneThatIgnoresDisableAnswersItAndKeepsItsPowerUntilItsWatchdogTakesIt) {
+  Motor motor = motor_with({});
+  motor.answer(order(0xfc), 0);
+  motor.ignore_disable(true);
+  EXPECT_EQ(motor.answer(order(0xfd), ms)->bytes[0], 0x11);
+  EXPECT_TRUE(motor.enabled());
+  motor.live_until(500 * ms);  // its register says 400 ms
+  EXPECT_EQ(motor.status(), 0xd);
+}
+
 TEST(DamiaoMotor, ATorqueTurnsItsJointAsItsInertiaSays) {
   Motor motor = motor_with({.inertia_kgm2 = 0.05, .damping_Nms_per_rad = 0.0, .friction_Nm = 0.0});
   motor.answer(order(0xfc), 0);

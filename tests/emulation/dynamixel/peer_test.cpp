@@ -206,8 +206,15 @@ TEST(ServoFaults, AreReadAsTheyAreWritten) {
   EXPECT_EQ(parse_servo_fault("hot")->id, -1);
   EXPECT_EQ(parse_servo_fault("garbage")->line.garbage, 0.01);
   EXPECT_EQ(parse_servo_fault("echo")->line.echo, 1);
-  for (const char* wrong :
-       {"", "none", "hot:", "hot:x", "hot:1.5", "hot:-1", "hot@x", "hot@nan", "echo:1", "split@2"}) {
+  const auto error = parse_servo_fault("error=0x24:2@5");
+  ASSERT_TRUE(error) << describe(error.error());
+  EXPECT_EQ(error->servo, ServoFault::error);
+  EXPECT_EQ(error->error, 0x24);
+  EXPECT_EQ(error->id, 2);
+  EXPECT_EQ(parse_servo_fault("error=255")->error, 255);
+  EXPECT_EQ(parse_servo_fault("ignores-disable")->servo, ServoFault::ignores_disable);
+  for (const char* wrong : {"", "none", "hot:", "hot:x", "hot:1.5", "hot:-1", "hot@x", "hot@nan", "echo:1", "split@2",
+                            "error", "error=", "error=256", "error=0xg", "hot=1"}) {
     const auto refused = parse_servo_fault(wrong);
     ASSERT_FALSE(refused) << wrong;
     EXPECT_EQ(refused.error().code, ErrorCode::syntax);
