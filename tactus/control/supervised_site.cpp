@@ -98,7 +98,9 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
   const bool sinks = site_.is_carried() && !supervision_.carries();
   const auto probe_N =
       supervision_.probe(member_of_each(sensors, &MasterInput::motor_position_m), site_.works(), sinks);
-  const Shares shares{.force = supervision_.blend(follows), .support = supervision_.carry()};
+  const Shares shares{.force = supervision_.blend(follows),
+                      .support = supervision_.carry(),
+                      .stops = !follows && !supervision_.probes()};
   Output output{
       .site = site_.step(sensors, shares, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
   Payload message = member_of_each(output.site, &MasterOutput::message);
@@ -146,8 +148,9 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
   const bool sinks = site_.is_carried() && !supervision_.carries();
   const auto probe_N = supervision_.probe(here_m, site_.works(), sinks);
   const bool stands = state == SiteState::align || state == SiteState::armed;
-  const Shares shares{.force = supervision_.blend((stands || state == SiteState::active) && !supervision_.probes()),
-                      .support = supervision_.carry()};
+  const bool works = stands || state == SiteState::active;
+  const Shares shares{
+      .force = supervision_.blend(works && !supervision_.probes()), .support = supervision_.carry(), .stops = !works};
   Output output{
       .site = site_.step(sensors, shares, input.elapsed_ticks, probe_N), .packet = {}, .record = supervision_.record()};
   output.packet = supervision_.packet(member_of_each(output.site, &SlaveOutput::message));

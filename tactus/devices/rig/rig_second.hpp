@@ -24,11 +24,12 @@ struct RigSecond {
   control::GateFault fault = control::GateFault::none;  ///< what a gate latched, of the leader first
   bool fault_of_leader = false;
   std::size_t fault_joint = 0;
-  double most_torque = 0.0;  ///< of any motor of the second, either way
-  double farthest = 0.0;     ///< of a joint from its leader
-  std::size_t joint = 0;     ///< which one
-  bool too_far = false;      ///< so that nobody can arm
-  runtime::LinkSecond link;  ///< where the other side is elsewhere
+  control::MotionCheck::Evidence fault_evidence;  ///< what a position and a reported velocity disagreed by
+  double most_torque = 0.0;                       ///< of any motor of the second, either way
+  double farthest = 0.0;                          ///< of a joint from its leader
+  std::size_t joint = 0;                          ///< which one
+  bool too_far = false;                           ///< so that nobody can arm
+  runtime::LinkSecond link;                       ///< where the other side is elsewhere
 };
 
 /// What a pair went through.
