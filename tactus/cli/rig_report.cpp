@@ -67,13 +67,31 @@ std::string words_of(const devices::DeviceTrouble& trouble, const char* name, co
   }
 }
 
+/// What the position and the drive's own report disagreed by, in the units of the joint; empty where that is not what
+/// the gate latched.
+std::string evidence_of(const RigSecond& second, const devices::RigJoint& joint) {
+  const auto& found = second.fault_evidence;
+  const devices::JointWords& words = joint.words();
+  if (second.fault == control::GateFault::contradicted) {
+    return ", its position moved by " + report::fixed(found.travelled_m, 3) + " " + words.position_unit + " in " +
+           report::fixed(found.time_s, 3) + " s, its reported velocity says " + report::fixed(found.reported_m, 3) +
+           " " + words.position_unit;
+  }
+  if (second.fault == control::GateFault::encoder_frozen && found.time_s > 0.0) {
+    return ", its motor reported the same for " + report::fixed(found.time_s, 3) + " s while its force changed by " +
+           report::fixed(found.force_N, 3) + " " + words.force_unit;
+  }
+  return {};
+}
+
 /// What a gate latched, as the rest of a line; of a device that is lost the device says more.
 std::string words_of_fault(const RigSecond& second, const RigPair& pair) {
   const auto& trouble = second.fault_of_leader ? second.leader_trouble : second.follower_trouble;
   const bool told = trouble.what > devices::Trouble::silent;
   if (second.fault == control::GateFault::none || (told && second.fault == control::GateFault::not_finite)) return {};
   const devices::RigSide& side = second.fault_of_leader ? *pair.leader : *pair.follower;
-  return std::string("; gate of ") + joint_of(side, second.fault_joint).path + ": " + name_of(second.fault);
+  const devices::RigJoint& joint = joint_of(side, second.fault_joint);
+  return std::string("; gate of ") + joint.path + ": " + name_of(second.fault) + evidence_of(second, joint);
 }
 
 /// The joint whose support is at fault.

@@ -30,6 +30,11 @@ void add_unchosen(const T& params, const T& defaults, const std::string& group, 
   });
 }
 
+/// What protects any joint as it is: the motion check judges a drive's own report.
+void forgive_motion(std::vector<Unchosen>& found) {
+  std::erase_if(found, [](const Unchosen& one) { return one.key.find(".motion.") != std::string::npos; });
+}
+
 /// What only a force sensor gives a meaning.
 void forgive_sensors(std::vector<Unchosen>& found) {
   std::erase_if(found, [](const Unchosen& one) {
@@ -37,7 +42,8 @@ void forgive_sensors(std::vector<Unchosen>& found) {
   });
 }
 
-Check refuse(const std::vector<Unchosen>& found) {
+Check refuse(std::vector<Unchosen> found) {
+  forgive_motion(found);
   if (found.empty()) return {};
   std::string message = found.front().value + " is the default, which protects no real device";
   if (found.size() > 1) message += "; so are ";
@@ -48,7 +54,86 @@ Check refuse(const std::vector<Unchosen>& found) {
   return Error{.code = ErrorCode::inconsistent, .parameter = found.front().key, .message = message, .place = {}};
 }
 
+/// A motor that gives less gives none.
+constexpr double gives_none_N = 1e-6;
+
+/// That `key` says `value`, more than the `most` that `reach` allows.
+Error unreachable(const std::string& key, double value, const char* unit, double most, const std::string& reach) {
+  return {.code = ErrorCode::inconsistent,
+          .parameter = key,
+          .message = format_number(value) + " " + unit + " can never be reached: " + reach + "; write at most " +
+                     format_number(most) + " " + unit,
+          .place = {}};
+}
+
+/// The force limit of a gate, in words, and which part of it is a good threshold.
+std::string force_reach(const SafetyGate::Params& gate, const std::string& name) {
+  return "the motor gives at most " + format_number(gate.force_limit_N) + " N by " + name +
+         ".force_limit_N or the limit of its device, whichever is lower";
+}
+
+Check refuse_unreachable(const SafetyGate::Params& gate, const std::string& name, bool sensed) {
+  const double most_N = gate.force_limit_N;
+  if (most_N < gives_none_N) return {};
+  const SafetyGate::Params defaults;
+  if (gate.encoder.frozen_force_N > most_N) {
+    return unreachable(name + ".encoder.frozen_force_N", gate.encoder.frozen_force_N, "N", most_N,
+                       force_reach(gate, name));
+  }
+  if (sensed && gate.encoder.unbalanced_force_N > most_N) {
+    return unreachable(name + ".encoder.unbalanced_force_N", gate.encoder.unbalanced_force_N, "N", most_N,
+                       force_reach(gate, name));
+  }
+  if (gate.reversal.force_N != defaults.reversal.force_N) {
+    if (gate.reversal.force_N > most_N) {
+      return unreachable(name + ".reversal.force_N", gate.reversal.force_N, "N", most_N, force_reach(gate, name));
+    }
+    const double latched_m_per_s = SafetyGate::fault_factor * gate.velocity_limit_m_per_s;
+    if (gate.reversal.gained_m_per_s >= latched_m_per_s) {
+      return unreachable(name + ".reversal.gained_m_per_s", gate.reversal.gained_m_per_s, "m/s",
+                         gate.velocity_limit_m_per_s,
+                         "the gate latches a velocity of " + format_number(latched_m_per_s) + " m/s, 1.25 times " +
+                             name + ".velocity_limit_m_per_s or the limit of its device, before");
+    }
+  }
+  const double most_W = most_N * SafetyGate::fault_factor * gate.velocity_limit_m_per_s;
+  if (gate.energy.drain_W >= most_W) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = name + ".energy.hold_above_J",
+                 .message = format_number(gate.energy.hold_above_J) +
+                            " J can never be reached: the motor gives at most " + format_number(most_W) +
+                            " W, its force limit at 1.25 times its velocity limit, and " + name +
+                            ".energy.drain_W forgives " + format_number(gate.energy.drain_W) +
+                            " W; write a drain_W of at most " + format_number(0.5 * most_W) + " W",
+                 .place = {}};
+  }
+  return {};
+}
+
 }  // namespace
+
+Check refuse_unreachable(const SafetyGate::Params& gate, const std::string& name) {
+  return refuse_unreachable(gate, name, false);
+}
+
+Check refuse_unreachable(const ControlParams& params, SiteRole role) {
+  const bool master = role == SiteRole::master;
+  const bool sensed = !master && params.slave_force.source == SlaveForceSource::sensor;
+  const SafetyGate::Params& gate = master ? params.gate : params.slave_gate;
+  const std::string name = master ? "gate" : "slave_gate";
+  if (auto error = refuse_unreachable(gate, name, sensed)) return error;
+  if (gate.force_limit_N < gives_none_N) return {};
+  const auto& supervision = params.supervision;
+  if (sensed && supervision.force_sensor.residual_limit_N > gate.force_limit_N) {
+    return unreachable("supervision.force_sensor.residual_limit_N", supervision.force_sensor.residual_limit_N, "N",
+                       gate.force_limit_N, force_reach(gate, name));
+  }
+  if (supervision.probe.force_N > gate.force_limit_N) {
+    return unreachable("supervision.probe.force_N", supervision.probe.force_N, "N", gate.force_limit_N,
+                       force_reach(gate, name));
+  }
+  return {};
+}
 
 Check refuse_default_limits(const SafetyGate::Params& gate, const std::string& name) {
   std::vector<Unchosen> found;

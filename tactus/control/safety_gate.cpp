@@ -17,8 +17,8 @@ constexpr double least_ticks = 0.01;
 }  // namespace
 
 double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::optional<double> resisting_N,
-                           double age_s) noexcept {
-  elapsed_ticks = std::max<std::int64_t>(elapsed_ticks, 1);
+                           double age_s, const DriveTells& tells) noexcept {
+  elapsed_ticks_ = elapsed_ticks = std::max<std::int64_t>(elapsed_ticks, 1);
   const double acted_N = force_.passed_N();
   allowed_N_ = thermal_.step({.acted_N = acted_N, .peak_N = force_limit_N_, .elapsed_ticks = elapsed_ticks});
   if (!std::isfinite(position_m)) {
@@ -42,7 +42,13 @@ double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::o
     return believed_m_;
   }
   believed_m_ = position_m;
-  if (between_ticks > least_ticks) velocity_m_per_s_ = derivative_.step_after(position_m, between_ticks);
+  if (between_ticks > least_ticks) {
+    velocity_m_per_s_ = derivative_.step_after(position_m, between_ticks);
+    const MotionFault moved = motion_.step(
+        {.position_m = position_m, .tells = tells, .acted_N = acted_N, .between_s = between_ticks * dt_s_});
+    if (moved == MotionFault::contradicted) latch(GateFault::contradicted);
+    if (moved == MotionFault::repeated) latch(GateFault::encoder_frozen);
+  }
   damping_N_s_per_m_ = energy_.step({.acted_N = acted_N, .position_m = position_m, .elapsed_ticks = elapsed_ticks});
   if (std::fabs(position_m) >= fault_factor * position_limit_m_) latch(GateFault::workspace);
   if (std::fabs(velocity_m_per_s_) >= fault_factor * velocity_limit_m_per_s_) latch(GateFault::velocity);
@@ -53,7 +59,7 @@ double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::o
   return believed_m_;
 }
 
-double SafetyGate::pass(double command_N) noexcept {
+double SafetyGate::pass(double command_N, bool stops) noexcept {
   const bool finite = std::isfinite(command_N);
   if (!finite) latch(GateFault::not_finite);
   limit_ = ActiveLimit::none;
@@ -81,7 +87,7 @@ double SafetyGate::pass(double command_N) noexcept {
     wanted_N = std::copysign(allowed_N_, wanted_N);
     if (limit_ == ActiveLimit::none) limit_ = ActiveLimit::thermal;
   }
-  const double passed_N = force_.step(wanted_N);
+  const double passed_N = force_.step(wanted_N, stops || has_let_go(), elapsed_ticks_);
   if (limit_ == ActiveLimit::none) limit_ = force_.limit();
   return passed_N;
 }
@@ -89,6 +95,7 @@ double SafetyGate::pass(double command_N) noexcept {
 void SafetyGate::rearm() noexcept {
   force_.rearm();
   encoder_.reset();
+  motion_.reset();
   energy_.reset();
   reversal_.reset();
   brake_.reset();

@@ -70,17 +70,18 @@ std::unique_ptr<SlaveController> slave_controller(const E& element) {
 }
 
 /// Passes a motor's command, the law of its drive included, whose force is that at what was read. What is let through
-/// is cut from the whole command (`keep_part`); a gate that has let go leaves the drive no law. Real-time safe.
+/// is cut from the whole command (`keep_part`); a gate that has let go leaves the drive no law. `stops` as in
+/// `SafetyGate::pass`. Real-time safe.
 template <class Input, class Output>
-void pass_command(SafetyGate& gate, const Input& read, Output& output) noexcept {
+void pass_command(SafetyGate& gate, const Input& read, Output& output, bool stops) noexcept {
   if (!output.law.acts()) {
     output.law = {};
-    output.motor_force_N = gate.pass(output.motor_force_N);
+    output.motor_force_N = gate.pass(output.motor_force_N, stops);
     return;
   }
   const double wanted_N =
       output.motor_force_N + output.law.force_N(read.motor_position_m, read.motor_tells.velocity_m_per_s);
-  const double passed_N = gate.pass(wanted_N);
+  const double passed_N = gate.pass(wanted_N, stops);
   if (gate.has_let_go()) {
     output.law = {};
     output.motor_force_N = passed_N;
@@ -103,14 +104,17 @@ class MasterGates {
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// The position in m to believe, as `SafetyGate` says. Real-time safe.
   double believe(const MasterInput& read, std::int64_t elapsed_ticks) noexcept {
-    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s);
+    elapsed_ticks_ = elapsed_ticks;
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_tells);
   }
-  /// Puts what may reach the actuators in place of what was commanded. Real-time safe.
-  void pass(MasterOutput& output, const MasterInput& read) noexcept {
+  /// Puts what may reach the actuators in place of what was commanded; `stops` as in `SafetyGate::pass`. Real-time
+  /// safe.
+  void pass(MasterOutput& output, const MasterInput& read, bool stops = false) noexcept {
     constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
     if (!std::isfinite(output.handle_force_N)) output.motor_force_N = not_a_number;
-    pass_command(motor_, read, output);
-    output.handle_force_N = handle_.step(motor_.fault() == GateFault::none ? output.handle_force_N : not_a_number);
+    pass_command(motor_, read, output, stops);
+    output.handle_force_N =
+        handle_.step(motor_.fault() == GateFault::none ? output.handle_force_N : not_a_number, stops, elapsed_ticks_);
   }
   void reset() noexcept {
     motor_.reset();
@@ -126,6 +130,7 @@ class MasterGates {
  private:
   SafetyGate motor_;
   ForceGate handle_;
+  std::int64_t elapsed_ticks_ = 1;
 };
 
 /// The safety gate of the slave's motor.
@@ -137,10 +142,12 @@ class SlaveGates {
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// The position in m to believe, as `SafetyGate` says. Real-time safe.
   double believe(const SlaveInput& read, std::int64_t elapsed_ticks) noexcept {
-    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s);
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_tells);
   }
   /// Puts what may reach the motor in place of what was commanded. Real-time safe.
-  void pass(SlaveOutput& output, const SlaveInput& read) noexcept { pass_command(motor_, read, output); }
+  void pass(SlaveOutput& output, const SlaveInput& read, bool stops = false) noexcept {
+    pass_command(motor_, read, output, stops);
+  }
   void reset() noexcept { motor_.reset(); }
   void rearm() noexcept { motor_.rearm(); }
   /// Whether a force passes to the motor.
@@ -155,6 +162,7 @@ class SlaveGates {
 struct Shares {
   double force = 1.0;
   double support = 1.0;
+  bool stops = false;  ///< the site gives its force up, as `SafetyGate::pass` says
 };
 
 /// A controller behind its safety gates, one for each actuator. They stand outside of the controller, so none can leave
@@ -172,10 +180,7 @@ class Site {
   using Laws = Each<In, HoldingLaw>;
 
   Site(std::unique_ptr<Controller> controller, const Gates& gates)
-      : controller_(std::move(controller)),
-        gates_(gates),
-        believed_(nothing()),
-        weight_N_(same_for_each(gates, 0.0)) {}
+      : controller_(std::move(controller)), gates_(gates), believed_(nothing()), weight_N_(same_for_each(gates, 0.0)) {}
   Site(const Site& other)
       : controller_(other.controller_->clone()),
         gates_(other.gates_),
@@ -228,9 +233,9 @@ class Site {
           if (hold.acts()) {
             pushes_ = pushes_ || pushes(joint);
             hold.add_to(joint.motor_force_N, joint.law);
-            gates.pass(joint, believed);
+            gates.pass(joint, believed, shares.stops);
           } else {
-            gates.pass(joint, believed);
+            gates.pass(joint, believed, shares.stops);
             pushes_ = pushes_ || pushes(joint);
           }
           // The controller knows of its own command alone.
@@ -278,7 +283,7 @@ class Site {
         gates_);
     return found;
   }
-  /// The forces go to zero at the rate limit and stay there until `rearm`, but for that of a second actuator, which
+  /// The forces go to zero within `stop_time_s` and stay there until `rearm`, but for that of a second actuator, which
   /// follows its share. Real-time safe.
   void let_go() noexcept {
     for_each_joint([](JointGates& gates) noexcept { gates.motor().let_go(); }, gates_);

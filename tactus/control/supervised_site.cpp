@@ -133,7 +133,9 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
   const bool sinks = site_.is_carried() && !supervision_.carries();
   const auto here_m = member_of_each(sensors, &MasterInput::motor_position_m);
   const auto probe_N = supervision_.probe(here_m, site_.works(), sinks);
-  const Shares shares{.force = supervision_.blend(follows), .support = supervision_.carry(here_m)};
+  const Shares shares{.force = supervision_.blend(follows),
+                      .support = supervision_.carry(here_m),
+                      .stops = !follows && !supervision_.probes()};
   const auto holds = holding_law(supervision_.support(), supervision_.hold(), here_m);
   Output output{.site = site_.step(sensors, shares, input.elapsed_ticks, probe_N, holds),
                 .packet = {},
@@ -184,9 +186,10 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
   const bool sinks = site_.is_carried() && !supervision_.carries();
   const auto probe_N = supervision_.probe(here_m, site_.works(), sinks);
   const bool stands = state == SiteState::align || state == SiteState::armed;
+  const bool works = stands || state == SiteState::active;
   const double support = supervision_.carry(here_m);
-  const bool pulls = (stands || state == SiteState::active) && !supervision_.probes() && !supervision_.is_held();
-  const Shares shares{.force = supervision_.blend(pulls), .support = support};
+  const bool pulls = works && !supervision_.probes() && !supervision_.is_held();
+  const Shares shares{.force = supervision_.blend(pulls), .support = support, .stops = !works};
   const auto holds = holding_law(supervision_.support(), supervision_.hold(), here_m);
   Output output{.site = site_.step(sensors, shares, input.elapsed_ticks, probe_N, holds),
                 .packet = {},

@@ -39,8 +39,9 @@ struct MotorJoint {
   double stiffness_limit_Nm_per_rad = 0.0;  ///< of the law that its motor runs; both 0: none
   double damping_limit_Nms_per_rad = 0.0;
   double temperature_limit_C = 70.0;
-  bool gives_force = true;  ///< false: it tells where it is and takes no command
-  double turn_rad = 0.0;    ///< of the motor, after which its number begins anew at each start; 0: it does not
+  bool gives_force = true;               ///< false: it tells where it is and takes no command
+  double velocity_step_rad_per_s = 0.0;  ///< of the velocity that its motor reports, at the motor; 0: it reports none
+  double turn_rad = 0.0;  ///< of the motor, after which its number begins anew at each start; 0: it does not
 
   static constexpr auto fields() {
     using namespace joint_units;
@@ -136,7 +137,8 @@ struct MotorJoint {
             .velocity_m_per_s = velocity_limit_rad_per_s,
             .position_m = std::max(std::fabs(lower_rad), std::fabs(upper_rad)),
             .stiffness_N_per_m = stiffness_limit_Nm_per_rad,
-            .damping_N_s_per_m = damping_limit_Nms_per_rad};
+            .damping_N_s_per_m = damping_limit_Nms_per_rad,
+            .velocity_step_m_per_s = velocity_step_rad_per_s / gear};
   }
 };
 

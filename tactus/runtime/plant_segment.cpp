@@ -18,7 +18,7 @@ namespace tactus::runtime {
 namespace {
 
 /// `tactus` and the version of the layout, which its size belongs to.
-constexpr std::uint64_t magic_word = 0x746163747573'0002;
+constexpr std::uint64_t magic_word = 0x746163747573'0003;
 /// The bytes of the file that stand for its two places.
 constexpr off_t owner_place = 0, controller_place = 1;
 constexpr std::uint64_t tap_bits = 16;

@@ -22,6 +22,9 @@ struct DeviceLimits {
   /// tells velocity and force of its motor.
   double stiffness_N_per_m = 0.0;
   double damping_N_s_per_m = 0.0;
+  /// Step of the velocity that it reports. 0: it reports none of its own, or one that its driver derives from the
+  /// position; then position and velocity are not compared (`control::MotionCheck`).
+  double velocity_step_m_per_s = 0.0;
 };
 
 /// Whether a device can be trusted with the next tick.

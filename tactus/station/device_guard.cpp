@@ -1,3 +1,4 @@
+#include <tactus/control/force_gate.hpp>
 #include <tactus/station/device_guard.hpp>
 
 #include <algorithm>
@@ -100,16 +101,22 @@ DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) n
   passed_ns_ = tick.deadline_ns;
   const double step_N =
       limits_.rate_N_per_s == no_limit ? no_limit : limits_.rate_N_per_s * 1e-9 * static_cast<double>(period_ns);
-  const auto toward = [step_N](double from_N, double to_N) {
-    return std::fabs(to_N - from_N) <= rounding * step_N ? to_N : from_N + std::copysign(step_N, to_N - from_N);
+  // A force that falls toward zero may take the faster of the two ways, and all of the time that passed counts for it.
+  const auto toward = [step_N, since_ns](double from_N, double to_N, double limit_N) {
+    const double largest_N = limit_N == no_limit ? std::fabs(from_N) : limit_N;
+    const double fall_N = largest_N / control::longest_stop_s * 1e-9 * static_cast<double>(since_ns);
+    const bool falls = std::fabs(to_N) < std::fabs(from_N) || to_N * from_N < 0.0;
+    const double most_N = falls ? std::max(step_N, std::min(fall_N, std::fabs(from_N))) : step_N;
+    return std::fabs(to_N - from_N) <= rounding * most_N ? to_N : from_N + std::copysign(most_N, to_N - from_N);
   };
 
   if (cause_ == LetGo::none && wanted.enabled) {
     const bool strongest = runs_law && std::fabs(whole_N) <= rounding * limits_.force_N;
     const DeviceCommand strong{.force_N = strongest ? whole_N : held_to(whole_N, limits_.force_N),
                                .handle_force_N = held_to(wanted.handle_force_N, limits_.handle_force_N)};
-    const DeviceCommand now{.force_N = toward(passed_.force_N, strong.force_N),
-                            .handle_force_N = toward(passed_.handle_force_N, strong.handle_force_N)};
+    const DeviceCommand now{
+        .force_N = toward(passed_.force_N, strong.force_N, limits_.force_N),
+        .handle_force_N = toward(passed_.handle_force_N, strong.handle_force_N, limits_.handle_force_N)};
     const bool too_strong = strong.force_N != whole_N || strong.handle_force_N != wanted.handle_force_N ||
                             law.stiffness_N_per_m != wanted.law.stiffness_N_per_m ||
                             law.damping_N_s_per_m != wanted.law.damping_N_s_per_m;
@@ -129,8 +136,8 @@ DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) n
     part.law.damping_N_s_per_m *= share;
     return part;
   }
-  passed_.force_N = toward(passed_.force_N, 0.0);
-  passed_.handle_force_N = toward(passed_.handle_force_N, 0.0);
+  passed_.force_N = toward(passed_.force_N, 0.0, limits_.force_N);
+  passed_.handle_force_N = toward(passed_.handle_force_N, 0.0, limits_.handle_force_N);
   passed_.enabled = passed_.force_N != 0.0 || passed_.handle_force_N != 0.0;
   return passed_;
 }
@@ -145,7 +152,8 @@ Check check_limits(const DeviceLimits& limits, bool simulated) {
         std::tuple{"velocity_m_per_s", limits.velocity_m_per_s, units::metre_per_second, true},
         std::tuple{"position_m", limits.position_m, units::metre, true},
         std::tuple{"stiffness_N_per_m", limits.stiffness_N_per_m, units::newton_per_metre, false},
-        std::tuple{"damping_N_s_per_m", limits.damping_N_s_per_m, units::newton_second_per_metre, false}}) {
+        std::tuple{"damping_N_s_per_m", limits.damping_N_s_per_m, units::newton_second_per_metre, false},
+        std::tuple{"velocity_step_m_per_s", limits.velocity_step_m_per_s, units::metre_per_second, false}}) {
     if (!std::isfinite(value) || value < 0.0) return out_of_bounds(name, value, non_negative, unit);
     if (value == 0.0 && needed && !simulated) {
       return Error{.code = ErrorCode::missing,

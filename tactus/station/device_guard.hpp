@@ -33,8 +33,11 @@ inline constexpr Bounds silence_bounds = between(0.001, 10.0);
 ///
 /// A command beyond `force_N` or faster than `rate_N_per_s` is held back to it; one that insists for longer than
 /// `patience` is no slip, and latches. A number that is none, and a device beyond `velocity_m_per_s` or `position_m`,
-/// latch at once. From then on the force falls to zero at the rate limit, then the drive is switched off, and stays so
-/// until `rearm`. A limit of 0 is none, and without a rate limit the force falls at once.
+/// latch at once. From then on the force falls to zero, then the drive is switched off, and stays so until `rearm`. A
+/// limit of 0 is none, and without a rate limit the force falls at once.
+///
+/// Toward zero a force may always fall as fast as `force_N` over `control::longest_stop_s`, however slow the rate limit
+/// is: the gates stop that fast.
 ///
 /// The law of a drive counts with what it gives at the newest reading. What is held back is taken from force and law in
 /// the same share, and a gain beyond its limit is held back too: to none, where the device states none. Once it has let

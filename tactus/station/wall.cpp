@@ -12,11 +12,35 @@ void tighten(double& limit, double of_device) {
   if (of_device > 0.0) limit = std::min(limit, of_device);
 }
 
+/// Where nobody chose how much force must move a joint, half of what it may have. Only for a device that reports its
+/// velocity: there this check is the last of three.
+void choose_threshold(control::SafetyGate::Params& gate, const DeviceLimits& device) {
+  double& threshold_N = gate.encoder.frozen_force_N;
+  if (threshold_N != control::SafetyGate::Params{}.encoder.frozen_force_N) return;
+  threshold_N = 0.5 * (device.force_N > 0.0 ? std::min(gate.force_limit_N, device.force_N) : gate.force_limit_N);
+}
+
 void tighten(control::SafetyGate::Params& gate, const DeviceLimits& device) {
   tighten(gate.force_limit_N, device.force_N);
   tighten(gate.rate_limit_N_per_s, device.rate_N_per_s);
   tighten(gate.velocity_limit_m_per_s, device.velocity_m_per_s / control::SafetyGate::fault_factor);
   tighten(gate.position_limit_m, device.position_m / control::SafetyGate::fault_factor);
+  if (!(device.velocity_step_m_per_s > 0.0)) return;
+  gate.motion.velocity_step_m_per_s = device.velocity_step_m_per_s;
+  choose_threshold(gate, device);
+  // What a joint may give for ever is less than it can give at all, or no account would ever grow.
+  const double most_W = gate.force_limit_N * control::SafetyGate::fault_factor * gate.velocity_limit_m_per_s;
+  gate.energy.drain_W = std::min(gate.energy.drain_W, 0.5 * most_W);
+}
+
+/// The parameters with the thresholds that nobody chose, for a device that has them follow.
+control::ControlParams with_threshold(const control::ControlParams& control, control::SiteRole role,
+                                      const DeviceLimits& device) {
+  control::ControlParams own = control;
+  if (device.velocity_step_m_per_s > 0.0) {
+    choose_threshold(role == control::SiteRole::master ? own.gate : own.slave_gate, device);
+  }
+  return own;
 }
 
 }  // namespace
@@ -43,10 +67,13 @@ Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>&
                                                               control::SiteRole role) {
   auto wall = wall_before(device, joints_of(control), role);
   if (!wall || !*wall) return wall;
+  const auto allowed = device.limits();
   for (std::size_t joint = 0; joint < joints_of(control); ++joint) {
-    if (auto error = control::refuse_default_limits(joint_of(control, joint), role)) {
-      return under("control", under_joint<Reading>(joint, *std::move(error)));
-    }
+    const control::ControlParams& own = joint_of(control, joint);
+    const DeviceLimits& limits = joint_of(allowed, joint);
+    auto error = control::refuse_default_limits(with_threshold(own, role, limits), role);
+    if (!error) error = control::refuse_unreachable(tightened(own, role, limits), role);
+    if (error) return under("control", under_joint<Reading>(joint, *std::move(error)));
   }
   return wall;
 }

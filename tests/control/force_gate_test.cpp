@@ -51,7 +51,9 @@ TEST(ForceGate, WhateverComesInWhatComesOutIsFiniteWithinTheLimitAndNoFasterThan
       const double passed = element.step(command);
       ASSERT_TRUE(std::isfinite(passed));
       ASSERT_LE(std::fabs(passed), params.force_limit_N);
-      const double most = params.rate_limit_N_per_s * tick_s;
+      const double rate = params.rate_limit_N_per_s * tick_s;
+      // After a fault it falls within the stop time, however slow the rate limit is.
+      const double most = latched ? std::max(rate, params.force_limit_N / params.stop_time_s * tick_s) : rate;
       ASSERT_LE(std::fabs(passed - before), most * (1.0 + 1e-12) + 1e-14 * params.force_limit_N);
       ASSERT_EQ(element.fault(), latched ? GateFault::not_finite : GateFault::none);
       if (latched) {

@@ -74,5 +74,60 @@ TEST(ProtectiveLimits, ASecondActuatorNeedsLimitsOfItsOwn) {
   EXPECT_EQ(refuse_default_limits(params, SiteRole::master)->parameter, "handle_gate.force_limit_N");
 }
 
+TEST(ProtectiveLimits, EveryThresholdThatNothingCanReachIsRefusedWithItsKeyItsValueAndTheLargestThatIsUseful) {
+  ControlParams reachable = chosen();
+  for (SafetyGate::Params* gate : {&reachable.gate, &reachable.slave_gate}) {
+    gate->force_limit_N = 2.5;
+    gate->velocity_limit_m_per_s = 4.0;
+    gate->encoder.frozen_force_N = gate->encoder.unbalanced_force_N = 1.0;
+    gate->reversal = {.force_N = 1.0, .gained_m_per_s = 2.0};
+    gate->energy.drain_W = 1.0;
+  }
+  reachable.slave_force.source = SlaveForceSource::sensor;
+  reachable.supervision.force_sensor.residual_limit_N = 1.0;
+  for (const SiteRole role : {SiteRole::master, SiteRole::slave}) {
+    const Check none = refuse_unreachable(reachable, role);
+    EXPECT_FALSE(none) << describe(*none);
+  }
+  const auto refused = [&](auto change) {
+    ControlParams params = reachable;
+    change(params);
+    const Check error = refuse_unreachable(params, SiteRole::slave);
+    return error ? error->parameter + ": " + error->message : std::string();
+  };
+  const std::string reach =
+      " can never be reached: the motor gives at most 2.5 N by slave_gate.force_limit_N or the limit of its device, "
+      "whichever is lower; write at most 2.5 N";
+  EXPECT_EQ(refused([](auto& p) { p.slave_gate.encoder.frozen_force_N = 5.0; }),
+            "slave_gate.encoder.frozen_force_N: 5 N" + reach);
+  EXPECT_EQ(refused([](auto& p) { p.slave_gate.encoder.unbalanced_force_N = 5.0; }),
+            "slave_gate.encoder.unbalanced_force_N: 5 N" + reach);
+  EXPECT_EQ(refused([](auto& p) { p.slave_gate.reversal.force_N = 3.0; }), "slave_gate.reversal.force_N: 3 N" + reach);
+  EXPECT_EQ(refused([](auto& p) { p.supervision.force_sensor.residual_limit_N = 3.0; }),
+            "supervision.force_sensor.residual_limit_N: 3 N" + reach);
+  EXPECT_EQ(refused([](auto& p) { p.supervision.probe.force_N = 3.0; }), "supervision.probe.force_N: 3 N" + reach);
+  EXPECT_EQ(
+      refused([](auto& p) { p.slave_gate.reversal.gained_m_per_s = 5.0; }),
+      "slave_gate.reversal.gained_m_per_s: 5 m/s can never be reached: the gate latches a velocity of 5 m/s, 1.25 "
+      "times slave_gate.velocity_limit_m_per_s or the limit of its device, before; write at most 4 m/s");
+  EXPECT_EQ(
+      refused([](auto& p) { p.slave_gate.energy.drain_W = 12.5; }),
+      "slave_gate.energy.hold_above_J: 20 J can never be reached: the motor gives at most 12.5 W, its force limit "
+      "at 1.25 times its velocity limit, and slave_gate.energy.drain_W forgives 12.5 W; write a drain_W of at "
+      "most 6.25 W");
+  // Out of reach on purpose, or of a motor that gives no force.
+  EXPECT_EQ(refused([](auto& p) { p.slave_gate.reversal = {}; }), "");
+  EXPECT_EQ(refused([](auto& p) {
+              p.slave_gate.force_limit_N = 1e-9;
+              p.slave_gate.encoder.frozen_force_N = 5.0;
+            }),
+            "");
+  EXPECT_EQ(refused([](auto& p) {
+              p.slave_force.source = SlaveForceSource::momentum_observer;
+              p.slave_gate.encoder.unbalanced_force_N = 5.0;
+            }),
+            "");
+}
+
 }  // namespace protective_limits_test
 }  // namespace tactus::control

@@ -96,6 +96,27 @@ TEST(DeviceGuard, ASlipIsHeldBackAndForgivenAndWhoInsistsIsLetGoOf) {
   EXPECT_EQ(guard.pass({.force_N = 0.1}, next()).force_N, 0.1);
 }
 
+TEST(DeviceGuard, ASlowRateLimitKeepsNoForcePressingAfterAStop) {
+  station::DeviceLimits slow = limits;
+  slow.rate_N_per_s = 0.5;  // 0.1 mN a tick
+  for (const bool by_command : {true, false}) {
+    station::DeviceGuard guard(slow, Seconds{10.0});
+    std::int64_t number = 0;
+    (void)guard.pass({}, tick(number));
+    double given_N = 0.0;
+    while (given_N < 1.0) given_N = guard.pass({.force_N = given_N + 1e-4}, tick(++number)).force_N;
+    const std::int64_t began = number;
+    // A gate that stops commands less and less; a device without power is asked for nothing.
+    while (given_N != 0.0 && number < began + 5000) {
+      const double wanted_N = std::max(0.0, given_N - 2.0 / 0.25 * period_s);
+      given_N = guard.pass({.force_N = by_command ? wanted_N : 0.0, .enabled = by_command}, tick(++number)).force_N;
+    }
+    EXPECT_LE(static_cast<double>(number - began) * period_s, 0.126) << "half of 0.25 s from half of the limit";
+    EXPECT_EQ(guard.cause(), station::LetGo::none);
+    EXPECT_NEAR(guard.pass({.force_N = -1.0}, tick(++number)).force_N, -1e-4, 1e-12) << "it grows at the rate limit";
+  }
+}
+
 TEST(DeviceGuard, TicksThatWereMissedEarnNoJump) {
   station::DeviceGuard guard(limits, patience);
   (void)guard.pass({}, tick(0));

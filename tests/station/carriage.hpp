@@ -78,7 +78,12 @@ inline control::ControlParams chosen() {
   control::ControlParams control;
   choose(control.gate);
   choose(control.slave_gate);
-  control.supervision.force_sensor.residual_limit_N = 5.0;
+  // Within the 4 N of the device, or nothing could ever reach them.
+  for (control::SafetyGate::Params* gate : {&control.gate, &control.slave_gate}) {
+    gate->encoder.frozen_force_N = gate->encoder.unbalanced_force_N = 3.0;
+    gate->reversal = {.force_N = 3.0, .gained_m_per_s = 0.5};
+  }
+  control.supervision.force_sensor.residual_limit_N = 3.0;
   control.supervision.probe.force_N = 0.5;
   control.supervision.probe.least_m = 2e-5;
   return control;

@@ -1,4 +1,5 @@
 #include <tactus/station/local_teleoperator.hpp>
+#include <tactus/station/wall.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -134,6 +135,25 @@ TEST(LocalTeleoperator, AMotorWiredBackwardsIsFoundWhenItIsArmed) {
   EXPECT_NE(loop.sites().master().state(), SiteState::active);
 }
 
+TEST(LocalTeleoperator, OfADeviceThatReportsItsVelocityThresholdsFollowFromItsLimits) {
+  DeviceLimits reports = limits;
+  reports.velocity_step_m_per_s = 0.01;
+  const control::SafetyGate::Params defaults, followed = tightened(defaults, reports),
+                                              kept = tightened(defaults, limits);
+  EXPECT_EQ(followed.encoder.frozen_force_N, 2.0);
+  EXPECT_EQ(followed.motion.velocity_step_m_per_s, 0.01);
+  EXPECT_EQ(followed.energy.drain_W, 4.0) << "half of 4 N at 2 m/s";
+  EXPECT_EQ(kept.encoder.frozen_force_N, defaults.encoder.frozen_force_N);
+  EXPECT_EQ(kept.motion.velocity_step_m_per_s, 0.0);
+  EXPECT_EQ(kept.energy.drain_W, defaults.energy.drain_W);
+  control::ControlParams control = chosen();
+  control.slave_gate.encoder.frozen_force_N = defaults.encoder.frozen_force_N;
+  Carriage simulation({.force_N = 5.0}, true), silent(limits), reporting(reports);
+  EXPECT_EQ(LocalTeleoperator::make(control, {}, period, 0.0, simulation, silent).error().parameter,
+            "control.slave_gate.encoder.frozen_force_N");
+  EXPECT_TRUE(LocalTeleoperator::make(control, {}, period, 0.0, simulation, reporting));
+}
+
 TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedIsRefusedUntilSomebodyChoseItsLimits) {
   DeviceLimits no_rate = limits;
   no_rate.rate_N_per_s = 0.0;
@@ -148,6 +168,12 @@ TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedIsRefusedUntilSomebodyChoseItsL
   EXPECT_EQ(refused_for(chosen(), real, simulation), "nothing");
   EXPECT_EQ(refused_for(chosen(), simulation, real), "nothing");
   EXPECT_EQ(refused_for(chosen(), unlimited, simulation), "master.rate_N_per_s");
+  // The device gives 4 N, the gates 5 N: what lies between is out of reach.
+  control::ControlParams unreachable = chosen();
+  unreachable.gate.encoder.frozen_force_N = unreachable.slave_gate.encoder.frozen_force_N = 4.5;
+  EXPECT_EQ(refused_for(unreachable, simulation, simulation), "nothing");
+  EXPECT_EQ(refused_for(unreachable, real, simulation), "control.gate.encoder.frozen_force_N");
+  EXPECT_EQ(refused_for(unreachable, simulation, real), "control.slave_gate.encoder.frozen_force_N");
 }
 
 TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedStandsBehindItsWall) {

@@ -41,7 +41,7 @@ struct StatedBus {
   double watchdog_s = 0.05;             ///< a motor that is unheard for so long is lost; of Damiao it lets go by itself
   std::int64_t bits_per_s = 1'000'000;  ///< of servos
   std::vector<StatedMotor> motors;
-  std::string driver = {};                         ///< name of the registered driver, where `kind` is `plugged`
+  std::string driver = {};                              ///< name of the registered driver, where `kind` is `plugged`
   std::shared_ptr<const DriverSettings> settings = {};  ///< its own keys
 };
 

@@ -1,5 +1,7 @@
+#include <tactus/control/protective_limits.hpp>
 #include <tactus/devices/rig/rig_arms.hpp>
 #include <tactus/experiments/arm_tapping/supervised_arms.hpp>
+#include <tactus/station/wall.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +48,13 @@ Joints<DriveGains> asked_of_follower(const ArmPairSetup& setup) {
   return asked;
 }
 
+/// That every check of the arm's gate can be reached within what the joint may do.
+Check check_gate(const RigJoint& joint, const control::SafetyGate::Params& gate, const std::string& name) {
+  Check error = control::refuse_unreachable(station::tightened(gate, joint.joint.limits()), name);
+  if (error) error->message = joint.path + ": " + error->message;
+  return error;
+}
+
 Check check_joint(const RigJoint& joint, const DriveGains& asked) {
   if (joint.slides || !joint.joint.gives_force) {
     return problem_at(join(joint.path, "model"), ErrorCode::inconsistent,
@@ -88,12 +97,13 @@ Check check_limits(const RigJoint& joint, const arm::JointLimits& can_be, const 
 /// The side with its joints in the arm's order, then the others.
 Result<RigSide> in_order(const RigSide& side, const experiments::DescribedArm& arm,
                          const experiments::GripperParams& gripper, const Joints<DriveGains>& asked,
-                         const DriveGains& beside) {
+                         const DriveGains& beside, const control::SafetyGate::Params& gate, const std::string& name) {
   RigSide ordered = side;
   ordered.joints.clear();
   ordered.bus.motors.clear();
-  const auto add = [&ordered](const RigJoint& joint, const DriveGains& gains) -> Check {
+  const auto add = [&](const RigJoint& joint, const DriveGains& gains) -> Check {
     if (Check error = check_joint(joint, gains)) return error;
+    if (Check error = check_gate(joint, gate, name)) return error;
     ordered.joints.push_back(joint);
     ordered.bus.motors.push_back(joint.motor);
     return std::nullopt;
@@ -128,14 +138,15 @@ Result<RigPair> as_arms(const RigPair& pair, const ArmPairSetup& setup) {
   const experiments::GripperParams& gripper = setup.params.rig.gripper;
   RigPair arms{.name = pair.name, .leader = {}, .follower = {}};
   if (pair.leader) {
-    auto leader =
-        in_order(*pair.leader, setup.leader, gripper, asked_of_leader(setup), experiments::beside_the_arm(setup, true));
+    auto leader = in_order(*pair.leader, setup.leader, gripper, asked_of_leader(setup),
+                           experiments::beside_the_arm(setup, true), setup.params.rig.leader_gate, "rig.leader_gate");
     if (!leader) return leader.error();
     arms.leader = *std::move(leader);
   }
   if (pair.follower) {
-    auto follower = in_order(*pair.follower, setup.follower, gripper, asked_of_follower(setup),
-                             experiments::beside_the_arm(setup, false));
+    auto follower =
+        in_order(*pair.follower, setup.follower, gripper, asked_of_follower(setup),
+                 experiments::beside_the_arm(setup, false), setup.params.rig.follower_gate, "rig.follower_gate");
     if (!follower) return follower.error();
     arms.follower = *std::move(follower);
   }

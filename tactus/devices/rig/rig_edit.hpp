@@ -21,7 +21,8 @@ struct NewOffset {
 Result<std::string> with_offset(std::string_view text, const std::string& name, const NewOffset& offset);
 
 /// Writes these offsets into the file, all or none: a reader sees the old file or the new one, also after a power
-/// failure. The file keeps its mode and its owner. A symbolic link is not followed. Errors: those of `with_offset`; `missing` for a file that cannot be read; `unwritable`.
+/// failure. The file keeps its mode and its owner. A symbolic link is not followed. Errors: those of `with_offset`;
+/// `missing` for a file that cannot be read; `unwritable`.
 Check write_offsets(const std::filesystem::path& file, const std::vector<NewOffset>& offsets);
 
 }  // namespace tactus::devices

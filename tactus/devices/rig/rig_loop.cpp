@@ -129,6 +129,7 @@ void RigLoop::note_fault() noexcept {
     for (std::size_t joint = 0; joint < gates.size() && second_.fault == control::GateFault::none; ++joint) {
       second_.fault = gates[joint].motor().fault();
       second_.fault_joint = joint;
+      second_.fault_evidence = gates[joint].motor().evidence();
       second_.fault_of_leader = of_leader;
     }
   };

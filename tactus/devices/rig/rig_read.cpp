@@ -8,6 +8,8 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <numbers>
+#include <string_view>
 #include <utility>
 
 /// The keys of a rig file, and how they get into a rig.
@@ -220,6 +222,15 @@ class Filled {
   std::function<void()> put_;
 };
 
+/// The coarsest step in which motors of a bus report their velocity, in rad/s or m/s at the motor. All of them measure
+/// it by themselves: none is derived from the position here.
+double velocity_step_of(std::string_view kind) {
+  if (kind == name_of(BusKind::damiao)) return 2.0 * 45.0 / 4095.0;  // 12 bits of the widest range
+  if (kind == name_of(BusKind::inverse3)) return 0.001;
+  constexpr double rad_per_s_of_rpm = 2.0 * std::numbers::pi / 60.0;
+  return (kind == name_of(BusKind::feetech) ? 0.732 : 0.229) * rad_per_s_of_rpm;
+}
+
 /// `arm`, `leader`, `elbow`, `motor` of `arm.leader.elbow.motor`.
 std::vector<std::string_view> parts_of(std::string_view path) {
   std::vector<std::string_view> parts;
@@ -326,6 +337,13 @@ Check Rig::read() {
   }
   if (Check error = document_.read(bindings)) return error;
   for (const Filled& one : filled) one.put();
+  for (RigPair& pair : pairs_) {
+    for (std::optional<RigSide>* side : {&pair.leader, &pair.follower}) {
+      if (!*side) continue;
+      const auto kind = document_.text_at(join((*side)->path, "bus"));
+      for (RigJoint& joint : (*side)->joints) joint.joint.velocity_step_rad_per_s = velocity_step_of(*kind);
+    }
+  }
   return std::nullopt;
 }
 

@@ -25,7 +25,8 @@ struct RigSecond {
   control::GateFault fault = control::GateFault::none;  ///< what a gate latched, of the leader first
   bool fault_of_leader = false;
   std::size_t fault_joint = 0;
-  control::SupportFinding support;  ///< while its support is what stops a side, of the leader first
+  control::MotionCheck::Evidence fault_evidence;  ///< what a position and a reported velocity disagreed by
+  control::SupportFinding support;                ///< while its support is what stops a side, of the leader first
   bool support_of_leader = false;
   double most_torque = 0.0;  ///< of any motor of the second, either way
   double farthest = 0.0;     ///< of a joint from its leader

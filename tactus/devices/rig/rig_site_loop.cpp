@@ -125,6 +125,7 @@ void RigSiteLoop::step(Site& site, const station::Tick& tick, const control::Sit
     if (second_.fault != control::GateFault::none || fault == control::GateFault::none) continue;
     second_.fault = fault;
     second_.fault_joint = joint;
+    second_.fault_evidence = site.site().gates()[joint].motor().evidence();
     second_.fault_of_leader = leads();
   }
   if (streams_ != nullptr) streams_->push(tick, pressed, site, done, link_.condition(), link_.arrivals());

@@ -14,8 +14,14 @@ namespace {
 
 using control::SafetyGate;
 
-Check check_arm_gate(const SafetyGate::Params& gate, const std::string& name, Seconds tick) {
-  if (Check error = control::refuse_default_limits(gate, name)) return error;
+Check check_arm_gate(const SafetyGate::Params& gate, const Joints<station::DeviceLimits>& limits,
+                     const std::string& name, Seconds tick) {
+  SafetyGate::Params chosen = gate;
+  // Of joints that report their velocity this one follows from each joint's limit.
+  const bool follows =
+      std::ranges::all_of(limits, [](const station::DeviceLimits& joint) { return joint.velocity_step_m_per_s > 0.0; });
+  if (follows) chosen.encoder.frozen_force_N = 0.5 * gate.force_limit_N;
+  if (Check error = control::refuse_default_limits(chosen, name)) return error;
   if (const auto made = SafetyGate::make(gate, tick); !made) return under(name, made.error());
   return std::nullopt;
 }
@@ -113,7 +119,7 @@ Result<Begun> begin(const ArmPairSetup& setup, bool leads, const Joints<station:
                          units::none);
   }
   const Seconds tick{1.0 / setup.params.servo.rate_Hz};
-  if (Check error = check_arm_gate(gate, name, tick)) return *std::move(error);
+  if (Check error = check_arm_gate(gate, limits, name, tick)) return *std::move(error);
   auto supervised = joint_supervision(setup.params.rig, joints);
   if (!supervised) return supervised.error();
   if (!start.tries_motors) {
