@@ -47,7 +47,6 @@ Check check_shared(const SupervisionParams& site, SupervisionParams joint) {
   joint.force_sensor = site.force_sensor;
   joint.hand_sensor = site.hand_sensor;
   joint.probe = site.probe;
-  joint.support = site.support;
   const std::string other = first_difference(site, joint);
   if (other.empty()) return {};
   return Error{.code = ErrorCode::inconsistent,
@@ -64,7 +63,8 @@ Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, S
   const SupervisionParams& params = joint_of(all, 0);
   double carried_after_s = params.blend_s;
   for (std::size_t joint = 0; joint < joints_of(all); ++joint) {
-    carried_after_s = std::max(carried_after_s, joint_of(all, joint).support.raise_s);
+    const double raise_s = joint_of(all, joint).support.raise_s;
+    if (raise_s > 0.0) carried_after_s = std::max(carried_after_s, raise_s + SupportRaiseOf<Payload>::settles_s);
   }
   double tried_after_s = carried_after_s;
   for (std::size_t joint = 0; joint < joints_of(all); ++joint) {
@@ -99,8 +99,8 @@ Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, S
                  .parameter = "answer_within_s",
                  .message = format_number(params.answer_within_s) + " s must be more than " +
                             (carried_after_s > params.blend_s ? "support.raise_s" : "blend_s") +
-                            " and probe.duration_s together, " +
-                            format_number(tried_after_s) + " s: a slave answers once its motor was tried",
+                            " and probe.duration_s together, " + format_number(tried_after_s) +
+                            " s: a slave answers once its motor was tried",
                  .place = {}};
   }
   const auto support =
@@ -182,8 +182,7 @@ SiteState SupervisionOf<Payload>::decide(const Sight& sight) noexcept {
        .too_heavy = support_.too_heavy(),
        .energy = sight.fault == GateFault::energy,
        .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
-  cannot_hold_ =
-      state() == SiteState::hold && (cannot_hold_ || overloaded || sight.device_silent || support_.failed());
+  cannot_hold_ = state() == SiteState::hold && (cannot_hold_ || overloaded || sight.device_silent || support_.failed());
   if (arms_from_rest()) {
     proved_ = true;
     for_each_joint([this](bool tried) noexcept { proved_ = proved_ && !tried; }, tried_);
