@@ -47,7 +47,6 @@ Check check_shared(const SupervisionParams& site, SupervisionParams joint) {
   joint.force_sensor = site.force_sensor;
   joint.hand_sensor = site.hand_sensor;
   joint.probe = site.probe;
-  joint.support = site.support;
   const std::string other = first_difference(site, joint);
   if (other.empty()) return {};
   return Error{.code = ErrorCode::inconsistent,
@@ -64,7 +63,8 @@ Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, S
   const SupervisionParams& params = joint_of(all, 0);
   double carried_after_s = params.blend_s;
   for (std::size_t joint = 0; joint < joints_of(all); ++joint) {
-    carried_after_s = std::max(carried_after_s, joint_of(all, joint).support.raise_s);
+    const double raise_s = joint_of(all, joint).support.raise_s;
+    if (raise_s > 0.0) carried_after_s = std::max(carried_after_s, raise_s + SupportRaiseOf<Payload>::settles_s);
   }
   double tried_after_s = carried_after_s;
   for (std::size_t joint = 0; joint < joints_of(all); ++joint) {

@@ -182,6 +182,7 @@ class SupervisionOf {
   /// What was read of a device that something carries. Once, before `decide`.
   void look(typename SupportRaiseOf<Payload>::Sight sight) noexcept {
     sight.tried = probing_;
+    sight.proved = !tries() || proved_;
     support_.look(sight);
   }
   /// The state for this tick. Real-time safe.
@@ -208,9 +209,7 @@ class SupervisionOf {
   [[nodiscard]] const SupportRaiseOf<Payload>& support() const noexcept { return support_; }
   /// Whether the device is held until its support has come in and its motors were tried: nothing else may pull it.
   [[nodiscard]] bool is_held() const noexcept {
-    bool trial = false;
-    for_each_joint([&trial](bool tried) noexcept { trial = trial || tried; }, tried_);
-    return support_.holds() && (support_.rises() || (trial && !proved_));
+    return support_.holds() && (support_.rises() || (tries() && !proved_));
   }
   /// The packet that says `message`. Once a tick.
   Packet packet(const Payload& message) noexcept;
@@ -241,6 +240,12 @@ class SupervisionOf {
   [[nodiscard]] SiteRecord record() const noexcept;
 
  private:
+  /// Whether arming tries any motor.
+  [[nodiscard]] bool tries() const noexcept {
+    bool any = false;
+    for_each_joint([&any](bool tried) noexcept { any = any || tried; }, tried_);
+    return any;
+  }
   [[nodiscard]] bool is_renumbered(const Packet& packet) noexcept;
   [[nodiscard]] bool unanswered() noexcept;
   [[nodiscard]] bool arms_from_rest() const noexcept;

@@ -36,7 +36,8 @@ constexpr auto enumerators(SupportFault) {
 ///
 /// The support is at fault where |E| exceeds `weight_share` of the weight by the model that has come in, and
 /// `least_force_N` too; where the joint is `most_m` from x0; and where it is faster than `most_m_per_s`, by its drive
-/// or by its position.
+/// or by its position. While the support still comes in, |E| may be twice that share: a hand that holds the device
+/// yields later than the weight goes.
 ///
 /// Range: B·dt well below m, unless the drive runs the damper by itself; then the loop over the bus is stable for any m
 /// if K·delay < B.
@@ -74,6 +75,7 @@ class SupportCheck {
     double velocity_m_per_s = 0.0;  ///< that the drive reports; 0 where it reports none
     double weight_N = 0.0;          ///< by the model, all of it
     double share = 0.0;             ///< of it that has come in
+    bool rises = false;             ///< it still comes in
     bool judged = true;             ///< false: the law yields as friction does, and nothing is a fault
     bool tried = false;             ///< motors are tried meanwhile, with `least_force_N` at most
     std::int64_t elapsed_ticks = 1;
@@ -95,16 +97,16 @@ class SupportCheck {
     speed_m_per_s_ = excess_N_ = moved_m_ = 0.0;
     derivative_.reset();
   }
-  /// A trial of the motors begins: travel counts from here.
-  void begin_trial(double position_m) noexcept { began_m_ = position_m; }
+  /// Travel counts from here.
+  void count_from(double position_m) noexcept { began_m_ = position_m; }
   /// One reading of a joint that is held.
   SupportFault step(const Input& input) noexcept {
     const double measured =
         derivative_.step_after(input.position_m, static_cast<double>(std::max<std::int64_t>(input.elapsed_ticks, 1)));
     speed_m_per_s_ = std::fabs(input.velocity_m_per_s) > std::fabs(measured) ? input.velocity_m_per_s : measured;
     moved_m_ = input.position_m - began_m_;
-    const double may_be_N =
-        std::max(params_.least_force_N, params_.weight_share * input.share * std::fabs(input.weight_N));
+    const double share = (input.rises ? 2.0 : 1.0) * params_.weight_share * input.share;
+    const double may_be_N = std::max(params_.least_force_N, share * std::fabs(input.weight_N));
     if (!input.judged && holds()) {
       const double yields_m = std::min(may_be_N / params_.stiffness_N_per_m, params_.most_m);
       anchor_m_ = std::clamp(anchor_m_, input.position_m - yields_m, input.position_m + yields_m);

@@ -23,8 +23,8 @@ struct SupportFinding {
 };
 
 /// The support of a device as it comes in: its share, the holding law of each joint meanwhile (`SupportCheck`) and what
-/// the joints' motion says of it. Once all of it has come in, the law is judged for `settles_s` more, and while motors
-/// are tried. Then it yields as friction does, until the coupling takes its place.
+/// the joints' motion says of it. Joints are judged until all of it has come in, `settles_s` have passed and the motors
+/// were tried. Then the law yields as friction does, until the coupling takes its place.
 template <class Payload>
 class SupportRaiseOf {
  public:
@@ -41,6 +41,7 @@ class SupportRaiseOf {
     bool carried = false;  ///< by something
     bool seen = false;     ///< every joint was read
     bool tried = false;    ///< a motor is tried
+    bool proved = false;   ///< all were, or none is
     std::int64_t elapsed_ticks = 1;
   };
 
@@ -56,12 +57,13 @@ class SupportRaiseOf {
     judged_ = judges_ && sight.carried;
     too_heavy_ = failed_ = false;
     if (!judged_ || !sight.seen) return;
-    if (sight.tried && !tried_) {
-      for_each_joint([](SupportCheck& check, double at_m) noexcept { check.begin_trial(at_m); }, checks_,
+    const bool counts = share_ < 1.0 || full_s_ < settles_s || sight.tried || !sight.proved;
+    if ((sight.tried && !tried_) || (counts && !counts_)) {
+      for_each_joint([](SupportCheck& check, double at_m) noexcept { check.count_from(at_m); }, checks_,
                      sight.position_m);
     }
     tried_ = sight.tried;
-    const bool counts = share_ < 1.0 || full_s_ < settles_s || sight.tried;
+    counts_ = counts;
     if (share_ == 1.0) full_s_ += dt_s_ * static_cast<double>(std::max<std::int64_t>(sight.elapsed_ticks, 1));
     std::size_t joint = 0;
     for_each_joint(
@@ -76,6 +78,7 @@ class SupportRaiseOf {
                                                  .velocity_m_per_s = velocity_m_per_s,
                                                  .weight_N = weight_N,
                                                  .share = share_,
+                                                 .rises = share_ < 1.0,
                                                  .judged = counts,
                                                  .tried = sight.tried,
                                                  .elapsed_ticks = sight.elapsed_ticks});
@@ -128,6 +131,8 @@ class SupportRaiseOf {
     holding_ = true;
     held_ = 1.0;
     full_s_ = 0.0;
+    tried_ = false;
+    counts_ = true;
     found_ = {};
     for_each_joint([](SupportCheck& check, double position_m) noexcept { check.begin(position_m); }, checks_, at_m);
   }
@@ -155,6 +160,7 @@ class SupportRaiseOf {
   bool judged_ = false;  ///< and something carries the device
   bool holding_ = false;
   bool tried_ = false;
+  bool counts_ = false;
   bool failed_ = false;
   bool too_heavy_ = false;
   double share_ = 0.0;

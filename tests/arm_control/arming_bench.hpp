@@ -48,7 +48,7 @@ inline arm::JointVector vector_of(double value) {
 
 /// An arm behind a bus of one cycle's delay, as the device of a site, with what keeps it up before its motors do.
 ///
-/// A hand pulls each joint like a spring with a damper that swings at 2 Hz, and pulls harder for as long as the joint
+/// A hand pulls each joint like a spring with a damper that swings at 3 Hz, and pulls harder for as long as the joint
 /// stays away, as a person who keeps an arm where it is: so it bears the weight, and yields as the motors take over.
 /// `let_go` opens it within half a second.
 class ArmingDevice final : public station::JointDevice {
@@ -67,7 +67,7 @@ class ArmingDevice final : public station::JointDevice {
       }
     }
     const auto chain = arm::Chain::make(params.chain);
-    constexpr double swings = 2.0 * std::numbers::pi * 2.0;
+    constexpr double swings = 2.0 * std::numbers::pi * 3.0;
     stiffness_ = swings * swings * chain->mass_matrix(at_).diagonal();
     damping_ = 1.4 * swings * chain->mass_matrix(at_).diagonal();
     bias_ = weight_;
@@ -115,8 +115,10 @@ class ArmingDevice final : public station::JointDevice {
     arm::ArmCommand brakes = arm::ArmCommand::of_torque(vector_of(0.0));
     brakes.damping.setConstant(1.0);
     plant->write(brakes);
-    for (int i = 0; i < 60'000 && (i < 1000 || plant->link_velocity().cwiseAbs().maxCoeff() > 1e-4); ++i) {
-      plant->step({});
+    constexpr int steps_between_looks = 1000, most_looks = 100;
+    for (int look = 0; look < most_looks; ++look) {
+      for (int i = 0; i < steps_between_looks; ++i) plant->step({});
+      if (plant->link_velocity().cwiseAbs().maxCoeff() < 1e-4) break;
     }
     at_ = plant->link_position();
   }
@@ -136,7 +138,7 @@ class ArmingDevice final : public station::JointDevice {
   }
   void add_hand(arm::ArmCommand& command) {
     if (before_ != Before::held) return;
-    constexpr double opens_s = 0.5, corrects_per_s = 3.0;
+    constexpr double opens_s = 0.5, corrects_per_s = 4.0;
     if (opens_) grip_ = std::max(0.0, grip_ - plant_step_s / opens_s);
     const arm::JointVector away = at_ - plant_->link_position();
     bias_ += corrects_per_s * plant_step_s * stiffness_.cwiseProduct(away);
@@ -276,6 +278,9 @@ struct Fate {
   double active_rad_per_s = 0.0;   ///< while the site was active
   bool powered = false;
   bool let_go = false;
+  Eigen::Index fastest_joint = 0;
+  double fastest_at_s = 0.0;
+  control::SupportFinding found;
 };
 
 struct Outcome {
@@ -291,27 +296,32 @@ struct Outcome {
 };
 
 /// Arms both by a model `believed` of each, as a program does: align, arm, dead-man. A hand that holds lets go after
-/// 2.5 s. It ends a second after both are active, or after either has let go or refused.
+/// 4.5 s. It ends a second after both are active, or after either has let go or refused.
 inline Outcome arm_both(const arm::Chain::Params& believed, Before before, const Wiring& wiring = {},
-                        double raise_s = 2.0) {
+                        double raise_s = 4.0) {
   station::JointSupervisedPair sites = sites_of(believed, raise_s);
   ArmingDevice leader(true_arm(), start(), before, wiring), follower(true_arm(), start(), before, wiring);
   Outcome outcome;
-  const auto see = [](const ArmingDevice& arm, Fate& fate, const auto& site) {
+  std::int64_t number = 0;
+  const auto see = [&number](const ArmingDevice& arm, Fate& fate, const auto& site) {
     fate.powered = fate.powered || site.state() != SiteState::configure;
     for (const auto& gates : site.site().gates()) fate.let_go = fate.let_go || gates.motor().has_let_go();
     const double fast = arm.velocity().cwiseAbs().maxCoeff();
     if (site.state() == SiteState::active) {
       fate.active_rad_per_s = std::max(fate.active_rad_per_s, fast);
     } else if (!fate.let_go) {
+      if (fast > fate.fastest_rad_per_s) {
+        arm.velocity().cwiseAbs().maxCoeff(&fate.fastest_joint);
+        fate.fastest_at_s = static_cast<double>(number) * tick_s;
+      }
       fate.fastest_rad_per_s = std::max(fate.fastest_rad_per_s, fast);
       fate.farthest_rad = std::max(fate.farthest_rad, (arm.position() - arm.began_at()).cwiseAbs().maxCoeff());
     }
   };
-  constexpr double longest_s = 14.0, lets_go_s = 2.5, after_s = 1.0;
+  constexpr double longest_s = 16.0, lets_go_s = 4.5, after_s = 1.0;
   double over_s = 0.0;
   bool arms = false;
-  for (std::int64_t number = 0; static_cast<double>(number) * tick_s < longest_s && over_s < after_s; ++number) {
+  for (; static_cast<double>(number) * tick_s < longest_s && over_s < after_s; ++number) {
     const bool aligned = sites.master().state() == SiteState::align && sites.slave().state() == SiteState::align;
     arms = arms || (aligned && number > 20);
     const control::SiteRequests asked{.align = number > 10, .arm = arms, .dead_man = number > 10 && arms};
@@ -326,6 +336,8 @@ inline Outcome arm_both(const arm::Chain::Params& believed, Before before, const
     }
     outcome.leader_state = sites.master().state();
     outcome.follower_state = sites.slave().state();
+    outcome.leader.found = sites.master().support().found();
+    outcome.follower.found = sites.slave().support().found();
     outcome.leader_cause = sites.master().cause();
     outcome.follower_cause = sites.slave().cause();
     const bool refused =

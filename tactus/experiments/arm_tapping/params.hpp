@@ -166,7 +166,7 @@ struct GripperParams : arm_control::DriveGains {
 
 /// How the motors of an arm take over its weight on arming (`control::SupportCheck`).
 struct ArmSupportParams {
-  double raise_s = 2.0;
+  double raise_s = 4.0;
   double weight_share = 0.3;
   double most_rad = 0.02;
   double most_rad_per_s = 0.4;
