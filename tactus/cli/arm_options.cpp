@@ -1,7 +1,13 @@
+#include <tactus/arm/chain.hpp>
 #include <tactus/arm_identification/rig_log.hpp>
 #include <tactus/cli/arm_options.hpp>
+#include <tactus/report/text.hpp>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <iostream>
+#include <numbers>
 #include <tuple>
 #include <utility>
 
@@ -14,6 +20,40 @@ std::string joined_by_commas(const std::vector<std::string>& words) {
   std::string all;
   for (const std::string& word : words) all += (all.empty() ? "" : ",") + word;
   return all;
+}
+
+/// Says which joints cannot hold the arm's own weight in every posture. Postures are spread evenly over the ranges.
+void warn_of_weight(const urdf::Arm& arm) {
+  const auto chain = arm::Chain::make(arm.params);
+  if (!chain) return;
+  constexpr int postures = 500;
+  constexpr double unlimited = 1e6;
+  const auto count = static_cast<Eigen::Index>(arm.joints.size());
+  const arm::JointVector still = arm::JointVector::Zero(count);
+  arm::JointVector most = still;
+  for (int i = 0; i < postures; ++i) {
+    arm::JointVector position(count);
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const arm::JointLimits& limits = arm.params.joints[static_cast<std::size_t>(j)].limits;
+      const bool turns = arm.params.joints[static_cast<std::size_t>(j)].kind == arm::JointKind::revolute;
+      const double reach = turns ? std::numbers::pi : 1.0;
+      const double lower = std::max(limits.lower_rad, -reach), upper = std::min(limits.upper_rad, reach);
+      // Multiples of the roots of primes, modulo 1, fill a box evenly.
+      constexpr std::array<double, 8> primes{2, 3, 5, 7, 11, 13, 17, 19};
+      const double share = i * std::sqrt(primes[static_cast<std::size_t>(j) % primes.size()]);
+      position[j] = lower + (share - std::floor(share)) * (upper - lower);
+    }
+    most = most.cwiseMax(chain->inverse_dynamics(position, still, still).cwiseAbs());
+  }
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    const double limit = arm.params.joints[at].limits.effort_N_m;
+    const char* const unit = arm.params.joints[at].kind == arm::JointKind::revolute ? " N m" : " N";
+    if (limit >= unlimited || most[j] <= limit) continue;
+    std::cerr << "Warning: joint '" << arm.joints[at] << "' takes up to " << report::number(most[j], 3) << unit
+              << " to hold the arm's own weight, more than its effort limit of " << report::number(limit, 3) << unit
+              << "\n";
+  }
 }
 
 }  // namespace
@@ -66,6 +106,7 @@ Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options) {
     for (const std::string& warning : *warnings) std::cerr << "Warning: " << warning << "\n";
   }
   arm->params.gravity = gravity;
+  warn_of_weight(*arm);
   return arm;
 }
 

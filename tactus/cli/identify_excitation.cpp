@@ -183,6 +183,12 @@ Check identify_excitation(ExcitationOptions options, const std::string& name, co
   ExcitationRequest& request = options.request;
   const std::size_t count = urdf->joints.size();
   for (std::size_t j = 0; j < count; ++j) {
+    constexpr double no_range_rad = 1e6;
+    const arm::JointParams& joint = urdf->params.joints[j];
+    if (joint.kind != arm::JointKind::revolute || joint.limits.upper_rad < no_range_rad) continue;
+    std::cerr << "Note: joint '" << urdf->joints[j] << "' states no range: -180° to 180° are assumed\n";
+  }
+  for (std::size_t j = 0; j < count; ++j) {
     request.noise_N_m.push_back(options.noise_N_m.empty()
                                     ? usual_noise * urdf->params.joints[j].limits.effort_N_m
                                     : options.noise_N_m[std::min(j, options.noise_N_m.size() - 1)]);

@@ -132,6 +132,31 @@ Result<JointPair> choose_joint(const SignalRoles& roles, const Bag& bag, const s
   return *roughest;
 }
 
+double variance(const std::vector<double>& values) {
+  double mean = 0.0, squares = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return squares / static_cast<double>(values.size());
+}
+
+/// The component of the force at the follower's tip that changes most; null where no topic, or more than one, has one.
+const BagSignal* tip_force_of(const Bag& bag) {
+  std::vector<std::string> topics, of_follower;
+  for (const BagSignal& signal : bag.signals) {
+    if (signal.quantity != "force.x") continue;
+    topics.push_back(signal.topic);
+    if (has_any(signal.topic, {"follower", "slave", "puppet", "tip", "env"})) of_follower.push_back(signal.topic);
+  }
+  const std::vector<std::string>& chosen = of_follower.size() == 1 ? of_follower : topics;
+  if (chosen.size() != 1 || has_any(chosen.front(), {"leader", "master", "hand"})) return nullptr;
+  const BagSignal* most = nullptr;
+  for (const char* component : {"force.x", "force.y", "force.z"}) {
+    const BagSignal* const one = find(bag, chosen.front(), "", component);
+    if (one != nullptr && (most == nullptr || variance(one->values) > variance(most->values))) most = one;
+  }
+  return most;
+}
+
 /// A signal and the role that it plays.
 struct Chosen {
   Role role;
@@ -174,6 +199,8 @@ Result<std::vector<Chosen>> choose(const SignalRoles& roles, const Bag& bag, std
   // Efforts are the motors' torques toward a growing position; a displayed one counts where it pushes back.
   add(Role::displayed_force, find(bag, leader, joint->leader, "effort"), -1.0);
   add(Role::slave_force, find(bag, follower, joint->follower, "effort"), 1.0);
+  // Along one joint a force at the tip is that of the joint; of an arm of several it is not.
+  if (joints_of(bag, follower).size() == 1) add(Role::tip_force, tip_force_of(bag), 1.0);
   return chosen;
 }
 
@@ -203,6 +230,29 @@ Check check_signal(const SignalRoles& roles, const BagSignal& signal) {
     }
   }
   return std::nullopt;
+}
+
+/// A sensor's axes are its own: the tip force is turned so that it goes with the displayed force.
+void turn_tip_force(BagChannels& made) {
+  const auto find_role = [&](Role role) {
+    return std::find_if(made.channels.begin(), made.channels.end(),
+                        [role](const BagChannel& c) { return c.role == role; });
+  };
+  const auto tip = find_role(Role::tip_force);
+  if (tip == made.channels.end()) return;
+  std::string note = "'" + tip->name + "' changes most and was taken for the tip force";
+  if (const auto displayed = find_role(Role::displayed_force); displayed != made.channels.end()) {
+    const auto n = static_cast<double>(tip->values.size());
+    double t = 0.0, d = 0.0, td = 0.0;
+    for (std::size_t i = 0; i < tip->values.size(); ++i) {
+      t += tip->values[i], d += displayed->values[i], td += tip->values[i] * displayed->values[i];
+    }
+    if (td - t * d / n < 0.0) {
+      for (double& value : tip->values) value = -value;
+      note += ", turned round so that it goes with the displayed force";
+    }
+  }
+  made.notes.push_back(note);
 }
 
 }  // namespace
@@ -253,6 +303,7 @@ Result<BagChannels> read_bag_channels(const SignalRoles& roles) {
   if (std::any_of(chosen->begin(), chosen->end(), [](const Chosen& c) { return c.sign < 0.0; })) {
     made.notes.push_back("the leader's effort was turned round, so that it counts where it pushes the hand back");
   }
+  turn_tip_force(made);
   std::vector<std::string> unused = bag->ignored;
   for (const BagSignal& signal : bag->signals) {
     if (std::find(used_topics.begin(), used_topics.end(), signal.topic) != used_topics.end()) continue;

@@ -200,11 +200,14 @@ Result<Found> read_bag(const SignalRoles& roles) {
       auto& told = channel.role == Role::master_position ? found.signals.master_velocity : found.signals.slave_velocity;
       if (scale) told = ToldVelocity{.name = channel.velocity_name, .scale = *scale};
     }
-    if (auto error = take(found, roles, channel.role, channel.name, channel.unit, std::move(channel.values))) {
+    // ROS leaves open whether a joint turns or slides: a force in N shows that it slides.
+    const std::string unit = channel.unit == "N" ? "N" : "";
+    if (auto error = take(found, roles, channel.role, channel.name, unit, std::move(channel.values))) {
       return *std::move(error);
     }
     found.signals.channels[index_of(channel.role)]->step = channel.step;
   }
+  if (!found.rotary) found.rotary = true;
   found.signals.notes = std::move(bag->notes);
   return found;
 }

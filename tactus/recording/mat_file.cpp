@@ -315,7 +315,7 @@ std::optional<std::string> MatFile::time_beside(std::string_view variable, std::
   while (!scope.empty()) {
     const std::size_t dot = scope.rfind('.');
     scope.resize(dot == std::string::npos ? 0 : dot);
-    for (const char* name : {"time", "time_s"}) {
+    for (const char* name : {"time", "time_s", "t", "timestamp", "tout"}) {
       const std::string candidate = (scope.empty() ? "" : scope + ".") + name;
       for (const Entry& entry : entries_) {
         if (entry.name == candidate && entry.readable && static_cast<std::size_t>(entry.rows) == samples)

@@ -201,6 +201,12 @@ TEST_F(Mat, TimesAreTheNearestThatFitUnlessOthersAreNamed) {
   EXPECT_TRUE(says(refusal({.file = file, .variable = "x", .sample_time_s = 1.0}), "contradicts"));
 }
 
+TEST_F(Mat, AVariableCalledTHoldsTimesWhereNoneIsCalledTime) {
+  const auto file = write_mat(path("a.mat"), {matrix("t", 1, 4, {0, 2, 4, 6}), matrix("x", 4, 1, {1, 2, 3, 4})},
+                              MAT_COMPRESSION_NONE);
+  EXPECT_EQ(read({.file = file, .variable = "x"})->sample_time_s, 2.0);
+}
+
 TEST_F(Mat, AFileThatIsNoVersionFiveFileIsRefusedWithTheRemedy) {
   EXPECT_TRUE(says(refusal({.file = write("a.mat", "hello"), .variable = "x"}), "is not a MATLAB file of version 5"));
   EXPECT_TRUE(says(refusal({.file = write("b.mat", ""), .variable = "x"}), "is not a MATLAB file of version 5"));
