@@ -153,8 +153,14 @@ TEST_F(GuardedMotor, OfADeviceIsLostWhateverWasWanted) {
   EXPECT_EQ((*device)->trouble().what, Trouble::guard_gone);
   page.guard_ended = 0;
   ++page.taken;
-  (*device)->write(Joints<station::DeviceCommand>(1));  // nothing is wanted: it is judged again
-  (*device)->read({.deadline_ns = now_ns, .began_ns = now_ns});
+  // Nothing is wanted: the guard is answered, and the device is judged again.
+  Joints<station::DeviceCommand> nothing(1);
+  nothing[0].enabled = false;
+  for (int tick = 0; tick < 2; ++tick) {
+    (*device)->write(nothing);
+    (*device)->read({.deadline_ns = now_ns, .began_ns = now_ns});
+  }
+  EXPECT_EQ(page.acknowledged, page.taken);
   EXPECT_NE((*device)->health(), station::DeviceHealth::lost);
 }
 
