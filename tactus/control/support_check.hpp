@@ -82,6 +82,8 @@ class SupportCheck {
   };
   using Output = SupportFault;
 
+  static constexpr double trial_softness = 0.25;
+
   /// Errors: a value out of bounds; a servo rate below 70 Hz.
   static Result<SupportCheck> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);
@@ -94,11 +96,28 @@ class SupportCheck {
   /// Holds the joint where it is from now on. Real-time safe, as all below.
   void begin(double position_m) noexcept {
     anchor_m_ = began_m_ = position_m;
+    bias_N_ = 0.0;
+    softness_ = 1.0;
     speed_m_per_s_ = excess_N_ = moved_m_ = 0.0;
     derivative_.reset();
   }
   /// Travel counts from here.
   void count_from(double position_m) noexcept { began_m_ = position_m; }
+  /// Motors are tried from now on: the spring gives what it gave, and is as soft as `trial_softness` says about here. A
+  /// damper alone brings a joint back after the trial's two lobes; a spring would return it between them, which looks
+  /// as if it moved the wrong way.
+  void begin_trial(double position_m) noexcept {
+    bias_N_ = spring_N(position_m);
+    anchor_m_ = began_m_ = position_m;
+    softness_ = trial_softness;
+  }
+  /// They are no more; the spring gives what it gives now, stiff again.
+  void end_trial(double position_m) noexcept {
+    const double now_N = spring_N(position_m);
+    bias_N_ = 0.0;
+    softness_ = 1.0;
+    anchor_m_ = holds() ? position_m + now_N / params_.stiffness_N_per_m : position_m;
+  }
   /// One reading of a joint that is held.
   SupportFault step(const Input& input) noexcept {
     const double measured =
@@ -123,7 +142,7 @@ class SupportCheck {
 
   /// Of the spring, in N, at the latest reading; the damper is the drive's.
   [[nodiscard]] double spring_N(double position_m) const noexcept {
-    return params_.stiffness_N_per_m * (anchor_m_ - position_m);
+    return bias_N_ + softness_ * params_.stiffness_N_per_m * (anchor_m_ - position_m);
   }
   [[nodiscard]] const Params& params() const noexcept { return params_; }
   [[nodiscard]] bool judges() const noexcept { return params_.raise_s > 0.0; }
@@ -141,6 +160,8 @@ class SupportCheck {
   Params params_;
   signal::FilteredDerivative derivative_;
   double anchor_m_ = 0.0;
+  double bias_N_ = 0.0;    ///< of the spring, while motors are tried
+  double softness_ = 1.0;  ///< of its stiffness, then
   double began_m_ = 0.0;
   double moved_m_ = 0.0;
   double speed_m_per_s_ = 0.0;

@@ -32,7 +32,7 @@ class SupportRaiseOf {
   using Params = Each<Payload, SupportCheck::Params>;
   using Numbers = Each<Payload, double>;
 
-  static constexpr double settles_s = 0.3;
+  static constexpr double settles_s = 1.0;
 
   /// What a site knows of its joints at a tick.
   struct Sight {
@@ -58,10 +58,14 @@ class SupportRaiseOf {
     too_heavy_ = failed_ = false;
     if (!judged_ || !sight.seen) return;
     const bool counts = share_ < 1.0 || full_s_ < settles_s || sight.tried || !sight.proved;
-    if ((sight.tried && !tried_) || (counts && !counts_)) {
-      for_each_joint([](SupportCheck& check, double at_m) noexcept { check.count_from(at_m); }, checks_,
-                     sight.position_m);
-    }
+    const bool begins = holding_ && sight.tried && !tried_, ends = holding_ && !sight.tried && tried_;
+    for_each_joint(
+        [&](SupportCheck& check, double at_m) noexcept {
+          if (begins) check.begin_trial(at_m);
+          if (ends) check.end_trial(at_m);
+          if (counts && !counts_) check.count_from(at_m);
+        },
+        checks_, sight.position_m);
     tried_ = sight.tried;
     counts_ = counts;
     if (share_ == 1.0) full_s_ += dt_s_ * static_cast<double>(std::max<std::int64_t>(sight.elapsed_ticks, 1));

@@ -225,8 +225,7 @@ inline Joints<control::SupervisionParams> supervision(bool leads, double raise_s
                                   {.own_damping_N_s_per_m = leads ? rig[i].leader_damping : rig[i].follower_damping,
                                    .damping_limit_N_s_per_m = rig[i].damping_limit,
                                    .force_limit_N = rig[i].torque_N_m,
-                                   .trial_force_N = rig[i].probe_N_m,
-                                   .trial_least_m = each.probe.least_m},
+                                   .trial_force_N = rig[i].probe_N_m},
                                   Seconds{tick_s});
   }
   return all;
@@ -296,7 +295,7 @@ struct Outcome {
 };
 
 /// Arms both by a model `believed` of each, as a program does: align, arm, dead-man. A hand that holds lets go after
-/// 4.5 s. It ends a second after both are active, or after either has let go or refused.
+/// 4.2 s. It ends a second after both are active, or after either has let go or refused.
 inline Outcome arm_both(const arm::Chain::Params& believed, Before before, const Wiring& wiring = {},
                         double raise_s = 4.0) {
   station::JointSupervisedPair sites = sites_of(believed, raise_s);
@@ -318,13 +317,14 @@ inline Outcome arm_both(const arm::Chain::Params& believed, Before before, const
       fate.farthest_rad = std::max(fate.farthest_rad, (arm.position() - arm.began_at()).cwiseAbs().maxCoeff());
     }
   };
-  constexpr double longest_s = 16.0, lets_go_s = 4.5, after_s = 1.0;
+  constexpr double longest_s = 16.0, lets_go_s = 4.2, after_s = 1.0;
   double over_s = 0.0;
   bool arms = false;
   for (; static_cast<double>(number) * tick_s < longest_s && over_s < after_s; ++number) {
     const bool aligned = sites.master().state() == SiteState::align && sites.slave().state() == SiteState::align;
     arms = arms || (aligned && number > 20);
-    const control::SiteRequests asked{.align = number > 10, .arm = arms, .dead_man = number > 10 && arms};
+    const bool armed = sites.master().state() == SiteState::armed || sites.master().state() == SiteState::active;
+    const control::SiteRequests asked{.align = number > 10, .arm = arms, .dead_man = armed};
     sites.step(leader, follower, {.number = number, .missed = 0}, asked);
     leader.advance();
     follower.advance();

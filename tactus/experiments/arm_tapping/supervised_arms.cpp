@@ -78,15 +78,13 @@ void judge_support(const ArmPairSetup& setup, bool leads, const Joints<SafetyGat
     supervision[i].support = control::with_holding_law(
         {.raise_s = asked.raise_s,
          .weight_share = asked.weight_share,
-         .weight_limit_N =
-             std::clamp(std::min(gates[i].force_limit_N, chain.joints[i].limits.effort_N_m), 1e-9, 100.0),
+         .weight_limit_N = std::clamp(std::min(gates[i].force_limit_N, chain.joints[i].limits.effort_N_m), 1e-9, 100.0),
          .most_m = asked.most_rad,
          .most_m_per_s = asked.most_rad_per_s},
         {.own_damping_N_s_per_m = damping[i],
          .damping_limit_N_s_per_m = limits[i].damping_N_s_per_m,
          .force_limit_N = gates[i].force_limit_N,
-         .trial_force_N = probe.force_N,
-         .trial_least_m = probe.least_m},
+         .trial_force_N = probe.force_N},
         Seconds{1.0 / setup.params.servo.rate_Hz});
   }
 }
@@ -187,9 +185,8 @@ Result<control::JointSupervisedSlave> arm_follower_site(const ArmPairSetup& setu
 
 Result<SupervisedArms> supervise_arms(const ArmPairSetup& setup, const Joints<station::DeviceLimits>& leader,
                                       const Joints<station::DeviceLimits>& follower, const ArmStart& start) {
-  ArmSiteStart own{.session = start.leader_session,
-                   .tries_motors = start.tries_motors,
-                   .judges_support = start.judges_support};
+  ArmSiteStart own{
+      .session = start.leader_session, .tries_motors = start.tries_motors, .judges_support = start.judges_support};
   auto leads = arm_leader_site(setup, leader, own);
   if (!leads) return leads.error();
   own.session = start.follower_session;
