@@ -125,6 +125,12 @@ endif()
 build_against_the_package(${SOURCE}/examples/own-device ${SCRATCH}/device)
 run(sh ${CMAKE_CURRENT_LIST_DIR}/own_device.sh ${SCRATCH}/device/my-device ${experiment} ${SCRATCH}/device-run)
 
+# A driver of a user's own for an arm, loaded as a plug-in: it is checked and driven, and its failures end in hold with the
+# reason.
+build_against_the_package(${SOURCE}/examples/own-arm ${SCRATCH}/arm)
+run(sh ${CMAKE_CURRENT_LIST_DIR}/own_arm.sh ${SCRATCH}/prefix/bin/tactus ${SCRATCH}/arm/own-arm.so ${SOURCE}/examples
+    ${SCRATCH}/arm-run)
+
 # Devices of three joints at the real clock, one of them felt half as strongly.
 build_against_the_package(${SOURCE}/examples/several-joints ${SCRATCH}/joints)
 run(${SCRATCH}/joints/several-joints ${SCRATCH}/joints-run)
