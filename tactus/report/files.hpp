@@ -16,8 +16,8 @@ namespace tactus::report {
 /// Errors: `unwritable`, with path, reason and remedy in the message.
 Check write_file(const std::filesystem::path& path, std::string_view content);
 
-/// The same of a file that is there: it keeps its mode and its owner, and old or new content is on the disk even after a
-/// power failure. Errors: also where the owner cannot be kept, for the file is another user's.
+/// The same of a file that is there: it keeps its mode and its owner, and old or new content is on the disk even after
+/// a power failure. Errors: also where the owner cannot be kept, for the file is another user's.
 Check rewrite_file(const std::filesystem::path& path, std::string_view content);
 
 /// The same for a library that writes files by their name: `write` is given that of the temporary file, which is there

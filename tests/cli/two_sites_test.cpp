@@ -165,16 +165,15 @@ TEST_F(TwoSites, OfOtherParametersAreNotArmedAndBothSayWhichKeyDiffers) {
 
 TEST_F(TwoSites, OfOtherKeysOrOneWithoutSayItAtBothSites) {
   shell(R"(
-    plain() { name=$1; shift; exec $TACTUS run $EXPERIMENT --set servo.rate_Hz=1000 --set plant.longest_step_s=5e-5 \
-              --unencrypted --json "$@" >$name.json 2>$name.log <&9; }
+    other_site() { name=$1; shift; exec $TACTUS run $EXPERIMENT --set servo.rate_Hz=1000 \
+                   --set plant.longest_step_s=5e-5 --json "$@" >$name.json 2>$name.log <&9; }
     $TACTUS key other >/dev/null || exit 2
     site slave --site slave --listen 127.0.0.1:$P2 --peer 127.0.0.1:$P0 & slave=$!
-    cp key mine; cp other key
-    site master --site master --listen 127.0.0.1:$P0 --peer 127.0.0.1:$P2 & master=$!
+    other_site master --key other --site master --listen 127.0.0.1:$P0 --peer 127.0.0.1:$P2 & master=$!
     wait_for master 'tactus: what comes from the address of the slave was made with another key: give both sites the same'
     wait_for slave 'tactus: what comes from the address of the master was made with another key: give both sites the same'
     kill -INT $master; wait $master
-    plain master --site master --listen 127.0.0.1:$P0 --peer 127.0.0.1:$P2 & master=$!
+    other_site master --unencrypted --site master --listen 127.0.0.1:$P0 --peer 127.0.0.1:$P2 & master=$!
     wait_for master 'tactus: the slave has a key, and this site sends plain text: start both with --key'
     wait_for slave 'tactus: the master sends plain text, and this site has a key: start both with --key'
     kill -INT $master $slave
