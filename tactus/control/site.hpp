@@ -172,10 +172,7 @@ class Site {
   using Laws = Each<In, HoldingLaw>;
 
   Site(std::unique_ptr<Controller> controller, const Gates& gates)
-      : controller_(std::move(controller)),
-        gates_(gates),
-        believed_(nothing()),
-        weight_N_(same_for_each(gates, 0.0)) {}
+      : controller_(std::move(controller)), gates_(gates), believed_(nothing()), weight_N_(same_for_each(gates, 0.0)) {}
   Site(const Site& other)
       : controller_(other.controller_->clone()),
         gates_(other.gates_),

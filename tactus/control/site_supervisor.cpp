@@ -32,9 +32,8 @@ void SiteSupervisor::go(SiteState state, SiteCause cause, const Input& input) no
 void SiteSupervisor::arm_where_asked(const Input& input, bool asked) noexcept {
   const bool master = role_ == SiteRole::master;
   // An energy latch is no obstacle: arming empties the account.
-  const bool may =
-      input.heard && !input.disagrees && !input.silent && !input.stalled && !input.overloaded && !input.device_silent &&
-      !input.too_heavy;
+  const bool may = input.heard && !input.disagrees && !input.silent && !input.stalled && !input.overloaded &&
+                   !input.device_silent && !input.too_heavy;
   if (!may || !(master ? asked : input.peer_armings != over_ && input.peer == SiteState::armed)) return;
   armings_ = master ? std::max(armings_, input.peer_armings) + 1 : input.peer_armings;
   state_ = SiteState::armed;

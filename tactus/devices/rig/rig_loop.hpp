@@ -66,9 +66,9 @@ class RigLoop {
   Joints<station::DeviceReading> leader_read_, follower_read_;
   RigSecond second_;
   RigTotals totals_;
-  bool seen_ = false;    ///< both were read
-  bool active_ = false;  ///< the follower, at the tick before
-  bool arming_ = false;  ///< asked for where they had not been aligned yet
+  bool seen_ = false;     ///< both were read
+  bool active_ = false;   ///< the follower, at the tick before
+  bool arming_ = false;   ///< asked for where they had not been aligned yet
   bool refused_ = false;  ///< because an arm is heavier than its motors may carry
 };
 
