@@ -102,7 +102,7 @@ const devices::RigJoint& support_joint(const RigSecond& second, const RigPair& p
 /// What is wrong with gravity compensation, as the rest of a line.
 std::string words_of_support(const RigSecond& second, const RigPair& pair) {
   if (second.support.fault == control::SupportFault::none) return {};
-  return words_of(second.support, support_joint(second, pair));
+  return cli::words_of(second.support, support_joint(second, pair));
 }
 
 /// What a person does next, where there is something.

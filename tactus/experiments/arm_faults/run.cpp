@@ -163,9 +163,11 @@ class ArmFaultRun {
 
 FaultOutcome run_arm_fault(const ArmFaultBench& bench, const FaultPlan& plan) {
   const auto started = [&](std::int64_t session) {
-    return *supervise_arms(
-        bench.setup, bench.leader_limits, bench.follower_limits,
-        {.leader_session = session, .follower_session = session + 1, .tries_motors = is_wired_so(plan), .judges_support = false});
+    return *supervise_arms(bench.setup, bench.leader_limits, bench.follower_limits,
+                           {.leader_session = session,
+                            .follower_session = session + 1,
+                            .tries_motors = is_wired_so(plan),
+                            .judges_support = false});
   };
   return ArmFaultRun(bench, plan, started(1), started(3)).run();
 }
