@@ -43,24 +43,26 @@ class MotionCheck {
     double disagreement_m = 0.04;
     double velocity_error_m_per_s = 0.02;
     double lag_s = 0.006;
-    /// Step of the reported velocity, from the device and not from a file; 0: it reports none, and nothing is checked.
     double velocity_step_m_per_s = 0.0;
-    /// The largest force of the motor; of one that gives none, repetition is not judged.
-    double force_limit_N = 0.0;
     static constexpr auto fields() {
-      return List{field("disagreement_m", &Params::disagreement_m, units::metre, positive_up_to(0.1),
-                        "Travel by which the measured position and the reported velocity may disagree."),
-                  field("velocity_error_m_per_s", &Params::velocity_error_m_per_s, units::metre_per_second,
-                        positive_up_to(1.0), "Lasting error of the reported velocity; at least its step."),
-                  field("lag_s", &Params::lag_s, units::second, positive_up_to(0.1),
-                        "How late the drive reports a change of its velocity.")};
+      return List{
+          field("disagreement_m", &Params::disagreement_m, units::metre, positive_up_to(0.1),
+                "Travel by which the measured position and the reported velocity may disagree."),
+          field("velocity_error_m_per_s", &Params::velocity_error_m_per_s, units::metre_per_second, positive_up_to(1.0),
+                "Lasting error of the reported velocity; at least its step."),
+          field("lag_s", &Params::lag_s, units::second, positive_up_to(0.1),
+                "How late the drive reports a change of its velocity."),
+          field("velocity_step_m_per_s", &Params::velocity_step_m_per_s, units::metre_per_second, between(0.0, 10.0),
+                "Step of the velocity that the drive reports; a device that reports one states its own. 0: it reports "
+                "none, and nothing is compared.")};
     }
   };
   struct Input {
     double position_m = 0.0;
     DriveTells tells;
-    double acted_N = 0.0;    ///< on the motor since the reading before
-    double between_s = 0.0;  ///< since the measurement before
+    double acted_N = 0.0;        ///< on the motor since the reading before
+    double force_limit_N = 0.0;  ///< of the motor; of one that gives none, repetition is not judged
+    double between_s = 0.0;      ///< since the measurement before
   };
   using Output = MotionFault;
 
@@ -152,7 +154,7 @@ class MotionCheck {
   }
 
   bool repeats(const Input& input) noexcept {
-    if (params_.force_limit_N < harmless_N) return false;
+    if (input.force_limit_N < harmless_N) return false;
     const bool same = started_ && input.position_m == position_m_ && input.tells.velocity_m_per_s == velocity_m_per_s_;
     if (!same || input.tells.force_N != force_N_) {
       alive_ = alive_ || (started_ && input.tells.force_N != force_N_);
@@ -163,7 +165,7 @@ class MotionCheck {
       return false;
     }
     const double went_N = input.acted_N - acted_N_;
-    if (!alive_ || std::fabs(went_N) < repeated_share * params_.force_limit_N) {
+    if (!alive_ || std::fabs(went_N) < repeated_share * input.force_limit_N) {
       same_s_ = 0.0;
       same_readings_ = 0;
       return false;

@@ -86,9 +86,7 @@ class SafetyGate {
     if (!force) return force.error();
     const auto encoder = EncoderCheck::make(params.encoder, dt);
     if (!encoder) return under("encoder", encoder.error());
-    MotionCheck::Params of_motion = params.motion;
-    of_motion.force_limit_N = params.force_limit_N;
-    const auto motion = MotionCheck::make(of_motion, dt);
+    const auto motion = MotionCheck::make(params.motion, dt);
     if (!motion) return under("motion", motion.error());
     const auto energy = PassivityMonitor::make(params.energy, dt);
     if (!energy) return under("energy", energy.error());

@@ -53,7 +53,7 @@ class Swinging {
         phase_(random_.uniform(0.0, 6.2)),
         begins_s_(random_.uniform(1.0, 3.0)),
         late_s_(random_.uniform(0.15, 0.4)),
-        check_(MotionCheck::make({.velocity_step_m_per_s = bus.velocity_step, .force_limit_N = 1.0}, tick).value()) {}
+        check_(MotionCheck::make({.velocity_step_m_per_s = bus.velocity_step}, tick).value()) {}
 
   /// Runs for so long or until the check trips. Whether it did.
   bool run(double duration_s) {
@@ -67,6 +67,7 @@ class Swinging {
       const double reported = reported_rad_per_s(now_s);
       const MotionFault found = check_.step({.position_m = position_rad(now_s),
                                              .tells = {.velocity_m_per_s = reported, .force_N = random_.uniform()},
+                                             .force_limit_N = 1.0,
                                              .between_s = arrives_s - heard_s});
       heard_s = arrives_s;
       if (fault_ != Fault::none && now_s >= begins_s_) {
@@ -165,12 +166,14 @@ TEST(MotionCheck, ABusyHostDelaysItByNoMoreThanAnotherFifth) {
 }
 
 TEST(MotionCheck, ItSaysWhatItComparedAndADriveThatReportsNoVelocityIsNotJudged) {
-  MotionCheck judged = MotionCheck::make({.velocity_step_m_per_s = 0.01, .force_limit_N = 1.0}, tick).value(),
-              unjudged = MotionCheck::make({.force_limit_N = 1.0}, tick).value();
+  MotionCheck judged = MotionCheck::make({.velocity_step_m_per_s = 0.01}, tick).value(),
+              unjudged = MotionCheck::make({}, tick).value();
   bool found = false;
   for (int i = 0; i < 500 && !found; ++i) {
-    const MotionCheck::Input input{
-        .position_m = 0.3, .tells = {.velocity_m_per_s = 1.0, .force_N = 0.01 * i}, .between_s = 0.002};
+    const MotionCheck::Input input{.position_m = 0.3,
+                                   .tells = {.velocity_m_per_s = 1.0, .force_N = 0.01 * i},
+                                   .force_limit_N = 1.0,
+                                   .between_s = 0.002};
     found = judged.step(input) == MotionFault::contradicted;
     ASSERT_EQ(unjudged.step(input), MotionFault::none);
   }
@@ -185,13 +188,14 @@ TEST(MotionCheck, ItSaysWhatItComparedAndADriveThatReportsNoVelocityIsNotJudged)
 
 /// Ticks until a drive that repeats itself from tick 100 on is found, its force growing by `grows_N` a tick.
 int repeated_after(double grows_N, bool force_is_reported, double velocity_m_per_s = 0.0) {
-  MotionCheck check = MotionCheck::make({.velocity_step_m_per_s = 0.01, .force_limit_N = 1.0}, tick).value();
+  MotionCheck check = MotionCheck::make({.velocity_step_m_per_s = 0.01}, tick).value();
   for (int i = 0; i < 1000; ++i) {
     const int seen = std::min(i, 100);
     const MotionFault found =
         check.step({.position_m = velocity_m_per_s * 0.002 * seen,
                     .tells = {.velocity_m_per_s = velocity_m_per_s, .force_N = force_is_reported ? 1e-3 * seen : 0.0},
                     .acted_N = std::min(1.0, grows_N * i),
+                    .force_limit_N = 1.0,
                     .between_s = 0.002});
     if (found == MotionFault::repeated) return i - 100;
     if (found != MotionFault::none) return -2;
@@ -206,16 +210,17 @@ TEST(MotionCheck, ADriveThatRepeatsItsAnswerWhileItsForceGoesOnIsFound) {
   EXPECT_GE(quick, 15) << "not within 30 ms";
   EXPECT_EQ(repeated_after(0.0, true), -1) << "a joint that rests under a steady force";
   EXPECT_EQ(repeated_after(0.001, false), -1) << "a drive that never reported a force";
-  MotionCheck moving = MotionCheck::make({.velocity_step_m_per_s = 0.01, .force_limit_N = 1.0}, tick).value();
+  MotionCheck moving = MotionCheck::make({.velocity_step_m_per_s = 0.01}, tick).value();
   EXPECT_EQ(moving.step({}), MotionFault::none);
 }
 
 TEST(MotionCheck, OneBitThatChangesIsAnAnswer) {
-  MotionCheck check = MotionCheck::make({.velocity_step_m_per_s = 0.01, .force_limit_N = 1.0}, tick).value();
+  MotionCheck check = MotionCheck::make({.velocity_step_m_per_s = 0.01}, tick).value();
   for (int i = 0; i < 2000; ++i) {
     ASSERT_EQ(check.step({.position_m = 0.1,
                           .tells = {.velocity_m_per_s = 0.0, .force_N = i / 10 % 2 == 0 ? 0.5 : 0.501},
                           .acted_N = std::sin(0.01 * i),
+                          .force_limit_N = 1.0,
                           .between_s = 0.002}),
               MotionFault::none);
   }

@@ -1,5 +1,6 @@
 #include <tactus/control/force_sensor_check.hpp>
 #include <tactus/control/message_follower.hpp>
+#include <tactus/control/motion_check.hpp>
 #include <tactus/control/overload_check.hpp>
 #include <tactus/control/pace_check.hpp>
 #include <tactus/control/reversal_check.hpp>
@@ -54,6 +55,19 @@ struct Doubles<control::EncoderCheck::Input> {
   using Row = std::array<double, 4>;
   static control::EncoderCheck::Input from(const Row& row) {
     return {.position_m = row[0], .acted_N = row[1], .unbalanced_N = row[2], .elapsed_ticks = row[3] > 0.5 ? 40 : 1};
+  }
+};
+template <>
+struct Doubles<control::MotionFault> : WordAsDouble<control::MotionFault> {};
+template <>
+struct Doubles<control::MotionCheck::Input> {
+  using Row = std::array<double, 5>;
+  static control::MotionCheck::Input from(const Row& row) {
+    return {.position_m = row[0],
+            .tells = {.velocity_m_per_s = row[1], .force_N = row[2]},
+            .acted_N = row[3],
+            .force_limit_N = 1.0,
+            .between_s = row[4] > 0.5 ? 0.05 : 0.002};
   }
 };
 template <>
@@ -141,10 +155,10 @@ struct Subject<control::SiteSupervisor> {
 };
 
 using SafetyElements =
-    ::testing::Types<control::ForceGate, control::EncoderCheck, control::ForceSensorCheck, control::PassivityMonitor,
-                     control::Watchdog, control::OverloadCheck, control::PaceCheck, control::ReversalCheck,
-                     control::ThermalLimit, control::SignProbe, control::StoppingBrake, control::SafetyGate,
-                     control::PacketJudge, control::MessageFollower, control::SiteSupervisor>;
+    ::testing::Types<control::ForceGate, control::EncoderCheck, control::MotionCheck, control::ForceSensorCheck,
+                     control::PassivityMonitor, control::Watchdog, control::OverloadCheck, control::PaceCheck,
+                     control::ReversalCheck, control::ThermalLimit, control::SignProbe, control::StoppingBrake,
+                     control::SafetyGate, control::PacketJudge, control::MessageFollower, control::SiteSupervisor>;
 INSTANTIATE_TYPED_TEST_SUITE_P(Safety, ElementLaws, SafetyElements);
 
 }  // namespace tactus::laws
