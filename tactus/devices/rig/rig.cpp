@@ -38,7 +38,7 @@ std::string own_port(const std::string& port) {
 
 /// What a number may be where it is too large by far: in degrees, or in millimetres.
 std::string in_another_unit(const RigJoint& one, double value) {
-  const auto rounded = [](double number) { return format_number(std::round(number * 1e4) * 1e-4); };
+  const auto rounded = [](double number) { return format_number(std::round(number * 1e4) / 1e4); };
   if (one.slides) return format_number(value) + " mm are " + rounded(value * 1e-3) + " m";
   return format_number(value) + " degrees are " + rounded(value * std::numbers::pi / 180.0) + " rad";
 }
@@ -55,7 +55,7 @@ Check check_positions(const RigJoint& one, double farthest) {
         std::tuple{words.lower, joint.lower_rad, first, last}, std::tuple{words.upper, joint.upper_rad, first, last}}) {
     if (value >= least && value <= most) continue;
     const std::string unit = std::string(" ") + words.position_unit;
-    const auto rounded = [](double number) { return format_number(std::round(number * 1e4) * 1e-4); };
+    const auto rounded = [](double number) { return format_number(std::round(number * 1e4) / 1e4); };
     return at(join(one.path, key), ErrorCode::inconsistent,
               format_number(value) + unit + " is beyond where a joint with a " + one.motor.model + " can be, from " +
                   rounded(least) + " to " + rounded(most) + unit + ": state it in " + words.position_unit + " (" +

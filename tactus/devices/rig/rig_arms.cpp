@@ -88,7 +88,7 @@ Check check_limits(const RigJoint& joint, const arm::JointLimits& can_be, const 
                       format_number(value_rad) + " rad is far beyond where " + urdf + " lets this joint be, from " +
                           format_number(can_be.lower_rad) + " to " + format_number(can_be.upper_rad) +
                           " rad: state it in rad (" + format_number(value_rad) + " degrees are " +
-                          format_number(std::round(value_rad * std::numbers::pi / 180.0 * 1e4) * 1e-4) +
+                          format_number(std::round(value_rad * std::numbers::pi / 180.0 * 1e4) / 1e4) +
                           " rad), or name the joint that the motor moves");
   }
   return std::nullopt;
