@@ -161,7 +161,7 @@ const BagSignal* tip_force_of(const Bag& bag) {
 struct Chosen {
   Role role;
   const BagSignal* signal;
-  double sign;
+  bool named;  ///< by the caller, so that its sign is theirs
 };
 
 Result<std::vector<Chosen>> choose(const SignalRoles& roles, const Bag& bag, std::vector<std::string>& notes) {
@@ -175,7 +175,7 @@ Result<std::vector<Chosen>> choose(const SignalRoles& roles, const Bag& bag, std
     if (found == bag.signals.end()) {
       return wrong_bag(ErrorCode::missing, roles, "the bag has no '" + name + "'; it has: " + signals_of(bag));
     }
-    chosen.push_back({role, &*found, 1.0});
+    chosen.push_back({role, &*found, true});
   }
   const std::string leader = topic_of(bag, true), follower = topic_of(bag, false);
   const bool position_named =
@@ -190,17 +190,16 @@ Result<std::vector<Chosen>> choose(const SignalRoles& roles, const Bag& bag, std
   }
   const Result<JointPair> joint = choose_joint(roles, bag, leader, follower, notes);
   if (!joint) return joint.error();
-  const auto add = [&](Role role, const BagSignal* signal, double sign) {
+  const auto add = [&](Role role, const BagSignal* signal) {
     const bool is_chosen = std::any_of(chosen.begin(), chosen.end(), [&](const Chosen& c) { return c.role == role; });
-    if (signal != nullptr && !is_chosen) chosen.push_back({role, signal, sign});
+    if (signal != nullptr && !is_chosen) chosen.push_back({role, signal, false});
   };
-  add(Role::master_position, find(bag, leader, joint->leader, "position"), 1.0);
-  add(Role::slave_position, find(bag, follower, joint->follower, "position"), 1.0);
-  // Efforts are the motors' torques toward a growing position; a displayed one counts where it pushes back.
-  add(Role::displayed_force, find(bag, leader, joint->leader, "effort"), -1.0);
-  add(Role::slave_force, find(bag, follower, joint->follower, "effort"), 1.0);
+  add(Role::master_position, find(bag, leader, joint->leader, "position"));
+  add(Role::slave_position, find(bag, follower, joint->follower, "position"));
+  add(Role::displayed_force, find(bag, leader, joint->leader, "effort"));
+  add(Role::slave_force, find(bag, follower, joint->follower, "effort"));
   // Along one joint a force at the tip is that of the joint; of an arm of several it is not.
-  if (joints_of(bag, follower).size() == 1) add(Role::tip_force, tip_force_of(bag), 1.0);
+  if (joints_of(bag, follower).size() == 1) add(Role::tip_force, tip_force_of(bag));
   return chosen;
 }
 
@@ -232,27 +231,57 @@ Check check_signal(const SignalRoles& roles, const BagSignal& signal) {
   return std::nullopt;
 }
 
-/// A sensor's axes are its own: the tip force is turned so that it goes with the displayed force.
-void turn_tip_force(BagChannels& made) {
-  const auto find_role = [&](Role role) {
-    return std::find_if(made.channels.begin(), made.channels.end(),
-                        [role](const BagChannel& c) { return c.role == role; });
-  };
-  const auto tip = find_role(Role::tip_force);
-  if (tip == made.channels.end()) return;
-  std::string note = "'" + tip->name + "' changes most and was taken for the tip force";
-  if (const auto displayed = find_role(Role::displayed_force); displayed != made.channels.end()) {
-    const auto n = static_cast<double>(tip->values.size());
-    double t = 0.0, d = 0.0, td = 0.0;
-    for (std::size_t i = 0; i < tip->values.size(); ++i) {
-      t += tip->values[i], d += displayed->values[i], td += tip->values[i] * displayed->values[i];
+/// -1 to 1: of means over a quarter of a second, since what oscillates has a phase between the two.
+double slow_correlation(const std::vector<double>& x, const std::vector<double>& y, double sample_time_s) {
+  constexpr double stretch_s = 0.25;
+  const auto stretch = std::max<std::size_t>(1, static_cast<std::size_t>(stretch_s / sample_time_s));
+  double n = 0.0, sx = 0.0, sy = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+  for (std::size_t first = 0; first + stretch <= x.size(); first += stretch) {
+    double mean_x = 0.0, mean_y = 0.0;
+    for (std::size_t i = first; i < first + stretch; ++i) {
+      mean_x += x[i] / static_cast<double>(stretch);
+      mean_y += y[i] / static_cast<double>(stretch);
     }
-    if (td - t * d / n < 0.0) {
-      for (double& value : tip->values) value = -value;
-      note += ", turned round so that it goes with the displayed force";
-    }
+    n += 1.0, sx += mean_x, sy += mean_y;
+    xx += mean_x * mean_x, yy += mean_y * mean_y, xy += mean_x * mean_y;
   }
-  made.notes.push_back(note);
+  if (n < 3.0) return 0.0;
+  const double squares = (xx - sx * sx / n) * (yy - sy * sy / n);
+  return squares > 0.0 ? (xy - sx * sy / n) / std::sqrt(squares) : 0.0;
+}
+
+/// Turns forces so that they count as `Role` says. The leader shows what the follower's motor pushes with, so the two
+/// go together; an effort as ROS has it, toward a growing position, goes against the follower's. The axes of a sensor
+/// are its own: its force goes with the displayed one.
+void turn_forces(BagChannels& made) {
+  constexpr double surely_alike = 0.2;
+  const auto channel = [&](Role role) -> BagChannel* {
+    const auto found = std::find_if(made.channels.begin(), made.channels.end(),
+                                    [role](const BagChannel& c) { return c.role == role; });
+    return found == made.channels.end() || found->named ? nullptr : &*found;
+  };
+  const auto turn = [](BagChannel& one) {
+    for (double& value : one.values) value = -value;
+  };
+  BagChannel* const displayed = channel(Role::displayed_force);
+  BagChannel* const tip = channel(Role::tip_force);
+  const BagChannel* const slave = channel(Role::slave_force);
+  if (displayed != nullptr) {
+    const bool alike =
+        slave != nullptr && slow_correlation(displayed->values, slave->values, made.sample_time_s) > surely_alike;
+    if (!alike) turn(*displayed);
+    made.notes.push_back("'" + displayed->name + "' was taken for the displayed force, " +
+                         (alike ? "as it is, for it goes with the follower's effort"
+                                : "turned round, so that it counts where it pushes the hand back") +
+                         "; --displayed-force-sign -1 turns it");
+  }
+  if (tip != nullptr) {
+    const bool against =
+        displayed != nullptr && slow_correlation(tip->values, displayed->values, made.sample_time_s) < 0.0;
+    if (against) turn(*tip);
+    made.notes.push_back("'" + tip->name + "' changes most and was taken for the tip force" +
+                         (against ? ", turned round so that it goes with the displayed force" : ""));
+  }
 }
 
 }  // namespace
@@ -280,30 +309,26 @@ Result<BagChannels> read_bag_channels(const SignalRoles& roles) {
   }
   made.sample_time_s = step_s;
   const auto count = 1 + static_cast<std::size_t>((last_s - first_s) / step_s + 1e-9);
-  const auto at_common_steps = [&](const BagSignal& signal, double sign) {
-    std::vector<double> values = recording::at_steps(signal.time_s, signal.values, first_s, step_s, count);
-    for (double& value : values) value *= sign;
-    return values;
+  const auto at_common_steps = [&](const BagSignal& signal) {
+    return recording::at_steps(signal.time_s, signal.values, first_s, step_s, count);
   };
   std::vector<std::string> used_topics;
   for (const Chosen& one : *chosen) {
     BagChannel channel{.role = one.role,
                        .name = one.signal->name(),
                        .unit = one.signal->unit,
-                       .values = at_common_steps(*one.signal, one.sign),
+                       .named = one.named,
+                       .values = at_common_steps(*one.signal),
                        .step = step_of(one.signal->values)};
     const BagSignal* const velocity = find(*bag, one.signal->topic, one.signal->joint, "velocity");
     if (is_position(one.role) && velocity != nullptr && !check_signal(roles, *velocity)) {
-      channel.velocity = at_common_steps(*velocity, 1.0);
+      channel.velocity = at_common_steps(*velocity);
       channel.velocity_name = velocity->name();
     }
     used_topics.push_back(one.signal->topic);
     made.channels.push_back(std::move(channel));
   }
-  if (std::any_of(chosen->begin(), chosen->end(), [](const Chosen& c) { return c.sign < 0.0; })) {
-    made.notes.push_back("the leader's effort was turned round, so that it counts where it pushes the hand back");
-  }
-  turn_tip_force(made);
+  turn_forces(made);
   std::vector<std::string> unused = bag->ignored;
   for (const BagSignal& signal : bag->signals) {
     if (std::find(used_topics.begin(), used_topics.end(), signal.topic) != used_topics.end()) continue;

@@ -14,7 +14,8 @@ struct BagChannel {
   Role role = Role::master_position;
   std::string name = {};
   std::string unit = {};
-  std::vector<double> values = {};    ///< at equal steps; an effort of the leader with its sign turned (it pushes back)
+  bool named = false;                 ///< by the caller: its sign is as the bag has it
+  std::vector<double> values = {};    ///< at equal steps; forces that nobody named are turned as `Role` says
   double step = 0.0;                  ///< `step_of` the values of the messages
   std::vector<double> velocity = {};  ///< of a position, where the bag has it
   std::string velocity_name = {};

@@ -119,6 +119,11 @@ std::vector<std::string> notes_on_columns(const SignalRoles& roles, const std::v
     const auto is_velocity = [&](const std::optional<ToldVelocity>& told) { return told && told->name == entry.name; };
     const bool used = std::any_of(roles.names.begin(), roles.names.end(), plays) || plays(roles.time) ||
                       is_velocity(signals.master_velocity) || is_velocity(signals.slave_velocity);
+    if (used && entry.columns > 1 &&
+        std::find(roles.names.begin(), roles.names.end(), entry.name) != roles.names.end()) {
+      notes.push_back("'" + entry.name + "' has " + std::to_string(entry.columns) +
+                      " columns, of which the first was taken: name another as " + entry.name + ":2");
+    }
     if (used || entry.kind != "column" || recording::sounds_like_time(entry.name)) continue;
     unused.push_back(entry);
     const std::vector<Entry> by_name{Entry{.name = entry.name, .rows = entry.rows, .columns = 1, .readable = true}};

@@ -58,9 +58,11 @@ std::string wrong_velocities(const Signals& signals) {
 std::string how_it_follows(const Finding& finding) {
   const double f_Hz = finding.oscillation.frequency_Hz;
   const double late_s = finding.evidence.slave_behind_rad.value_or(0.0) / (2.0 * std::numbers::pi * f_Hz);
+  const double slave = finding.evidence.of(Role::slave_position).value_or(0.0);
+  const double master = finding.evidence.of(Role::master_position).value_or(1.0);
   return " At " + report::number(f_Hz, 3) + " Hz the hand moves the master on purpose and the slave follows, " +
-         report::number(1e3 * late_s, 2) + " ms later and " +
-         report::number(100.0 / finding.evidence.master_part.value_or(1.0), 3) + " % as far: this is no fault.";
+         report::number(1e3 * late_s, 2) + " ms later and " + report::number(100.0 * slave / master, 3) +
+         " % as far: this is no fault.";
 }
 
 std::string verdict_of(const Signals& signals, const std::vector<Finding>& findings) {

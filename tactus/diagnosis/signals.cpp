@@ -109,6 +109,17 @@ struct Found {
   std::optional<bool> rotary;
 };
 
+/// Are there no more than so many different values?
+bool has_few_levels(const std::vector<double>& values, std::size_t most) {
+  std::vector<double> levels;
+  for (const double value : values) {
+    if (std::find(levels.begin(), levels.end(), value) != levels.end()) continue;
+    levels.push_back(value);
+    if (levels.size() > most) return false;
+  }
+  return true;
+}
+
 Check take(Found& found, const SignalRoles& roles, Role role, std::string name, const std::string& unit,
            std::vector<double> values) {
   const auto rotary = convert(roles, role, unit, values);
@@ -128,7 +139,11 @@ Check take(Found& found, const SignalRoles& roles, Role role, std::string name, 
                       std::to_string(found.signals.samples) + "; name columns of one length");
   }
   found.signals.samples = values.size();
-  const double step = step_of(values);
+  double step = step_of(values);
+  // A force that is switched between two or three levels is not measured in steps of that size.
+  constexpr std::size_t switched_levels = 3;
+  constexpr double resolved = 1e-3;
+  if (!is_position(role) && has_few_levels(values, switched_levels)) step *= resolved;
   found.signals.channels[index_of(role)] = Channel{.name = std::move(name), .values = std::move(values), .step = step};
   return std::nullopt;
 }

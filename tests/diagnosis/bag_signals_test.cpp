@@ -30,7 +30,7 @@ std::string two_arms(const std::string& leader_topic, const std::string& followe
     const double shake = 0.02 * std::sin(two_pi * 15.0 * late);
     bag.write(
         leader, time_ns,
-        telemetry::joint_state(time_ns, {"j1", "j2"}, {std::sin(t), 0.1 * t}, {std::cos(t), 0.1}, {1.0, 2.0 + t}));
+        telemetry::joint_state(time_ns, {"j1", "j2"}, {std::sin(t), 0.1 * t}, {std::cos(t), 0.1}, {1.0, -2.0 - t}));
     bag.write(follower, time_ns,
               telemetry::joint_state(time_ns + 1'200'000, {"j2", "j1"}, {0.1 * late + shake, std::sin(late)}, {},
                                      {0.5 + t, 0.25}));
@@ -65,7 +65,7 @@ TEST_F(BagSignals, TheRoughestJointOfLeaderAndFollowerIsReadAtCommonSteps) {
     ASSERT_NEAR(master->values[i], 0.1 * t, 1e-9) << i;
     ASSERT_NEAR(slave->values[i], 0.1 * t + 0.02 * std::sin(two_pi * 15.0 * t), 1e-9) << i;
   }
-  EXPECT_NEAR(signals->find(Role::displayed_force)->values[100], -(2.0 + 0.0012 + 0.5), 1e-9) << "it pushes back";
+  EXPECT_NEAR(signals->find(Role::displayed_force)->values[100], 2.0 + 0.0012 + 0.5, 1e-9) << "it pushes back";
   EXPECT_NEAR(signals->find(Role::slave_force)->values[100], 0.5 + 0.5, 1e-9);
   std::string notes;
   for (const std::string& note : signals->notes) notes += note + "\n";

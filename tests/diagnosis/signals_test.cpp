@@ -65,6 +65,21 @@ TEST_F(ReadSignals, AColumnThatIsNotUsedIsSaidAndWhyWhereItsUnitIsTheReason) {
   EXPECT_EQ(all_notes(*read_signals(table("time,master_position,slave_position,tip_force"))), "");
 }
 
+TEST_F(ReadSignals, AForceThatIsSwitchedBetweenTwoLevelsIsNotResolvedInThatStep) {
+  std::string text = "time_s,master_position_m,displayed_force_N\n";
+  for (int i = 0; i < 1000; ++i) {
+    text +=
+        std::to_string(0.001 * i) + "," + std::to_string(0.01 * std::sin(0.1 * i)) + (i % 60 < 20 ? ",5" : ",0") + "\n";
+  }
+  std::ofstream(file_) << text;
+  const auto signals = read_signals({.file = file_});
+  ASSERT_TRUE(signals) << describe(signals.error());
+  const Channel* force = signals->find(Role::displayed_force);
+  ASSERT_NE(force, nullptr);
+  EXPECT_FALSE(force->constant());
+  EXPECT_LT(force->step, 0.1);
+}
+
 TEST_F(ReadSignals, TimesWithoutAUnitThatNoRecordingHasAreRefusedAndTheUnitHelps) {
   SignalRoles roles = table("time,x_m,x_s,other", 1.0);
   auto signals = read_signals(roles);
