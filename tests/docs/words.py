@@ -58,21 +58,21 @@ docs/how-to/yam.md docs/how-to/gello.md docs/how-to/so101.md docs/how-to/dynamix
 docs/how-to/feetech-servos.md docs/how-to/inverse3.md docs/how-to/damiao-motors.md
 docs/how-to/how-much-gain-is-safe.md docs/how-to/diagnose.md docs/how-to/your-own-device.md docs/how-to/ros2.md
 docs/how-to/live-page.md docs/how-to/live-view.md docs/how-to/plug-in-your-own.md docs/how-to/two-hosts.md
-docs/how-to/real-time.md docs/how-to/advise.md docs/how-to/combinations.md docs/how-to/components.md docs/how-to/your-own-arm.md CONTRIBUTING.md SECURITY.md
-docs/theory/induced-master-motion.md docs/theory/stability.md docs/theory/rivals.md docs/theory/contest.md
-docs/theory/cancellation-models.md docs/theory/force-estimators.md docs/theory/hand-force.md
-docs/theory/frequency-responses.md docs/theory/signal-prediction.md docs/theory/operator-impedance.md
-docs/theory/sensorless-teleoperation.md docs/theory/quick-identification.md docs/theory/diagnosis.md
-docs/theory/servo-hydraulic-slave.md docs/theory/couplings.md docs/theory/four-channel.md docs/theory/simulation.md
-docs/theory/maps.md docs/theory/passivity.md docs/theory/successive-isolation.md docs/validation.md
-docs/theory/arm-margins.md docs/how-to/add-an-element.md docs/how-to/add-an-experiment.md docs/theory/arms.md
-docs/theory/changing-grip.md docs/how-to/identify-your-master.md docs/how-to/logs.md
+docs/how-to/real-time.md docs/how-to/advise.md docs/how-to/combinations.md docs/how-to/components.md
+docs/how-to/your-own-arm.md CONTRIBUTING.md SECURITY.md docs/theory/induced-master-motion.md docs/theory/stability.md
+docs/theory/rivals.md docs/theory/contest.md docs/theory/cancellation-models.md docs/theory/force-estimators.md
+docs/theory/hand-force.md docs/theory/frequency-responses.md docs/theory/signal-prediction.md
+docs/theory/operator-impedance.md docs/theory/sensorless-teleoperation.md docs/theory/quick-identification.md
+docs/theory/diagnosis.md docs/theory/servo-hydraulic-slave.md docs/theory/couplings.md docs/theory/four-channel.md
+docs/theory/simulation.md docs/theory/maps.md docs/theory/passivity.md docs/theory/successive-isolation.md
+docs/validation.md docs/theory/arm-margins.md docs/how-to/add-an-element.md docs/how-to/add-an-experiment.md
+docs/theory/arms.md docs/theory/changing-grip.md docs/how-to/identify-your-master.md docs/how-to/logs.md
+docs/architecture.md docs/how-to/identify-an-arm.md docs/how-to/identify-from-a-recording.md docs/how-to/rigs.md
 """.split()
 
 # Pages that have yet to be rewritten. This list only shrinks.
 NOT_YET = """
-docs/reference/wire-format.md docs/architecture.md docs/how-to/faults.md docs/how-to/identify-an-arm.md
-docs/how-to/identify-from-a-recording.md docs/how-to/rigs.md docs/theory/safety.md
+docs/reference/wire-format.md docs/how-to/faults.md docs/theory/safety.md
 """.split()
 
 # (page, word as it is found, why it may stay)
