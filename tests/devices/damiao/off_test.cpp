@@ -3,6 +3,7 @@
 #include <tactus/signal/random.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -139,7 +140,7 @@ class Frames final : public wire::WireEnd {
 };
 
 TEST(DamiaoBus, DisableIsSentInEachCycleUntilTheMotorSaysThatItIsOff) {
-  for (const std::uint8_t status : {0x0, 0x1, 0x7}) {
+  for (const std::uint8_t status : std::array<std::uint8_t, 3>{0x0, 0x1, 0x7}) {
     const EmulatedFault lie = reports(status, 310 * ms);
     Bench bench({.framing = Framing::socketcan, .faults = {lie}});
     bench.run(200 * ms);
@@ -209,7 +210,7 @@ TEST(DamiaoBus, AMotorThatFellSilentUnderPowerCountsAsPoweredUntilItAnswers) {
 }
 
 TEST(DamiaoBus, AMotorThatDoesNotSayThatItIsOffWhenItIsAskedMakesTheBusRefused) {
-  for (const std::uint8_t status : {0x1, 0x2, 0x7, 0xf}) {
+  for (const std::uint8_t status : std::array<std::uint8_t, 4>{0x1, 0x2, 0x7, 0xf}) {
     Bench bench({.faults = {reports(status, 0)}});
     bench.command_all(0.3);
     bench.run(500 * ms);
