@@ -57,12 +57,12 @@ Joints<double> own_damping(const ArmPairSetup& setup, bool leads) {
   const auto& sites = setup.params.control;
   const std::size_t joints = setup.leader.joints.size();
   const auto gains = sites.follower.gains.of(joints);
-  const auto of_leader = sites.drive_damping.of(joints);
+  const auto leader_damping = sites.drive_damping.of(joints);
   const bool pulls = sites.method == arm_control::ArmMethod::position_position;
   Joints<double> damping(joints);
   for (std::size_t i = 0; i < joints; ++i) {
     const double pulling = gains[i].damping_N_m_s_per_rad;
-    damping[i] = !leads ? pulling : pulls ? sites.force_gain * pulling : of_leader[i].damping_N_m_s_per_rad;
+    damping[i] = !leads ? pulling : pulls ? sites.force_gain * pulling : leader_damping[i].damping_N_m_s_per_rad;
   }
   return damping;
 }
