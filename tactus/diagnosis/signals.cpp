@@ -113,7 +113,7 @@ struct Found {
 bool has_few_levels(const std::vector<double>& values, std::size_t most) {
   std::vector<double> different;
   for (const double value : values) {
-    if (std::find(different.begin(), levels.end(), value) != levels.end()) continue;
+    if (std::find(different.begin(), different.end(), value) != different.end()) continue;
     different.push_back(value);
     if (different.size() > most) return false;
   }
