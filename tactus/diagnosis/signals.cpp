@@ -110,11 +110,11 @@ struct Found {
 
 /// Are there no more than so many different values?
 bool has_few_levels(const std::vector<double>& values, std::size_t most) {
-  std::vector<double> levels;
+  std::vector<double> different;
   for (const double value : values) {
-    if (std::find(levels.begin(), levels.end(), value) != levels.end()) continue;
-    levels.push_back(value);
-    if (levels.size() > most) return false;
+    if (std::find(different.begin(), different.end(), value) != different.end()) continue;
+    different.push_back(value);
+    if (different.size() > most) return false;
   }
   return true;
 }
