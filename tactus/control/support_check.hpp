@@ -135,9 +135,8 @@ class SupportCheck {
     if (!input.judged || (input.tried && !holds())) return SupportFault::none;
     if (std::fabs(moved_m_) > params_.most_m) return SupportFault::distance;
     if (std::fabs(speed_m_per_s_) > params_.most_m_per_s) return SupportFault::speed;
-    // In a trial the damper bears up to its force, and the soft spring up to half of it on top of what it gave before.
-    constexpr double trial_share = 1.5;
-    const double most_N = may_be_N + (input.tried ? trial_share * params_.least_force_N : 0.0);
+    // What a trial accelerates is in the excess, up to the force of the trial.
+    const double most_N = may_be_N + (input.tried ? params_.least_force_N : 0.0);
     return std::fabs(excess_N_) > most_N ? SupportFault::force : SupportFault::none;
   }
 

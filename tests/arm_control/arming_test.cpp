@@ -13,7 +13,7 @@ namespace {
 /// How many rigs of each kind; `TACTUS_ARMING_RIGS` in the environment asks for more.
 int rigs_of_each() {
   const char* asked = std::getenv("TACTUS_ARMING_RIGS");
-  return asked != nullptr ? std::atoi(asked) : 8;
+  return asked != nullptr ? std::atoi(asked) : 12;
 }
 
 class Draw {
