@@ -43,7 +43,9 @@ class OwnArm final : public devices::BlockingDriver {
   }
 
   std::size_t motors() const noexcept override { return StandInRobot::joints; }
-  devices::MotorAbility ability(std::size_t) const noexcept override { return {.torque_Nm = params_.torque_limit_Nm}; }
+  devices::MotorAbility ability(std::size_t) const noexcept override {
+    return {.torque_Nm = params_.torque_limit_Nm, .velocity_step_rad_per_s = 1e-4};
+  }
 
   Check open() override {
     robot_.connect();

@@ -116,9 +116,9 @@ Check refuse_unreachable(const SafetyGate::Params& gate, const std::string& name
   return refuse_unreachable(gate, name, false);
 }
 
-Check refuse_unreachable(const ControlParams& params, SiteRole role) {
+Check refuse_unreachable(const ControlParams& params, SiteRole role, bool senses_force) {
   const bool master = role == SiteRole::master;
-  const bool sensed = !master && params.slave_force.source == SlaveForceSource::sensor;
+  const bool sensed = senses_force && !master && params.slave_force.source == SlaveForceSource::sensor;
   const SafetyGate::Params& gate = master ? params.gate : params.slave_gate;
   const std::string name = master ? "gate" : "slave_gate";
   if (auto error = refuse_unreachable(gate, name, sensed)) return error;
@@ -142,10 +142,10 @@ Check refuse_default_limits(const SafetyGate::Params& gate, const std::string& n
   return refuse(found);
 }
 
-Check refuse_default_limits(const ControlParams& params, SiteRole role) {
+Check refuse_default_limits(const ControlParams& params, SiteRole role, bool senses_force) {
   const ControlParams defaults;
   const bool master = role == SiteRole::master;
-  const bool sensed = !master && params.slave_force.source == SlaveForceSource::sensor;
+  const bool sensed = senses_force && !master && params.slave_force.source == SlaveForceSource::sensor;
   std::vector<Unchosen> found;
   if (master) {
     add_unchosen(params.gate, defaults.gate, "gate", found);

@@ -14,8 +14,10 @@ namespace tactus::control {
 /// tip sensor says counts at a slave whose `slave_force.source` is the sensor, what a hand's says not at all. A value
 /// that equals the default counts as not chosen.
 ///
+/// `senses_force`: the device has a force sensor, which motors of a bus have not.
+///
 /// Errors: `inconsistent`, naming all such keys below `[control]` and their values. Cold: allocates.
-Check refuse_default_limits(const ControlParams& params, SiteRole role);
+Check refuse_default_limits(const ControlParams& params, SiteRole role, bool senses_force = true);
 
 /// The same of a gate alone, called `name`, before a motor whose site has no force sensor. Its keys stand below `name`.
 Check refuse_default_limits(const SafetyGate::Params& gate, const std::string& name);
@@ -34,7 +36,7 @@ Check refuse_default_limits(const SafetyGate::Params& gate, const std::string& n
 /// of a motor that gives no force.
 ///
 /// Errors: `inconsistent`, naming the key, both values and the largest that is useful. Cold: allocates.
-Check refuse_unreachable(const ControlParams& params, SiteRole role);
+Check refuse_unreachable(const ControlParams& params, SiteRole role, bool senses_force = true);
 /// The same of a gate alone, called `name`, of a site without a force sensor.
 Check refuse_unreachable(const SafetyGate::Params& gate, const std::string& name);
 

@@ -33,6 +33,9 @@ void tighten(control::SafetyGate::Params& gate, const DeviceLimits& device) {
   gate.energy.drain_W = std::min(gate.energy.drain_W, 0.5 * most_W);
 }
 
+/// Motors that report their own velocity are those of a bus, where no sensor measures a force.
+bool senses_force(const DeviceLimits& device) { return !(device.velocity_step_m_per_s > 0.0); }
+
 /// The parameters with the thresholds that nobody chose, for a device that has them follow.
 control::ControlParams with_threshold(const control::ControlParams& control, control::SiteRole role,
                                       const DeviceLimits& device) {
@@ -71,8 +74,8 @@ Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>&
   for (std::size_t joint = 0; joint < joints_of(control); ++joint) {
     const control::ControlParams& own = joint_of(control, joint);
     const DeviceLimits& limits = joint_of(allowed, joint);
-    auto error = control::refuse_default_limits(with_threshold(own, role, limits), role);
-    if (!error) error = control::refuse_unreachable(tightened(own, role, limits), role);
+    auto error = control::refuse_default_limits(with_threshold(own, role, limits), role, senses_force(limits));
+    if (!error) error = control::refuse_unreachable(tightened(own, role, limits), role, senses_force(limits));
     if (error) return under("control", under_joint<Reading>(joint, *std::move(error)));
   }
   return wall;

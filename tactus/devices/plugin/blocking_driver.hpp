@@ -13,6 +13,9 @@ namespace tactus::devices {
 struct MotorAbility {
   double torque_Nm = 0.0;           ///< largest torque; 0: it accepts no command; infinite: not known
   double velocity_rad_per_s = 0.0;  ///< largest velocity that its messages can represent; 0: not known
+  /// Step in which it reports a velocity of its own, not derived from the position. Position and velocity are then
+  /// compared (`control::MotionCheck`), and thresholds of the gate follow from the joint's limits. 0: it reports none.
+  double velocity_step_rad_per_s = 0.0;
   /// Farthest position of a joint, either way from the motor's zero; infinite: not known.
   double position_rad = std::numeric_limits<double>::infinity();
   /// Largest gains of the law that it runs by itself; both 0: it runs none.

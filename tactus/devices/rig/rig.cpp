@@ -119,7 +119,9 @@ Check Rig::read_and_check() {
       if (Check error = check_keys(here)) return error;
       if (Check error = check_side(here)) return error;
       for (RigJoint& joint : here.joints) {
-        joint.joint.gives_force = ability_of(here.bus, joint.motor).torque_Nm > 0.0;
+        const MotorAbility ability = ability_of(here.bus, joint.motor);
+        joint.joint.gives_force = ability.torque_Nm > 0.0;
+        if (here.bus.kind == BusKind::plugged) joint.joint.velocity_step_rad_per_s = ability.velocity_step_rad_per_s;
         if (here.bus.kind == BusKind::feetech) joint.joint.turn_rad = 2.0 * std::numbers::pi;
       }
     }

@@ -341,6 +341,7 @@ Check Rig::read() {
     for (std::optional<RigSide>* side : {&pair.leader, &pair.follower}) {
       if (!*side) continue;
       const auto kind = document_.text_at(join((*side)->path, "bus"));
+      if ((*side)->bus.kind == BusKind::plugged) continue;  // its driver states it
       for (RigJoint& joint : (*side)->joints) joint.joint.velocity_step_rad_per_s = velocity_step_of(*kind);
     }
   }
