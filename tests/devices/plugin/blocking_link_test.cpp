@@ -26,6 +26,7 @@ struct Seen {
   std::atomic<double> torque_Nm{0.0};
   std::atomic<int> enabled{0};
   std::atomic<bool> blocks{false};  ///< until it is false again
+  std::atomic<bool> blocked{false};
 };
 
 class Driver final : public BlockingDriver {
@@ -39,7 +40,10 @@ class Driver final : public BlockingDriver {
     return opening_;
   }
   Check exchange(std::span<const MotorCommand> commands, std::span<MotorReading> readings) override {
-    while (seen_->blocks) std::this_thread::sleep_for(1ms);
+    while (seen_->blocks) {
+      seen_->blocked = true;
+      std::this_thread::sleep_for(1ms);
+    }
     seen_->torque_Nm = commands[0].torque_Nm;
     seen_->enabled = static_cast<int>(commands[0].enabled);
     readings[0].position_rad = 0.25;
@@ -147,6 +151,7 @@ TEST(BlockingLink, ADriverThatCannotOpenSaysWhy) {
 /// As `MotorBusDevice` judges it, which is what makes a site release its force.
 DeviceHealth health_of(MotorBusDevice& device) {
   station::Tick tick;
+  tick.began_ns = tick.deadline_ns = wire::monotonic_ns();
   device.read(tick);
   return device.health();
 }
@@ -191,6 +196,7 @@ TEST(BlockingLink, ADriverThatStaysBlockedDoesNotKeepTheProgramFromEnding) {
   auto link = *BlockingLink::start(std::make_unique<Driver>(seen), longest_silence_s);
   ASSERT_FALSE(link->wait_until_asked(patient));
   seen->blocks = true;
+  ASSERT_TRUE(becomes([&] { return seen->blocked.load(); }));
   link->stop();
   EXPECT_TRUE(link->running());  // its thread is left behind
   link.reset();
