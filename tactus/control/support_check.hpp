@@ -130,11 +130,17 @@ class SupportCheck {
       const double yields_m = std::min(may_be_N / params_.stiffness_N_per_m, params_.most_m);
       anchor_m_ = std::clamp(anchor_m_, input.position_m - yields_m, input.position_m + yields_m);
     }
-    excess_N_ =
-        params_.stiffness_N_per_m * (input.position_m - anchor_m_) + params_.damping_N_s_per_m * input.velocity_m_per_s;
+    excess_N_ = params_.damping_N_s_per_m * input.velocity_m_per_s - spring_N(input.position_m);
     if (!input.judged || (input.tried && !holds())) return SupportFault::none;
-    if (std::fabs(moved_m_) > params_.most_m) return SupportFault::distance;
-    if (std::fabs(speed_m_per_s_) > params_.most_m_per_s) return SupportFault::speed;
+    // The trial moves a joint too, by more than its support may.
+    constexpr double trial_travel = 1.4;
+    if (std::fabs(moved_m_) > (input.tried ? trial_travel : 1.0) * params_.most_m) return SupportFault::distance;
+    // The trial alone moves a joint whose damper is limited at its force over the damping, less what friction takes.
+    constexpr double trial_margin = 1.2;
+    const double by_trial_m_per_s = input.tried && params_.damping_N_s_per_m > 0.0
+                                        ? trial_margin * params_.least_force_N / params_.damping_N_s_per_m
+                                        : 0.0;
+    if (std::fabs(speed_m_per_s_) > std::max(params_.most_m_per_s, by_trial_m_per_s)) return SupportFault::speed;
     // What a trial accelerates is in the excess, up to the force of the trial.
     const double most_N = may_be_N + (input.tried ? params_.least_force_N : 0.0);
     return std::fabs(excess_N_) > most_N ? SupportFault::force : SupportFault::none;

@@ -102,7 +102,10 @@ NameAndUnit split_unit(std::string_view head) {
     const std::string_view before = trim(head.substr(0, start));
     if (inside == "-" || inside == "–") return {std::string(before), {}};
     if (std::string unit = unit_of(inside); !unit.empty()) return {std::string(before), std::move(unit)};
-    if (!belongs_to_name(inside, open == '[' && before.size() == start)) {
+    // As our own exports write a unit, whatever it is.
+    constexpr std::size_t longest_word = 10;
+    const bool of_export = open == '[' && before.size() != start && inside.size() > longest_word;
+    if (of_export || !belongs_to_name(inside, open == '[' && before.size() == start)) {
       return {std::string(before), std::string(inside)};
     }
     NameAndUnit stem = split_suffix(before);

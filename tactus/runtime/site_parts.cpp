@@ -18,9 +18,14 @@ namespace {
 using station::DeviceLimits;
 
 constexpr std::pair<const char*, double DeviceLimits::*> limit_names[]{
-    {"force_N", &DeviceLimits::force_N},           {"handle_force_N", &DeviceLimits::handle_force_N},
-    {"rate_N_per_s", &DeviceLimits::rate_N_per_s}, {"velocity_m_per_s", &DeviceLimits::velocity_m_per_s},
-    {"position_m", &DeviceLimits::position_m},     {"velocity_step_m_per_s", &DeviceLimits::velocity_step_m_per_s}};
+    {"force_N", &DeviceLimits::force_N},
+    {"handle_force_N", &DeviceLimits::handle_force_N},
+    {"rate_N_per_s", &DeviceLimits::rate_N_per_s},
+    {"velocity_m_per_s", &DeviceLimits::velocity_m_per_s},
+    {"position_m", &DeviceLimits::position_m},
+    {"velocity_step_m_per_s", &DeviceLimits::velocity_step_m_per_s},
+    {"stiffness_N_per_m", &DeviceLimits::stiffness_N_per_m},
+    {"damping_N_s_per_m", &DeviceLimits::damping_N_s_per_m}};
 
 std::string joint_key(std::size_t joint, const char* name) { return "joint_" + std::to_string(joint + 1) + "." + name; }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <tactus/core/joints.hpp>
 #include <tactus/devices/plugin/driver_registry.hpp>
 
+#include <cstddef>
 #include <cstdint>
 
 /// A shared object that adds drivers to the `tactus` command: `tactus --plugin FILE.so run ...`.

@@ -14,13 +14,9 @@ namespace {
 
 using control::SafetyGate;
 
-Check check_arm_gate(const SafetyGate::Params& gate, const Joints<station::DeviceLimits>& limits,
-                     const std::string& name, Seconds tick) {
+Check check_arm_gate(const SafetyGate::Params& gate, const std::string& name, Seconds tick) {
   SafetyGate::Params chosen = gate;
-  // Of joints that report their velocity this one follows from each joint's limit.
-  const bool follows =
-      std::ranges::all_of(limits, [](const station::DeviceLimits& joint) { return joint.velocity_step_m_per_s > 0.0; });
-  if (follows) chosen.encoder.frozen_force_N = 0.5 * gate.force_limit_N;
+  chosen.encoder.frozen_force_N = 0.5 * gate.force_limit_N;  // follows from each joint's limit, see joint_gates
   if (Check error = control::refuse_default_limits(chosen, name)) return error;
   if (const auto made = SafetyGate::make(gate, tick); !made) return under(name, made.error());
   return std::nullopt;
@@ -117,7 +113,7 @@ Result<Begun> begin(const ArmPairSetup& setup, bool leads, const Joints<station:
                          units::none);
   }
   const Seconds tick{1.0 / setup.params.servo.rate_Hz};
-  if (Check error = check_arm_gate(gate, limits, name, tick)) return *std::move(error);
+  if (Check error = check_arm_gate(gate, name, tick)) return *std::move(error);
   auto supervised = joint_supervision(setup.params.rig, joints);
   if (!supervised) return supervised.error();
   if (!start.tries_motors) {
@@ -140,7 +136,11 @@ arm_control::DriveGains beside_the_arm(const ArmPairSetup& setup, bool leads) {
 
 Joints<SafetyGate::Params> joint_gates(const SafetyGate::Params& of_all, const Joints<station::DeviceLimits>& limits) {
   Joints<SafetyGate::Params> each(limits.size());
-  for (std::size_t i = 0; i < limits.size(); ++i) each[i] = station::tightened(of_all, limits[i]);
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    each[i] = station::tightened(of_all, limits[i]);
+    const bool unchosen = of_all.encoder.frozen_force_N == SafetyGate::Params{}.encoder.frozen_force_N;
+    if (unchosen) each[i].encoder.frozen_force_N = 0.5 * each[i].force_limit_N;
+  }
   return each;
 }
 

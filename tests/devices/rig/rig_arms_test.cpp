@@ -20,7 +20,11 @@ TEST(RigArms, AlignCarryThemselvesTryEachMotorAndTheFollowerGoesToItsLeader) {
   EXPECT_TRUE(bench.leader_link->arm->held());
   const auto leader_m = Bench::tool_m(*bench.leader_link);
   ASSERT_TRUE(bench.couple()) << name_of(bench.last.cause) << " " << name_of(bench.last.leader) << " "
-                              << name_of(bench.last.fault) << bench.last.fault_joint;
+                              << name_of(bench.last.fault) << bench.last.fault_joint << " "
+                              << name_of(bench.last.support.fault) << " of joint " << bench.last.support.joint
+                              << " at share " << bench.last.support.share << ": moved " << bench.last.support.moved_m
+                              << " at " << bench.last.support.speed_m_per_s << ", excess "
+                              << bench.last.support.excess_N << " of " << bench.last.support.weight_N;
   EXPECT_FALSE(bench.leader_link->arm->held()) << "its motors carry it";
   EXPECT_FALSE(bench.follower_link->arm->held());
   bench.run(3.0);
@@ -66,7 +70,7 @@ TEST(RigArms, AnArmWhoseModelIsHalfAsHeavyAgainIsReleasedBeforeAJointLeaps) {
   Bench bench({}, scaled(1.5, 1.0));
   const arm::JointVector began = Bench::positions(*bench.leader_link);
   double farthest_rad = 0.0;
-  for (int i = 0; i < 2000 && bench.last.support.fault == control::SupportFault::none; ++i) {
+  for (int i = 0; i < 4000 && bench.last.support.fault == control::SupportFault::none; ++i) {
     farthest_rad = std::max(farthest_rad, (Bench::positions(*bench.leader_link) - began).cwiseAbs().maxCoeff());
     bench.run(0.002);
     const auto& site = bench.loop->sites().master();
@@ -75,7 +79,6 @@ TEST(RigArms, AnArmWhoseModelIsHalfAsHeavyAgainIsReleasedBeforeAJointLeaps) {
   bench.run(1.0);
   EXPECT_LT(farthest_rad, 0.03);
   EXPECT_EQ(bench.last.cause, control::SiteCause::support);
-  EXPECT_EQ(bench.last.support.joint, 1U) << "the shoulder bears most";
   EXPECT_GT(bench.last.support.share, 0.66);
   EXPECT_GT(bench.last.support.excess_N * bench.last.support.weight_N, 0.0) << "it rose";
   for (std::size_t motor = 0; motor <= joints; ++motor) {
@@ -201,10 +204,10 @@ TEST(RigArms, AFaultOfAMotorLetsItsArmGoAndTheOtherFloats) {
         Case{FaultKind::communication_lost, 2, false}, Case{FaultKind::over_voltage, 4, false},
         Case{FaultKind::hot_winding, 1, false}, Case{FaultKind::overload, 7, false},
         Case{FaultKind::register_answer, 0, true}, Case{FaultKind::garbage, 0, true}}) {
-    Bench bench({{.kind = c.kind, .motor = c.motor, .from_ns = 7000 * ms}});
+    Bench bench({{.kind = c.kind, .motor = c.motor, .from_ns = 14000 * ms}});
     ASSERT_TRUE(bench.couple());
     const auto leader_m = Bench::tool_m(*bench.leader_link);
-    bench.run(7.5 - 1e-9 * static_cast<double>(bench.leader_link->now_ns));
+    bench.run(14.5 - 1e-9 * static_cast<double>(bench.leader_link->now_ns));
     bench.run(1.0);
     const std::string what = std::string(name_of(c.kind)) + ":" + std::to_string(c.motor);
     if (c.goes_on) {

@@ -92,9 +92,10 @@ TEST(Rig, EveryMistakeIsToldWithItsLineAndRemedy) {
   EXPECT_EQ(problem_of(side + "bits_per_s = 1000000\n" + one),
             "rig.toml:4:1: arm.leader.bits_per_s: unknown key: [arm.leader] can have bus, port, framing, patience_s, "
             "watchdog_s, elbow");
-  EXPECT_EQ(problem_of("[arm.leader]\nbus = \"damiau\"\nport = \"/dev/a\"\n" + one),
-            "rig.toml:2:7: arm.leader.bus: \"damiau\" is no choice here: it must be \"damiao\", \"dynamixel\", "
-            "\"feetech\" or \"inverse3\"; did you mean \"damiao\"?");
+  EXPECT_EQ(
+      problem_of("[arm.leader]\nbus = \"damiau\"\nport = \"/dev/a\"\n" + one),
+      "rig.toml:2:7: arm.leader.bus: 'damiau' is not a bus that tactus can drive; write one of damiao, dynamixel, "
+      "feetech, inverse3, or load the driver with `tactus --plugin FILE.so`");
   EXPECT_EQ(problem_of("[arm.leader]\nport = \"/dev/a\"\n" + one),
             "rig.toml:1:6: arm.leader.bus: this key is needed: write bus = \"...\" under [arm.leader]");
   EXPECT_EQ(problem_of("[arm.leader]\nbus = \"damiao\"\n" + one),
