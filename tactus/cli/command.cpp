@@ -86,15 +86,18 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", version_text());
   set_help(app);
   // Loaded before the command that follows reads a rig file.
+  std::optional<Error> unloaded;
   app.add_option_function<std::vector<std::string>>(
          "--plugin",
-         [](const std::vector<std::string>& files) {
+         [&unloaded](const std::vector<std::string>& files) {
            for (const std::string& file : files) {
-             if (const auto error = load_plugin(file)) throw CLI::ValidationError(describe(*error));
+             unloaded = load_plugin(file);
+             if (unloaded) throw CLI::RuntimeError(exit_status(*unloaded));
            }
          },
          "Shared object that adds drivers for rig files; before COMMAND")
       ->type_name("FILE.so")
+      ->expected(1)
       ->take_all();
   app.option_defaults()->always_capture_default();
   // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
@@ -123,6 +126,10 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) return refuse(name, "A command is required");
   } catch (const CLI::ParseError& error) {
+    if (unloaded) {
+      std::cerr << name << ": " << describe(*unloaded) << "\n";
+      return exit_status(*unloaded);
+    }
     // Help and version come this way too, with a code of 0.
     if (error.get_exit_code() != 0) {
       const std::string unknown = unknown_word(app, argc, argv);

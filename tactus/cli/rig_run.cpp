@@ -343,7 +343,10 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
     wrong = loop ? run_rig_loop(*std::move(loop), around) : request.document.locate(loop.error());
   }
   Check powered = switch_off(driven, sides, errors);
-  return wrong ? wrong : powered;
+  if (!powered) return wrong;
+  // What matters now comes last.
+  if (wrong) errors.say("tactus: " + describe(*wrong) + "\n");
+  return powered;
 }
 
 }  // namespace tactus::cli

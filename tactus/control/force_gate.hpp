@@ -91,7 +91,9 @@ class ForceGate {
     const double wanted = fault_ == GateFault::none ? std::clamp(command_N, -force_limit_N_, force_limit_N_) : 0.0;
     double lowest = passed_N_ - largest_step_N_, highest = passed_N_ + largest_step_N_;
     if (stops || fault_ != GateFault::none) {
-      const double fall_N = largest_fall_N_ * static_cast<double>(std::max<std::int64_t>(elapsed_ticks, 1));
+      // Where the rate limit is the faster one, a late tick earns nothing: it would be a step above that limit.
+      const std::int64_t counted = largest_fall_N_ > largest_step_N_ ? std::max<std::int64_t>(elapsed_ticks, 1) : 1;
+      const double fall_N = largest_fall_N_ * static_cast<double>(counted);
       if (passed_N_ > 0.0) lowest = std::min(lowest, std::max(passed_N_ - fall_N, 0.0));
       if (passed_N_ < 0.0) highest = std::max(highest, std::min(passed_N_ + fall_N, 0.0));
     }

@@ -132,9 +132,7 @@ class SupportCheck {
     }
     excess_N_ = params_.damping_N_s_per_m * input.velocity_m_per_s - spring_N(input.position_m);
     if (!input.judged || (input.tried && !holds())) return SupportFault::none;
-    // The trial moves a joint too, by more than its support may.
-    constexpr double trial_travel = 1.4;
-    if (std::fabs(moved_m_) > (input.tried ? trial_travel : 1.0) * params_.most_m) return SupportFault::distance;
+    if (std::fabs(moved_m_) > params_.most_m) return SupportFault::distance;
     // The trial alone moves a joint whose damper is limited at its force over the damping, less what friction takes.
     constexpr double trial_margin = 1.2;
     const double by_trial_m_per_s = input.tried && params_.damping_N_s_per_m > 0.0

@@ -158,7 +158,7 @@ std::string unit_of(std::string_view text) {
   for (const char* const second : {" s-1", ".s-1", "*s-1"}) replace_all(plain, second, "/s");
   if (std::string whole = one_word(plain); !whole.empty()) return whole;
   const std::size_t over = plain.find('/');
-  const std::string above = product(plain.substr(0, over));
+  std::string above = product(plain.substr(0, over));
   if (over == std::string::npos || above.empty()) return above;
   std::string below = plain.substr(over + 1);
   std::string power;

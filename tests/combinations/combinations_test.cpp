@@ -242,7 +242,7 @@ TEST_F(Programs, OneDocumentOfItsSchemaIsAllThatSitesPrintWithJson) {
 
 TEST_F(Programs, MoreThatMakesNoSenseIsRefusedAsThePageSays) {
   const std::string text = page();
-  std::istringstream lines(text.substr(text.find("More that makes no sense")));
+  std::istringstream lines(text.substr(text.find("Other combinations that are refused")));
   int refused = 0;
   for (std::string line; std::getline(lines, line) && !line.starts_with("##");) {
     if (!line.starts_with("| `--")) continue;

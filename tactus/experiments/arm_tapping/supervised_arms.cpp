@@ -139,7 +139,8 @@ Joints<SafetyGate::Params> joint_gates(const SafetyGate::Params& of_all, const J
   for (std::size_t i = 0; i < limits.size(); ++i) {
     each[i] = station::tightened(of_all, limits[i]);
     const bool unchosen = of_all.encoder.frozen_force_N == SafetyGate::Params{}.encoder.frozen_force_N;
-    if (unchosen) each[i].encoder.frozen_force_N = 0.5 * each[i].force_limit_N;
+    constexpr double gives_none_N = 1e-6;
+    if (unchosen && each[i].force_limit_N > gives_none_N) each[i].encoder.frozen_force_N = 0.5 * each[i].force_limit_N;
   }
   return each;
 }

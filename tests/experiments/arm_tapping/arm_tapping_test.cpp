@@ -256,6 +256,8 @@ TEST(ArmTapping, AFollowerThatCannotBeCommandedJointByJointIsRefused) {
   EXPECT_NE(problem(params).message.find("something is said of it"), std::string::npos);
   params = shipped();  // whose tool this pose moves elsewhere
   params.arm.follower.urdf = "arms/franka-class-follower.urdf";
+  EXPECT_NE(problem(params).message.find("outside its range"), std::string::npos) << problem(params).message;
+  params.arm.joints.joint_2.start_rad = -1.7;  // within its range
   EXPECT_EQ(problem(params).code, ErrorCode::inconsistent);
   EXPECT_NE(problem(params).message.find("degrees from there"), std::string::npos) << problem(params).message;
 }
