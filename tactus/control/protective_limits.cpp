@@ -76,8 +76,9 @@ Check refuse_unreachable(const SafetyGate::Params& gate, const std::string& name
   const double most_N = gate.force_limit_N;
   if (most_N < gives_none_N) return {};
   const SafetyGate::Params defaults;
-  if (gate.encoder.frozen_force_N > most_N) {
-    return unreachable(name + ".encoder.frozen_force_N", gate.encoder.frozen_force_N, "N", most_N,
+  // It is a change of the force, which may go from one end to the other.
+  if (gate.encoder.frozen_force_N > 2.0 * most_N) {
+    return unreachable(name + ".encoder.frozen_force_N", gate.encoder.frozen_force_N, "N", 2.0 * most_N,
                        force_reach(gate, name));
   }
   if (sensed && gate.encoder.unbalanced_force_N > most_N) {

@@ -32,6 +32,8 @@ class SiteConsole {
   /// lose it. Once, after `step`.
   bool over(const station::Tick& tick, bool works, bool gives_force) noexcept;
 
+  /// Whether the sites are to end: their duration is over, or their end was requested.
+  [[nodiscard]] bool leaving() const noexcept { return leaving_; }
   /// From the first tick to the latest.
   [[nodiscard]] double time_s() const noexcept { return time_s_; }
   [[nodiscard]] SiteExchange& exchange() const noexcept { return *exchange_; }

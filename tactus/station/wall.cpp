@@ -12,14 +12,15 @@ void tighten(double& limit, double of_device) {
   if (of_device > 0.0) limit = std::min(limit, of_device);
 }
 
-/// Where nobody chose how much force must move a joint, half of what it may have. Only for a device that reports its
+/// Where nobody chose how much force must move a joint, a change by one and a half of what it may have: friction and an
+/// operator's hand hold a joint against less. Of one that gives no force, none must. Only for a device that reports its
 /// velocity: there this check is the last of three.
 void choose_threshold(control::SafetyGate::Params& gate, const DeviceLimits& device) {
-  constexpr double gives_none_N = 1e-6;
-  if (device.force_N > 0.0 && device.force_N < gives_none_N) return;  // nothing must move what has no force
   double& threshold_N = gate.encoder.frozen_force_N;
   if (threshold_N != control::SafetyGate::Params{}.encoder.frozen_force_N) return;
-  threshold_N = 0.5 * (device.force_N > 0.0 ? std::min(gate.force_limit_N, device.force_N) : gate.force_limit_N);
+  constexpr double gives_none_N = 1e-6, never_N = 200.0;
+  const double most_N = device.force_N > 0.0 ? std::min(gate.force_limit_N, device.force_N) : gate.force_limit_N;
+  threshold_N = most_N < gives_none_N ? never_N : 1.5 * most_N;
 }
 
 void tighten(control::SafetyGate::Params& gate, const DeviceLimits& device) {

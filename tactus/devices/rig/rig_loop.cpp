@@ -87,6 +87,7 @@ bool RigLoop::operator()(const station::Tick& tick) noexcept {
   }
   const control::SiteRequests by_person =
       console_.step(tick, second_.leader, pair_.sites().master().heard().session != 0);
+  if (console_.leaving() && !at_end_) at_end_ = second_;
   judge_distance();
   const control::SiteRequests pressed = asked(by_person);
   const auto done = pair_.step(tick, pressed);

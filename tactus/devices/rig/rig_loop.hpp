@@ -44,8 +44,9 @@ class RigLoop {
   [[nodiscard]] const station::JointSupervisedPair& sites() const noexcept { return pair_.sites(); }
   /// After the last tick.
   [[nodiscard]] const RigTotals& totals() const noexcept { return totals_; }
-  /// The second that had begun, as it stood at the last tick. After it.
-  [[nodiscard]] const RigSecond& last() const noexcept { return second_; }
+  /// The second that had begun, as it was when the sites were to end: what an arm does that is released then is no
+  /// fault of the run. After the last tick.
+  [[nodiscard]] const RigSecond& last() const noexcept { return at_end_ ? *at_end_ : second_; }
   /// The seconds that ended, as they end. One other thread.
   [[nodiscard]] std::optional<RigSecond> next_second() noexcept { return next_of(*shared_); }
 
@@ -66,6 +67,7 @@ class RigLoop {
   runtime::JointStreams* streams_ = nullptr;
   std::shared_ptr<RigSeconds> shared_ = std::make_shared<RigSeconds>();
   Joints<station::DeviceReading> leader_read_, follower_read_;
+  std::optional<RigSecond> at_end_;
   RigSecond second_;
   RigTotals totals_;
   bool seen_ = false;     ///< both were read

@@ -140,6 +140,7 @@ bool RigSiteLoop::operator()(const station::Tick& tick) noexcept {
     return false;
   }
   const control::SiteRequests by_person = console_.step(tick, own_, link_.heard());
+  if (console_.leaving() && !at_end_) at_end_ = second_;
   judge_distance();
   const control::SiteRequests pressed = asked(by_person);
   std::visit([&](auto& site) noexcept { step(site, tick, pressed); }, site_);

@@ -45,8 +45,9 @@ class RigSiteLoop {
   bool operator()(const station::Tick& tick) noexcept;
   /// After the last tick.
   [[nodiscard]] const RigTotals& totals() const noexcept { return totals_; }
-  /// The second that had begun, as it stood at the last tick. After it.
-  [[nodiscard]] const RigSecond& last() const noexcept { return second_; }
+  /// The second that had begun, as it was when the sites were to end: what an arm does that is released then is no
+  /// fault of the run. After the last tick.
+  [[nodiscard]] const RigSecond& last() const noexcept { return at_end_ ? *at_end_ : second_; }
   [[nodiscard]] runtime::LinkTotals link_totals() const { return link_.totals(); }
   /// The seconds that ended, as they end; of the other side its state as it tells it, and no more. One other thread.
   [[nodiscard]] std::optional<RigSecond> next_second() noexcept { return next_of(*shared_); }
@@ -75,6 +76,7 @@ class RigSiteLoop {
   Joints<station::DeviceReading> read_;
   Joints<double> told_;  ///< places, by the other site
   control::SiteState own_ = control::SiteState::configure, other_ = control::SiteState::configure;
+  std::optional<RigSecond> at_end_;
   RigSecond second_;
   RigTotals totals_;
   bool seen_ = false;       ///< the device was read

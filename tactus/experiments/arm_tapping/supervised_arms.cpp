@@ -16,7 +16,7 @@ using control::SafetyGate;
 
 Check check_arm_gate(const SafetyGate::Params& gate, const std::string& name, Seconds tick) {
   SafetyGate::Params chosen = gate;
-  chosen.encoder.frozen_force_N = 0.5 * gate.force_limit_N;  // follows from each joint's limit, see joint_gates
+  chosen.encoder.frozen_force_N = 1.5 * gate.force_limit_N;  // follows from each joint's limit, see joint_gates
   if (Check error = control::refuse_default_limits(chosen, name)) return error;
   if (const auto made = SafetyGate::make(gate, tick); !made) return under(name, made.error());
   return std::nullopt;
@@ -139,8 +139,10 @@ Joints<SafetyGate::Params> joint_gates(const SafetyGate::Params& of_all, const J
   for (std::size_t i = 0; i < limits.size(); ++i) {
     each[i] = station::tightened(of_all, limits[i]);
     const bool unchosen = of_all.encoder.frozen_force_N == SafetyGate::Params{}.encoder.frozen_force_N;
-    constexpr double gives_none_N = 1e-6;
-    if (unchosen && each[i].force_limit_N > gives_none_N) each[i].encoder.frozen_force_N = 0.5 * each[i].force_limit_N;
+    constexpr double gives_none_N = 1e-6, change = 1.5;
+    if (unchosen && each[i].force_limit_N > gives_none_N) {
+      each[i].encoder.frozen_force_N = change * each[i].force_limit_N;
+    }
   }
   return each;
 }

@@ -257,7 +257,8 @@ TEST(ArmTapping, AFollowerThatCannotBeCommandedJointByJointIsRefused) {
   params = shipped();  // whose tool this pose moves elsewhere
   params.arm.follower.urdf = "arms/franka-class-follower.urdf";
   EXPECT_NE(problem(params).message.find("outside its range"), std::string::npos) << problem(params).message;
-  params.arm.joints.joint_2.start_rad = -1.7;  // within its range
+  params.arm.joints.joint_2.start_rad = -1.7;  // within their range
+  params.arm.joints.joint_4.start_rad = -1.0;
   EXPECT_EQ(problem(params).code, ErrorCode::inconsistent);
   EXPECT_NE(problem(params).message.find("degrees from there"), std::string::npos) << problem(params).message;
 }
