@@ -77,9 +77,9 @@ class MotionCheck {
   /// How much of the speed may be wrong for good.
   static constexpr double tolerated_share = 0.1;
   /// Change of the force over its limit that must show in a reading, how long, and in how many readings.
-  static constexpr double repeated_share = 0.5;
-  static constexpr double repeated_s = 0.1;
-  static constexpr int repeated_readings = 20;
+  static constexpr double repeated_share = 0.1;
+  static constexpr double repeated_s = 0.03;
+  static constexpr int repeated_readings = 5;
 
   static Result<MotionCheck> make(const Params& params, Seconds dt) {
     if (auto error = signal::check(params, dt)) return *std::move(error);

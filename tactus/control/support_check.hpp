@@ -134,7 +134,7 @@ class SupportCheck {
     if (!input.judged || (input.tried && !holds())) return SupportFault::none;
     if (std::fabs(moved_m_) > params_.most_m) return SupportFault::distance;
     // The trial alone moves a joint whose damper is limited at its force over the damping, less what friction takes.
-    constexpr double trial_margin = 1.2;
+    constexpr double trial_margin = 1.5;
     const double by_trial_m_per_s = input.tried && params_.damping_N_s_per_m > 0.0
                                         ? trial_margin * params_.least_force_N / params_.damping_N_s_per_m
                                         : 0.0;

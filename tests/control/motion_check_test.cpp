@@ -203,11 +203,10 @@ int repeated_after(double grows_N, bool force_is_reported, double velocity_m_per
 }
 
 TEST(MotionCheck, ADriveThatRepeatsItsAnswerWhileItsForceGoesOnIsFound) {
-  const int slow = repeated_after(0.001, true), quick = repeated_after(0.005, true);
-  EXPECT_GE(slow, 500) << "not before the force went on by half of its limit";
-  EXPECT_LE(slow, 500 + 60);
-  EXPECT_GE(quick, 100 + 45) << "and not within 0.1 s";
-  EXPECT_LE(quick, 100 + 60);
+  const int slow = repeated_after(0.001, true), quick = repeated_after(0.009, true);
+  EXPECT_GE(slow, 100) << "not before the force went on by a tenth of its limit";
+  EXPECT_LE(slow, 100 + 20);
+  EXPECT_GE(quick, 15) << "not within 30 ms";
   EXPECT_EQ(repeated_after(0.0, true), -1) << "a joint that rests under a steady force";
   EXPECT_EQ(repeated_after(0.001, false), -1) << "a drive that never reported a force";
   MotionCheck moving = MotionCheck::make({.velocity_step_m_per_s = 0.01}, tick).value();

@@ -140,7 +140,7 @@ TEST(LocalTeleoperator, OfADeviceThatReportsItsVelocityThresholdsFollowFromItsLi
   reports.velocity_step_m_per_s = 0.01;
   const control::SafetyGate::Params defaults, followed = tightened(defaults, reports),
                                               kept = tightened(defaults, limits);
-  EXPECT_EQ(followed.encoder.frozen_force_N, 2.0);
+  EXPECT_EQ(followed.encoder.frozen_force_N, 6.0) << "1.5 times 4 N";
   EXPECT_EQ(followed.motion.velocity_step_m_per_s, 0.01);
   EXPECT_EQ(followed.energy.drain_W, 4.0) << "half of 4 N at 2 m/s";
   EXPECT_EQ(kept.encoder.frozen_force_N, defaults.encoder.frozen_force_N);
@@ -168,9 +168,9 @@ TEST(LocalTeleoperator, ADeviceThatIsNotSimulatedIsRefusedUntilSomebodyChoseItsL
   EXPECT_EQ(refused_for(chosen(), real, simulation), "nothing");
   EXPECT_EQ(refused_for(chosen(), simulation, real), "nothing");
   EXPECT_EQ(refused_for(chosen(), unlimited, simulation), "master.rate_N_per_s");
-  // The device gives 4 N, the gates 5 N: what lies between is out of reach.
+  // The device gives 4 N, the gates 5 N: changes between twice the one and twice the other are out of reach.
   control::ControlParams unreachable = chosen();
-  unreachable.gate.encoder.frozen_force_N = unreachable.slave_gate.encoder.frozen_force_N = 4.5;
+  unreachable.gate.encoder.frozen_force_N = unreachable.slave_gate.encoder.frozen_force_N = 8.5;
   EXPECT_EQ(refused_for(unreachable, simulation, simulation), "nothing");
   EXPECT_EQ(refused_for(unreachable, real, simulation), "control.gate.encoder.frozen_force_N");
   EXPECT_EQ(refused_for(unreachable, simulation, real), "control.slave_gate.encoder.frozen_force_N");

