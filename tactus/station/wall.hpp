@@ -25,8 +25,8 @@ Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>&
                                                               control::SiteRole role);
 
 /// The gate within what its device allows. For a device that reports its own velocity it also gets the step of that, an
-/// `encoder.frozen_force_N` of 1.5 times the joint's force limit where it has the default, and an `energy.drain_W` of at
-/// most half of what the joint can give.
+/// `encoder.frozen_force_N` of 1.5 times the joint's force limit where it has the default, and an `energy.drain_W` of
+/// at most half of what the joint can give.
 control::SafetyGate::Params tightened(const control::SafetyGate::Params& gate, const DeviceLimits& device);
 /// The parameters with the gates of a site within what its device allows, so that they act before the wall does and
 /// what the site believes to be applied is.

@@ -173,8 +173,7 @@ TEST_F(RigRun, AStatusThatIsNotKnownEndsTheForceOfBothAndTheMotorIsToldAtTheEnd)
   EXPECT_NE(said.find("; follower: joint_2 has the fault "), std::string::npos) << said;
   EXPECT_NE(said.find(" (status 0x7 (unknown))"), std::string::npos) << said;
   EXPECT_NE(said.find("tactus: arm.follower.joint_2: motor 2 at "), std::string::npos) << said;
-  EXPECT_NE(said.find("tactus: a motor did not report that it is off: switch off its supply\n"),
-            std::string::npos)
+  EXPECT_NE(said.find("tactus: a motor did not report that it is off: switch off its supply\n"), std::string::npos)
       << said;
 }
 
