@@ -1,8 +1,8 @@
-// or_inconclusive PROGRAM [ARGUMENT...]: runs a real-time test. Where the test fails and the machine was late meanwhile,
-// it is run again, up to three times in all. If the machine was late each time, the result is neither a pass nor a
-// failure: the status is 77, which CTest shows as skipped, and the output starts with "inconclusive". A test that fails
-// on a machine that was on time has failed. The test has no say in it: this process sleeps for 10 ms at a time and
-// measures by how much it wakes late.
+// or_inconclusive PROGRAM [ARGUMENT...]: runs a real-time test. Where the test fails and the machine was late
+// meanwhile, it is run again, up to three times in all. If the machine was late each time, the result is neither a pass
+// nor a failure: the status is 77, which CTest shows as skipped, and the output starts with "inconclusive". A test that
+// fails on a machine that was on time has failed. The test has no say in it: this process sleeps for 10 ms at a time
+// and measures by how much it wakes late.
 
 #include <algorithm>
 #include <chrono>
@@ -17,8 +17,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto nap = std::chrono::milliseconds(10);
-/// A machine that is this late gave the test no fair chance: the watchdogs of the rigs that the tests run act after 100 ms,
-/// and the margin of other limits is about half of that.
+/// A machine that is this late gave the test no fair chance: the watchdogs of the rigs that the tests run act after 100
+/// ms, and the margin of other limits is about half of that.
 constexpr auto late = std::chrono::milliseconds(50);
 constexpr int most_runs = 3;
 constexpr int inconclusive = 77;
@@ -66,13 +66,15 @@ int main(int argc, char** argv) {
   for (int runs = 1;; ++runs) {
     const Run done = run(argv + 1);
     if (done.status == 0 || done.status == inconclusive) return done.status;
-    const auto ms = static_cast<long long>(std::chrono::duration_cast<std::chrono::milliseconds>(done.lateness).count());
+    const auto ms =
+        static_cast<long long>(std::chrono::duration_cast<std::chrono::milliseconds>(done.lateness).count());
     if (done.lateness < late) {
       std::fprintf(stderr, "failed: the machine was on time (late by at most %lld ms)\n", ms);
       return done.status;
     }
     if (runs == most_runs) {
-      std::fprintf(stderr, "inconclusive: the machine was late by up to %lld ms, and in each of %d runs\n", ms, most_runs);
+      std::fprintf(stderr, "inconclusive: the machine was late by up to %lld ms, and in each of %d runs\n", ms,
+                   most_runs);
       return inconclusive;
     }
     std::fprintf(stderr, "the machine was late by up to %lld ms: the test runs once more\n", ms);
