@@ -17,9 +17,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto nap = std::chrono::milliseconds(10);
-/// A machine that is this late gave the test no fair chance: the watchdogs of the rigs that the tests run act after 100
-/// ms, and the margin of other limits is about half of that.
-constexpr auto late = std::chrono::milliseconds(50);
+/// A machine that is this late gave the test no fair chance: rigs of the tests take a motor for lost that did not
+/// answer for 20 to 30 ms, and the threads that emulate motors wait for their turn as this process does.
+constexpr auto late = std::chrono::milliseconds(20);
 constexpr int most_runs = 3;
 constexpr int inconclusive = 77;
 
