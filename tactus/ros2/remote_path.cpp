@@ -23,8 +23,8 @@ double RemotePath::step(const Input& input) noexcept {
     driven_ = true;
     ticks_since_wish_ = 0;
     aim_m_ = std::clamp(*input.wished_m, lowest_m_, highest_m_);
-  } else if (driven_ && ++ticks_since_wish_ > patience_ticks_) {
-    ticks_since_wish_ = patience_ticks_;
+  } else if (driven_ && ++ticks_since_wish_ > timeout_ticks_) {
+    ticks_since_wish_ = timeout_ticks_;
     aim_m_ = position_m_;
   }
   if (!driven_) return position_m_ = input.scripted_m;

@@ -50,16 +50,16 @@ class RemotePath {
   [[nodiscard]] bool driven() const noexcept { return driven_; }
 
  private:
-  RemotePath(const Params& params, double longest_step_m, std::int64_t patience_ticks)
+  RemotePath(const Params& params, double longest_step_m, std::int64_t timeout_ticks)
       : lowest_m_(params.lowest_m),
         highest_m_(params.highest_m),
         longest_step_m_(longest_step_m),
-        patience_ticks_(patience_ticks) {}
+        timeout_ticks_(timeout_ticks) {}
 
   double lowest_m_;
   double highest_m_;
   double longest_step_m_;
-  std::int64_t patience_ticks_;
+  std::int64_t timeout_ticks_;
   double position_m_ = 0.0;
   double aim_m_ = 0.0;
   std::int64_t ticks_since_wish_ = 0;

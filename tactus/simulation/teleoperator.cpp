@@ -9,7 +9,7 @@ namespace tactus::simulation {
 namespace {
 
 /// An arming that takes longer than this comes to nothing.
-constexpr double patience_s = 5.0;
+constexpr double arming_timeout_s = 5.0;
 
 template <class Pair>
 constexpr bool supervised = std::is_same_v<typename Pair::Wish, control::SiteRequests>;
@@ -64,7 +64,7 @@ Result<TeleoperatorOf<Pair>> TeleoperatorOf<Pair>::make(const Params& params, do
 template <class Pair>
 Check TeleoperatorOf<Pair>::arm(double start_m, double blend_s) {
   const auto whole_force_ticks = static_cast<std::int64_t>(blend_s / clock_.tick_s) + 1;
-  const auto last = static_cast<std::int64_t>(patience_s / clock_.tick_s);
+  const auto last = static_cast<std::int64_t>(arming_timeout_s / clock_.tick_s);
   std::int64_t to_follow = whole_force_ticks;
   while (to_follow > 0 && ticks_ < last) {
     advance(start_m, start_m, buttons(sites_.master().state(), ticks_));
@@ -72,7 +72,7 @@ Check TeleoperatorOf<Pair>::arm(double start_m, double blend_s) {
   }
   ticks_ = 0;
   if (to_follow == 0) return std::nullopt;
-  std::string why = "the sites do not follow " + format_number(patience_s) + " s after they were armed";
+  std::string why = "the sites do not follow " + format_number(arming_timeout_s) + " s after they were armed";
   if (const auto stop = stopped()) {
     why = "the sites cannot be armed: the " + std::string(name_of(stop->site)) + " stops for the cause \"" +
           std::string(name_of(stop->cause)) + "\"";

@@ -42,7 +42,7 @@ const char* in_words(LetGo cause) {
   return "of what this version does not know";
 }
 
-DeviceGuard::DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept
+DeviceGuard::DeviceGuard(const DeviceLimits& limits, Seconds timeout) noexcept
     : limits_{.force_N = limit_or_none(limits.force_N),
               .handle_force_N = limit_or_none(limits.handle_force_N),
               .rate_N_per_s = limit_or_none(limits.rate_N_per_s),
@@ -50,7 +50,7 @@ DeviceGuard::DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept
               .position_m = limit_or_none(limits.position_m),
               .stiffness_N_per_m = limits.stiffness_N_per_m,
               .damping_N_s_per_m = limits.damping_N_s_per_m},
-      patience_ns_(std::llround(1e9 * patience.value)) {}
+      timeout_ns_(std::llround(1e9 * timeout.value)) {}
 
 void DeviceGuard::let_go(LetGo cause) noexcept {
   if (cause_ == LetGo::none) cause_ = cause;
@@ -123,7 +123,7 @@ DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) n
     const bool too_fast = now.force_N != strong.force_N || now.handle_force_N != strong.handle_force_N;
     if (too_strong || too_fast) ++held_back_;
     insisting_ns_ = too_strong || too_fast ? insisting_ns_ + period_ns : 0;
-    if (insisting_ns_ > patience_ns_) let_go(too_strong ? LetGo::force : LetGo::rate);
+    if (insisting_ns_ > timeout_ns_) let_go(too_strong ? LetGo::force : LetGo::rate);
     passed_ = now;
     if (!runs_law) return now;
     // Of force and law the share that passes of both; where it is none, the force alone.
@@ -196,7 +196,7 @@ Reading GuardedDeviceOf<Reading>::read(const Tick& tick) noexcept {
         guard_, reading);
   }
   if (written_ && silent) {
-    if (tick.deadline_ns - written_ns_ > patience_ns_) {
+    if (tick.deadline_ns - written_ns_ > timeout_ns_) {
       for_each_joint([](DeviceGuard& guard) noexcept { guard.let_go(LetGo::silent); }, guard_);
     }
     device_->write(pass());

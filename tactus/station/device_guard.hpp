@@ -32,7 +32,7 @@ inline constexpr Bounds silence_bounds = between(0.001, 10.0);
 /// What may reach a motor, from the limits of its device alone.
 ///
 /// A command beyond `force_N` or faster than `rate_N_per_s` is held back to it; one that insists for longer than
-/// `patience` is no slip, and latches. A number that is none, and a device beyond `velocity_m_per_s` or `position_m`,
+/// `timeout` is no slip, and latches. A number that is none, and a device beyond `velocity_m_per_s` or `position_m`,
 /// latch at once. From then on the force falls to zero, then the drive is switched off, and stays so until `rearm`. A
 /// limit of 0 is none, and without a rate limit the force falls at once.
 ///
@@ -48,7 +48,7 @@ inline constexpr Bounds silence_bounds = between(0.001, 10.0);
 /// `speed_window_ns`, so it takes an encoder's step for what it is, and finds a jump.
 class DeviceGuard {
  public:
-  DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept;
+  DeviceGuard(const DeviceLimits& limits, Seconds timeout) noexcept;
 
   /// What the sensors read at a tick, and how old that is. Real-time safe, as is all below.
   void observe(double position_m, const Tick& tick, double age_s = 0.0, double velocity_m_per_s = 0.0) noexcept;
@@ -68,7 +68,7 @@ class DeviceGuard {
   static constexpr std::int64_t speed_window_ns = 5'000'000;
 
   DeviceLimits limits_;  ///< infinite where there is none
-  std::int64_t patience_ns_;
+  std::int64_t timeout_ns_;
   LetGo cause_ = LetGo::none;
   [[nodiscard]] control::DriveLaw allowed(const control::DriveLaw& wanted) const noexcept;
 
@@ -97,15 +97,15 @@ class GuardedDeviceOf final : public DeviceOf<Reading> {
   using Command = Each<Reading, DeviceCommand>;
 
   /// Around a device that outlives it, its limits checked.
-  explicit GuardedDeviceOf(DeviceOf<Reading>& device, Seconds patience = usual_silence)
+  explicit GuardedDeviceOf(DeviceOf<Reading>& device, Seconds timeout = usual_silence)
       : device_(&device),
-        guard_(guards_of(device.limits(), patience)),
-        patience_ns_(std::int64_t(1e9 * patience.value)),
+        guard_(guards_of(device.limits(), timeout)),
+        timeout_ns_(std::int64_t(1e9 * timeout.value)),
         wanted_(same_for_each(guard_, DeviceCommand{.enabled = false})) {}
 
   [[nodiscard]] Each<Reading, DeviceLimits> limits() const override { return device_->limits(); }
   [[nodiscard]] bool simulated() const noexcept override { return device_->simulated(); }
-  /// Lets go as well where nothing was written for longer than `patience`.
+  /// Lets go as well where nothing was written for longer than `timeout`.
   Reading read(const Tick& tick) noexcept override;
   void write(const Command& command) noexcept override;
   [[nodiscard]] DeviceHealth health() const noexcept override {
@@ -125,11 +125,11 @@ class GuardedDeviceOf final : public DeviceOf<Reading> {
   [[nodiscard]] const Each<Reading, DeviceGuard>& guard() const noexcept { return guard_; }
 
  private:
-  static Each<Reading, DeviceGuard> guards_of(const Each<Reading, DeviceLimits>& limits, Seconds patience) {
-    auto guards = same_for_each(limits, DeviceGuard(joint_of(limits, 0), patience));
+  static Each<Reading, DeviceGuard> guards_of(const Each<Reading, DeviceLimits>& limits, Seconds timeout) {
+    auto guards = same_for_each(limits, DeviceGuard(joint_of(limits, 0), timeout));
     for_each_joint(
-        [patience](DeviceGuard& guard, const DeviceLimits& joint) {
-          guard = {joint, patience};
+        [timeout](DeviceGuard& guard, const DeviceLimits& joint) {
+          guard = {joint, timeout};
         },
         guards, limits);
     return guards;
@@ -138,7 +138,7 @@ class GuardedDeviceOf final : public DeviceOf<Reading> {
 
   DeviceOf<Reading>* device_;
   Each<Reading, DeviceGuard> guard_;
-  std::int64_t patience_ns_;
+  std::int64_t timeout_ns_;
   Tick now_;
   Command wanted_;
   std::int64_t written_ns_ = 0;

@@ -18,7 +18,7 @@ class RigRun : public Command {
   static std::string side(const std::string& name, const std::string& port, const std::string& bus,
                           const std::string& model, int joints, const std::string& more) {
     std::string text = "[arm." + name + "]\nbus = \"" + bus + "\"\nport = \"" + port + "\"\n";
-    if (bus == "damiao") text += "patience_s = 0.05\nwatchdog_s = 1.0\n";
+    if (bus == "damiao") text += "reply_timeout_s = 0.05\nwatchdog_s = 1.0\n";
     for (int i = 1; i <= joints; ++i) {
       const std::string number = std::to_string(i);
       text += "[arm." + name + ".joint_" + number + "]\nmotor = " + number + "\nmodel = \"" + model +
@@ -326,7 +326,7 @@ class ArmRun : public RigRun {
     setenv("RIGS", rigs.c_str(), 1);
     return shell_until(signs, arm + "1.55,0.2,0.1,0.2", arm + "1.4,0.2,0.1,0.2", "", R"sh(
       sed "s|/dev/serial/by-id/LEADER|$leader|; s|/dev/serial/by-id/FOLLOWER|$follower|
-           s|^framing.*|patience_s = 0.05\nwatchdog_s = 1.0|" $RIGS/openarm-arms.toml >rig.toml
+           s|^framing.*|reply_timeout_s = 0.05\nwatchdog_s = 1.0|" $RIGS/openarm-arms.toml >rig.toml
       ARMS="$TACTUS run $RIGS/arms.toml --realtime --device rig.toml"
       )sh" + rest);
   }

@@ -32,7 +32,7 @@ class RigSites : public Command {
       set -u
       rig() {
         side=$1; shift
-        { echo "[arm.$side]"; echo 'bus = "damiao"'; echo "port = \"$1\""; echo 'patience_s = 0.05'; echo 'watchdog_s = 1.0'
+        { echo "[arm.$side]"; echo 'bus = "damiao"'; echo "port = \"$1\""; echo 'reply_timeout_s = 0.05'; echo 'watchdog_s = 1.0'
           shift; motor=0
           for joint in "$@"; do
             motor=$((motor + 1))
@@ -185,7 +185,7 @@ TEST_F(RigSites, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
     arm 1.4 >said2 & peers="$peers $!"
     read -r at_leader <said1; read -r at_follower <said2
     sed "s|/dev/serial/by-id/LEADER|$at_leader|; s|/dev/serial/by-id/FOLLOWER|$at_follower|
-         s|^framing.*|patience_s = 0.05\nwatchdog_s = 1.0|" $rigs/openarm-arms.toml >leader.toml
+         s|^framing.*|reply_timeout_s = 0.05\nwatchdog_s = 1.0|" $rigs/openarm-arms.toml >leader.toml
     cp leader.toml follower.toml
     site() { name=$1; shift; exec $TACTUS run $JOINTS --set rig.supervision.longest_stall_s=0.5 \
                --set rig.supervision.watchdog.timeout_s=0.5 --set rig.supervision.overload.missed_share=0.9 \

@@ -19,7 +19,7 @@ namespace device_guard_test {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t period_ns = 200'000;
 constexpr double period_s = 1e-9 * static_cast<double>(period_ns);
-constexpr Seconds patience{0.004};  ///< 20 ticks
+constexpr Seconds timeout{0.004};  ///< 20 ticks
 constexpr station::DeviceLimits limits{.force_N = 2.0,
                                        .handle_force_N = 0.5,
                                        .rate_N_per_s = 1000.0,  // 0.2 N a tick
@@ -56,7 +56,7 @@ class Motor final : public station::Device {
 };
 
 TEST(DeviceGuard, WhatIsWithinTheLimitsPassesToTheBitAlsoWhereItIsExactlyAtThem) {
-  station::DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, timeout);
   (void)guard.pass({}, tick(0));
   double force_N = 0.0;
   for (std::int64_t n = 1; n <= 1000; ++n) {
@@ -72,7 +72,7 @@ TEST(DeviceGuard, WhatIsWithinTheLimitsPassesToTheBitAlsoWhereItIsExactlyAtThem)
 }
 
 TEST(DeviceGuard, ASlipIsHeldBackAndForgivenAndWhoInsistsIsLetGoOf) {
-  station::DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, timeout);
   std::int64_t number = 0;
   const auto next = [&] { return tick(++number); };
   (void)guard.pass({}, tick(number));
@@ -118,7 +118,7 @@ TEST(DeviceGuard, ASlowRateLimitKeepsNoForcePressingAfterAStop) {
 }
 
 TEST(DeviceGuard, TicksThatWereMissedEarnNoJump) {
-  station::DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, timeout);
   (void)guard.pass({}, tick(0));
   station::Tick late = tick(10);
   late.missed = 9;
@@ -127,7 +127,7 @@ TEST(DeviceGuard, TicksThatWereMissedEarnNoJump) {
 
 TEST(DeviceGuard, ItMeasuresSpeedItselfAndAnEncodersStepIsNoSpeed) {
   const auto cause_at = [](double velocity_m_per_s, double ticks_jump_m) {
-    station::DeviceGuard guard(limits, patience);
+    station::DeviceGuard guard(limits, timeout);
     for (std::int64_t n = 0; n < 200 && guard.cause() == station::LetGo::none; ++n) {
       const double true_m =
           -0.05 + velocity_m_per_s * period_s * static_cast<double>(n) + (n == 50 ? ticks_jump_m : 0.0);
@@ -140,7 +140,7 @@ TEST(DeviceGuard, ItMeasuresSpeedItselfAndAnEncodersStepIsNoSpeed) {
   EXPECT_EQ(cause_at(0.0, 0.004), station::LetGo::none);
   EXPECT_EQ(cause_at(0.0, 0.006), station::LetGo::velocity) << "a jump of what 5 ms allow";
   EXPECT_EQ(cause_at(0.0, nan), station::LetGo::not_finite);
-  station::DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, timeout);
   guard.observe(-0.1, tick(0));
   EXPECT_EQ(guard.cause(), station::LetGo::none);
   guard.observe(-0.1001, tick(1));
@@ -151,7 +151,7 @@ TEST(DeviceGuard, ItMeasuresSpeedOverTheTimeBetweenMeasurements) {
   // At 0.9 of the limit, a bus that stands still for 20 ms: what comes after that is no jump, but for who takes it for
   // new at each tick.
   const auto cause_at = [](bool age_is_told) {
-    station::DeviceGuard guard(limits, patience);
+    station::DeviceGuard guard(limits, timeout);
     for (std::int64_t n = 0; n < 500; ++n) {
       const double now_s = period_s * static_cast<double>(n);
       const double measured_s = now_s > 0.05 && now_s < 0.07 ? 0.05 : now_s;
@@ -161,7 +161,7 @@ TEST(DeviceGuard, ItMeasuresSpeedOverTheTimeBetweenMeasurements) {
   };
   EXPECT_EQ(cause_at(true), station::LetGo::none);
   EXPECT_EQ(cause_at(false), station::LetGo::velocity);
-  station::DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, timeout);
   guard.observe(0.0, tick(0), nan);
   EXPECT_EQ(guard.cause(), station::LetGo::not_finite);
 }
@@ -187,7 +187,7 @@ std::vector<Wrong> wrong_controllers() {
 TEST(GuardedDevice, WhateverAWrongControllerWritesTheMotorStaysWithinItsLimitsAndIsSwitchedOff) {
   for (const Wrong& wrong : wrong_controllers()) {
     Motor motor;
-    station::GuardedDevice device(motor, patience);
+    station::GuardedDevice device(motor, timeout);
     for (std::int64_t n = 0; n < 200; ++n) {
       (void)device.read(tick(n));
       device.write({.force_N = n == 0 ? 0.0 : wrong.force_N(n)});
@@ -201,12 +201,12 @@ TEST(GuardedDevice, WhateverAWrongControllerWritesTheMotorStaysWithinItsLimitsAn
 
 TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayToo) {
   Motor motor;
-  station::GuardedDevice device(motor, patience);
+  station::GuardedDevice device(motor, timeout);
   for (std::int64_t n = 0; n < 300; ++n) {
     (void)device.read(tick(n));
     if (n < 100) device.write({.force_N = std::min(1.0, 0.1 * static_cast<double>(n))});
     if (n == 119) {
-      EXPECT_EQ(motor.now.force_N, 1.0) << "within patience";
+      EXPECT_EQ(motor.now.force_N, 1.0) << "within timeout";
     }
   }
   EXPECT_TRUE(motor.within);
@@ -214,7 +214,7 @@ TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayT
   EXPECT_FALSE(motor.now.enabled);
 
   Motor fast;
-  station::GuardedDevice around(fast, patience);
+  station::GuardedDevice around(fast, timeout);
   for (std::int64_t n = 0; n < 300; ++n) {
     fast.reading.position_m = -0.09 + 2.0 * period_s * static_cast<double>(n);
     (void)around.read(tick(n));
@@ -230,8 +230,8 @@ TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayT
 struct Owned {
   std::unique_ptr<DeviceSlots> slots = std::make_unique<DeviceSlots>();
   Motor motor;
-  DeviceServer owner{*slots, patience, limits};
-  SharedDevice controller{*slots, limits, patience};
+  DeviceServer owner{*slots, timeout, limits};
+  SharedDevice controller{*slots, limits, timeout};
 
   Owned() {
     owner.begin(1);

@@ -176,7 +176,7 @@ TEST(SharedPlant, ACommandFarBeyondTheDeviceNeverReachesItAndTheControllerHearsW
     both.plant->slave().write({});
     both.server->step(tick(++both.number));
   }
-  EXPECT_LT(own, 60) << "10 ms of patience";
+  EXPECT_LT(own, 60) << "10 ms of timeout";
   EXPECT_NE(both.plant->why_lost().message.find("at the master: commands insisted on more force"), std::string::npos)
       << both.plant->why_lost().message;
   EXPECT_EQ(both.server->status().let_go, 1);

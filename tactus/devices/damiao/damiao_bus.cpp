@@ -65,7 +65,7 @@ Result<std::unique_ptr<DamiaoBus>> DamiaoBus::make(const DamiaoBusParams& params
 
 DamiaoBus::DamiaoBus(const DamiaoBusParams& params)
     : framing_(params.framing),
-      patience_ns_(ns_of(params.patience_s)),
+      reply_timeout_ns_(ns_of(params.reply_timeout_s)),
       shortest_cycle_ns_(ns_of(params.shortest_cycle_s)),
       silence_ns_(ns_of(params.watchdog_s)),
       ask_absent_ns_(std::min(absent_asked_every_ns, silence_ns_ / 4)),
@@ -149,7 +149,7 @@ std::span<const std::uint8_t> DamiaoBus::say(std::int64_t now_ns) noexcept {
   if (state_ == BusState::asking) {
     ask(now_ns);
   } else if (state_ == BusState::ready) {
-    if (in_cycle_ && (all_answered() || now_ns >= progress_ns_ + patience_ns_)) end_cycle(now_ns);
+    if (in_cycle_ && (all_answered() || now_ns >= progress_ns_ + reply_timeout_ns_)) end_cycle(now_ns);
     if (!in_cycle_ && now_ns >= cycle_began_ns_ + shortest_cycle_ns_) begin_cycle(now_ns);
   }
   return outbox_.take(now_ns);
@@ -161,7 +161,7 @@ std::int64_t DamiaoBus::wakes_ns() const noexcept {
     case BusState::asking:
       return opened_ ? motors_[asked_].questions.wakes_ns() : 0;
     case BusState::ready:
-      return in_cycle_ && !all_answered() ? progress_ns_ + patience_ns_ : cycle_began_ns_ + shortest_cycle_ns_;
+      return in_cycle_ && !all_answered() ? progress_ns_ + reply_timeout_ns_ : cycle_began_ns_ + shortest_cycle_ns_;
     case BusState::refused:
       break;
   }

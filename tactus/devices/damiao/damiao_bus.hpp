@@ -17,7 +17,7 @@ namespace tactus::devices::damiao {
 struct DamiaoBusParams {
   Framing framing = Framing::usb2can;
   double watchdog_s = 0.05;
-  double patience_s = 0.002;
+  double reply_timeout_s = 0.002;
   double shortest_cycle_s = 0.0005;
   std::vector<MotorParams> motors;  ///< 1 to 15
 
@@ -27,7 +27,7 @@ struct DamiaoBusParams {
         field("watchdog_s", &DamiaoBusParams::watchdog_s, units::second, between(0.002, 1.0),
               "A motor lets go when it hears nothing for so long: its register TIMEOUT, set before it gets power. One "
               "that is not heard for so long is silent."),
-        field("patience_s", &DamiaoBusParams::patience_s, units::second, between(0.0002, 0.05),
+        field("reply_timeout_s", &DamiaoBusParams::reply_timeout_s, units::second, between(0.0002, 0.05),
               "The longest wait for the next answer of a cycle."),
         field("shortest_cycle_s", &DamiaoBusParams::shortest_cycle_s, units::second, between(0.0001, 0.1),
               "A cycle takes at least that, where the wire allows more.")};
@@ -113,7 +113,7 @@ class DamiaoBus final : public MotorBus {
   [[nodiscard]] static CanFrame frame_that_stops(Motor& motor, std::int64_t now_ns) noexcept;
 
   Framing framing_;
-  std::int64_t patience_ns_, shortest_cycle_ns_, silence_ns_, ask_absent_ns_, rest_ns_;
+  std::int64_t reply_timeout_ns_, shortest_cycle_ns_, silence_ns_, ask_absent_ns_, rest_ns_;
   FrameReader reader_;
   wire::Outbox outbox_;
   std::vector<Motor> motors_;

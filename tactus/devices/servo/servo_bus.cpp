@@ -158,7 +158,7 @@ void ServoBus::wait(Waiting for_what, std::size_t answer_bytes) noexcept {
   const auto bits = 10 * (said_bytes_ + static_cast<std::int64_t>(packet_.size() + answer_bytes));
   said_bytes_ = 0;
   waiting_ = for_what;
-  deadline_ns_ = now_ns_ + bits * 1'000'000'000 / bits_per_s_ + patience_ns;
+  deadline_ns_ = now_ns_ + bits * 1'000'000'000 / bits_per_s_ + reply_timeout_ns;
 }
 
 std::int64_t ServoBus::wakes_ns() const noexcept {

@@ -239,7 +239,7 @@ class ServoBus : public MotorBus {
   [[nodiscard]] std::span<const std::uint8_t> sent() const noexcept { return packet_.bytes(); }
 
   /// Beyond the time of the bytes: a USB adapter collects for a millisecond and hands over in the next frame.
-  static constexpr std::int64_t patience_ns = 2'000'000;
+  static constexpr std::int64_t reply_timeout_ns = 2'000'000;
   /// How often a servo is asked in a row before it counts as one that does not answer.
   static constexpr std::size_t most_tries = 10;
   /// One look at the power of a servo that stays on in so many cycles.

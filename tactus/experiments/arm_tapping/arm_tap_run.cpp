@@ -8,8 +8,8 @@ namespace tactus::experiments {
 
 namespace {
 
-constexpr double patience_s = 2.0;  ///< after the reach, for a follower that has not touched
-constexpr double farthest_m = 0.3;  ///< from where it began, for a follower's tool that has not run away
+constexpr double no_touch_timeout_s = 2.0;  ///< after the reach, for a follower that has not touched
+constexpr double farthest_m = 0.3;          ///< from where it began, for a follower's tool that has not run away
 
 }  // namespace
 
@@ -23,7 +23,7 @@ ArmTapRun::ArmTapRun(const ArmPairSetup& setup, const ArmTap& tap, ArmPair pair)
     : setup_(&setup),
       tap_(&tap),
       pair_(std::move(pair)),
-      last_(ticks_in(tap.path.start_time_s + tap.path.duration_s + patience_s, pair_.tick_s())) {
+      last_(ticks_in(tap.path.start_time_s + tap.path.duration_s + no_touch_timeout_s, pair_.tick_s())) {
   // So that a tick does not allocate: a touch comes before `last_`, and the observation after it.
   trace_.records.reserve(last_ + ticks_in(setup.params.task.observation_s, pair_.tick_s()));
 }

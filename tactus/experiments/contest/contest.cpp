@@ -125,7 +125,7 @@ GainScore score_taps(const TappingParams& params) {
 
 FreeSpaceScore score_free_space(const simulation::Teleoperator::Params& params) {
   constexpr double rest_s = 0.05;
-  constexpr double patience_s = 0.5;
+  constexpr double touch_timeout_s = 0.5;
   const double end_m = params.environment.position_m / params.control.position_scale - reach_m;
   const mechanics::MinimumJerk path{
       .start_m = end_m - reach_m, .end_m = end_m, .start_time_s = rest_s, .duration_s = reach_s};
@@ -138,7 +138,7 @@ FreeSpaceScore score_free_space(const simulation::Teleoperator::Params& params) 
   std::size_t counted = 0;
   std::optional<double> master_half_way_s;
   std::optional<double> slave_half_way_s;
-  for (double time_s = 0.0; time_s < rest_s + reach_s + patience_s + round_trip_s(params); time_s += tick_s) {
+  for (double time_s = 0.0; time_s < rest_s + reach_s + touch_timeout_s + round_trip_s(params); time_s += tick_s) {
     const auto record = teleoperator->step(path.position_m(time_s), path.position_m(time_s + tick_s));
     if (time_s >= rest_s && time_s <= rest_s + reach_s) {
       squares += record.hand_force_N * record.hand_force_N;
