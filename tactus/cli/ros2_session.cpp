@@ -35,7 +35,7 @@ std::string json_of(const experiments::Request& request, const Ros2Options& opti
                              {"published", counts.published},
                              {"dropped", counts.dropped},
                              {"messages_lost", counts.lost},
-                             {"wishes", counts.wishes},
+                             {"requests", counts.requests},
                              {"commands_refused", counts.refused},
                              {"servo", report::parse_json<nlohmann::ordered_json>(runtime::servo_json(servo))}});
 }
@@ -50,7 +50,7 @@ report::Table table_of(const Ros2Options& options, const HandSession& session, c
   table.add_row({"snapshots published", count(counts.published)});
   table.add_row({"snapshots dropped", count(counts.dropped)});
   table.add_row({"messages lost", count(counts.lost)});
-  table.add_row({"wishes for the hand", count(counts.wishes)});
+  table.add_row({"requests for the hand", count(counts.requests)});
   table.add_row({"commands refused", count(counts.refused)});
   return table;
 }

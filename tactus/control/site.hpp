@@ -173,7 +173,7 @@ class Site {
  public:
   using Sensors = In;
   using Output = Out;
-  using Wish = double;  ///< what share of the controller's force is wanted
+  using Request = double;  ///< what share of the controller's force is wanted
   using Controller = SiteController<Sensors, Output>;
   using Gates = Each<In, JointGates>;
   using Forces = Each<In, double>;  ///< in N

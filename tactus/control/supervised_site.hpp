@@ -18,7 +18,7 @@ class SupervisedMasterOf {
   using Sensors = typename Gated::Sensors;
   using Payload = Each<Sensors, Message>;
   using Packet = PacketOf<Payload>;
-  using Wish = SiteRequests;
+  using Request = SiteRequests;
   struct Input {
     Sensors sensors{};  ///< its arrival is not used: packets say what came
     SiteRequests requests{};
@@ -69,7 +69,7 @@ class SupervisedSlaveOf {
   using Sensors = typename Gated::Sensors;
   using Payload = Each<Sensors, Message>;
   using Packet = PacketOf<Payload>;
-  using Wish = SiteRequests;
+  using Request = SiteRequests;
   struct Input {
     Sensors sensors{};  ///< its arrival is not used: packets say what came
     SiteRequests requests{};

@@ -47,7 +47,7 @@ struct Snapshot {
 /// `master/state` or `slave/state`. Of devices with several joints `measured_js` has the force at each joint as its
 /// effort, and there is no `measured_cf`.
 ///
-/// The thread that steps the teleoperator calls `publish` and `take_wish`, which touch a wait-free ring, the newest
+/// The thread that steps the teleoperator calls `publish` and `take_request`, which touch a wait-free ring, the newest
 /// wish and nothing else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and
 /// counted.
 class Bridge {
@@ -60,13 +60,13 @@ class Bridge {
     double rate_Hz = 500.0;  ///< of the measured signals, at most; positive, up to 10 kHz
     bool master = true;      ///< whether the topics of that device are published
     bool slave = true;
-    bool takes_wishes = true;  ///< whether `operator/servo_jp` is subscribed to
+    bool takes_requests = true;  ///< whether `operator/servo_jp` is subscribed to
   };
   struct Counts {
     std::uint64_t published = 0;  ///< snapshots, each a message on every topic of a device
     std::uint64_t lost = 0;       ///< messages that DDS did not take
     std::uint64_t dropped = 0;    ///< snapshots that were due and found the ring full
-    std::uint64_t wishes = 0;     ///< that could be used
+    std::uint64_t requests = 0;   ///< that could be used
     std::uint64_t refused = 0;    ///< commands that could not: not exactly one finite position
   };
 
@@ -83,7 +83,7 @@ class Bridge {
   void publish(const Snapshot& snapshot) noexcept;
   /// The newest position in m that another program wished since the last call, always finite and not bounded otherwise.
   /// The same thread. Real-time safe.
-  std::optional<double> take_wish() noexcept;
+  std::optional<double> take_request() noexcept;
 
   /// Publishes what is waiting, says that the teleoperator is disabled, ends the thread and leaves DDS.
   void close();

@@ -199,7 +199,7 @@ std::int64_t to_time_of_day_ns() {
 }
 
 Result<std::unique_ptr<Observer>> Observer::create(Bridge::Params params) {
-  params.takes_wishes = false;
+  params.takes_requests = false;
   auto bridge = Bridge::create(params);
   if (!bridge) return bridge.error();
   return std::unique_ptr<Observer>(new Observer(*std::move(bridge)));

@@ -19,12 +19,12 @@ Result<RemotePath> RemotePath::make(const Params& params, Seconds dt) {
 }
 
 double RemotePath::step(const Input& input) noexcept {
-  if (input.wished_m && std::isfinite(*input.wished_m)) {
+  if (input.requested_m && std::isfinite(*input.requested_m)) {
     driven_ = true;
-    ticks_since_wish_ = 0;
-    aim_m_ = std::clamp(*input.wished_m, lowest_m_, highest_m_);
-  } else if (driven_ && ++ticks_since_wish_ > timeout_ticks_) {
-    ticks_since_wish_ = timeout_ticks_;
+    ticks_since_request_ = 0;
+    aim_m_ = std::clamp(*input.requested_m, lowest_m_, highest_m_);
+  } else if (driven_ && ++ticks_since_request_ > timeout_ticks_) {
+    ticks_since_request_ = timeout_ticks_;
     aim_m_ = position_m_;
   }
   if (!driven_) return position_m_ = input.scripted_m;
@@ -34,7 +34,7 @@ double RemotePath::step(const Input& input) noexcept {
 void RemotePath::reset() noexcept {
   position_m_ = 0.0;
   aim_m_ = 0.0;
-  ticks_since_wish_ = 0;
+  ticks_since_request_ = 0;
   driven_ = false;
 }
 

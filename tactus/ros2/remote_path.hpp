@@ -34,7 +34,7 @@ class RemotePath {
   };
   struct Input {
     double scripted_m = 0.0;  ///< where the hand would be without a wish
-    std::optional<double> wished_m =
+    std::optional<double> requested_m =
         {};  ///< that has arrived since the last tick; one that is not finite counts as none
   };
   using Output = double;
@@ -62,7 +62,7 @@ class RemotePath {
   std::int64_t timeout_ticks_;
   double position_m_ = 0.0;
   double aim_m_ = 0.0;
-  std::int64_t ticks_since_wish_ = 0;
+  std::int64_t ticks_since_request_ = 0;
   bool driven_ = false;
 };
 

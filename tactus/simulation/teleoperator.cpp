@@ -12,7 +12,7 @@ namespace {
 constexpr double arming_timeout_s = 5.0;
 
 template <class Pair>
-constexpr bool supervised = std::is_same_v<typename Pair::Wish, control::SiteRequests>;
+constexpr bool supervised = std::is_same_v<typename Pair::Request, control::SiteRequests>;
 
 /// What a site's controller and gate put out, and what it tells the other site.
 template <class Output>
@@ -112,8 +112,8 @@ auto TeleoperatorOf<Pair>::step(double path_m, double path_at_next_tick_m, doubl
 /// Flat: a substep takes as long as some calls, and two kinds of pair share what they call, so it would be called.
 template <class Pair>
 [[gnu::flatten]] auto TeleoperatorOf<Pair>::advance(double path_m, double path_at_next_tick_m,
-                                                    const typename Pair::Wish& wish) noexcept -> Record {
-  const typename Pair::Output output = sites_.step(master_, slave_, {.number = ticks_}, wish);
+                                                    const typename Pair::Request& request) noexcept -> Record {
+  const typename Pair::Output output = sites_.step(master_, slave_, {.number = ticks_}, request);
   Record record = recorded(static_cast<double>(ticks_) * clock_.tick_s, output);
   record.tip_position_m = slave_.tip_position_m();
 

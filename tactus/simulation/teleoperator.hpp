@@ -158,7 +158,7 @@ class TeleoperatorOf {
   TeleoperatorOf(const MasterPlant& master, const SlavePlant& slave, Pair sites, const Clock& clock)
       : master_(master), slave_(slave), sites_(std::move(sites)), clock_(clock) {}
   Check arm(double start_m, double blend_s);
-  Record advance(double path_m, double path_at_next_tick_m, const typename Pair::Wish& wish) noexcept;
+  Record advance(double path_m, double path_at_next_tick_m, const typename Pair::Request& request) noexcept;
 
   MasterPlant master_;
   SlavePlant slave_;

@@ -18,7 +18,7 @@ template <class Pair>
 class DevicePair {
  public:
   using Output = typename Pair::Output;
-  using Wish = typename Pair::Wish;
+  using Request = typename Pair::Request;
   using Params = typename Pair::Params;
   using Lengths = typename Pair::Lengths;  ///< in m
   using Reading = Each<Lengths, DeviceReading>;
@@ -33,9 +33,11 @@ class DevicePair {
   /// the devices allow (`tightened`). Errors name `master` and `slave`: of other numbers of joints, too.
   static Result<DevicePair> around(Pair sites, Device& master, Device& slave);
 
-  /// One tick. `wish` is what the person presses, at both sites, or, without supervision, the share of the force that
-  /// is let in. Real-time safe as far as the devices are.
-  Output step(const Tick& tick, const Wish& wish) noexcept { return sites_.step(*master_, *slave_, tick, wish); }
+  /// One tick. `request` is what the person presses, at both sites, or, without supervision, the share of the force
+  /// that is let in. Real-time safe as far as the devices are.
+  Output step(const Tick& tick, const Request& request) noexcept {
+    return sites_.step(*master_, *slave_, tick, request);
+  }
   /// One tick of sites that want no force any more: what a loop does from its end on, tick by tick, until it is
   /// `at_rest`. The force falls at the gates' rate limits or, under supervision, as in hold. Real-time safe as far as
   /// the devices are.
@@ -53,7 +55,7 @@ class DevicePair {
   [[nodiscard]] const Pair& sites() const noexcept { return sites_; }
 
  private:
-  static constexpr bool supervised = std::is_same_v<Wish, control::SiteRequests>;
+  static constexpr bool supervised = std::is_same_v<Request, control::SiteRequests>;
   using Walls = std::array<std::unique_ptr<GuardedDeviceOf<Reading>>, 2>;
   DevicePair(Pair sites, Walls walls, const Lengths& joints, Device& master, Device& slave)
       : sites_(std::move(sites)),
@@ -61,7 +63,7 @@ class DevicePair {
         joints_(joints),
         master_(walls_[0] ? walls_[0].get() : &master),
         slave_(walls_[1] ? walls_[1].get() : &slave) {}
-  static Wish leaving() noexcept {
+  static Request leaving() noexcept {
     if constexpr (supervised) {
       return {.leave = true};
     } else {

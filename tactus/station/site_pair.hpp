@@ -65,7 +65,7 @@ class SitePair {
     Step<Slave> slave;
   };
   /// Of supervised sites what the person presses, at both; of others the share of the controllers' forces.
-  using Wish = typename Master::Wish;
+  using Request = typename Master::Request;
 
   /// With a slave that rests at `slave_start_m`. Errors name `control` and `channel`.
   static Result<SitePair> make(const Params& control, const LinkParams& channel, Seconds tick,
@@ -77,15 +77,15 @@ class SitePair {
 
   /// One tick. Real-time safe as far as the devices are.
   template <Drivable MasterDevice, Drivable SlaveDevice>
-  Output step(MasterDevice& master, SlaveDevice& slave, const Tick& tick, const Wish& wish) noexcept {
+  Output step(MasterDevice& master, SlaveDevice& slave, const Tick& tick, const Request& request) noexcept {
     typename Way::Delivery at_slave;
     WayEnd<Payload> of_master{
         .heard = at_master_, .out = to_slave_, .other_hears = at_slave, .tick_s = tick_s_, .a_tick_later = true};
     WayEnd<Payload> of_slave{
         .heard = at_slave, .out = to_master_, .other_hears = at_master_, .tick_s = tick_s_, .a_tick_later = false};
     // In this order, as the members of an output are made.
-    return {.master = station::step(master_, master, of_master, tick, wish),
-            .slave = station::step(slave_, slave, of_slave, tick, wish)};
+    return {.master = station::step(master_, master, of_master, tick, request),
+            .slave = station::step(slave_, slave, of_slave, tick, request)};
   }
 
   /// Goes on with the channels of `made`, which has not been stepped, and gives it the own ones; what is on its way is

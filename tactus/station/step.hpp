@@ -84,10 +84,11 @@ auto read(Device& device, const Tick& tick, DeviceHealth& health) noexcept {
 ///
 /// A way of a supervised site has `receive(tick, take)`, which hands each packet that has come to `take`, and
 /// `send(packet, tick)`; one of a site without supervision has `hear(sensors)`, which puts what has come there, and
-/// `send(message)`. `wish` is what the person presses, or the share of the force. Real-time safe as far as device and
-/// way are.
+/// `send(message)`. `request` is what the person presses, or the share of the force. Real-time safe as far as device
+/// and way are.
 template <class Site, Drivable Device, class Way>
-Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const typename Site::Wish& wish) noexcept {
+Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick,
+                const typename Site::Request& request) noexcept {
   DeviceHealth health = DeviceHealth::good;
   const auto readings = read<Site>(device, tick, health);
   using Sensors = typename Site::Sensors;
@@ -101,7 +102,7 @@ Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const ty
     Step<Site> done{.reading = readings,
                     .health = health,
                     .output = site.step({.sensors = sensors,
-                                         .requests = wish,
+                                         .requests = request,
                                          .elapsed_ticks = elapsed_ticks,
                                          .device_silent = health == DeviceHealth::silent})};
     device.write(command_of(done.output.site, done.output.record.enabled));
@@ -109,7 +110,7 @@ Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const ty
     return done;
   } else {
     way.hear(sensors);
-    Step<Site> done{.reading = readings, .health = health, .output = site.step(sensors, wish, elapsed_ticks)};
+    Step<Site> done{.reading = readings, .health = health, .output = site.step(sensors, request, elapsed_ticks)};
     device.write(command_of(done.output));
     way.send(member_of_each(done.output, &JointOf<typename Site::Output>::message));
     return done;
