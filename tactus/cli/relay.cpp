@@ -46,13 +46,13 @@ struct RelayOptions {
 };
 
 /// One way through the relay: each packet is lost, late or doubled as the seed draws.
-class Way {
+class RelayDirection {
  public:
   struct Counters {
     std::uint64_t arrived = 0, lost = 0, doubled = 0, overflowed = 0, passed = 0;
   };
 
-  Way(const station::Channel::Params& params, double mean_burst, double duplicate_fraction)
+  RelayDirection(const station::Channel::Params& params, double mean_burst, double duplicate_fraction)
       : delay_ns_(params.delay_s * 1e9),
         jitter_ns_(params.jitter_s * 1e9),
         duplicate_fraction_(duplicate_fraction),
@@ -131,9 +131,9 @@ void wait(const link::Socket& one, const link::Socket& other, std::int64_t longe
   ppoll(both.data(), both.size(), &longest, nullptr);
 }
 
-void print(const Way::Counters& to_slave, const Way::Counters& to_master, const JsonOption& json,
+void print(const RelayDirection::Counters& to_slave, const RelayDirection::Counters& to_master, const JsonOption& json,
            const std::string& configuration) {
-  const std::array<std::pair<const char*, const Way::Counters*>, 2> ways{
+  const std::array<std::pair<const char*, const RelayDirection::Counters*>, 2> ways{
       {{"to_slave", &to_slave}, {"to_master", &to_master}}};
   nlohmann::ordered_json document;
   report::Table table(
@@ -161,8 +161,8 @@ Check run(const RelayOptions& options) {
   auto slave = socket_between(options.for_slave, options.slave);
   if (!slave) return slave.error();
 
-  Way to_slave(params->channel.to_slave, options.mean_burst, options.duplicate_fraction);
-  Way to_master(params->channel.to_master, options.mean_burst, options.duplicate_fraction);
+  RelayDirection to_slave(params->channel.to_slave, options.mean_burst, options.duplicate_fraction);
+  RelayDirection to_master(params->channel.to_master, options.mean_burst, options.duplicate_fraction);
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();

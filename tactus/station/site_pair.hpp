@@ -14,7 +14,7 @@ namespace tactus::station {
 /// The way of one site of a pair: what it hears at this tick, and the channel into which it speaks. Messages for a site
 /// without supervision, packets for one with it.
 template <class Payload>
-struct WayEnd {
+struct TransportEnd {
   using Delivery = typename ChannelOf<Payload>::Delivery;
 
   const Delivery& heard;
@@ -55,7 +55,7 @@ class SitePair {
   static constexpr bool supervised = Supervised<Master>;
   using Messages = Each<typename Master::Sensors, control::Message>;
   using Payload = std::conditional_t<supervised, control::PacketOf<Messages>, Messages>;
-  using Way = ChannelOf<Payload>;
+  using Transport = ChannelOf<Payload>;
 
  public:
   using Params = Each<Messages, control::ControlParams>;
@@ -78,10 +78,10 @@ class SitePair {
   /// One tick. Real-time safe as far as the devices are.
   template <Drivable MasterDevice, Drivable SlaveDevice>
   Output step(MasterDevice& master, SlaveDevice& slave, const Tick& tick, const Request& request) noexcept {
-    typename Way::Delivery at_slave;
-    WayEnd<Payload> of_master{
+    typename Transport::Delivery at_slave;
+    TransportEnd<Payload> of_master{
         .heard = at_master_, .out = to_slave_, .other_hears = at_slave, .tick_s = tick_s_, .a_tick_later = true};
-    WayEnd<Payload> of_slave{
+    TransportEnd<Payload> of_slave{
         .heard = at_slave, .out = to_master_, .other_hears = at_master_, .tick_s = tick_s_, .a_tick_later = false};
     // In this order, as the members of an output are made.
     return {.master = station::step(master_, master, of_master, tick, request),
@@ -127,7 +127,7 @@ class SitePair {
     }
   }
 
-  SitePair(Master master, Slave slave, Way to_slave, Way to_master, Seconds tick, const Payload& nothing)
+  SitePair(Master master, Slave slave, Transport to_slave, Transport to_master, Seconds tick, const Payload& nothing)
       : master_(std::move(master)),
         slave_(std::move(slave)),
         to_slave_(std::move(to_slave)),
@@ -137,9 +137,9 @@ class SitePair {
 
   Master master_;
   Slave slave_;
-  Way to_slave_;
-  Way to_master_;
-  typename Way::Delivery at_master_;  ///< for its next tick
+  Transport to_slave_;
+  Transport to_master_;
+  typename Transport::Delivery at_master_;  ///< for its next tick
   double tick_s_;
 };
 

@@ -86,8 +86,8 @@ auto read(Device& device, const Tick& tick, DeviceHealth& health) noexcept {
 /// `send(packet, tick)`; one of a site without supervision has `hear(sensors)`, which puts what has come there, and
 /// `send(message)`. `request` is what the person presses, or the share of the force. Real-time safe as far as device
 /// and way are.
-template <class Site, Drivable Device, class Way>
-Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick,
+template <class Site, Drivable Device, class Transport>
+Step<Site> step(Site& site, Device& device, Transport& transport, const Tick& tick,
                 const typename Site::Request& request) noexcept {
   DeviceHealth health = DeviceHealth::good;
   const auto readings = read<Site>(device, tick, health);
@@ -98,7 +98,7 @@ Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick,
   const std::int64_t elapsed_ticks = tick.missed + 1;
   // The output is made where it is returned: to copy it as soon as it is written costs a tenth of a bare tick.
   if constexpr (Supervised<Site>) {
-    way.receive(tick, [&site](const typename Site::Packet& packet) noexcept { return site.take(packet); });
+    transport.receive(tick, [&site](const typename Site::Packet& packet) noexcept { return site.take(packet); });
     Step<Site> done{.reading = readings,
                     .health = health,
                     .output = site.step({.sensors = sensors,
@@ -106,13 +106,13 @@ Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick,
                                          .elapsed_ticks = elapsed_ticks,
                                          .device_silent = health == DeviceHealth::silent})};
     device.write(command_of(done.output.site, done.output.record.enabled));
-    way.send(done.output.packet, tick);
+    transport.send(done.output.packet, tick);
     return done;
   } else {
-    way.hear(sensors);
+    transport.hear(sensors);
     Step<Site> done{.reading = readings, .health = health, .output = site.step(sensors, request, elapsed_ticks)};
     device.write(command_of(done.output));
-    way.send(member_of_each(done.output, &JointOf<typename Site::Output>::message));
+    transport.send(member_of_each(done.output, &JointOf<typename Site::Output>::message));
     return done;
   }
 }

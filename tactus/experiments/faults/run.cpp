@@ -113,7 +113,7 @@ class FaultRun::Run {
   void spoil(station::DeviceReading& reading, FaultSite site);
   double drive(double told_N, bool enabled, FaultSite site);
   template <class Here, class There>
-  struct Way;
+  struct Transport;
   template <class Here, class There>
   void step_site(Here& here, There& there);
   void advance();
@@ -228,7 +228,7 @@ double FaultRun::Run::drive(double told_N, bool enabled, FaultSite site) {
 
 /// The way of a site: what waits for its process, and whatever the network and a faulty site make of what it says.
 template <class Here, class There>
-struct FaultRun::Run::Way {
+struct FaultRun::Run::Transport {
   Run& run;
   Here& here;
   There& there;
@@ -265,9 +265,9 @@ void FaultRun::Run::step_site(Here& here, There& there) {
   if (here.process.killed()) here.forces = {};
   here.process.collect(here.inbox, tick_, injections_);
   if (!here.process.stands_still()) {
-    Way<Here, There> way{*this, here, there};
+    Transport<Here, There> transport{*this, here, there};
     const station::Tick tick{.number = tick_, .missed = here.process.elapsed_ticks() - 1};
-    const auto done = station::step(here.site, here, way, tick, requests(here.where));
+    const auto done = station::step(here.site, here, transport, tick, requests(here.where));
     there.sent.applied(done.output.record, tick_, outcome_);
   }
   here.forces.drive_N = drive(here.forces.motor_N, here.forces.enabled, here.where);
