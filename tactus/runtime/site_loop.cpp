@@ -1,6 +1,6 @@
 #include <tactus/runtime/site_loop.hpp>
+#include <tactus/station/make_device_guard.hpp>
 #include <tactus/station/step.hpp>
-#include <tactus/station/wall.hpp>
 
 #include <utility>
 
@@ -10,8 +10,8 @@ Result<SiteLoop> SiteLoop::make(const experiments::TappingParams& params, const 
                                 SiteExchange& exchange, SiteDevice device) {
   if (auto error = validate(params)) return *std::move(error);
   const control::SiteRole role = settings.link.site;
-  auto wall = station::wall_before(*device.device, params.control, role);
-  if (!wall) return wall.error();
+  auto guard = station::make_device_guard(*device.device, params.control, role);
+  if (!guard) return guard.error();
   auto endpoint = link::Endpoint::make(settings.link);
   if (!endpoint) return endpoint.error();
   const station::DeviceLimits limits = device.device->limits();
@@ -26,19 +26,19 @@ Result<SiteLoop> SiteLoop::make(const experiments::TappingParams& params, const 
                             exchange);
   return SiteLoop(console, SiteBooks(role, tick_s, force_step_limit_N(params, role, limits)), role,
                   SiteLink(*std::move(endpoint), supervision.packets.longest_age_s), *std::move(site),
-                  std::move(device), *std::move(wall));
+                  std::move(device), *std::move(guard));
 }
 
 SiteLoop::SiteLoop(const SiteConsole& console, const SiteBooks& books, control::SiteRole role, SiteLink link,
-                   SupervisedSite site, SiteDevice device, std::unique_ptr<station::GuardedDevice> wall)
+                   SupervisedSite site, SiteDevice device, std::unique_ptr<station::GuardedDevice> guard)
     : console_(console),
       books_(books),
       role_(role),
       link_(std::move(link)),
       site_(std::move(site)),
       device_(std::move(device)),
-      wall_(std::move(wall)),
-      driven_(wall_ ? wall_.get() : device_.device.get()) {}
+      guard_(std::move(guard)),
+      driven_(guard_ ? guard_.get() : device_.device.get()) {}
 
 bool SiteLoop::operator()(const station::Tick& tick) noexcept {
   if (console_.insisted()) {

@@ -21,7 +21,7 @@ class SiteLoop {
     bool arm_at_once = false;  ///< the master, as soon as it hears the slave for the first time
   };
 
-  /// `exchange` must outlive the loop. A device that is not simulated stands behind a wall, and needs limits that
+  /// `exchange` must outlive the loop. A device that is not simulated stands behind a guard, and needs limits that
   /// somebody chose. Errors: what is wrong with the parameters, the device or the link.
   static Result<SiteLoop> make(const experiments::TappingParams& params, const Settings& settings,
                                SiteExchange& exchange, SiteDevice device);
@@ -40,7 +40,7 @@ class SiteLoop {
 
  private:
   SiteLoop(const SiteConsole& console, const SiteBooks& books, control::SiteRole role, SiteLink link,
-           SupervisedSite site, SiteDevice device, std::unique_ptr<station::GuardedDevice> wall);
+           SupervisedSite site, SiteDevice device, std::unique_ptr<station::GuardedDevice> guard);
   void end_second() noexcept;
 
   SiteConsole console_;
@@ -50,8 +50,8 @@ class SiteLoop {
   SiteLink link_;
   SupervisedSite site_;
   SiteDevice device_;
-  std::unique_ptr<station::GuardedDevice> wall_;  ///< before a device that is not simulated
-  station::Device* driven_;                       ///< the wall, or the device itself
+  std::unique_ptr<station::GuardedDevice> guard_;  ///< before a device that is not simulated
+  station::Device* driven_;                        ///< the guard, or the device itself
 };
 
 }  // namespace tactus::runtime

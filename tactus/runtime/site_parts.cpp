@@ -1,7 +1,7 @@
 #include <tactus/control/agreed_parameters.hpp>
 #include <tactus/experiments/model_mismatch.hpp>
 #include <tactus/runtime/site_parts.hpp>
-#include <tactus/station/wall.hpp>
+#include <tactus/station/make_device_guard.hpp>
 
 #include <charconv>
 #include <span>

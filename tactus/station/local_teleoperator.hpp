@@ -56,13 +56,13 @@ class DevicePair {
 
  private:
   static constexpr bool supervised = std::is_same_v<Request, control::SiteRequests>;
-  using Walls = std::array<std::unique_ptr<GuardedDeviceOf<Reading>>, 2>;
-  DevicePair(Pair sites, Walls walls, const Lengths& joints, Device& master, Device& slave)
+  using Guards = std::array<std::unique_ptr<GuardedDeviceOf<Reading>>, 2>;
+  DevicePair(Pair sites, Guards guards, const Lengths& joints, Device& master, Device& slave)
       : sites_(std::move(sites)),
-        walls_(std::move(walls)),
+        guards_(std::move(guards)),
         joints_(joints),
-        master_(walls_[0] ? walls_[0].get() : &master),
-        slave_(walls_[1] ? walls_[1].get() : &slave) {}
+        master_(guards_[0] ? guards_[0].get() : &master),
+        slave_(guards_[1] ? guards_[1].get() : &slave) {}
   static Request leaving() noexcept {
     if constexpr (supervised) {
       return {.leave = true};
@@ -72,7 +72,7 @@ class DevicePair {
   }
 
   Pair sites_;
-  Walls walls_;     ///< before devices that are not simulated
+  Guards guards_;   ///< before devices that are not simulated
   Lengths joints_;  ///< as many as the devices have
   Device* master_;
   Device* slave_;

@@ -33,8 +33,8 @@ class RigSiteLoop {
     double timeout_s = 0.0;      ///< of its watchdog
   };
   /// What outlives it: the exchange and the device. `endpoint` is that whose session the site has. `control` is of
-  /// joints that are driven each by itself, for the wall before the device; without it whoever made the site answers
-  /// for its gates. Errors: those of `wall_before`; `inconsistent` for other numbers of joints.
+  /// joints that are driven each by itself, for the guard before the device; without it whoever made the site answers
+  /// for its gates. Errors: those of `make_device_guard`; `inconsistent` for other numbers of joints.
   static Result<RigSiteLoop> make(JointSite site, link::JointEndpoint endpoint, Seconds tick, const Params& params,
                                   runtime::SiteExchange& exchange, MotorBusDevice& device,
                                   const std::optional<Joints<control::ControlParams>>& control);
@@ -55,7 +55,7 @@ class RigSiteLoop {
  private:
   RigSiteLoop(JointSite site, link::JointEndpoint endpoint, Seconds tick, const Params& params,
               runtime::SiteExchange& exchange, MotorBusDevice& device,
-              std::unique_ptr<station::GuardedJointDevice> wall);
+              std::unique_ptr<station::GuardedJointDevice> guard);
   [[nodiscard]] bool leads() const noexcept { return site_.index() == 0; }
   [[nodiscard]] bool may_align() const noexcept;
   [[nodiscard]] control::SiteRequests asked(const control::SiteRequests& pressed) noexcept;
@@ -69,8 +69,8 @@ class RigSiteLoop {
   JointSite site_;
   runtime::JointSiteLink link_;
   MotorBusDevice* device_;
-  std::unique_ptr<station::GuardedJointDevice> wall_;  ///< before the device
-  station::JointDevice* driven_;                       ///< the wall
+  std::unique_ptr<station::GuardedJointDevice> guard_;  ///< before the device
+  station::JointDevice* driven_;                        ///< the guard
   runtime::JointStreams* streams_ = nullptr;
   std::shared_ptr<RigSeconds> shared_ = std::make_shared<RigSeconds>();
   Joints<station::DeviceReading> read_;
