@@ -1,9 +1,9 @@
 #include <tactus/advice/arm_presentation.hpp>
 #include <tactus/advice/presentation.hpp>
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
-#include <tactus/cli/verbs.hpp>
 
 #include <iostream>
 #include <memory>

@@ -1,11 +1,11 @@
 #include <tactus/cli/colour.hpp>
 #include <tactus/cli/command.hpp>
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/help.hpp>
 #include <tactus/cli/plugin.hpp>
 #include <tactus/cli/printable_output.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/suggestion.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/cli/version_text.hpp>
 #include <tactus/report/text.hpp>
 

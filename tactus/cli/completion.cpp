@@ -1,4 +1,4 @@
-#include <tactus/cli/verbs.hpp>
+#include <tactus/cli/commands.hpp>
 
 #include <iostream>
 #include <memory>
@@ -11,7 +11,7 @@ namespace tactus::cli {
 
 namespace {
 
-const auto any_verb = [](const CLI::App*) { return true; };
+const auto any_command = [](const CLI::App*) { return true; };
 
 /// The words that a value is one of, from what help says of it (`TEXT:{h1,h2,etfe}`); empty where it may be any.
 std::string choices_of(const CLI::Option& option) {
@@ -26,7 +26,7 @@ std::string choices_of(const CLI::Option& option) {
 /// A case for each verb: what may stand behind it, and what behind its options.
 void add_cases(const CLI::App& app, const std::string& path, std::string& words, std::string& values) {
   std::string all;
-  for (const CLI::App* verb : app.get_subcommands(any_verb)) {
+  for (const CLI::App* verb : app.get_subcommands(any_command)) {
     all += verb->get_name() + " ";
     add_cases(*verb, path + " " + verb->get_name(), words, values);
   }

@@ -1,5 +1,5 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/device.hpp>
-#include <tactus/cli/verbs.hpp>
 
 #include <iostream>
 
@@ -7,7 +7,7 @@
 
 namespace tactus::cli {
 
-void end_verb(const CLI::App& app, const Result<bool>& well, int& status) {
+void end_command(const CLI::App& app, const Result<bool>& well, int& status) {
   if (!well) std::cerr << app.get_name() << ": " << describe(well.error()) << "\n";
   status = !well ? exit_status(well.error()) : (*well ? 0 : 1);
 }

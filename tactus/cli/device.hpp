@@ -21,6 +21,6 @@ void add_device_limits(CLI::App& device, const CLI::App& app, int& status);
 void add_device_guard(CLI::App& device, const CLI::App& app, int& status);
 
 /// Says an error and sets the exit status; where `well` is false, 1.
-void end_verb(const CLI::App& app, const Result<bool>& well, int& status);
+void end_command(const CLI::App& app, const Result<bool>& well, int& status);
 
 }  // namespace tactus::cli

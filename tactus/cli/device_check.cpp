@@ -282,7 +282,7 @@ void add_device_check(CLI::App& device, const CLI::App& app, const std::string& 
   bus->needs(port)->needs(motors)->excludes(rig);
   verb->callback([options, bus, rig, &app, &status] {
     if (bus->count() + rig->count() == 0) throw CLI::RequiredError("RIG, or --bus with --port and --motors,");
-    end_verb(app, rig->count() > 0 ? check_rig(*options) : check_bus(*options), status);
+    end_command(app, rig->count() > 0 ? check_rig(*options) : check_bus(*options), status);
   });
 }
 

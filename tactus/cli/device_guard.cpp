@@ -165,7 +165,7 @@ void add_device_guard(CLI::App& device, const CLI::App& app, int& status) {
                             "that drives them stops; 'run' starts it by itself");
   verb->add_option("RIG", options->rig, "The rig file")->required();
   verb->add_option("SIDE", options->side, "A side of it, as arm.leader")->required();
-  verb->callback([options, &app, &status] { end_verb(app, guard(*options), status); });
+  verb->callback([options, &app, &status] { end_command(app, guard(*options), status); });
 }
 
 }  // namespace tactus::cli

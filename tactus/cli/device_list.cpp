@@ -76,7 +76,7 @@ void add_device_list(CLI::App& device, const CLI::App& app, int& status) {
   verb->add_flag("--probe", options->probe,
                  "Ask at each port who is there. Motors change nothing of that; leave it out where a port has a device "
                  "that is none of yours to ask");
-  verb->callback([options, &app, &status] { end_verb(app, list(*options), status); });
+  verb->callback([options, &app, &status] { end_command(app, list(*options), status); });
 }
 
 }  // namespace tactus::cli

@@ -162,7 +162,7 @@ void add_device_watch(CLI::App& device, const CLI::App& app, int& status) {
   verb->add_option("--for", options->duration_s, "So many seconds; 0: until Ctrl-C")
       ->type_name("S")
       ->check(real_between(0.0, 1e6));
-  verb->callback([options, &app, &status] { end_verb(app, watch(*options), status); });
+  verb->callback([options, &app, &status] { end_command(app, watch(*options), status); });
 }
 
 }  // namespace tactus::cli

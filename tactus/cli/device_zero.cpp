@@ -165,7 +165,7 @@ void add_device_zero(CLI::App& device, const CLI::App& app, int& status) {
       ->required();
   verb->add_option("--motor", options->motor, "Of these one motor alone: its identifier, or its joint's name")
       ->type_name("ID|JOINT");
-  verb->callback([options, &app, &status] { end_verb(app, zero(*options), status); });
+  verb->callback([options, &app, &status] { end_command(app, zero(*options), status); });
 }
 
 void add_device_limits(CLI::App& device, const CLI::App& app, int& status) {
@@ -173,7 +173,7 @@ void add_device_limits(CLI::App& device, const CLI::App& app, int& status) {
   CLI::App* verb = device.add_subcommand("limits", "The limits of motors and file, and which of them hold");
   verb->add_option("RIG", options->rig, "The rig file")->required();
   verb->add_option("NAME", options->name, "A pair, a side or a joint of it, as arm.leader");
-  verb->callback([options, &app, &status] { end_verb(app, limits(*options), status); });
+  verb->callback([options, &app, &status] { end_command(app, limits(*options), status); });
 }
 
 }  // namespace tactus::cli

@@ -1,5 +1,5 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/outcome_files.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/diagnosis/report.hpp>
 

@@ -1,6 +1,6 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/servo_options.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>

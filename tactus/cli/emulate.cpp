@@ -1,7 +1,7 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/emulate.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/standard_output.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/wire/port.hpp>
 #include <tactus/wire/talk.hpp>
 

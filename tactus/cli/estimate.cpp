@@ -1,7 +1,7 @@
 #include <tactus/cli/axis_options.hpp>
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/estimate.hpp>
 #include <tactus/cli/outcome_files.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>

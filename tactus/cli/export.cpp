@@ -1,6 +1,6 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/output_folder.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/telemetry/export.hpp>

@@ -84,7 +84,7 @@ void add_help(CLI::App& app, int& status) {
     for (const std::string& word : *words) {
       const CLI::App* next = verb_below(*asked, word);
       if (next == nullptr) {
-        std::cerr << app.get_name() << ": " << unknown_verb(*asked, word) << "\n";
+        std::cerr << app.get_name() << ": " << unknown_command(*asked, word) << "\n";
         status = 2;
         return;
       }

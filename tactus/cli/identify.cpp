@@ -1,5 +1,5 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/verbs.hpp>
 
 #include <string>
 

@@ -198,10 +198,10 @@ Check identify(const Recipe& recipe, const BenchOptions& options, const std::str
        {"rig.toml", "# The truth behind " + rig->name() + "\n" + configuration::to_toml(rig->truth().benched)}});
 }
 
-void add_bench_verb(CLI::App& identify_verb, const Recipe& recipe, const std::string& name, const std::string& command,
-                    int& status) {
+void add_bench_command(CLI::App& identify_command, const Recipe& recipe, const std::string& name,
+                       const std::string& command, int& status) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* verb = identify_verb.add_subcommand(recipe.verb, recipe.description);
+  CLI::App* verb = identify_command.add_subcommand(recipe.verb, recipe.description);
   verb->add_option("--rig", options->rig, "What stands on the bench: simulated")->required()->type_name("RIG");
   verb->add_option("--seed", options->seed, "Which of the simulated rigs")->check(CLI::NonNegativeNumber);
   verb->add_option("--session", options->session, "Folder that keeps every run, to stop and go on later")
@@ -218,9 +218,9 @@ void add_bench_verb(CLI::App& identify_verb, const Recipe& recipe, const std::st
 
 }  // namespace
 
-void add_identify_bench(CLI::App& identify_verb, const std::string& name, const std::string& command, int& status) {
-  add_bench_verb(identify_verb, by_isolation, name, command, status);
-  add_bench_verb(identify_verb, in_the_hand, name, command, status);
+void add_identify_bench(CLI::App& identify_command, const std::string& name, const std::string& command, int& status) {
+  add_bench_command(identify_command, by_isolation, name, command, status);
+  add_bench_command(identify_command, in_the_hand, name, command, status);
 }
 
 }  // namespace tactus::cli

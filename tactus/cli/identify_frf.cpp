@@ -336,9 +336,9 @@ Check identify(const FrfOptions& options, const std::string& command) {
 
 }  // namespace
 
-void add_identify_frf(CLI::App& identify_verb, const std::string& name, const std::string& command, int& status) {
+void add_identify_frf(CLI::App& identify_command, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<FrfOptions>();
-  CLI::App* verb = identify_verb.add_subcommand("frf", "Frequency response from recordings, with 95 % bands");
+  CLI::App* verb = identify_command.add_subcommand("frf", "Frequency response from recordings, with 95 % bands");
   verb->add_option("RECORDING", options->files, "Recordings, averaged: .csv, .tsv, .txt or .mat (version 5)")
       ->required();
   verb->add_option("--input", options->input, "Column of the input; in a MATLAB file NAME:COLUMN")

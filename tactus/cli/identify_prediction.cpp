@@ -148,11 +148,11 @@ Check identify(const PredictionOptions& options, const std::string& command) {
 
 }  // namespace
 
-void add_identify_prediction(CLI::App& identify_verb, const std::string& name, const std::string& command,
+void add_identify_prediction(CLI::App& identify_command, const std::string& name, const std::string& command,
                              int& status) {
   auto options = std::make_shared<PredictionOptions>();
-  CLI::App* verb =
-      identify_verb.add_subcommand("prediction", "Time constant of prediction blocks: closed form, limit, from data");
+  CLI::App* verb = identify_command.add_subcommand("prediction",
+                                                   "Time constant of prediction blocks: closed form, limit, from data");
   verb->add_option("EXPERIMENT", options->experiment, "inverse-model-chirp file: slave and estimator")->required();
   add_set_option(*verb, options->set);
   verb->add_option("--blocks", options->blocks, "Blocks in series, 1 to 4");

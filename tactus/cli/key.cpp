@@ -1,4 +1,4 @@
-#include <tactus/cli/verbs.hpp>
+#include <tactus/cli/commands.hpp>
 #include <tactus/link/key.hpp>
 
 #include <iostream>

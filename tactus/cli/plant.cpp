@@ -1,9 +1,9 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/servo_options.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>

@@ -1,10 +1,10 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/passages.hpp>
 #include <tactus/cli/real_between.hpp>
 #include <tactus/cli/standard_output.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/link/socket.hpp>

@@ -1,6 +1,6 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/standard_output.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>

@@ -1,3 +1,4 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/line_writer.hpp>
@@ -9,7 +10,6 @@
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/supervised_run.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/real_time_arm_tap.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>

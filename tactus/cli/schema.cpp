@@ -1,5 +1,5 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/results_schemas.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/experiments/experiment.hpp>
 

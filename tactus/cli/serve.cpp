@@ -1,10 +1,10 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/real_between.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/cli/serve_report.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/live/live_view.hpp>
 #include <tactus/live/server.hpp>
 #include <tactus/report/files.hpp>

@@ -35,7 +35,7 @@ const CLI::App* verb_below(const CLI::App& app, const std::string& name) {
   return nullptr;
 }
 
-std::string unknown_verb(const CLI::App& app, const std::string& word) {
+std::string unknown_command(const CLI::App& app, const std::string& word) {
   std::vector<std::string> names;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
     names.push_back(verb->get_name());
@@ -57,7 +57,7 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv) {
     }
     if (at->get_subcommands([](const CLI::App*) { return true; }).empty()) continue;
     const CLI::App* next = verb_below(*at, word);
-    if (next == nullptr) return unknown_verb(*at, word);
+    if (next == nullptr) return unknown_command(*at, word);
     at = next;
   }
   return "";

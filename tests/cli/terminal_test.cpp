@@ -53,7 +53,7 @@ class Terminal : public Command {
   }
 
   /// Every verb and every verb below one, from what help lists.
-  void for_each_verb(const Words& verb, const auto& use) const {
+  void for_each_command(const Words& verb, const auto& use) const {
     use(verb);
     Words help = verb;
     help.push_back("--help");
@@ -64,7 +64,7 @@ class Terminal : public Command {
       if (!verbs || !line.starts_with("  ") || line[2] == ' ') continue;
       Words next = verb;
       next.push_back(line.substr(2, line.find(' ', 2) - 2));
-      for_each_verb(next, use);
+      for_each_command(next, use);
     }
   }
 };
@@ -78,7 +78,7 @@ std::size_t columns_of(const std::string& line) {
 
 TEST_F(Terminal, NoLineOfAnyHelpIsWiderThanEightyColumns) {
   std::size_t verbs = 0;
-  for_each_verb({}, [&](Words verb) {
+  for_each_command({}, [&](Words verb) {
     ++verbs;
     verb.push_back("--help");
     std::istringstream lines(tactus(verb).out);

@@ -2,7 +2,7 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/real_between.hpp>
-#include <tactus/cli/stability_verb.hpp>
+#include <tactus/cli/stability_command.hpp>
 #include <tactus/configuration/document.hpp>
 
 #include <filesystem>
@@ -40,9 +40,9 @@ Check run(const StabilityOptions& options, const StabilityReport& report, const 
 
 }  // namespace
 
-void add_stability_verb(CLI::App& stability, const std::string& verb, const std::string& summary,
-                        const StabilityReport& report, const std::string& name, const std::string& command,
-                        int& status) {
+void add_stability_command(CLI::App& stability, const std::string& verb, const std::string& summary,
+                           const StabilityReport& report, const std::string& name, const std::string& command,
+                           int& status) {
   auto options = std::make_shared<StabilityOptions>();
   CLI::App* added = stability.add_subcommand(verb, summary);
   add_experiment_options(*added, options->experiment);
