@@ -1,4 +1,4 @@
-#include <tactus/cli/onlookers.hpp>
+#include <tactus/cli/observers.hpp>
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
@@ -90,14 +90,14 @@ Result<experiments::Outcome> run_ros2_session(const experiments::Request& reques
   std::optional<telemetry::Recorder> recorder;
   runtime::RealTimeStreams::Teleoperator stream;
   runtime::RealTimeStreams streams;
-  auto onlookers = Onlookers::open({.live = options.live}, request);
-  if (!onlookers) return onlookers.error();
-  if (output.wanted() || onlookers->any()) streams.teleoperator = &stream;
-  onlookers->watch(streams);
+  auto observers = Observers::open({.live = options.live}, request);
+  if (!observers) return observers.error();
+  if (output.wanted() || observers->any()) streams.teleoperator = &stream;
+  observers->watch(streams);
   const auto say = [&output](const std::string& line) {
     if (!line.empty()) (output.json() ? std::cerr : std::cout) << line << std::flush;
   };
-  if (auto error = onlookers->begin(say)) return *std::move(error);
+  if (auto error = observers->begin(say)) return *std::move(error);
   const std::filesystem::path log_file = output.log_folder() / "log.mcap";
   if (output.wanted()) {
     if (auto error = output.begin()) return *std::move(error);
@@ -120,7 +120,7 @@ Result<experiments::Outcome> run_ros2_session(const experiments::Request& reques
   session->begin(*bridge, streams, options.end);
   const auto report = runtime::run_servo(servo, [&](const station::Tick& tick) noexcept { return (*session)(tick); });
   bridge->close();
-  say(onlookers->end());
+  say(observers->end());
   if (recorder) {
     if (auto error = recorder->stop()) return *std::move(error);
     if (auto error = telemetry::write_bag_metadata(log_file, recorder->log())) {

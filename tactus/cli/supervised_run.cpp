@@ -158,7 +158,7 @@ struct Surroundings {
   runtime::ServoThreadParams servo;
   runtime::SiteExchange& exchange;
   const Interruption& interruption;
-  Onlookers& onlookers;
+  Observers& observers;
   LineWriter& output;
   LineWriter& errors;
 };
@@ -169,12 +169,12 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
   LineWriter& lines = folder.json() ? around.errors : around.output;
   std::optional<runtime::SiteLog> log;
   runtime::SiteStreams streams;
-  if (folder.wanted() || around.onlookers.any()) {
+  if (folder.wanted() || around.observers.any()) {
     streams = run.here.one ? runtime::SiteStreams::of_one(*run.here.one) : runtime::SiteStreams::of_both();
     loop.leave_in(streams);
-    around.onlookers.watch(streams);
+    around.observers.watch(streams);
   }
-  if (auto error = around.onlookers.begin([&lines](const std::string& line) { lines.say(line); })) return error;
+  if (auto error = around.observers.begin([&lines](const std::string& line) { lines.say(line); })) return error;
   if (folder.wanted()) {
     if (auto error = folder.begin()) return error;
     auto created = runtime::SiteLog::create(folder.log_folder(), streams, around.about, around.log_limit_bytes);
@@ -202,7 +202,7 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
   run.servo = (*servo)->finish();
   (*servo)->step().finish();
   take_seconds();
-  if (const std::string seen = around.onlookers.end(); !seen.empty()) lines.say(seen);
+  if (const std::string seen = around.observers.end(); !seen.empty()) lines.say(seen);
   add_totals(run, (*servo)->step());
   run.ended_by = around.interruption.signal() != 0 ? around.interruption.name() : "its duration";
   run.lines_dropped = lines.dropped();
@@ -239,7 +239,7 @@ void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
   add("--duration-s", options.duration_s, "How long to run; 0 is until interrupted", "S");
 }
 
-Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& looking_on,
+Check run_supervised(const SupervisedOptions& options, const ObserverOptions& observer_options,
                      runtime::ServoThreadParams servo, const experiments::Request& request, OutputFolder& folder,
                      std::uint64_t log_limit_bytes) {
   const configuration::Document& document = request.document;
@@ -262,7 +262,7 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
     if (!stated) return stated.error();
     link = *std::move(stated);
   }
-  if (rig) return run_rig(options, looking_on, servo, request, folder, log_limit_bytes, link);
+  if (rig) return run_rig(options, observer_options, servo, request, folder, log_limit_bytes, link);
   const auto params = document.read<TappingParams>();
   if (!params) return params.error();
   const auto names = device_names(options, here);
@@ -275,8 +275,8 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
   const auto person = Person::listen_to(STDIN_FILENO, here.one.value_or(SiteRole::master), exchange, errors);
   if (!person) return person.error();
-  auto onlookers = Onlookers::open(looking_on, request, here.one);
-  if (!onlookers) return onlookers.error();
+  auto observers = Observers::open(observer_options, request, here.one);
+  if (!observers) return observers.error();
   auto devices = open_devices(*names, here, *params);
   if (!devices) return document.locate(devices.error());
   servo.rate_Hz = params->servo.rate_Hz;
@@ -289,7 +289,7 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
                             .servo = servo,
                             .exchange = exchange,
                             .interruption = **interruption,
-                            .onlookers = *onlookers,
+                            .observers = *observers,
                             .output = output,
                             .errors = errors};
   SupervisedRun run;

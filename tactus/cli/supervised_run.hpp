@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/cli/onlookers.hpp>
+#include <tactus/cli/observers.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/experiments/experiment.hpp>
@@ -41,7 +41,7 @@ void add_supervised_options(CLI::App& verb, SupervisedOptions& options);
 /// then tables. In the folder of `output`, if there is one, it leaves a report, and every tick in its log. With JSON
 /// the lines go to standard error and one document to standard output. What a person asks for is read from standard
 /// input, a `SiteWord` a line; SIGUSR1 arms. Of `servo`, the rate is the experiment's.
-Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& onlookers,
+Check run_supervised(const SupervisedOptions& options, const ObserverOptions& observers,
                      runtime::ServoThreadParams servo, const experiments::Request& request, OutputFolder& output,
                      std::uint64_t log_limit_bytes);
 

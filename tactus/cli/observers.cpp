@@ -1,4 +1,4 @@
-#include <tactus/cli/onlookers.hpp>
+#include <tactus/cli/observers.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/text.hpp>
 
@@ -38,7 +38,7 @@ Result<live::ServerOptions> place_of(const std::string& text) {
 
 }  // namespace
 
-void add_onlooker_options(CLI::App& verb, OnlookerOptions& options) {
+void add_observer_options(CLI::App& verb, ObserverOptions& options) {
   constexpr const char* group = "Who looks on, in real time";
   verb.add_option("--live", options.live,
                   "Show every tick to Foxglove and PlotJuggler here; without a value, at a free port of the loopback")
@@ -55,10 +55,10 @@ void add_onlooker_options(CLI::App& verb, OnlookerOptions& options) {
       ->group(group);
 }
 
-Result<Onlookers> Onlookers::open(const OnlookerOptions& options, const experiments::Request& request,
+Result<Observers> Observers::open(const ObserverOptions& options, const experiments::Request& request,
                                   const std::optional<control::SiteRole>& site,
                                   const std::vector<std::string>& joints) {
-  Onlookers made;
+  Observers made;
   if (options.live) {
     const auto where = place_of(*options.live);
     if (!where) return where.error();
@@ -82,7 +82,7 @@ Result<Onlookers> Onlookers::open(const OnlookerOptions& options, const experime
   return made;
 }
 
-Check Onlookers::begin(const std::function<void(const std::string&)>& say) {
+Check Observers::begin(const std::function<void(const std::string&)>& say) {
   if (view_) {
     auto server = live::Server::start(where_, {}, *view_);
     if (!server) {
@@ -96,7 +96,7 @@ Check Onlookers::begin(const std::function<void(const std::string&)>& say) {
   return ros2_ ? ros2_->start() : std::nullopt;
 }
 
-std::string Onlookers::end() {
+std::string Observers::end() {
   std::string told;
   if (server_) {
     const live::ServerCounts counts = server_->counts();
