@@ -47,7 +47,7 @@ struct MasterStages {
 /// asked for, and what is off changes no bit. Damping acts on the measured position and counts as displayed force, so
 /// it drives the model of cancellation too; so does what compensation of the way from motor to hand makes of the force.
 /// That takes the force saturated, for the hand should get no more than the limit. What the actuator on the handle does
-/// is no part of the model. An online estimate of the hand lessens the force before damping (`BearableForce`). With
+/// is no part of the model. An online estimate of the hand lessens the force before damping (`AdmissibleForce`). With
 /// cancellation off the model still runs beside the loop, so that its estimate can be
 /// looked at.
 class PositionForceMaster {
@@ -142,7 +142,7 @@ class PositionForceMaster {
     const double damping_N = stages.damping.step(input.motor_position_m);
     // A NaN passes through clamp, so it reaches the gate, which catches and latches it.
     const double displayed_N =
-        std::clamp(stages.cancellation.bearable_N(wanted_N, limit_N) - damping_N, -limit_N, limit_N);
+        std::clamp(stages.cancellation.admissible_N(wanted_N, limit_N) - damping_N, -limit_N, limit_N);
     const double handle_N = std::clamp(above_N, -limit_N, limit_N);
     const double intended_m = stages.cancellation.intended(input.motor_position_m, input.grip);
     const double command_m = stages.command_filter.step(gains.cancels ? intended_m : input.motor_position_m);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tactus/control/site.hpp>
-#include <tactus/control/stages/bearable_force.hpp>
+#include <tactus/control/stages/admissible_force.hpp>
 #include <tactus/control/stages/cancellation.hpp>
 #include <tactus/signal/second_order_filter.hpp>
 
@@ -49,9 +49,9 @@ class AdaptiveCancellation {
 
   /// The position in m that the person intended, from the one measured now. Once a tick. Real-time safe.
   double intended(double measured_position_m) noexcept;
-  /// What of the force `wanted_N` this hand is shown, in N (`BearableForce`). Once a tick, before `intended`. Real-time
-  /// safe.
-  double bearable_N(double wanted_N) noexcept { return force_.step(wanted_N, grip_); }
+  /// What of the force `wanted_N` this hand is shown, in N (`AdmissibleForce`). Once a tick, before `intended`.
+  /// Real-time safe.
+  double admissible_N(double wanted_N) noexcept { return force_.step(wanted_N, grip_); }
   /// Advances model and tangents to the next tick, under the force that really acts until then. Real-time safe.
   void advance(double motor_force_N) noexcept;
   void reset() noexcept;
@@ -111,7 +111,7 @@ class AdaptiveCancellation {
   Covariance covariance_{};
   double grip_ = 1.0;  ///< 1 over the estimated mobility
   double person_m_ = 0.0, passed_m_ = 0.0;
-  BearableForce force_;
+  AdmissibleForce force_;
   bool primed_ = false;
   double induced_m_ = 0.0;
   double intended_velocity_m_per_s_ = 0.0;

@@ -83,10 +83,10 @@ class GripCancellation {
   /// positive number counts as 1. Real-time safe.
   double intended(double measured_position_m, double grip) noexcept;
   /// What of the force `wanted_N` the hand is shown, in N, where no more than `limit_N` can be. Only `online` shows
-  /// less (`BearableForce`). Once a tick, before `intended`. Real-time safe.
-  double bearable_N(double wanted_N, double limit_N) noexcept {
+  /// less (`AdmissibleForce`). Once a tick, before `intended`. Real-time safe.
+  double admissible_N(double wanted_N, double limit_N) noexcept {
     if (estimate_ != OperatorEstimate::online) return wanted_N;
-    return adaptive_.bearable_N(std::clamp(wanted_N, -limit_N, limit_N));
+    return adaptive_.admissible_N(std::clamp(wanted_N, -limit_N, limit_N));
   }
   /// Advances the models to the next tick, under the force that really acts until then. Real-time safe.
   void advance(double motor_force_N) noexcept;
