@@ -225,9 +225,9 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
       lines.say(cli::line_of(*second, pair, around.only));
       run.seconds.push_back(*second);
     }
-    runtime::SiteMisfit misfit;
-    while (around.exchange.misfits.try_pop(misfit)) {
-      around.errors.say("tactus: " + around.drive.agreement->describe(misfit, *around.only) + "\n");
+    runtime::SiteMismatch mismatch;
+    while (around.exchange.mismatches.try_pop(mismatch)) {
+      around.errors.say("tactus: " + around.drive.agreement->describe(mismatch, *around.only) + "\n");
     }
   };
   constexpr unsigned between_looks_us = 20'000;

@@ -190,9 +190,9 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
       lines.say(second_line(run.here, second));
       run.seconds.push_back(second);
     }
-    runtime::SiteMisfit misfit;
-    while (around.exchange.misfits.try_pop(misfit)) {
-      around.errors.say("tactus: " + describe(misfit, *run.here.one) + "\n");
+    runtime::SiteMismatch mismatch;
+    while (around.exchange.mismatches.try_pop(mismatch)) {
+      around.errors.say("tactus: " + describe(mismatch, *run.here.one) + "\n");
     }
   };
   while (!(*servo)->ended()) {

@@ -75,7 +75,7 @@ struct ServoReport {
   void add(const ServoReport& other);
 };
 
-/// The clock side of a servo thread: waits for deadlines, keeps the books. Of the thread that made it only.
+/// The clock side of a servo thread: waits for deadlines, keeps the counters. Of the thread that made it only.
 ///
 /// The deadline of tick k is start + k · period. A tick that ends after the next deadline is late; deadlines that have
 /// passed by then are missed, and the next one in the future is waited for: there is no burst of steps to catch up.

@@ -35,16 +35,16 @@ class SiteLoop {
   /// Hands on the second that has begun. After the last tick, once.
   void finish() noexcept;
   /// After the last tick, as the next.
-  [[nodiscard]] const SiteTotals& totals() const noexcept { return books_.totals(); }
+  [[nodiscard]] const SiteTotals& totals() const noexcept { return counters_.totals(); }
   [[nodiscard]] LinkTotals link_totals() const { return link_.totals(); }
 
  private:
-  SiteLoop(const SiteConsole& console, const SiteBooks& books, control::SiteRole role, SiteLink link,
+  SiteLoop(const SiteConsole& console, const SiteCounters& counters, control::SiteRole role, SiteLink link,
            SupervisedSite site, SiteDevice device, std::unique_ptr<station::GuardedDevice> guard);
   void end_second() noexcept;
 
   SiteConsole console_;
-  SiteBooks books_;
+  SiteCounters counters_;
   SiteStreams streams_;
   control::SiteRole role_;
   SiteLink link_;

@@ -114,9 +114,9 @@ RigAgreement RigAgreement::of(const RigSide& side, const experiments::ArmPairSet
 
 control::Agreement RigAgreement::agreement() const { return control::agreement_of(values_->all); }
 
-std::string RigAgreement::describe(const runtime::SiteMisfit& misfit, control::SiteRole role) const {
-  const auto found = control::first_disagreement(misfit.agreement, values_->all);
-  return runtime::describe(misfit, role, found ? &*found : nullptr, remedy);
+std::string RigAgreement::describe(const runtime::SiteMismatch& mismatch, control::SiteRole role) const {
+  const auto found = control::first_disagreement(mismatch.agreement, values_->all);
+  return runtime::describe(mismatch, role, found ? &*found : nullptr, remedy);
 }
 
 }  // namespace tactus::devices

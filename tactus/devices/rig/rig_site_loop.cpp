@@ -159,7 +159,8 @@ void RigSiteLoop::end_second() noexcept {
   second_.link = link_.end_second();
   shared_->try_push(second_);
   begin_anew(second_, stands(own_));
-  std::visit([this](const auto& site) noexcept { link_.tell_misfit(site.agreement(), console_.exchange()); }, site_);
+  std::visit([this](const auto& site) noexcept { link_.report_mismatch(site.agreement(), console_.exchange()); },
+             site_);
 }
 
 }  // namespace tactus::devices
