@@ -34,8 +34,8 @@ struct MotionUse {
 /// joint's effort and by what was believed before.
 class MotionInformation {
  public:
-  /// `chain`: what the arm is believed to be, with friction; `prior`: a fit without data to the same beliefs; `noise`:
-  /// of each joint's effort [N m]; `rows_per_s`: how often its noise is new.
+  /// `chain`: what the arm is believed to be, with friction; `prior`: a fit without data to the same model_params;
+  /// `noise`: of each joint's effort [N m]; `rows_per_s`: how often its noise is new.
   MotionInformation(const arm::Chain& chain, const ConsistentFit& prior, arm::JointVector noise, double rows_per_s,
                     MotionLimits limits);
 

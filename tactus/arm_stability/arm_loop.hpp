@@ -29,7 +29,7 @@ class ArmLoop {
  public:
   /// Errors: `inconsistent`, under `control.method`, for a method whose loop has not been made linear, and under
   /// `wall.law` for a curved law without a preload; those of the parts. Not real-time safe.
-  static Result<ArmLoop> make(const experiments::ArmPairSetup& setup, const experiments::ArmBeliefs& beliefs,
+  static Result<ArmLoop> make(const experiments::ArmPairSetup& setup, const experiments::ArmModelParams& model_params,
                               const ArmLinearisation& linearisation = {});
 
   /// The loop opened where the torque is displayed, at the ticks: displayed torque of each joint in, torque that the

@@ -169,7 +169,7 @@ class SupervisionOf {
                                     const Agreement& agreement = {});
 
   /// What the site itself saw, for `decide`.
-  struct Sight {
+  struct Snapshot {
     SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;
     bool device_silent = false;
@@ -180,13 +180,13 @@ class SupervisionOf {
   /// A packet that has come; any number of them before `decide`. Real-time safe.
   PacketVerdict take(const Packet& packet) noexcept;
   /// What was read of a device that something carries. Once, before `decide`.
-  void look(typename SupportRaiseOf<Payload>::Sight sight) noexcept {
-    sight.tried = probing_;
-    sight.proved = !tries() || proved_;
-    support_.look(sight);
+  void look(typename SupportRaiseOf<Payload>::Snapshot snapshot) noexcept {
+    snapshot.tried = probing_;
+    snapshot.proved = !tries() || proved_;
+    support_.look(snapshot);
   }
   /// The state for this tick. Real-time safe.
-  SiteState decide(const Sight& sight) noexcept;
+  SiteState decide(const Snapshot& snapshot) noexcept;
   /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
   Each<Payload, Arrival> arrival(const Lengths& offset_m) noexcept;
   /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone, none

@@ -18,7 +18,7 @@ namespace joints_test {
 using control::SiteRequests;
 using control::SiteState;
 
-/// A device of several carriages, which stay in sight.
+/// A device of several carriages, which stay in snapshot.
 struct Arm {
   std::vector<Carriage*> joints;
   std::unique_ptr<JoinedDevices> device;

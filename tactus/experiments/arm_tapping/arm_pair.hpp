@@ -12,7 +12,7 @@
 namespace tactus::experiments {
 
 /// What the sites believe of the arms and of the hand, as far as a tap draws errors of it.
-struct ArmBeliefs {
+struct ArmModelParams {
   arm_control::InducedMotion::Arm induced;                ///< the leader, for the model of induced motion
   arm::HandImpedance hand;                                ///< that holds it, for the same
   arm::JointVector follower_joint_stiffness_N_m_per_rad;  ///< for an observer of elastic joints
@@ -22,8 +22,8 @@ struct ArmBeliefs {
 struct ArmPairSetup {
   ArmTappingParams params;
   DescribedArm leader;
-  DescribedArm follower;                         ///< the same as the leader, or another arm (`differs`)
-  ArmBeliefs exact;                              ///< beliefs without error, but that the hand is control.model.hand
+  DescribedArm follower;  ///< the same as the leader, or another arm (`differs`)
+  ArmModelParams exact;   ///< model_params without error, but that the hand is control.model.hand
   arm::Vector3 outward = arm::Vector3::UnitZ();  ///< of the surface, along the axes of both bases
   /// How far the follower's tool goes where the leader's goes outward, over that, at the start: 1 where they are alike,
   /// 2 for a leader of half the follower's size; of a handle that leads the tool it is control.follower.tool_scale. The
@@ -38,7 +38,7 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const Urdfs& urdfs);
 
 /// The sites of a tap, without supervision, behind the widest gates. Errors: those of the controllers, under `control`.
-Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmBeliefs& beliefs);
+Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmModelParams& model_params);
 
 /// What both tools did at a tick.
 struct ArmRecord {
@@ -66,7 +66,7 @@ struct ArmRecord {
 
 /// What both arms are about, for who draws them: vectors along the axes of the bases, forces on the hand and the
 /// follower's tool. What a site says is that of the latest tick.
-struct ArmSight {
+struct ArmSnapshot {
   arm::JointVector leader_rad;  ///< of the links
   arm::JointVector follower_rad;
   arm::Vector3 leader_m;  ///< of the tools
@@ -88,7 +88,7 @@ struct ArmSight {
 class ArmPair {
  public:
   /// The wall lies `wall_m` outward from where the follower's tool begins.
-  static Result<ArmPair> make(const ArmPairSetup& setup, const ArmBeliefs& beliefs, double wall_m);
+  static Result<ArmPair> make(const ArmPairSetup& setup, const ArmModelParams& model_params, double wall_m);
 
   /// One tick, with where the person wants the follower's tool now and a tick later, from where it began; the hand goes
   /// that over `ArmPairSetup::tool_scale`. `share` is that of what the controllers want, the arms' support with it; 0
@@ -102,7 +102,7 @@ class ArmPair {
   /// What the sites did at the latest tick.
   [[nodiscard]] const station::JointBarePair::Output& latest() const noexcept { return latest_; }
   [[nodiscard]] const station::JointBarePair& sites() const noexcept { return sites_; }
-  [[nodiscard]] ArmSight sight() const;
+  [[nodiscard]] ArmSnapshot snapshot() const;
 
   /// What `exchange` takes over.
   struct Parts {

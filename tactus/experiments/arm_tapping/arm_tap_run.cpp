@@ -14,7 +14,7 @@ constexpr double farthest_m = 0.3;          ///< from where it began, for a foll
 }  // namespace
 
 Result<ArmTapRun> ArmTapRun::make(const ArmPairSetup& setup, const ArmTap& tap) {
-  auto pair = ArmPair::make(setup, tap.beliefs, tap.wall_m);
+  auto pair = ArmPair::make(setup, tap.model_params, tap.wall_m);
   if (!pair) return pair.error();
   return ArmTapRun(setup, tap, *std::move(pair));
 }
@@ -42,7 +42,7 @@ void ArmTapRun::step_arms() {
     last_ = k + ticks_in(setup_->params.task.observation_s, dt_s);
   }
   if (touched_ && k == first_touch_ + ticks_in(pressing_after_s, dt_s)) {
-    trace_.pressing = {record.contact_N, pair_.sight()};
+    trace_.pressing = {record.contact_N, pair_.snapshot()};
   }
   diverged_ = !pair_.healthy() || !(std::fabs(record.leader_m) * setup_->tool_scale < farthest_m) ||
               !(std::fabs(record.follower_m) < farthest_m);

@@ -15,14 +15,14 @@ namespace tactus::experiments {
 struct ArmTap {
   mechanics::MinimumJerk path;  ///< of the follower's tool, outward from where it began
   double wall_m = 0.0;
-  ArmBeliefs beliefs;
+  ArmModelParams model_params;
 };
 
 /// A tap as it went.
 struct ArmTrace {
   struct Contact {
     double force_N = 0.0;  ///< of the wall
-    ArmSight sight;
+    ArmSnapshot snapshot;
   };
   std::vector<ArmRecord> records;   ///< of each tick
   std::optional<Contact> pressing;  ///< `pressing_after_s` after the first touch; none where it did not come to that
@@ -58,7 +58,7 @@ ArmTapResult judge_arm_tap(const ArmContact& contact, bool diverged, const ArmCo
 struct ArmReach {
   double lag_m = 0.0;          ///< farthest of the follower's tool from where the leader leads it
   double effort_N = 0.0;       ///< of the hand's spring and damper along the reach, RMS
-  double false_force_N = 0.0;  ///< what the follower tells, as a force at the leader's tool (`ArmSight`), RMS
+  double false_force_N = 0.0;  ///< what the follower tells, as a force at the leader's tool (`ArmSnapshot`), RMS
   double drift_m = 0.0;        ///< farthest that cancellation moves the command from where the leader is
 };
 

@@ -310,7 +310,7 @@ TEST(ArmTapping, APictureShowsBothArmsOnTheSurface) {
     EXPECT_GT(down ? contact.y[1] - contact.y[0] : contact.x[1] - contact.x[0], 50.0) << "out of the surface";
     EXPECT_NEAR(down ? contact.x[1] - contact.x[0] : contact.y[1] - contact.y[0], 0.0, 1e-9);
     // A link is as long in space as in its picture, or longer.
-    const arm::Vector3 tool = trace.pressing->sight.follower_m;
+    const arm::Vector3 tool = trace.pressing->snapshot.follower_m;
     EXPECT_LE(std::hypot(links.x[8], links.y[8]), 1e3 * tool.norm() + 1e-9);
     EXPECT_NEAR(links.y[8], 1e3 * tool.z(), 1e-9);
     const report::Line& induced = figure.panels[0].lines[2];

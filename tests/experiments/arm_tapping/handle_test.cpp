@@ -64,9 +64,9 @@ TEST(Handle, FeelsTheForceOnTheToolTimesScaleAndGain) {
       record = pair.step(path_m, path_m);
     }
     ASSERT_GT(record.contact_N, 1.0);
-    const ArmSight sight = pair.sight();
-    EXPECT_NEAR(sight.told_N.z(), record.contact_N, 0.03 * record.contact_N) << "in newtons at the tool";
-    EXPECT_NEAR(sight.displayed_N.z(), 0.4 * scale * record.contact_N, 0.03 * scale * record.contact_N);
+    const ArmSnapshot snapshot = pair.snapshot();
+    EXPECT_NEAR(snapshot.told_N.z(), record.contact_N, 0.03 * record.contact_N) << "in newtons at the tool";
+    EXPECT_NEAR(snapshot.displayed_N.z(), 0.4 * scale * record.contact_N, 0.03 * scale * record.contact_N);
   }
 }
 
