@@ -77,7 +77,7 @@ const std::vector<Knowledge::Place>& Knowledge::places() {
        [](Rig& rig, double value) { rig.person.grip.damping_N_s_per_m = value; }},
       {"operator.correction_gain_per_s", "operator.correction.gain_per_s", logarithm,
        [](Rig& rig, double value) { rig.person.correction.gain_per_s = std::min(value, 8.0); }},
-      // Holds the lag of the person's snapshot too, which the file states.
+      // Holds the lag of the person's sight too, which the file states.
       {"operator.reaction_time_s", "operator.correction.reaction_time_s", logarithm,
        [](Rig& rig, double value) {
          rig.person.correction.reaction_time_s =

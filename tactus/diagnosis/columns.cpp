@@ -116,7 +116,9 @@ std::vector<std::string> notes_on_columns(const SignalRoles& roles, const std::v
     const auto plays = [&](const std::string& name) {
       return name == entry.name || recording::split_unit(name).name == entry.name;
     };
-    const auto is_velocity = [&](const std::optional<ToldVelocity>& told) { return told && told->name == entry.name; };
+    const auto is_velocity = [&](const std::optional<ReportedVelocity>& told) {
+      return told && told->name == entry.name;
+    };
     const bool used = std::any_of(roles.names.begin(), roles.names.end(), plays) || plays(roles.time) ||
                       is_velocity(signals.master_velocity) || is_velocity(signals.slave_velocity);
     if (used && entry.columns > 1 &&

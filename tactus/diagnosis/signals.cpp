@@ -178,10 +178,10 @@ Result<Found> read_columns(SignalRoles roles) {
     if (const auto factor = recording::step_is_too_long_by(position->values, velocity->values, *found.sample_time_s)) {
       return recording::contradicted_by_velocity(name, *factor, *found.sample_time_s);
     }
-    const auto scale = told_scale(position->values, velocity->values, Seconds{*found.sample_time_s});
+    const auto scale = reported_scale(position->values, velocity->values, Seconds{*found.sample_time_s});
     if (!scale) continue;
     auto& told = role == Role::master_position ? found.signals.master_velocity : found.signals.slave_velocity;
-    told = ToldVelocity{.name = name, .scale = *scale};
+    told = ReportedVelocity{.name = name, .scale = *scale};
   }
   found.signals.notes = notes_on_columns(roles, *entries, found.signals);
   return found;
@@ -211,9 +211,9 @@ Result<Found> read_bag(const SignalRoles& roles) {
   found.jitter_s = bag->jitter_s;
   for (BagChannel& channel : bag->channels) {
     if (!channel.velocity.empty()) {
-      const auto scale = told_scale(channel.values, channel.velocity, Seconds{bag->sample_time_s});
+      const auto scale = reported_scale(channel.values, channel.velocity, Seconds{bag->sample_time_s});
       auto& told = channel.role == Role::master_position ? found.signals.master_velocity : found.signals.slave_velocity;
-      if (scale) told = ToldVelocity{.name = channel.velocity_name, .scale = *scale};
+      if (scale) told = ReportedVelocity{.name = channel.velocity_name, .scale = *scale};
     }
     // ROS leaves open whether a joint turns or slides: a force in N shows that it slides.
     const std::string unit = channel.unit == "N" ? "N" : "";

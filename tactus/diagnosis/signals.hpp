@@ -2,7 +2,7 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/core/units.hpp>
-#include <tactus/diagnosis/told_velocity.hpp>
+#include <tactus/diagnosis/reported_velocity.hpp>
 
 #include <array>
 #include <cstddef>
@@ -65,7 +65,7 @@ struct Signals {
   std::size_t samples = 0;
   bool rotary = false;  ///< rad and N m instead of m and N
   /// Of master and slave, where a table has a column of it that goes with the position.
-  std::optional<ToldVelocity> master_velocity = {}, slave_velocity = {};
+  std::optional<ReportedVelocity> master_velocity = {}, slave_velocity = {};
   /// What a reader of the diagnosis should know of the recording: jitter of its times, columns that were not used.
   std::vector<std::string> notes = {};
 

@@ -20,7 +20,7 @@ struct BenchParams {
   double amplifier_lag_s = 1e-4;
   control::MasterModel master = bare();
   /// The person shifts the aim of the grip at −gain times what is seen of the handle's position, which is low-passed at
-  /// the snapshot's bandwidth and late by what is left of the reaction time, 1/(2π bandwidth) less; a bandwidth too low
+  /// the sight's bandwidth and late by what is left of the reaction time, 1/(2π bandwidth) less; a bandwidth too low
   /// for it counts as 1/(2π reaction time).
   double correction_gain_per_s = 4.0;
   double reaction_time_s = 0.13;

@@ -34,7 +34,7 @@ class Isolator {
       if (auto error = (this->*next)()) return *std::move(error);
     }
     for (std::size_t i = 0; i < bench_variables; ++i) {
-      // What the person's snapshot does beside being late, a fit needs and nobody else.
+      // What the person's sight does beside being late, a fit needs and nobody else.
       if (static_cast<BenchVariable>(i) == operator_sight) continue;
       result_.parameters.push_back(knowledge_.found(static_cast<BenchVariable>(i)));
       if (static_cast<BenchVariable>(i) == linkage_damping) result_.parameters.push_back(knowledge_.loop_area());
@@ -276,7 +276,7 @@ class Isolator {
     programs.front().run = thinned(programs.front().run, 4);
     constexpr std::array hand{operator_stiffness, operator_damping, operator_correction, operator_reaction,
                               operator_sight};
-    // The snapshot alone last: far from the rest of the hand it would run off.
+    // The sight alone last: far from the rest of the hand it would run off.
     if (auto error = fit(std::span(hand).first(4), programs)) return error;
     if (auto error = fit(hand, programs)) return error;
     keep(title, std::move(programs), 1.0);

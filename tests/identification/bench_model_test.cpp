@@ -96,9 +96,9 @@ TEST(BenchModel, AHeldMasterFollowsASlowSineAsGripAndCorrectionSay) {
     found += x[i] * std::polar(1.0, -w * tick_s * static_cast<double>(i));
   }
   found *= Complex(0.0, 1.0) / static_cast<double>(period);
-  const double snapshot = 2.0 * std::numbers::pi * params.sight_bandwidth_Hz;
+  const double sight = 2.0 * std::numbers::pi * params.sight_bandwidth_Hz;
   const Complex s(0.0, w);
-  const Complex seen = std::exp(-s * (params.reaction_time_s - 1.0 / snapshot)) / (1.0 + s / snapshot);
+  const Complex seen = std::exp(-s * (params.reaction_time_s - 1.0 / sight)) / (1.0 + s / sight);
   const Complex hand = (40.0 + 23.0 * s) * (1.0 + params.correction_gain_per_s * seen / s);
   const Complex handle = 1.0 / (0.03225 * s * s + hand);
   const Complex expected = handle + (1.0 / 39500.0 + 1.0 / 3950.0) * hand * handle;
