@@ -243,7 +243,7 @@ MotionWorth worth_of(const MotionInformation& information, const FourierMotion& 
   worth.condition = std::sqrt(gains.maxCoeff() / std::max(1e-300, gains[gains.size() - parameters]));
   worth.information_nats = 0.5 * (1.0 + gains.array().max(0.0)).log().sum();
   // Half of the prior's variance is left where the information is as much as that of the prior.
-  worth.told_combinations = static_cast<int>((gains.array() > 1.0).count());
+  worth.determined_combinations = static_cast<int>((gains.array() > 1.0).count());
   return worth;
 }
 

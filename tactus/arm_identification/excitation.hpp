@@ -46,8 +46,8 @@ struct MotionWorth {
   /// Of the information in base parameters and friction, each direction against what the URDF leaves in doubt: square
   /// root of the greatest over the least eigenvalue.
   double condition = 0.0;
-  double information_nats = 0.0;  ///< by which the doubt of all parameters together shrinks: ½ log|1 + information|
-  int told_combinations = 0;      ///< as in `ArmIdentification`
+  double information_nats = 0.0;    ///< by which the doubt of all parameters together shrinks: ½ log|1 + information|
+  int determined_combinations = 0;  ///< as in `ArmIdentification`
 };
 
 struct ArmExcitation {

@@ -178,7 +178,7 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
     thresholds.push_back(threshold_margin * std::max(left.cwiseAbs().maxCoeff(), held_out.cwiseAbs().maxCoeff()));
     result.joints.push_back(std::move(fit));
   }
-  result.told_combinations = told_of(whole.found);
+  result.determined_combinations = told_of(whole.found);
   result.model = model_of(data, whole, joints, urdf, result.cutoff_Hz, thresholds);
   return result;
 }

@@ -35,8 +35,8 @@ struct ArmIdentification {
   double cutoff_Hz = 0.0;
   /// Efforts are of a unit of their own at each joint, such as motor currents: the URDF tells how much of it is a N m.
   bool scaled_efforts = false;
-  int base_parameters = 0;    ///< combinations that any motion could tell at all
-  int told_combinations = 0;  ///< those that these recordings tell better than the URDF does, friction included
+  int base_parameters = 0;          ///< combinations that any motion could tell at all
+  int determined_combinations = 0;  ///< those that these recordings tell better than the URDF does, friction included
 };
 
 /// Finds the dynamics of an arm from free motion of all its joints.

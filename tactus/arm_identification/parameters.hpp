@@ -16,7 +16,7 @@ struct ArmParameter {
   double upper = 0.0;
   /// Whether the recordings tell it: they leave at most half of the deviation that the URDF was given. Else the value
   /// is near that of the URDF, and another with the same torques would do as well.
-  bool told = false;
+  bool determined = false;
 };
 
 /// The numbers of a joint and its body as a fit has them. `nothing`: a fit with the same priors and no data.

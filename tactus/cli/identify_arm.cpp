@@ -45,7 +45,7 @@ std::string json_of(const IdentifyArmOptions& options, const ArmIdentification& 
                 {"cutoff_Hz", found.cutoff_Hz},
                 {"scaled_efforts", found.scaled_efforts},
                 {"base_parameters", found.base_parameters},
-                {"told_combinations", found.told_combinations},
+                {"determined_combinations", found.determined_combinations},
                 {"joints", Json::array()}};
   for (const ArmJointFit& joint : found.joints) {
     document["joints"].push_back({{"name", joint.name},
@@ -89,7 +89,7 @@ report::Table parameters_table(const ArmIdentification& found) {
   for (const ArmJointFit& joint : found.joints) {
     for (const ArmParameter& p : joint.parameters) {
       table.add_row({joint.name, p.name, report::number(p.value, 4), report::number(p.lower, 4),
-                     report::number(p.upper, 4), p.unit, p.told ? "recording" : "URDF"});
+                     report::number(p.upper, 4), p.unit, p.determined ? "recording" : "URDF"});
     }
   }
   return table;
@@ -102,7 +102,7 @@ report::Table untold_table(const ArmIdentification& found) {
   for (const ArmJointFit& joint : found.joints) {
     std::string names;
     for (const ArmParameter& p : joint.parameters) {
-      if (!p.told) names += (names.empty() ? "" : ", ") + p.name;
+      if (!p.determined) names += (names.empty() ? "" : ", ") + p.name;
     }
     table.add_row({joint.name, names.empty() ? "nothing" : names});
   }
@@ -115,7 +115,7 @@ std::string words_of(const ArmIdentification& found) {
   for (const ArmJointFit& joint : found.joints) {
     for (const ArmParameter& p : joint.parameters) {
       ++all;
-      told += p.told ? 1 : 0;
+      told += p.determined ? 1 : 0;
     }
   }
   std::string text = report::number(found.duration_s, 3) + " s of free motion below " +
@@ -123,7 +123,7 @@ std::string words_of(const ArmIdentification& found) {
                      std::to_string(found.base_parameters) +
                      " combinations of bodies and armatures; with friction the "
                      "recordings tell " +
-                     std::to_string(found.told_combinations) + " combinations better than the URDF, and " +
+                     std::to_string(found.determined_combinations) + " combinations better than the URDF, and " +
                      std::to_string(told) + " of " + std::to_string(all) +
                      " single parameters. The others stay near the URDF: other values would give the same torques. "
                      "`identify excitation` designs a motion that tells more.";

@@ -48,7 +48,7 @@ struct ExcitationOptions {
 nlohmann::ordered_json worth_json(const MotionWorth& worth) {
   return {{"condition", worth.condition},
           {"information_nats", worth.information_nats},
-          {"told_combinations", worth.told_combinations}};
+          {"determined_combinations", worth.determined_combinations}};
 }
 
 std::string json_of(const ExcitationOptions& options, const ArmExcitation& found) {
@@ -144,7 +144,7 @@ report::Table promises_table(const ArmExcitation& found) {
   for (const ExcitedJoint& joint : found.joints) {
     for (const ArmParameter& p : joint.parameters) {
       table.add_row({joint.name, p.name, report::number(p.value, 4), report::number(p.lower, 4),
-                     report::number(p.upper, 4), p.unit, p.told ? "yes" : "no"});
+                     report::number(p.upper, 4), p.unit, p.determined ? "yes" : "no"});
     }
   }
   return table;
@@ -156,10 +156,10 @@ std::string words_of(const ExcitationOptions& options, const ArmExcitation& foun
       report::number(options.request.duration_s, 3) + " s from rest to rest, below " +
       report::number(options.request.highest_Hz, 3) + " Hz, within " +
       report::number(100.0 * options.request.share, 3) + " % of every limit. With this noise it will tell " +
-      std::to_string(found.worth.told_combinations) + " of " + std::to_string(all) +
+      std::to_string(found.worth.determined_combinations) + " of " + std::to_string(all) +
       " combinations of bodies, armatures and friction better than the URDF does; a random motion "
       "within the same limits " +
-      std::to_string(found.random.told_combinations) + ". Condition number " +
+      std::to_string(found.random.determined_combinations) + ". Condition number " +
       report::number(found.worth.condition, 3) + " (random: " + report::number(found.random.condition, 3) + ").";
   if (!found.searched) {
     text +=

@@ -50,8 +50,8 @@ constexpr std::array quantities{
 
 const char* word_of(ImpedanceVerdict verdict) {
   switch (verdict) {
-    case ImpedanceVerdict::told:
-      return "told";
+    case ImpedanceVerdict::determined:
+      return "determined";
     case ImpedanceVerdict::still:
       return "still";
     case ImpedanceVerdict::hand_drives:
@@ -66,7 +66,7 @@ const char* word_of(ImpedanceVerdict verdict) {
 
 const char* reason_of(ImpedanceVerdict verdict) {
   switch (verdict) {
-    case ImpedanceVerdict::told:
+    case ImpedanceVerdict::determined:
       return "the data tell";
     case ImpedanceVerdict::still:
       return "too little motion";

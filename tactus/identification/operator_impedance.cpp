@@ -169,7 +169,7 @@ ImpedanceVerdict judge(const Problem& problem, const Sums& sums, const OperatorI
   if (below_zero(found.stiffness) || below_zero(found.damping) || below_zero(found.mass)) {
     return ImpedanceVerdict::contradicted;
   }
-  return ImpedanceVerdict::told;
+  return ImpedanceVerdict::determined;
 }
 
 OperatorImpedance fit(const Problem& problem, std::size_t first, std::size_t count) {
@@ -234,11 +234,11 @@ bool look_swapped(const AxisSignals& signals, Band band, double window_s) {
   const double of_position = quickness(swapped.position, band, swapped.sample_time);
   if (of_force < quicker * of_position) return false;
   const auto problem = prepare(swapped, band, window_s);
-  return problem && fit(*problem, 0, problem->blocks.size()).verdict == ImpedanceVerdict::told;
+  return problem && fit(*problem, 0, problem->blocks.size()).verdict == ImpedanceVerdict::determined;
 }
 
 Check check_plausible(const AxisSignals& signals, const OperatorImpedances& found, bool doubt_sign) {
-  if (found.whole.verdict != ImpedanceVerdict::told &&
+  if (found.whole.verdict != ImpedanceVerdict::determined &&
       look_swapped(signals, {found.lower_Hz, found.upper_Hz}, found.window_s)) {
     return inconsistent(
         "position and force look swapped: the other way round they show a passive hand; exchange --position and "
@@ -275,7 +275,7 @@ Result<Band> band_of(const AxisSignals& signals, const OperatorImpedanceOptions&
 }  // namespace
 
 bool OperatorImpedance::determined(const Estimate& parameter) const {
-  return verdict == ImpedanceVerdict::told && parameter.lower > 0.0;
+  return verdict == ImpedanceVerdict::determined && parameter.lower > 0.0;
 }
 
 Result<OperatorImpedances> estimate_operator_impedance(const AxisSignals& signals,

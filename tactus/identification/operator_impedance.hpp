@@ -10,7 +10,7 @@ namespace tactus::identification {
 
 /// What the data say of the hand in a stretch of time.
 enum class ImpedanceVerdict {
-  told,          ///< motion explains the hand's force; each parameter as far as its interval says
+  determined,    ///< motion explains the hand's force; each parameter as far as its interval says
   still,         ///< the device hardly moves in the band: less than a step of its encoder
   hand_drives,   ///< the hand gives energy in the band: what answers is the device, not the hand
   unexplained,   ///< the motion explains less than half of the hand's force in the band
@@ -26,7 +26,7 @@ struct OperatorImpedance {
   double explained = 0;  ///< share of the force's variance in the band, 1 at best
   ImpedanceVerdict verdict = ImpedanceVerdict::still;
 
-  /// Does the data tell this parameter? The verdict is `told` and its interval is above zero.
+  /// Do the data determine this parameter? The verdict is `determined` and its interval is above zero.
   [[nodiscard]] bool determined(const Estimate& parameter) const;
 };
 
