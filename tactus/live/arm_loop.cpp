@@ -113,7 +113,7 @@ void ArmLoop::step(const HandPoint& path, const HandPoint& path_at_next_tick, do
                  .displayed_force_N = -snapshot.displayed_N.dot(toward),
                  .handle_force_N = 0.0,
                  .hand_force_N = did.hand_N,
-                 .told_force_N = -snapshot.told_N.dot(toward),
+                 .sent_force_N = -snapshot.sent_N.dot(toward),
                  .contact_force_N = did.contact_N,
                  .peak_contact_force_N = did.contact_N,
                  .touched = did.contact_N > 0.0,

@@ -38,7 +38,7 @@ void SiteCounters::judge(const SiteLogRecord& record) noexcept {
 
 void SiteCounters::measure(const SiteLogRecord& record) noexcept {
   const double force_N = record.motor_force_N;
-  if (!std::isfinite(force_N) || !control::is_finite(static_cast<const SiteLogRecord::Told&>(record)))
+  if (!std::isfinite(force_N) || !control::is_finite(static_cast<const SiteLogRecord::Sent&>(record)))
     ++totals_.not_finite;
   const double step_N = std::fabs(force_N - last_.motor_force_N);
   constexpr double round_off = 1e-12;

@@ -22,7 +22,7 @@ struct SiteTickRecord : control::SiteRecord {
   double link_silence_s = 0.0;
   std::int64_t pressed = 0;
   std::int64_t arrivals = 0;
-  std::int64_t told_sequence = 0;
+  std::int64_t sent_sequence = 0;
   static constexpr auto signals() {
     using R = SiteTickRecord;
     return joined(
@@ -40,7 +40,7 @@ struct SiteTickRecord : control::SiteRecord {
                      "stop, 64 leave."),
             observed("arrivals", &R::arrivals, units::none, "", "", "",
                      "Packets that came over the link at this tick, each a record of the topic /packets."),
-            observed("told_sequence", &R::told_sequence, units::none, "", "", "", "Of the packet that was sent.")});
+            observed("sent_sequence", &R::sent_sequence, units::none, "", "", "", "Of the packet that was sent.")});
   }
 };
 
@@ -77,20 +77,23 @@ struct AxisRecord : control::HandEstimate {
 };
 
 /// One tick of a site of one axis.
-struct SiteLogRecord : SiteTickRecord, AxisRecord, Part<control::Message, "heard_">, Part<control::Message, "told_"> {
-  using Heard = Part<control::Message, "heard_">;  ///< the message that was applied last
-  using Told = Part<control::Message, "told_">;    ///< to the other site
+struct SiteLogRecord : SiteTickRecord,
+                       AxisRecord,
+                       Part<control::Message, "received_">,
+                       Part<control::Message, "sent_"> {
+  using Received = Part<control::Message, "received_">;  ///< the message that was applied last
+  using Sent = Part<control::Message, "sent_">;          ///< to the other site
   using AxisRecord::position_m;
   static constexpr auto signals() {
-    return joined(SiteTickRecord::signals(), AxisRecord::signals(), Heard::signals(), Told::signals());
+    return joined(SiteTickRecord::signals(), AxisRecord::signals(), Received::signals(), Sent::signals());
   }
 };
 
 /// One tick of one joint of a site of several, in the joint's unit: where a name says m and N, one that turns has rad
 /// and N m. What all joints share is in the `SiteTickRecord` of the tick.
-struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<control::Message, "told_"> {
-  using Heard = Part<control::Message, "heard_">;
-  using Told = Part<control::Message, "told_">;
+struct JointLogRecord : AxisRecord, Part<control::Message, "received_">, Part<control::Message, "sent_"> {
+  using Received = Part<control::Message, "received_">;
+  using Sent = Part<control::Message, "sent_">;
   using AxisRecord::position_m;
   std::int64_t tick = 0;
   std::int64_t limit = 0;
@@ -125,7 +128,7 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
                       "Commanded: to which that law pulls."),
              observed("law_velocity_m_per_s", &R::law_velocity_m_per_s, units::metre_per_second, "", "",
                       "toward the environment", "Commanded: the same.")},
-        AxisRecord::signals(), Heard::signals(), Told::signals());
+        AxisRecord::signals(), Received::signals(), Sent::signals());
   }
 };
 

@@ -141,7 +141,7 @@ auto TeleoperatorOf<Pair>::recorded(double time_s, const typename Pair::Output& 
   record.displayed_force_N = -master.motor_force_N;
   record.handle_force_N = master.handle_force_N;
   record.hand_force_N = output.master.reading.force_N;
-  record.told_force_N = told(output.slave.output).force_N;
+  record.sent_force_N = told(output.slave.output).force_N;
   record.estimated_grip = master.hand.estimated_grip;
   record.estimated_grip_deviation = master.hand.estimated_grip_deviation;
   return record;

@@ -46,7 +46,7 @@ struct TeleoperatorRecord {
   double displayed_force_N = 0.0;         ///< at the motor, positive when it pushes the hand back
   double handle_force_N = 0.0;            ///< to the handle's actuator, positive toward the environment
   double hand_force_N = 0.0;              ///< measured, positive when the hand pushes toward the environment
-  double told_force_N = 0.0;              ///< tip force that the slave sent, positive when the slave is pushed back
+  double sent_force_N = 0.0;              ///< tip force that the slave sent, positive when the slave is pushed back
   double contact_force_N = 0.0;           ///< true, mean until the next tick
   double peak_contact_force_N = 0.0;      ///< true, largest substep until the next tick
   bool touched = false;                   ///< the tip met the wall before the next tick
@@ -75,7 +75,7 @@ struct TeleoperatorRecord {
                  "Force of the actuator on the handle."),
         observed("hand_force_N", &TeleoperatorRecord::hand_force_N, units::newton, "master", "hand", onward,
                  "Measured force of the hand on the handle."),
-        observed("told_force_N", &TeleoperatorRecord::told_force_N, units::newton, "slave", "slave",
+        observed("sent_force_N", &TeleoperatorRecord::sent_force_N, units::newton, "slave", "slave",
                  "the slave is pushed back", "Tip force that the slave sent to the master, measured or estimated."),
         observed("contact_force_N", &TeleoperatorRecord::contact_force_N, units::newton, "environment", "slave",
                  "the wall is pressed", "True, mean until the next tick."),

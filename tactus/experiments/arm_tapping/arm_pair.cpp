@@ -328,7 +328,7 @@ ArmSnapshot ArmPair::snapshot() const {
           .leader_m = leader_.plant().tool().position_m,
           .follower_m = follower_.plant().tool().position_m,
           .displayed_N = force_nearest_to(at_leader, displayed),
-          .told_N = leads_joints_ ? force_nearest_to(moves_tool(follower_chain, follower_rad, follower_tool_m_), told)
+          .sent_N = leads_joints_ ? force_nearest_to(moves_tool(follower_chain, follower_rad, follower_tool_m_), told)
                                   : Vector3(force_nearest_to(at_leader, told) / tool_scale_),
           .induced_m = at_leader * induced,
           .command_m = led_to_m(commanded)};

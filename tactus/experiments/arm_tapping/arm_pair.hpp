@@ -74,7 +74,7 @@ struct ArmSnapshot {
   /// What the leader's motors and their law do beside carrying the arm, as the force at the tool whose torques come
   /// nearest to theirs.
   arm::Vector3 displayed_N;
-  arm::Vector3 told_N;     ///< of what the follower's site tells of the torques that resist it, the same
+  arm::Vector3 sent_N;     ///< of what the follower's site tells of the torques that resist it, the same
   arm::Vector3 induced_m;  ///< motion of the leader's tool that its site takes from the command
   arm::Vector3 command_m;  ///< where the leader's site sends the follower's tool
 };

@@ -166,7 +166,7 @@ ArmReach ArmTaps::reach() const {
     if (now_s < rest_s) continue;
     forces_N.push_back(record.hand_N);
     const ArmSnapshot snapshot = pair.snapshot();
-    false_forces_N.push_back(snapshot.told_N.norm());
+    false_forces_N.push_back(snapshot.sent_N.norm());
     found.drift_m = std::max(found.drift_m, snapshot.induced_m.norm());
   }
   found.effort_N = signal::root_mean_square(forces_N);

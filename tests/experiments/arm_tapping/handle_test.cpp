@@ -65,7 +65,7 @@ TEST(Handle, FeelsTheForceOnTheToolTimesScaleAndGain) {
     }
     ASSERT_GT(record.contact_N, 1.0);
     const ArmSnapshot snapshot = pair.snapshot();
-    EXPECT_NEAR(snapshot.told_N.z(), record.contact_N, 0.03 * record.contact_N) << "in newtons at the tool";
+    EXPECT_NEAR(snapshot.sent_N.z(), record.contact_N, 0.03 * record.contact_N) << "in newtons at the tool";
     EXPECT_NEAR(snapshot.displayed_N.z(), 0.4 * scale * record.contact_N, 0.03 * scale * record.contact_N);
   }
 }
