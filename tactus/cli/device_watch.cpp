@@ -77,7 +77,7 @@ std::vector<Shown> look(Watched& watched, const BusReadings& now, const std::str
                    .moved_rad = heard ? position_rad - *watched.first_rad[i] : unknown,
                    .velocity_rad_per_s = joint.joint.velocity_rad_per_s(motor.velocity_rad_per_s),
                    .temperature_C = motor.temperature_C,
-                   .age_s = !heard ? unknown : 1e-9 * static_cast<double>(wire::monotonic_ns() - motor.heard_ns),
+                   .age_s = !heard ? unknown : 1e-9 * static_cast<double>(wire::monotonic_ns() - motor.received_ns),
                    .state = motor.fault != MotorFault::none ? name_of(motor.fault)
                             : outside                       ? "outside"
                                                             : "well"});

@@ -61,7 +61,7 @@ inline void keep_part(double& force_N, DriveLaw& law, double wanted_N, double pa
 }
 
 /// What a drive tells of its motor beside its position; zeros where it tells nothing.
-struct DriveTells {
+struct DriveReport {
   double velocity_m_per_s = 0.0;
   double force_N = 0.0;  ///< that the motor gives to the joint, as the drive believes, from its current
 };

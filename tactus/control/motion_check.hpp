@@ -59,7 +59,7 @@ class MotionCheck {
   };
   struct Input {
     double position_m = 0.0;
-    DriveTells tells;
+    DriveReport tells;
     double acted_N = 0.0;        ///< on the motor since the reading before
     double force_limit_N = 0.0;  ///< of the motor; of one that gives none, repetition is not judged
     double between_s = 0.0;      ///< since the measurement before

@@ -17,7 +17,7 @@ constexpr double least_ticks = 0.01;
 }  // namespace
 
 double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::optional<double> resisting_N,
-                           double age_s, const DriveTells& tells) noexcept {
+                           double age_s, const DriveReport& tells) noexcept {
   elapsed_ticks_ = elapsed_ticks = std::max<std::int64_t>(elapsed_ticks, 1);
   const double acted_N = force_.passed_N();
   allowed_N_ = thermal_.step({.acted_N = acted_N, .peak_N = force_limit_N_, .elapsed_ticks = elapsed_ticks});

@@ -109,7 +109,7 @@ class SafetyGate {
   /// position that was read before says nothing new of them.
   /// `tells` is what the drive reports beside the position. Real-time safe.
   double believe(double position_m, std::int64_t elapsed_ticks = 1, std::optional<double> resisting_N = std::nullopt,
-                 double age_s = 0.0, const DriveTells& tells = {}) noexcept;
+                 double age_s = 0.0, const DriveReport& tells = {}) noexcept;
   /// The force in N that may reach the motor instead of `command_N`. Always finite. Once a tick, after `believe`.
   /// `stops` where the site gives its force up: it then falls within `stop_time_s`, as after a fault. Real-time safe.
   double pass(double command_N, bool stops = false) noexcept;

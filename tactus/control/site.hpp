@@ -80,7 +80,7 @@ void pass_command(SafetyGate& gate, const Input& read, Output& output, bool stop
     return;
   }
   const double wanted_N =
-      output.motor_force_N + output.law.force_N(read.motor_position_m, read.motor_tells.velocity_m_per_s);
+      output.motor_force_N + output.law.force_N(read.motor_position_m, read.motor_report.velocity_m_per_s);
   const double passed_N = gate.pass(wanted_N, stops);
   if (gate.has_let_go()) {
     output.law = {};
@@ -105,7 +105,7 @@ class MasterGates {
   /// The position in m to believe, as `SafetyGate` says. Real-time safe.
   double believe(const MasterInput& read, std::int64_t elapsed_ticks) noexcept {
     elapsed_ticks_ = elapsed_ticks;
-    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_tells);
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_report);
   }
   /// Puts what may reach the actuators in place of what was commanded; `stops` as in `SafetyGate::pass`. Real-time
   /// safe.
@@ -142,7 +142,7 @@ class SlaveGates {
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
   /// The position in m to believe, as `SafetyGate` says. Real-time safe.
   double believe(const SlaveInput& read, std::int64_t elapsed_ticks) noexcept {
-    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_tells);
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_report);
   }
   /// Puts what may reach the motor in place of what was commanded. Real-time safe.
   void pass(SlaveOutput& output, const SlaveInput& read, bool stops = false) noexcept {

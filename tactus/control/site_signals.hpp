@@ -47,7 +47,7 @@ struct MasterInput {
   Arrival arrival;
   double grip = 1.0;         ///< how firmly the person holds, over nominal, where a sensor tells; 1 without one
   double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
-  DriveTells motor_tells = {};
+  DriveReport motor_report = {};
 };
 
 /// How firmly the person holds the handle and what else differs from the model that was identified, as the master's
@@ -85,7 +85,7 @@ struct SlaveInput {
   double tip_force_N = 0.0;  ///< positive when the environment pushes the slave back
   Arrival arrival;
   double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
-  DriveTells motor_tells = {};
+  DriveReport motor_report = {};
 };
 
 /// What the slave commands and tells.
@@ -122,7 +122,7 @@ inline bool take_over(double& last, double read) noexcept {
   if (finite) last = read;
   return finite;
 }
-inline bool take_over(DriveTells& last, const DriveTells& read) noexcept {
+inline bool take_over(DriveReport& last, const DriveReport& read) noexcept {
   const bool velocity = can_be_told(read.velocity_m_per_s), force = can_be_told(read.force_N);
   if (velocity) last.velocity_m_per_s = read.velocity_m_per_s;
   if (force) last.force_N = read.force_N;
@@ -140,14 +140,14 @@ inline bool take_over(MasterInput& last, const MasterInput& read) noexcept {
   all = take_over(last.motor_age_s, read.motor_age_s) && all;
   all = take_over(last.hand_force_N, read.hand_force_N) && all;
   all = take_over(last.grip, read.grip) && all;
-  all = take_over(last.motor_tells, read.motor_tells) && all;
+  all = take_over(last.motor_report, read.motor_report) && all;
   return take_over(last.arrival, read.arrival) && all;
 }
 inline bool take_over(SlaveInput& last, const SlaveInput& read) noexcept {
   bool all = take_over(last.motor_position_m, read.motor_position_m);
   all = take_over(last.motor_age_s, read.motor_age_s) && all;
   all = take_over(last.tip_force_N, read.tip_force_N) && all;
-  all = take_over(last.motor_tells, read.motor_tells) && all;
+  all = take_over(last.motor_report, read.motor_report) && all;
   return take_over(last.arrival, read.arrival) && all;
 }
 

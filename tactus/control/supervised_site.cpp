@@ -88,7 +88,7 @@ typename Raise::Snapshot snapshot_of(const Gated& site, const Sensors& sensors, 
                                     .elapsed_ticks = elapsed_ticks};
   for_each_joint(
       [&snapshot](const JointOf<Sensors>& joint, double& velocity_m_per_s) noexcept {
-        const double told = joint.motor_tells.velocity_m_per_s;
+        const double told = joint.motor_report.velocity_m_per_s;
         if (can_be_told(told)) velocity_m_per_s = told;
         snapshot.seen = snapshot.seen && std::isfinite(joint.motor_position_m);
       },

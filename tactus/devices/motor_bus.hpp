@@ -52,7 +52,7 @@ struct MotorReading {
   std::int64_t enabled = 0;         ///< 1 where the drive has power, or a status that is not known
   std::int64_t off = 0;             ///< 1 once it has reported that it has no power, since it was last to have any
   std::int64_t status = no_status;  ///< as its protocol has it, see `status_text`
-  std::int64_t heard_ns = -1;       ///< when its last good answer arrived; negative: never
+  std::int64_t received_ns = -1;    ///< when its last good answer arrived; negative: never
   std::int64_t answers = 0;         ///< good ones, since the start
 };
 

@@ -53,9 +53,9 @@ Joints<station::DeviceReading> MotorBusDevice::read(const station::Tick& tick) n
       turns_rad_[joint] = own.first_position_rad(motor.position_rad) - told_rad;
     }
     reading_[joint].position_m = told_rad + turns_rad_[joint];
-    reading_[joint].motor_tells = {.velocity_m_per_s = own.velocity_rad_per_s(motor.velocity_rad_per_s),
-                                   .force_N = own.torque_Nm(motor.torque_Nm)};
-    reading_[joint].age_s = 1e-9 * static_cast<double>(tick.deadline_ns - motor.heard_ns);
+    reading_[joint].motor_report = {.velocity_m_per_s = own.velocity_rad_per_s(motor.velocity_rad_per_s),
+                                    .force_N = own.torque_Nm(motor.torque_Nm)};
+    reading_[joint].age_s = 1e-9 * static_cast<double>(tick.deadline_ns - motor.received_ns);
   }
   const DeviceTrouble now = found();
   if (health_ < DeviceHealth::silent || now.what >= trouble_.what) judge(now);
@@ -66,8 +66,8 @@ DeviceTrouble MotorBusDevice::found() noexcept {
   DeviceTrouble found;
   std::int64_t oldest_ns = now_ns_;
   for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
-    if (last_.motors[joint].heard_ns >= oldest_ns) continue;
-    oldest_ns = last_.motors[joint].heard_ns;
+    if (last_.motors[joint].received_ns >= oldest_ns) continue;
+    oldest_ns = last_.motors[joint].received_ns;
     found.joint = joint;
   }
   found.age_s = 1e-9 * static_cast<double>(now_ns_ - oldest_ns);

@@ -53,7 +53,7 @@ struct DeviceTrouble {
 
 /// Motors behind a bus as the joints of a device, in the order that they have there; forces are torques in Nm,
 /// positions rad, both of the joint. A motor's torque is told from its current, so it is no reading of a hand: the
-/// force that is read is 0, and torque and velocity are what the motor tells (`motor_tells`).
+/// force that is read is 0, and torque and velocity are what the motor tells (`motor_report`).
 ///
 /// Where a joint has limits for it, its motor runs the law of the command by itself. Torque and law together are held
 /// to the joint's torque limit at the newest reading, in one share; until the next command the motor goes on by that

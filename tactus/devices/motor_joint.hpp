@@ -111,7 +111,7 @@ struct MotorJoint {
     if (!of_joint.law.acts()) return {.torque_Nm = motor_torque_Nm(of_joint.force_N)};
     double force_N = of_joint.force_N;
     control::DriveLaw law = of_joint.law;
-    const double whole_N = force_N + law.force_N(at.position_m, at.motor_tells.velocity_m_per_s);
+    const double whole_N = force_N + law.force_N(at.position_m, at.motor_report.velocity_m_per_s);
     if (std::fabs(whole_N) > torque_limit_Nm) {
       control::keep_part(force_N, law, whole_N, std::copysign(torque_limit_Nm, whole_N));
     }

@@ -33,7 +33,7 @@ Joints<DeviceReading> reading_of(const JointsRow& row) {
       [](DeviceReading& to, const JointLogRecord& from) {
         to = reading_of_axis(from);
         to.age_s = from.position_age_s;
-        to.motor_tells = {.velocity_m_per_s = from.drive_velocity_m_per_s, .force_N = from.drive_force_N};
+        to.motor_report = {.velocity_m_per_s = from.drive_velocity_m_per_s, .force_N = from.drive_force_N};
       },
       reading, row.joints);
   return reading;

@@ -82,8 +82,8 @@ JointLogRecord of_joint(const station::Tick& tick, const control::SafetyGate& ga
   record.fault = static_cast<std::int64_t>(gate.fault());
   record.given_J = gate.given_J();
   record.position_age_s = reading.age_s;
-  record.drive_velocity_m_per_s = reading.motor_tells.velocity_m_per_s;
-  record.drive_force_N = reading.motor_tells.force_N;
+  record.drive_velocity_m_per_s = reading.motor_report.velocity_m_per_s;
+  record.drive_force_N = reading.motor_report.force_N;
   record.drive_stiffness_N_per_m = output.law.stiffness_N_per_m;
   record.drive_damping_N_s_per_m = output.law.damping_N_s_per_m;
   record.law_position_m = output.law.position_m;

@@ -45,7 +45,7 @@ struct DeviceReading {
                             ///< tip, positive when it pushes the slave back
   double grip = 1.0;        ///< master: how firmly the person holds, over nominal, where a sensor tells
   double age_s = 0.0;       ///< of the position at the tick's deadline; negative where it was measured after that
-  control::DriveTells motor_tells = {};
+  control::DriveReport motor_report = {};
 };
 
 struct DeviceCommand {

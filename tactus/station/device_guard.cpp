@@ -191,7 +191,7 @@ Reading GuardedDeviceOf<Reading>::read(const Tick& tick) noexcept {
   if (device_->health() != DeviceHealth::lost) {
     for_each_joint(
         [&tick](DeviceGuard& guard, const DeviceReading& joint) noexcept {
-          guard.observe(joint.position_m, tick, joint.age_s, joint.motor_tells.velocity_m_per_s);
+          guard.observe(joint.position_m, tick, joint.age_s, joint.motor_report.velocity_m_per_s);
         },
         guard_, reading);
   }

@@ -40,14 +40,14 @@ struct Step {
 inline void put(const DeviceReading& reading, control::MasterInput& sensors) noexcept {
   sensors.motor_position_m = reading.position_m;
   sensors.motor_age_s = reading.age_s;
-  sensors.motor_tells = reading.motor_tells;
+  sensors.motor_report = reading.motor_report;
   sensors.hand_force_N = reading.force_N;
   sensors.grip = reading.grip;
 }
 inline void put(const DeviceReading& reading, control::SlaveInput& sensors) noexcept {
   sensors.motor_position_m = reading.position_m;
   sensors.motor_age_s = reading.age_s;
-  sensors.motor_tells = reading.motor_tells;
+  sensors.motor_report = reading.motor_report;
   sensors.tip_force_N = reading.force_N;
 }
 inline DeviceCommand command_of(const control::MasterOutput& output, bool enabled = true) noexcept {

@@ -195,12 +195,12 @@ TEST(ArmsUnderSupervision, ALostLinkIsAHoldOfBothThatOnlyANewArmingLeaves) {
 struct Spoilt {
   ArmDevice* arm;
   double station::DeviceReading::*member = nullptr;
-  double control::DriveTells::*tells = nullptr;
+  double control::DriveReport::*tells = nullptr;
   double told = std::numeric_limits<double>::infinity();
   Joints<station::DeviceReading> read(const station::Tick& now) noexcept {
     auto reading = arm->read(now);
     if (member != nullptr) reading[3].*member = std::numeric_limits<double>::quiet_NaN();
-    if (tells != nullptr) reading[3].motor_tells.*tells = told;
+    if (tells != nullptr) reading[3].motor_report.*tells = told;
     return reading;
   }
   void write(const Joints<station::DeviceCommand>& command) noexcept { arm->write(command); }
@@ -212,8 +212,8 @@ TEST(ArmsUnderSupervision, ANumberOfOneJointThatIsNoneLetsTheWholeArmGo) {
     bench.couple();
     Spoilt spoilt{.arm = &bench.follower};
     if (which == 0) spoilt.member = &station::DeviceReading::position_m;
-    if (which == 1) spoilt.tells = &control::DriveTells::velocity_m_per_s;
-    if (which == 2) spoilt.tells = &control::DriveTells::force_N;
+    if (which == 1) spoilt.tells = &control::DriveReport::velocity_m_per_s;
+    if (which == 2) spoilt.tells = &control::DriveReport::force_N;
     station::JointSupervisedPair::Output done;
     for (int i = 0; i < 100; ++i) {
       done = bench.sites.step(bench.leader, spoilt, {.number = bench.number++}, {.dead_man = true});
@@ -228,7 +228,7 @@ TEST(ArmsUnderSupervision, ANumberOfOneJointThatIsNoneLetsTheWholeArmGo) {
 TEST(ArmsUnderSupervision, WhatNoMotorDoesIsNotBelievedAndTheArmFollowsAgainAfterwards) {
   Bench bench;
   bench.couple();
-  Spoilt spoilt{.arm = &bench.follower, .tells = &control::DriveTells::velocity_m_per_s, .told = 1e300};
+  Spoilt spoilt{.arm = &bench.follower, .tells = &control::DriveReport::velocity_m_per_s, .told = 1e300};
   bench.sites.step(bench.leader, spoilt, {.number = bench.number++}, {.dead_man = true});
   EXPECT_EQ(bench.sites.slave().site().fault(), GateFault::not_finite);
   bench.run(0.1, {});

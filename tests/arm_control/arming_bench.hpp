@@ -85,8 +85,8 @@ class ArmingDevice final : public station::JointDevice {
     for (std::size_t i = 0; i < joints; ++i) {
       const auto motor = static_cast<Eigen::Index>(wiring_.motor[i]);
       reading[i].position_m = wiring_.sign[i] * now.position[motor];
-      reading[i].motor_tells = {.velocity_m_per_s = wiring_.sign[i] * now.velocity[motor],
-                                .force_N = wiring_.sign[i] * now.torque[motor]};
+      reading[i].motor_report = {.velocity_m_per_s = wiring_.sign[i] * now.velocity[motor],
+                                 .force_N = wiring_.sign[i] * now.torque[motor]};
     }
     return reading;
   }

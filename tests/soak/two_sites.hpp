@@ -73,13 +73,13 @@ class End {
     packet.sequence += origin_.sequence;
     packet.agreement = agreement.excerpt(packet.sequence);
     packet.message.energy_J += origin_.energy_J;
-    const bool echoes = inbound_.echo_heard_ns() != 0;
+    const bool echoes = inbound_.echo_received_ns() != 0;
     return link::encode({.site = role_,
                          .packet = packet,
                          .peer_session = inbound_.answered_session(),
                          .sent_ns = now_ns,
                          .echo_sent_ns = inbound_.echo_sent_ns(),
-                         .echo_hold_ns = echoes ? now_ns - inbound_.echo_heard_ns() : 0});
+                         .echo_hold_ns = echoes ? now_ns - inbound_.echo_received_ns() : 0});
   }
   [[nodiscard]] const link::Inbound& inbound() const { return inbound_; }
   [[nodiscard]] std::int64_t malformed() const { return malformed_; }

@@ -207,7 +207,7 @@ void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t 
   MotorReading& reading = motor.reading;
   const double turn_rad = 2.0 * motor.scale.position_rad;
   if (reading.answers > 0) {
-    const double silent_s = static_cast<double>(now_ns - reading.heard_ns) * 1e-9;
+    const double silent_s = static_cast<double>(now_ns - reading.received_ns) * 1e-9;
     // It could have turned by half its range meanwhile, and its number says nothing of that.
     if (silent_s * motor.scale.velocity_rad_per_s > motor.scale.position_rad) motor.latched = MotorFault::encoder;
     motor.turns -= std::round((told->position_rad - motor.wrapped_rad) / turn_rad);
@@ -225,7 +225,7 @@ void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t 
   reading.temperature_C = std::max(told->drive_C, told->winding_C);
   reading.status = told->status;
   reading.enabled = means_off(told->status) ? 0 : 1;
-  reading.heard_ns = now_ns;
+  reading.received_ns = now_ns;
   ++reading.answers;
   judge(motor, now_ns);
 }
@@ -234,7 +234,7 @@ bool DamiaoBus::is_absent(const Motor& motor) noexcept { return motor.missed >= 
 
 bool DamiaoBus::is_silent(const Motor& motor, std::int64_t now_ns) const noexcept {
   // Once is not enough: where this program stood still, it was not the motor that was silent.
-  return motor.missed > 1 && (motor.reading.heard_ns < 0 || now_ns - motor.reading.heard_ns > silence_ns_);
+  return motor.missed > 1 && (motor.reading.received_ns < 0 || now_ns - motor.reading.received_ns > silence_ns_);
 }
 
 /// Which fault it has, and whether that stays.
@@ -290,7 +290,7 @@ void DamiaoBus::end_cycle(std::int64_t now_ns) noexcept {
     const bool asked = motor.owed > 0;
     // What is late comes in a later cycle and must not be taken for the answer to that one: each would begin too soon
     // from then on. What is lost is waited for once more.
-    const bool heard = motor.reading.heard_ns >= cycle_began_ns_;
+    const bool heard = motor.reading.received_ns >= cycle_began_ns_;
     if (asked && !heard) ++motor.missed;
     if (heard || is_absent(motor)) motor.owed = 0;
     judge(motor, now_ns);

@@ -115,7 +115,7 @@ class BlockingLink::Shared {
     const std::int64_t end_ns = wire::monotonic_ns();
     for (std::size_t i = 0; i < motors_; ++i) {
       told_.motors[i].off = told_.motors[i].enabled == 0 && commands[i].enabled == 0 ? 1 : 0;
-      told_.motors[i].heard_ns = end_ns;
+      told_.motors[i].received_ns = end_ns;
       ++told_.motors[i].answers;
     }
     ++told_.cycles;

@@ -41,7 +41,7 @@ bool run_cycles(const MotorLink& bus, BusFinding& found) {
                   (static_cast<double>(after->time_ns - before->time_ns) * 1e-9);
   for (std::size_t i = 0; i < found.motors.size(); ++i) {
     found.motors[i].reading = after->motors[i];
-    found.motors[i].age_s = 1e-9 * static_cast<double>(after->time_ns - after->motors[i].heard_ns);
+    found.motors[i].age_s = 1e-9 * static_cast<double>(after->time_ns - after->motors[i].received_ns);
   }
   return true;
 }

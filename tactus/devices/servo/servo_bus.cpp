@@ -149,8 +149,8 @@ void ServoBus::take(Servo& servo, const State& state) noexcept {
 
 void ServoBus::answered(Servo& servo) noexcept {
   // It may have been without power meanwhile, or its watchdog may have let go.
-  if (now_ns_ - servo.reading.heard_ns > table_.silence_ns / 2) servo.looks = 0xff;
-  servo.reading.heard_ns = now_ns_;
+  if (now_ns_ - servo.reading.received_ns > table_.silence_ns / 2) servo.looks = 0xff;
+  servo.reading.received_ns = now_ns_;
   ++servo.reading.answers;
 }
 
@@ -281,7 +281,7 @@ void ServoBus::cycle_ended() noexcept {
       servo.owed = servo.answered ? 0 : std::min(servo.owed + 1, most_tries);
     }
     // Once is not enough: where this program stood still, it was not the servo that was silent.
-    if (servo.missed > 1 && now_ns_ - servo.reading.heard_ns > table_.silence_ns) {
+    if (servo.missed > 1 && now_ns_ - servo.reading.received_ns > table_.silence_ns) {
       fail(servo, servo.spoke ? MotorFault::refused : MotorFault::silent);
     }
     judge_power(servo);

@@ -56,7 +56,7 @@ class ArmFaultInjection {
     if (plan_.site != site) return;
     if (moment_.begins) spoil_number(joint);
     if (!moment_.during) return;
-    control::DriveTells& tells = joint.motor_tells;
+    control::DriveReport& tells = joint.motor_report;
     if (plan_.kind == FaultKind::encoder_reversed) tells.velocity_m_per_s = -tells.velocity_m_per_s;
     if (plan_.kind == FaultKind::encoder_freeze) tells.velocity_m_per_s = 0.0;
     // What a drive believes to give, from its current.
@@ -99,8 +99,8 @@ class ArmFaultInjection {
   }
   void spoil_number(station::DeviceReading& joint) const noexcept {
     if (plan_.kind != FaultKind::bad_number || input() >= told_of_drive) return;
-    double* const told[told_of_drive] = {&joint.position_m, &joint.motor_tells.velocity_m_per_s,
-                                         &joint.motor_tells.force_N};
+    double* const told[told_of_drive] = {&joint.position_m, &joint.motor_report.velocity_m_per_s,
+                                         &joint.motor_report.force_N};
     *told[input()] = bad_value();
   }
 

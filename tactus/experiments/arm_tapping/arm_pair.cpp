@@ -314,7 +314,7 @@ ArmSnapshot ArmPair::snapshot() const {
     const station::DeviceReading& read = latest_.master.reading[i];
     const control::MasterOutput& site = latest_.master.output[i];
     displayed[at] =
-        site.motor_force_N - site.support_N + site.law.force_N(read.position_m, read.motor_tells.velocity_m_per_s);
+        site.motor_force_N - site.support_N + site.law.force_N(read.position_m, read.motor_report.velocity_m_per_s);
     told[at] = -latest_.slave.output[i].message.force_N;
     induced[at] = site.induced_position_m;
     commanded[at] = site.message.position_m;

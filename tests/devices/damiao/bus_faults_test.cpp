@@ -104,12 +104,12 @@ TEST(DamiaoBus, SilenceShorterThanTheWatchdogOfTheMotorsIsNoFault) {
           bench.run(200 * ms);
           bench.command_all(0.1);
           bench.run(100 * ms + silent_ns - ms);
-          EXPECT_LT(bench.bus->reading(1).heard_ns, 302 * ms) << what << ": it tells how old it is";
+          EXPECT_LT(bench.bus->reading(1).received_ns, 302 * ms) << what << ": it tells how old it is";
           bench.run(30 * ms);
           for (const std::size_t each : {0U, 1U}) {
             EXPECT_EQ(bench.bus->reading(each).fault, MotorFault::none) << what;
             EXPECT_TRUE(bench.peer->motor(each).enabled()) << what;
-            EXPECT_GT(bench.bus->reading(each).heard_ns, bench.now_ns - 5 * ms) << what;
+            EXPECT_GT(bench.bus->reading(each).received_ns, bench.now_ns - 5 * ms) << what;
           }
           EXPECT_TRUE(bench.never_beyond(0.1)) << what;
         }

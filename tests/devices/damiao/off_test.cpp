@@ -184,7 +184,7 @@ TEST(DamiaoBus, AMotorThatIgnoresDisableIsLeftToItsOwnWatchdogAndNeverGetsPowerA
   EXPECT_GT(frames.shortest_late_gap_ns, watchdog_ns);
   EXPECT_EQ(bench.peer->motor(1).status(), 0xd) << "its watchdog";
   EXPECT_FALSE(bench.peer->motor(0).enabled());
-  EXPECT_GT(bench.bus->reading(0).heard_ns, bench.now_ns - 5 * ms) << "the other one is spoken to all the time";
+  EXPECT_GT(bench.bus->reading(0).received_ns, bench.now_ns - 5 * ms) << "the other one is spoken to all the time";
   ASSERT_TRUE(powered(1, bench.bus->reading(1)));
   EXPECT_TRUE(powered(1, bench.bus->reading(1))->off);
   bench.command_all(0.1);

@@ -32,7 +32,7 @@ TEST(DynamixelBus, ASilentServoCostsNoOtherItsDataButInOneCycle) {
         EXPECT_EQ(rig.bus.reading(i).enabled, 1);
       }
       EXPECT_EQ(rig.bus.reading(silent).fault, MotorFault::silent);
-      EXPECT_LT(rig.bus.reading(silent).heard_ns, 605 * ms);
+      EXPECT_LT(rig.bus.reading(silent).received_ns, 605 * ms);
       EXPECT_EQ(rig.goal(silent), 0);
     }
   }
@@ -69,7 +69,7 @@ TEST(DynamixelBus, AfterALostAnswerAThousandPlainReadsFollowAndThenFastOnesAgain
   EXPECT_GT(reads.fast, 0);
   EXPECT_EQ(reads.plain, 0);
   wire::join(rig.bus, reads, 590 * ms, 960 * ms);
-  EXPECT_GT(rig.bus.reading(2).heard_ns, 900 * ms);
+  EXPECT_GT(rig.bus.reading(2).received_ns, 900 * ms);
   EXPECT_FALSE(reads.last_was_fast);
   const std::int64_t until_it_was_back = reads.plain;
   wire::join(rig.bus, reads, 960 * ms, 4 * second);
@@ -139,7 +139,7 @@ TEST(DynamixelBus, WhoWasOffGetsNoPowerByItself) {
   rig.command_all(0.05, 1);
   rig.run(3 * second);
   EXPECT_EQ(rig.bus.reading(2).fault, MotorFault::silent);
-  EXPECT_GT(rig.bus.reading(2).heard_ns, 3 * second);  // it answers again
+  EXPECT_GT(rig.bus.reading(2).received_ns, 3 * second);  // it answers again
   EXPECT_FALSE(rig.torque_on(2));
   EXPECT_EQ(rig.bus.reading(2).enabled, 0);
   // Asked anew it gets it, behind its watchdog and with the goal that is commanded, not that of its own start.
