@@ -87,7 +87,7 @@ std::shared_ptr<ServoOptions> add_servo_options(CLI::App& verb, const std::strin
   verb.add_option(
           "--fault", options->faults,
           "What goes wrong, as KIND[:ID][@SECONDS]: of which servo, and from when; may be given again. Kinds of "
-          "a servo: silent, power-cycle, hot, wrong-model, low-limit, twin, clash, error=0x24 (an error byte), "
+          "a servo: silence, power-cycle, hot, wrong-model, low-limit, twin, clash, error=0x24 (an error byte), "
           "ignores-disable; of the line, without id and time: "
           "corrupt, garbage, split, echo")
       ->type_name("FAULT");

@@ -16,7 +16,7 @@ namespace tactus::devices {
 /// What stands between a motor and a force.
 enum class MotorFault : std::int64_t {
   none,
-  silent,          ///< it did not answer for longer than the bus allows
+  not_responding,  ///< it did not answer for longer than the bus allows
   voltage,         ///< too high or too low
   current,         ///< too high
   hot,             ///< the drive or the winding
@@ -29,7 +29,7 @@ enum class MotorFault : std::int64_t {
 };
 constexpr auto enumerators(MotorFault) {
   return std::array{
-      Enumerator{MotorFault::none, "none"},         Enumerator{MotorFault::silent, "silent"},
+      Enumerator{MotorFault::none, "none"},         Enumerator{MotorFault::not_responding, "not-responding"},
       Enumerator{MotorFault::voltage, "voltage"},   Enumerator{MotorFault::current, "current"},
       Enumerator{MotorFault::hot, "hot"},           Enumerator{MotorFault::lost_master, "lost-master"},
       Enumerator{MotorFault::overload, "overload"}, Enumerator{MotorFault::encoder, "encoder"},
@@ -101,7 +101,7 @@ constexpr auto enumerators(BusState) {
 
 /// The driver of all motors behind one wire. As soon as it is driven, it asks who is there and checks what they say,
 /// then it runs cycles: commands to all motors at once, answers collected until all are there or a deadline passed, and
-/// the next. A motor that is silent costs no other its data.
+/// the next. A motor that does not respond costs no other its data.
 ///
 /// A motor that is to have no power is told so in every cycle until it has reported that it has none (`OffWatch`):
 /// before it is asked anything, without a command that enables it, with a fault, and while the thread ends.

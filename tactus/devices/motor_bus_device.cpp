@@ -58,7 +58,7 @@ Joints<station::DeviceReading> MotorBusDevice::read(const station::Tick& tick) n
     reading_[joint].age_s = 1e-9 * static_cast<double>(tick.deadline_ns - motor.received_ns);
   }
   const DeviceTrouble now = found();
-  if (health_ < DeviceHealth::silent || now.what >= trouble_.what) judge(now);
+  if (health_ < DeviceHealth::not_responding || now.what >= trouble_.what) judge(now);
   return reading_;
 }
 
@@ -97,9 +97,9 @@ DeviceTrouble MotorBusDevice::found() noexcept {
     const bool faulty = motor.fault != MotorFault::none && (had_power_[joint] || powerless);
     Trouble what = Trouble::none;
     const bool unheard = (faulty && motor.fault == MotorFault::lost_master) || (powerless && last_.unheard != 0);
-    if (unheard || (faulty && motor.fault == MotorFault::silent)) {
+    if (unheard || (faulty && motor.fault == MotorFault::not_responding)) {
       if (!std::exchange(silent, true)) found.joint = joint;
-      found.fault = unheard ? MotorFault::lost_master : MotorFault::silent;
+      found.fault = unheard ? MotorFault::lost_master : MotorFault::not_responding;
     } else if (faulty) {
       what = Trouble::motor_fault;
     } else if (!own.contains(reading_[joint].position_m)) {
@@ -117,7 +117,7 @@ DeviceTrouble MotorBusDevice::found() noexcept {
     found.status = motor.status;
     return with(what);
   }
-  if (silent) return with(Trouble::silent);
+  if (silent) return with(Trouble::not_responding);
   return with(found.age_s > params_.late_s ? Trouble::late : Trouble::none);
 }
 
@@ -130,8 +130,8 @@ void MotorBusDevice::judge(const DeviceTrouble& trouble) noexcept {
     case Trouble::late:
       health_ = DeviceHealth::degraded;
       return;
-    case Trouble::silent:
-      health_ = DeviceHealth::silent;
+    case Trouble::not_responding:
+      health_ = DeviceHealth::not_responding;
       return;
     default:
       health_ = DeviceHealth::lost;
@@ -152,7 +152,7 @@ void MotorBusDevice::write(const Joints<station::DeviceCommand>& command) noexce
     motor.enabled = wanted ? 1 : 0;
     any = any || wanted;
   }
-  if (!any && health_ >= DeviceHealth::silent) judge(found());
+  if (!any && health_ >= DeviceHealth::not_responding) judge(found());
   commands_.time_ns = now_ns_;
   bus_->command(commands_);
 }

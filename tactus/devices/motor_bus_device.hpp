@@ -14,22 +14,22 @@ namespace tactus::devices {
 /// What keeps a device from being good.
 enum class Trouble : std::int64_t {
   none,
-  late,         ///< a motor's answer is old
-  silent,       ///< it is too old to act on, or so says the motor of what it heard
-  bus_ended,    ///< the port was closed
-  bus_refused,  ///< a motor is not what the file says
-  position,     ///< a joint is where it may have no power
-  velocity,     ///< it is faster than it may be
-  temperature,  ///< its motor is hotter than it may be
-  motor_fault,  ///< its motor says that something is wrong
-  no_power,     ///< its motor was asked to have power and has none
-  guard_gone,   ///< the guard process of its motors is gone, see `GuardState`
-  guard_acted   ///< this program stood still, and the guard process has switched its motors off
+  late,            ///< a motor's answer is old
+  not_responding,  ///< its last reply is too old to act on, or the motor reports that it received no command
+  bus_ended,       ///< the port was closed
+  bus_refused,     ///< a motor is not what the file says
+  position,        ///< a joint is where it may have no power
+  velocity,        ///< it is faster than it may be
+  temperature,     ///< its motor is hotter than it may be
+  motor_fault,     ///< its motor says that something is wrong
+  no_power,        ///< its motor was asked to have power and has none
+  guard_gone,      ///< the guard process of its motors is gone, see `GuardState`
+  guard_acted      ///< this program stood still, and the guard process has switched its motors off
 };
 constexpr auto enumerators(Trouble) {
   return std::array{Enumerator{Trouble::none, "none"},
                     Enumerator{Trouble::late, "late"},
-                    Enumerator{Trouble::silent, "silent"},
+                    Enumerator{Trouble::not_responding, "not-responding"},
                     Enumerator{Trouble::bus_ended, "bus-ended"},
                     Enumerator{Trouble::bus_refused, "bus-refused"},
                     Enumerator{Trouble::position, "position"},
@@ -60,11 +60,11 @@ struct DeviceTrouble {
 /// law, so what it gives may leave the limit by the stiffness times the way. When commands stop, it does so until the
 /// bus's silence or its own watchdog takes its power.
 ///
-/// `good` while every motor has answered within `late`, `degraded` when the oldest answer is older, `silent` when it is
-/// older than `silence`, `lost` when the bus ended or refused its motors, or when a joint that is to have power is
-/// where, as fast or as hot as it may not be, has a motor with a fault, or has no power a quarter of a second after it
-/// was asked for. Silent and lost stay until a command enables nothing: then it is judged anew. A motor that gives no
-/// force gets no power, and is judged by its age alone. Wait-free but for `limits`.
+/// `good` while every motor has answered within `late`, `degraded` when the oldest answer is older, `not_responding`
+/// when it is older than `silence`, `lost` when the bus ended or refused its motors, or when a joint that is to have
+/// power is where, as fast or as hot as it may not be, has a motor with a fault, or has no power a quarter of a second
+/// after it was asked for. Silent and lost stay until a command enables nothing: then it is judged anew. A motor that
+/// gives no force gets no power, and is judged by its age alone. Wait-free but for `limits`.
 class MotorBusDevice final : public station::JointDevice {
  public:
   struct Params {

@@ -12,7 +12,7 @@ namespace tactus::emulation {
 /// What may be wrong with an emulated servo.
 enum class ServoFault : std::int64_t {
   none,
-  silent,          ///< it hears and does not answer
+  silence,         ///< it receives and does not reply
   power_cycle,     ///< it is off for 0.3 s, and begins anew
   hot,             ///< it tells so, and takes its own torque away
   wrong_model,     ///< it is another one than its owner believes
@@ -24,7 +24,7 @@ enum class ServoFault : std::int64_t {
 };
 constexpr auto enumerators(ServoFault) {
   return std::array{Enumerator{ServoFault::none, "none"},
-                    Enumerator{ServoFault::silent, "silent"},
+                    Enumerator{ServoFault::silence, "silence"},
                     Enumerator{ServoFault::power_cycle, "power-cycle"},
                     Enumerator{ServoFault::hot, "hot"},
                     Enumerator{ServoFault::wrong_model, "wrong-model"},

@@ -30,13 +30,13 @@ struct DeviceLimits {
 /// Whether a device can be trusted with the next tick.
 enum class DeviceHealth {
   good,
-  degraded,  ///< the reading is an old one
-  silent,    ///< it is too old to act on; a newer one may come
-  lost       ///< nothing it says or does can be relied on
+  degraded,        ///< the reading is an old one
+  not_responding,  ///< it is too old to act on; a newer one may come
+  lost             ///< nothing it says or does can be relied on
 };
 constexpr auto enumerators(DeviceHealth) {
   return std::array{Enumerator{DeviceHealth::good, "good"}, Enumerator{DeviceHealth::degraded, "degraded"},
-                    Enumerator{DeviceHealth::silent, "silent"}, Enumerator{DeviceHealth::lost, "lost"}};
+                    Enumerator{DeviceHealth::not_responding, "not-responding"}, Enumerator{DeviceHealth::lost, "lost"}};
 }
 
 struct DeviceReading {

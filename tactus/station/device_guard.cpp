@@ -26,7 +26,7 @@ const char* in_words(LetGo cause) {
   switch (cause) {
     case LetGo::none:
       return "nothing was wrong";
-    case LetGo::silent:
+    case LetGo::timed_out:
       return "commands stopped coming";
     case LetGo::not_finite:
       return "a command or a reading was no number";
@@ -197,7 +197,7 @@ Reading GuardedDeviceOf<Reading>::read(const Tick& tick) noexcept {
   }
   if (written_ && silent) {
     if (tick.deadline_ns - written_ns_ > timeout_ns_) {
-      for_each_joint([](DeviceGuard& guard) noexcept { guard.let_go(LetGo::silent); }, guard_);
+      for_each_joint([](DeviceGuard& guard) noexcept { guard.let_go(LetGo::timed_out); }, guard_);
     }
     device_->write(pass());
   }

@@ -11,10 +11,10 @@
 namespace tactus::station {
 
 /// Why a device was given no more force.
-enum class LetGo : std::int64_t { none, silent, not_finite, force, rate, velocity, position };
+enum class LetGo : std::int64_t { none, timed_out, not_finite, force, rate, velocity, position };
 constexpr auto enumerators(LetGo) {
   return std::array{Enumerator{LetGo::none, "none"},
-                    Enumerator{LetGo::silent, "silent"},
+                    Enumerator{LetGo::timed_out, "timed-out"},
                     Enumerator{LetGo::not_finite, "not-finite"},
                     Enumerator{LetGo::force, "force"},
                     Enumerator{LetGo::rate, "rate"},

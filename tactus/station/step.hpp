@@ -72,7 +72,7 @@ template <class Site, Drivable Device>
 auto read(Device& device, const Tick& tick, DeviceHealth& health) noexcept {
   auto reading = device.read(tick);
   if constexpr (requires { device.health(); }) health = device.health();
-  const bool trusted = health < (Supervised<Site> ? DeviceHealth::lost : DeviceHealth::silent);
+  const bool trusted = health < (Supervised<Site> ? DeviceHealth::lost : DeviceHealth::not_responding);
   if (trusted) return reading;
   for_each_joint([](DeviceReading& joint) noexcept { joint.position_m = std::numeric_limits<double>::quiet_NaN(); },
                  reading);
@@ -104,7 +104,7 @@ Step<Site> step(Site& site, Device& device, Transport& transport, const Tick& ti
                     .output = site.step({.sensors = sensors,
                                          .requests = request,
                                          .elapsed_ticks = elapsed_ticks,
-                                         .device_silent = health == DeviceHealth::silent})};
+                                         .device_silent = health == DeviceHealth::not_responding})};
     device.write(command_of(done.output.site, done.output.record.enabled));
     transport.send(done.output.packet, tick);
     return done;

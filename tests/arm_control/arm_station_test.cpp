@@ -53,7 +53,7 @@ TEST(ArmsUnderSupervision, WithPassivePortsTheyFollowFeelContactAndCanBeArmedAne
     EXPECT_GT(bench.last.master.output.site[1].message.energy_J + bench.last.master.output.site[0].message.energy_J,
               1e-4)
         << name_of(port) << ": the hand put energy in";
-    bench.follower.set_health(DeviceHealth::silent);
+    bench.follower.set_health(DeviceHealth::not_responding);
     bench.run(0.03, {.dead_man = true});
     EXPECT_EQ(bench.sites.slave().state(), SiteState::hold);
     bench.follower.set_health(DeviceHealth::good);
@@ -89,7 +89,7 @@ TEST(ArmsUnderSupervision, ASilentDeviceIsAHoldWithoutForceAndCanBeArmedAnew) {
   Bench bench;
   bench.couple();
   ASSERT_TRUE(bench.both(SiteState::active));
-  bench.follower.set_health(DeviceHealth::silent);
+  bench.follower.set_health(DeviceHealth::not_responding);
   bench.run(0.03, {.dead_man = true});
   EXPECT_EQ(bench.sites.slave().state(), SiteState::hold);
   EXPECT_EQ(bench.sites.slave().cause(), SiteCause::device);
@@ -182,8 +182,8 @@ TEST(ArmsUnderSupervision, ALostLinkIsAHoldOfBothThatOnlyANewArmingLeaves) {
   cut = true;
   run(0.2, {.dead_man = true});
   EXPECT_TRUE(both(SiteState::hold));
-  EXPECT_EQ(master.cause(), SiteCause::silent);
-  EXPECT_EQ(slave.cause(), SiteCause::silent);
+  EXPECT_EQ(master.cause(), SiteCause::timed_out);
+  EXPECT_EQ(slave.cause(), SiteCause::timed_out);
   cut = false;
   run(0.5, {.dead_man = true});
   EXPECT_TRUE(both(SiteState::hold)) << "nothing comes back by itself";

@@ -91,7 +91,7 @@ TEST_F(DeviceRig, MotorsThatAreNotTheStatedOnesAreToldWithTheirLine) {
   const std::string message = problem["message"];
   EXPECT_NE(message.find("it looks as if motors 1 and 2 were swapped: exchange their identifiers"), std::string::npos)
       << message;
-  const Outcome silent = device({"dynamixel --fault silent:2"}, servos, "check rig.toml");
+  const Outcome silent = device({"dynamixel --fault silence:2"}, servos, "check rig.toml");
   EXPECT_EQ(silent.status, 1);
   EXPECT_EQ(silent.out.find("Not clean; no motor got power.\nrig.toml:16:9: arm.leader.elbow.motor: servo 2 does not "
                             "answer at 1000000 bit/s: look at its power"),

@@ -80,13 +80,13 @@ TEST_F(RigRun, APairOfSevenJointsAlignsAndTeleoperatesWithALogThatIsWhole) {
   // It stands 0.2 rad away; what is left holds against the friction of the joint, less than 0.02 rad at 4 N m/rad.
   const auto follows = [](const std::string& said) { return apart(said, "5") < 0.02; };
   const std::string said =
-      shell_until({"; armed 1 times, held 0 times, ", ", silent in 0, lost in 0 ticks; "}, "damiao --motors 7",
+      shell_until({"; armed 1 times, held 0 times, ", ", not responding in 0, lost in 0 ticks; "}, "damiao --motors 7",
                   "damiao --motors 7", pair("damiao", "DM4310", 7, "offset_rad = 0.2\n"),
                   "$RUN --arm --duration-s 6 --out run --overwrite <&9; echo status $?\n"
                   "$TACTUS replay run/log --check; echo replayed $?",
                   follows);
   EXPECT_NE(said.find("; armed 1 times, held 0 times, a device late in "), std::string::npos) << said;
-  EXPECT_NE(said.find(", silent in 0, lost in 0 ticks; "), std::string::npos) << said;
+  EXPECT_NE(said.find(", not responding in 0, lost in 0 ticks; "), std::string::npos) << said;
   EXPECT_NE(said.find("5 s: leader active, follower active (none), "), std::string::npos) << said;
   EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)
       << said;
@@ -153,8 +153,8 @@ TEST_F(RigRun, AMotorThatFallsSilentHoldsBothWithoutForceAndIsSaid) {
   EXPECT_NE(said.find("bit for bit.\nreplayed 0\n"), std::string::npos) << said;
   EXPECT_NE(said.find("leader hold, follower hold (device), "), std::string::npos) << said;
   EXPECT_NE(said.find("; follower: joint_2 unheard for "), std::string::npos) << said;
-  EXPECT_NE(said.find("; the follower is silent: look at 'tactus device check'\n"), std::string::npos) << said;
-  EXPECT_EQ(said.find("silent in 0,"), std::string::npos) << said;
+  EXPECT_NE(said.find("; the follower is not responding: look at 'tactus device check'\n"), std::string::npos) << said;
+  EXPECT_EQ(said.find("not responding in 0,"), std::string::npos) << said;
   // Nobody knows whether it is off: its last status was another.
   EXPECT_NE(said.find("tactus: arm.follower.joint_2: motor 2 at "), std::string::npos) << said;
   EXPECT_NE(said.find(" (damiao) did not report within 0.5 s that it is off (status 0x1 (enabled)): switch off the "
@@ -333,10 +333,10 @@ class ArmRun : public RigRun {
 };
 
 TEST_F(ArmRun, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
-  const std::string said = arms_until({"; armed 1 times, held 0 times, ", ", silent in 0, lost in 0 ticks; "},
+  const std::string said = arms_until({"; armed 1 times, held 0 times, ", ", not responding in 0, lost in 0 ticks; "},
                                       "$ARMS --arm --duration-s 12 --out run --overwrite <&9; echo status $?\n"
                                       "$TACTUS replay run/log --check; echo replayed $?");
-  EXPECT_NE(said.find(", silent in 0, lost in 0 ticks; "), std::string::npos) << said;
+  EXPECT_NE(said.find(", not responding in 0, lost in 0 ticks; "), std::string::npos) << said;
   EXPECT_NE(said.find("11 s: leader active, follower active (none), "), std::string::npos) << said;
   EXPECT_NE(said.find("; armed 1 times, held 0 times, "), std::string::npos) << said;
   EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)

@@ -83,8 +83,8 @@ TEST_F(RigSites, TheFollowerGoesToItsLeaderAndBothHoldWhereTheLinkIsCut) {
     wait_for slave 'leader active, follower active'
     sleep 3
     kill -INT $relay
-    wait_for master 'leader hold, .*(silent)'
-    wait_for slave 'follower hold (silent)'
+    wait_for master 'leader hold, .*(timed-out)'
+    wait_for slave 'follower hold (timed-out)'
     end_both
   )sh");
   EXPECT_EQ(status, 0) << all();
@@ -205,7 +205,7 @@ TEST_F(RigSites, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
   for (const char* name : {"master", "slave"}) {
     const auto found = result(name);
     EXPECT_EQ(found["armings"], 1) << all();
-    EXPECT_EQ(found["silent_ticks"], 0) << all();
+    EXPECT_EQ(found["not_responding_ticks"], 0) << all();
     EXPECT_EQ(found["joints"].size(), 8U);
     double apart = 1.0;
     for (const auto& second : found["seconds"]) {

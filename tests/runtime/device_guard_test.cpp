@@ -210,7 +210,7 @@ TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayT
     }
   }
   EXPECT_TRUE(motor.within);
-  EXPECT_EQ(device.guard().cause(), station::LetGo::silent);
+  EXPECT_EQ(device.guard().cause(), station::LetGo::timed_out);
   EXPECT_FALSE(motor.now.enabled);
 
   Motor fast;
@@ -285,7 +285,7 @@ TEST(DeviceServer, CommandsThatSomethingRepeatsAreSilenceWhateverTimeTheyBear) {
     }
     EXPECT_TRUE(both.motor.within) << stale.name;
     EXPECT_EQ(both.motor.most_N, 1.5) << stale.name;
-    EXPECT_EQ(both.owner.guard().cause(), station::LetGo::silent) << stale.name;
+    EXPECT_EQ(both.owner.guard().cause(), station::LetGo::timed_out) << stale.name;
     EXPECT_FALSE(both.motor.now.enabled) << stale.name;
   }
 }

@@ -52,14 +52,14 @@ TEST_F(Sites, ThatAreCutOffHoldUntilAPersonArms) {
   run(600, true, false);
   run(5000);
   expect(SiteState::hold, SiteState::hold);
-  EXPECT_EQ(master.second.cause, SiteCause::silent);
+  EXPECT_EQ(master.second.cause, SiteCause::timed_out);
   run(5000);
   expect(SiteState::hold, SiteState::hold);
   ask(master, SiteWord::arm);
   expect(SiteState::active, SiteState::active);
   const SiteTotals totals = master.loop->totals();
   EXPECT_EQ(totals.armings, 2);
-  EXPECT_EQ(totals.holds[SiteCause::silent], 1);
+  EXPECT_EQ(totals.holds[SiteCause::timed_out], 1);
   EXPECT_NEAR(totals.longest_silence_at_hold_s, 0.1, 0.001);
   EXPECT_EQ(master.loop->link_totals().stale_applied, 0);
   EXPECT_EQ(totals.steps_above_limit, 0);

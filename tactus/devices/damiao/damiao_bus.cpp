@@ -77,7 +77,7 @@ DamiaoBus::DamiaoBus(const DamiaoBusParams& params)
     motors_.push_back({.params = motor,
                        .scale = scale_of(motor.model),
                        .questions = Questions(motor, timeout),
-                       .reading = {.fault = MotorFault::silent},
+                       .reading = {.fault = MotorFault::not_responding},
                        .command = {},
                        .off = {}});
   }
@@ -243,7 +243,7 @@ void DamiaoBus::judge(Motor& motor, std::int64_t now_ns) noexcept {
   const bool silent = is_silent(motor, now_ns);
   const bool told = reading.status != no_status;
   const MotorFault of_status = told ? fault_of(static_cast<std::uint8_t>(reading.status)) : MotorFault::none;
-  const MotorFault now = silent ? MotorFault::silent : of_status;
+  const MotorFault now = silent ? MotorFault::not_responding : of_status;
   if (motor.was_wanted && motor.latched == MotorFault::none) {
     if (reading.status == status_enabled) motor.had_power = true;
     const bool lost_power = motor.had_power && reading.status == status_disabled;

@@ -86,7 +86,7 @@ const char* remedy_of(MotorFault fault) {
   switch (fault) {
     case MotorFault::none:
       return "";
-    case MotorFault::silent:
+    case MotorFault::not_responding:
       return "does not answer any more: look at its power and its plug";
     case MotorFault::voltage:
       return "its supply is too high or too low: measure it under load";

@@ -39,7 +39,7 @@ struct RigSecond {
 struct RigTotals {
   double duration_s = 0.0;
   std::int64_t ticks = 0, active_ticks = 0, armings = 0, holds = 0;
-  std::int64_t late_ticks = 0, silent_ticks = 0, lost_ticks = 0;  ///< of the worse device
+  std::int64_t late_ticks = 0, not_responding_ticks = 0, lost_ticks = 0;  ///< of the worse device
 };
 
 /// Seconds on their way from the servo thread to one other.
@@ -62,8 +62,8 @@ inline void count(RigTotals& totals, station::DeviceHealth health) noexcept {
     case station::DeviceHealth::degraded:
       ++totals.late_ticks;
       return;
-    case station::DeviceHealth::silent:
-      ++totals.silent_ticks;
+    case station::DeviceHealth::not_responding:
+      ++totals.not_responding_ticks;
       return;
     case station::DeviceHealth::lost:
       ++totals.lost_ticks;

@@ -282,7 +282,7 @@ void ServoBus::cycle_ended() noexcept {
     }
     // Once is not enough: where this program stood still, it was not the servo that was silent.
     if (servo.missed > 1 && now_ns_ - servo.reading.received_ns > table_.silence_ns) {
-      fail(servo, servo.spoke ? MotorFault::refused : MotorFault::silent);
+      fail(servo, servo.spoke ? MotorFault::refused : MotorFault::not_responding);
     }
     judge_power(servo);
     const bool gone = servo.answered && servo.ails == MotorFault::none && servo.looks == 0;

@@ -169,7 +169,7 @@ void ServoBus::found_wrong(Wrong wrong, std::int64_t value) noexcept {
   servo.wrong = wrong;
   servo.found = value;
   servo.found_at = errand_.place;
-  if (wrong == Wrong::silent || wrong == Wrong::garbled) fail(servo, MotorFault::silent);
+  if (wrong == Wrong::silent || wrong == Wrong::garbled) fail(servo, MotorFault::not_responding);
   if (wrong == Wrong::refused) fail(servo, MotorFault::refused);
   if (wrong == Wrong::stays_on) fail(servo, MotorFault::stays_on);
   ask_next(false);

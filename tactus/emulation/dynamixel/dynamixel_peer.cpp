@@ -159,7 +159,7 @@ void DynamixelPeer::advance(std::int64_t now_ns) noexcept {
 
 bool DynamixelPeer::answers(const State& servo, std::int64_t now_ns) const noexcept {
   if (now_ns < servo.off_until_ns) return false;
-  return servo.fault != ServoFault::silent || now_ns < servo.fault_from_ns;
+  return servo.fault != ServoFault::silence || now_ns < servo.fault_from_ns;
 }
 
 void DynamixelPeer::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {

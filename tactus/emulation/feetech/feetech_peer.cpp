@@ -131,7 +131,7 @@ void FeetechPeer::advance(std::int64_t now_ns) noexcept {
 
 bool FeetechPeer::answers(const State& servo, std::int64_t now_ns) noexcept {
   if (now_ns < servo.off_until_ns) return false;
-  return servo.fault != ServoFault::silent || now_ns < servo.fault_from_ns;
+  return servo.fault != ServoFault::silence || now_ns < servo.fault_from_ns;
 }
 
 std::int64_t FeetechPeer::delay_ns(const State& servo) noexcept {

@@ -18,7 +18,7 @@ TEST(DamiaoBus, EveryFaultOfTheMotorsEndsWithoutTorqueBeyondTheCommandAndIsTold)
     MotorFault expected;
     bool stays_driven;
   };
-  const std::array cases{Case{FaultKind::silence, MotorFault::silent, false},
+  const std::array cases{Case{FaultKind::silence, MotorFault::not_responding, false},
                          Case{FaultKind::over_voltage, MotorFault::voltage, false},
                          Case{FaultKind::under_voltage, MotorFault::voltage, false},
                          Case{FaultKind::over_current, MotorFault::current, false},
@@ -26,7 +26,7 @@ TEST(DamiaoBus, EveryFaultOfTheMotorsEndsWithoutTorqueBeyondTheCommandAndIsTold)
                          Case{FaultKind::hot_winding, MotorFault::hot, false},
                          Case{FaultKind::communication_lost, MotorFault::lost_master, false},
                          Case{FaultKind::overload, MotorFault::overload, false},
-                         Case{FaultKind::bus_off, MotorFault::silent, false},
+                         Case{FaultKind::bus_off, MotorFault::not_responding, false},
                          Case{FaultKind::register_answer, MotorFault::none, true},
                          Case{FaultKind::garbage, MotorFault::none, true},
                          Case{FaultKind::heartbeat, MotorFault::none, true},

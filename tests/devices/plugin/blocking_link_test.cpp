@@ -173,7 +173,7 @@ TEST(BlockingLink, ADriverThatBlocksMakesTheDeviceSilent) {
   const auto device = device_on(*link);
   ASSERT_TRUE(becomes([&] { return health_of(*device) == DeviceHealth::good; }));
   seen->blocks = true;
-  EXPECT_TRUE(becomes([&] { return health_of(*device) == DeviceHealth::silent; }));
+  EXPECT_TRUE(becomes([&] { return health_of(*device) == DeviceHealth::not_responding; }));
   seen->blocks = false;
 }
 
