@@ -44,14 +44,14 @@ std::string line_of(const PlantStatus& now, const PlantStatus& before, std::int6
          (now.held_back > before.held_back
               ? ", " + std::to_string(now.held_back - before.held_back) + " commands held back to the limits"
               : "") +
-         (now.let_go > before.let_go ? std::string(", let go: ") + station::in_words(now.cause) : "") + "\n";
+         (now.released > before.released ? std::string(", let go: ") + station::in_words(now.cause) : "") + "\n";
 }
 
 std::string text_of(const std::string& name, const PlantStatus& status, const runtime::ServoReport& servo) {
   report::Table table({{"readings"}, {"commands"}, {"taps"}, {"held back"}, {"let go"}, {"ticks missed"}},
                       "Plant '" + name + "'");
   table.add_row({std::to_string(status.readings), std::to_string(status.commands), std::to_string(status.taps),
-                 std::to_string(status.held_back), std::to_string(status.let_go), std::to_string(status.missed)});
+                 std::to_string(status.held_back), std::to_string(status.released), std::to_string(status.missed)});
   return table.to_text() + "\n" + runtime::timing_text(servo);
 }
 
@@ -62,7 +62,7 @@ std::string json_of(const std::string& name, const PlantStatus& status, const ru
       {"commands", status.commands},
       {"taps", status.taps},
       {"held_back", status.held_back},
-      {"let_go", status.let_go},
+      {"released", status.released},
       {"cause", name_of(status.cause)},
       {"missed", status.missed},
       {"servo", report::parse_json<nlohmann::ordered_json>(runtime::servo_json(servo))}};

@@ -131,17 +131,17 @@ class SafetyGate {
   /// Latches `not_finite`, for what is found elsewhere.
   void refuse() noexcept { latch(GateFault::not_finite); }
   /// No force from now on, damping neither, until the gate is re-armed; no fault.
-  void let_go() noexcept {
-    let_go_ = true;
+  void release() noexcept {
+    released_ = true;
     brakes_ = false;
   }
   /// No force from now on but that of `StoppingBrake`, with the damping of `energy`, and where a fault is latched not
   /// that either, until the gate is re-armed; no fault.
-  void brake() noexcept { let_go_ = brakes_ = true; }
+  void brake() noexcept { released_ = brakes_ = true; }
 
   [[nodiscard]] GateFault fault() const noexcept { return fault_ != GateFault::none ? fault_ : force_.fault(); }
   /// Whether no command passes any more, for a fault or because it was told to let go.
-  [[nodiscard]] bool has_let_go() const noexcept { return let_go_ || fault() != GateFault::none; }
+  [[nodiscard]] bool has_released() const noexcept { return released_ || fault() != GateFault::none; }
   [[nodiscard]] ActiveLimit limit() const noexcept { return limit_; }
   /// Of the reading that is believed, low-passed.
   [[nodiscard]] double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
@@ -195,7 +195,7 @@ class SafetyGate {
   double velocity_m_per_s_ = 0.0;
   double damping_N_s_per_m_ = 0.0;
   double allowed_N_ = force_limit_N_;  ///< by the warmth of the motor
-  bool let_go_ = false;
+  bool released_ = false;
   bool brakes_ = false;
   GateFault fault_ = GateFault::none;
   ActiveLimit limit_ = ActiveLimit::none;

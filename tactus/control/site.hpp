@@ -82,7 +82,7 @@ void pass_command(SafetyGate& gate, const Input& read, Output& output, bool stop
   const double wanted_N =
       output.motor_force_N + output.law.force_N(read.motor_position_m, read.motor_report.velocity_m_per_s);
   const double passed_N = gate.pass(wanted_N, stops);
-  if (gate.has_let_go()) {
+  if (gate.has_released()) {
     output.law = {};
     output.motor_force_N = passed_N;
   } else if (passed_N != wanted_N) {
@@ -244,7 +244,7 @@ class Site {
         },
         gates_, output, believed_, added_N, holds, weight_N_, passed);
     if constexpr (has_joints<In>) {
-      if (const GateFault found = fault(); found != GateFault::none && found != GateFault::energy) let_go();
+      if (const GateFault found = fault(); found != GateFault::none && found != GateFault::energy) release();
     }
     controller_->applied(passed);
     return output;
@@ -285,8 +285,8 @@ class Site {
   }
   /// The forces go to zero within `stop_time_s` and stay there until `rearm`, but for that of a second actuator, which
   /// follows its share. Real-time safe.
-  void let_go() noexcept {
-    for_each_joint([](JointGates& gates) noexcept { gates.motor().let_go(); }, gates_);
+  void release() noexcept {
+    for_each_joint([](JointGates& gates) noexcept { gates.motor().release(); }, gates_);
   }
   /// The same, but the motor first brings the device to a stand where it can (`StoppingBrake`). Real-time safe.
   void brake() noexcept {

@@ -126,7 +126,7 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
     site_.rearm();
     for_each_joint([](ForceSensorCheck& check) noexcept { check.reset(); }, hand_sensor_);
   }
-  if (supervision_.lets_go()) site_.let_go();
+  if (supervision_.lets_go()) site_.release();
   const bool follows = state == SiteState::active && !input.requests.clutch;
 
   const Sensors sensors = with(input.sensors, supervision_.arrival(offset_m_));
@@ -179,7 +179,7 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
   if (supervision_.contradicted()) {
     site_.brake();
   } else if (supervision_.lets_go()) {
-    site_.let_go();
+    site_.release();
   }
   if (supervision_.probes()) supervision_.stand(here_m);
   const Sensors sensors = with(input.sensors, supervision_.arrival(same_for_each(here_m, 0.0)));

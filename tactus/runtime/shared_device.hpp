@@ -12,10 +12,10 @@ namespace tactus::runtime {
 /// Owner to controller.
 struct SharedReading {
   station::DeviceReading reading;
-  std::int64_t tick = 0;                        ///< of the owner
-  std::int64_t time_ns = 0;                     ///< of CLOCK_MONOTONIC, when the owner's tick began
-  std::uint64_t gave_up_on = 0;                 ///< session whose commands the owner obeys no more; 0: none
-  station::LetGo cause = station::LetGo::none;  ///< why
+  std::int64_t tick = 0;         ///< of the owner
+  std::int64_t time_ns = 0;      ///< of CLOCK_MONOTONIC, when the owner's tick began
+  std::uint64_t gave_up_on = 0;  ///< session whose commands the owner obeys no more; 0: none
+  station::ReleaseCause cause = station::ReleaseCause::none;  ///< why
 };
 
 /// Controller to owner.
@@ -58,7 +58,7 @@ class SharedDevice final : public station::Device {
   /// Whether the owner was the one that gave up.
   [[nodiscard]] bool given_up_by_owner() const noexcept;
   /// Why it did.
-  [[nodiscard]] station::LetGo owners_cause() const noexcept { return last_.cause; }
+  [[nodiscard]] station::ReleaseCause owners_cause() const noexcept { return last_.cause; }
 
  private:
   DeviceSlots* slots_;
@@ -94,7 +94,7 @@ class DeviceServer {
   /// Commands of this session have come.
   [[nodiscard]] bool obeyed() const noexcept { return command_.session == session_ && session_ != 0; }
   /// The session lost its force.
-  [[nodiscard]] bool gave_up() const noexcept { return guard_.cause() != station::LetGo::none; }
+  [[nodiscard]] bool gave_up() const noexcept { return guard_.cause() != station::ReleaseCause::none; }
   [[nodiscard]] const station::DeviceGuard& guard() const noexcept { return guard_; }
 
  private:

@@ -131,7 +131,7 @@ Error SharedPlant::why_lost() const {
   for (const SharedDevice* device : {&master_, &slave_}) {
     if (!device->given_up_by_owner()) continue;
     const std::string whose = device == &master_ ? "let go at the master: " : "let go at the slave: ";
-    if (device->owners_cause() != station::LetGo::timed_out) {
+    if (device->owners_cause() != station::ReleaseCause::timed_out) {
       return plant_error(ErrorCode::failed, plant + whose + station::in_words(device->owners_cause()) +
                                                 ": both sites let go; compare the gates of this run with the limits "
                                                 "of the device");

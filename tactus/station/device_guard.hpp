@@ -11,18 +11,18 @@
 namespace tactus::station {
 
 /// Why a device was given no more force.
-enum class LetGo : std::int64_t { none, timed_out, not_finite, force, rate, velocity, position };
-constexpr auto enumerators(LetGo) {
-  return std::array{Enumerator{LetGo::none, "none"},
-                    Enumerator{LetGo::timed_out, "timed-out"},
-                    Enumerator{LetGo::not_finite, "not-finite"},
-                    Enumerator{LetGo::force, "force"},
-                    Enumerator{LetGo::rate, "rate"},
-                    Enumerator{LetGo::velocity, "velocity"},
-                    Enumerator{LetGo::position, "position"}};
+enum class ReleaseCause : std::int64_t { none, timed_out, not_finite, force, rate, velocity, position };
+constexpr auto enumerators(ReleaseCause) {
+  return std::array{Enumerator{ReleaseCause::none, "none"},
+                    Enumerator{ReleaseCause::timed_out, "timed-out"},
+                    Enumerator{ReleaseCause::not_finite, "not-finite"},
+                    Enumerator{ReleaseCause::force, "force"},
+                    Enumerator{ReleaseCause::rate, "rate"},
+                    Enumerator{ReleaseCause::velocity, "velocity"},
+                    Enumerator{ReleaseCause::position, "position"}};
 }
 /// In words, as the rest of a sentence: `commands stopped coming`. For any number that was read somewhere.
-const char* in_words(LetGo cause);
+const char* in_words(ReleaseCause cause);
 
 /// The longest silence of the other process that a side puts up with, unless told otherwise.
 inline constexpr Seconds usual_silence{0.02};
@@ -55,12 +55,12 @@ class DeviceGuard {
   /// What may reach the actuators from this tick on, always finite. Ticks that were missed earn no faster change.
   DeviceCommand pass(const DeviceCommand& wanted, const Tick& tick) noexcept;
   /// Latches, for what is found elsewhere. The first cause stays.
-  void let_go(LetGo cause) noexcept;
+  void release(ReleaseCause cause) noexcept;
   /// Nothing is latched any more. The force goes on from where it is.
   void rearm() noexcept;
 
   /// What was latched.
-  [[nodiscard]] LetGo cause() const noexcept { return cause_; }
+  [[nodiscard]] ReleaseCause cause() const noexcept { return cause_; }
   /// Calls of `pass` that held a command back, before anything was latched.
   [[nodiscard]] std::int64_t held_back() const noexcept { return held_back_; }
 
@@ -69,7 +69,7 @@ class DeviceGuard {
 
   DeviceLimits limits_;  ///< infinite where there is none
   std::int64_t timeout_ns_;
-  LetGo cause_ = LetGo::none;
+  ReleaseCause cause_ = ReleaseCause::none;
   [[nodiscard]] control::DriveLaw allowed(const control::DriveLaw& wanted) const noexcept;
 
   DeviceCommand passed_{.enabled = false};  ///< force: with that of the law
@@ -109,14 +109,14 @@ class GuardedDeviceOf final : public DeviceOf<Reading> {
   Reading read(const Tick& tick) noexcept override;
   void write(const Command& command) noexcept override;
   [[nodiscard]] DeviceHealth health() const noexcept override {
-    return cause() == LetGo::none ? device_->health() : DeviceHealth::lost;
+    return cause() == ReleaseCause::none ? device_->health() : DeviceHealth::lost;
   }
   /// What was latched, at the first joint that has let go.
-  [[nodiscard]] LetGo cause() const noexcept {
-    LetGo found = LetGo::none;
+  [[nodiscard]] ReleaseCause cause() const noexcept {
+    ReleaseCause found = ReleaseCause::none;
     for_each_joint(
         [&found](const DeviceGuard& guard) noexcept {
-          if (found == LetGo::none) found = guard.cause();
+          if (found == ReleaseCause::none) found = guard.cause();
         },
         guard_);
     return found;

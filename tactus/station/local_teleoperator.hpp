@@ -41,7 +41,7 @@ class DevicePair {
   /// One tick of sites that want no force any more: what a loop does from its end on, tick by tick, until it is
   /// `at_rest`. The force falls at the gates' rate limits or, under supervision, as in hold. Real-time safe as far as
   /// the devices are.
-  Output let_go(const Tick& tick) noexcept { return step(tick, leaving()); }
+  Output step_to_rest(const Tick& tick) noexcept { return step(tick, leaving()); }
   /// No site commanded a force at the latest tick.
   [[nodiscard]] bool at_rest() const noexcept { return sites_.at_rest(); }
   /// Commands no force at once, whatever it was: for an end that cannot wait. Real-time safe as far as the devices are.

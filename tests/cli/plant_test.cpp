@@ -51,7 +51,7 @@ TEST_F(Plant, IsDrivenByARunInAnotherProcessWhoseLogReplays) {
   EXPECT_GT(run["runs"][0]["metrics"]["peak_force_N"], 0.05) << "what no sensor tells came too";
   EXPECT_EQ(plant["name"], name);
   EXPECT_EQ(plant["taps"], 4);
-  EXPECT_EQ(plant["let_go"], 0);
+  EXPECT_EQ(plant["released"], 0);
   EXPECT_GE(plant["commands"], run["runs"][0]["servo"]["ticks"].get<int>() - 2);
   EXPECT_GT(plant["readings"], 1000);
   const Outcome replayed = tactus({"replay", "results/log", "--check", "--json"});

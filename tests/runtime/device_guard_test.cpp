@@ -67,7 +67,7 @@ TEST(DeviceGuard, WhatIsWithinTheLimitsPassesToTheBitAlsoWhereItIsExactlyAtThem)
     ASSERT_EQ(given.handle_force_N, wanted.handle_force_N) << n;
     ASSERT_TRUE(given.enabled);
   }
-  EXPECT_EQ(guard.cause(), station::LetGo::none);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::none);
   EXPECT_EQ(guard.held_back(), 0);
 }
 
@@ -80,11 +80,12 @@ TEST(DeviceGuard, ASlipIsHeldBackAndForgivenAndWhoInsistsIsLetGoOf) {
     EXPECT_DOUBLE_EQ(guard.pass({.handle_force_N = 0.6}, next()).handle_force_N, 0.2);
     (void)guard.pass({}, next());
   }
-  EXPECT_EQ(guard.cause(), station::LetGo::none);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::none);
   EXPECT_EQ(guard.held_back(), 100);
   int ticks = 0;
-  for (; guard.cause() == station::LetGo::none && ticks < 100; ++ticks) (void)guard.pass({.force_N = 2.1}, next());
-  EXPECT_EQ(guard.cause(), station::LetGo::force);
+  for (; guard.cause() == station::ReleaseCause::none && ticks < 100; ++ticks)
+    (void)guard.pass({.force_N = 2.1}, next());
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::force);
   EXPECT_EQ(ticks, 21);
   // From 2 N at 0.2 N a tick, then without power, and nothing brings it back but a new arming.
   for (int left = 1; left < 40; ++left) {
@@ -112,7 +113,7 @@ TEST(DeviceGuard, ASlowRateLimitKeepsNoForcePressingAfterAStop) {
       given_N = guard.pass({.force_N = by_command ? wanted_N : 0.0, .enabled = by_command}, tick(++number)).force_N;
     }
     EXPECT_LE(static_cast<double>(number - began) * period_s, 0.126) << "half of 0.25 s from half of the limit";
-    EXPECT_EQ(guard.cause(), station::LetGo::none);
+    EXPECT_EQ(guard.cause(), station::ReleaseCause::none);
     EXPECT_NEAR(guard.pass({.force_N = -1.0}, tick(++number)).force_N, -1e-4, 1e-12) << "it grows at the rate limit";
   }
 }
@@ -128,23 +129,24 @@ TEST(DeviceGuard, TicksThatWereMissedEarnNoJump) {
 TEST(DeviceGuard, ItMeasuresSpeedItselfAndAnEncodersStepIsNoSpeed) {
   const auto cause_at = [](double velocity_m_per_s, double ticks_jump_m) {
     station::DeviceGuard guard(limits, timeout);
-    for (std::int64_t n = 0; n < 200 && guard.cause() == station::LetGo::none; ++n) {
+    for (std::int64_t n = 0; n < 200 && guard.cause() == station::ReleaseCause::none; ++n) {
       const double true_m =
           -0.05 + velocity_m_per_s * period_s * static_cast<double>(n) + (n == 50 ? ticks_jump_m : 0.0);
       guard.observe(1e-4 * std::floor(true_m / 1e-4), tick(n));
     }
     return guard.cause();
   };
-  EXPECT_EQ(cause_at(0.9, 0.0), station::LetGo::none) << "though a count of 0.1 mm in a tick looks like 0.5 m/s more";
-  EXPECT_EQ(cause_at(1.1, 0.0), station::LetGo::velocity);
-  EXPECT_EQ(cause_at(0.0, 0.004), station::LetGo::none);
-  EXPECT_EQ(cause_at(0.0, 0.006), station::LetGo::velocity) << "a jump of what 5 ms allow";
-  EXPECT_EQ(cause_at(0.0, nan), station::LetGo::not_finite);
+  EXPECT_EQ(cause_at(0.9, 0.0), station::ReleaseCause::none)
+      << "though a count of 0.1 mm in a tick looks like 0.5 m/s more";
+  EXPECT_EQ(cause_at(1.1, 0.0), station::ReleaseCause::velocity);
+  EXPECT_EQ(cause_at(0.0, 0.004), station::ReleaseCause::none);
+  EXPECT_EQ(cause_at(0.0, 0.006), station::ReleaseCause::velocity) << "a jump of what 5 ms allow";
+  EXPECT_EQ(cause_at(0.0, nan), station::ReleaseCause::not_finite);
   station::DeviceGuard guard(limits, timeout);
   guard.observe(-0.1, tick(0));
-  EXPECT_EQ(guard.cause(), station::LetGo::none);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::none);
   guard.observe(-0.1001, tick(1));
-  EXPECT_EQ(guard.cause(), station::LetGo::position);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::position);
 }
 
 TEST(DeviceGuard, ItMeasuresSpeedOverTheTimeBetweenMeasurements) {
@@ -159,29 +161,29 @@ TEST(DeviceGuard, ItMeasuresSpeedOverTheTimeBetweenMeasurements) {
     }
     return guard.cause();
   };
-  EXPECT_EQ(cause_at(true), station::LetGo::none);
-  EXPECT_EQ(cause_at(false), station::LetGo::velocity);
+  EXPECT_EQ(cause_at(true), station::ReleaseCause::none);
+  EXPECT_EQ(cause_at(false), station::ReleaseCause::velocity);
   station::DeviceGuard guard(limits, timeout);
   guard.observe(0.0, tick(0), nan);
-  EXPECT_EQ(guard.cause(), station::LetGo::not_finite);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::not_finite);
 }
 
 /// Controllers that are alive and wrong: what each commands at a tick.
 struct Wrong {
   const char* name;
   std::function<double(std::int64_t tick)> force_N;
-  station::LetGo cause;
+  station::ReleaseCause cause;
 };
 std::vector<Wrong> wrong_controllers() {
   const auto random = std::make_shared<signal::Random>(5);
-  return {
-      {"no number", [](std::int64_t n) { return n < 50 ? 1.0 : nan; }, station::LetGo::not_finite},
-      {"infinity", [](std::int64_t) { return std::numeric_limits<double>::infinity(); }, station::LetGo::not_finite},
-      {"a million newtons", [](std::int64_t) { return 1e6; }, station::LetGo::force},
-      {"minus a million newtons", [](std::int64_t) { return -1e6; }, station::LetGo::force},
-      {"the limit to and fro", [](std::int64_t n) { return n % 2 == 0 ? 2.0 : -2.0; }, station::LetGo::rate},
-      {"anything", [random](std::int64_t) { return 1e3 * (static_cast<double>(random->bits() % 2001) - 1000.0); },
-       station::LetGo::force}};
+  return {{"no number", [](std::int64_t n) { return n < 50 ? 1.0 : nan; }, station::ReleaseCause::not_finite},
+          {"infinity", [](std::int64_t) { return std::numeric_limits<double>::infinity(); },
+           station::ReleaseCause::not_finite},
+          {"a million newtons", [](std::int64_t) { return 1e6; }, station::ReleaseCause::force},
+          {"minus a million newtons", [](std::int64_t) { return -1e6; }, station::ReleaseCause::force},
+          {"the limit to and fro", [](std::int64_t n) { return n % 2 == 0 ? 2.0 : -2.0; }, station::ReleaseCause::rate},
+          {"anything", [random](std::int64_t) { return 1e3 * (static_cast<double>(random->bits() % 2001) - 1000.0); },
+           station::ReleaseCause::force}};
 }
 
 TEST(GuardedDevice, WhateverAWrongControllerWritesTheMotorStaysWithinItsLimitsAndIsSwitchedOff) {
@@ -210,7 +212,7 @@ TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayT
     }
   }
   EXPECT_TRUE(motor.within);
-  EXPECT_EQ(device.guard().cause(), station::LetGo::timed_out);
+  EXPECT_EQ(device.guard().cause(), station::ReleaseCause::timed_out);
   EXPECT_FALSE(motor.now.enabled);
 
   Motor fast;
@@ -223,7 +225,7 @@ TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayT
       EXPECT_FALSE(fast.now.enabled);
     }
   }
-  EXPECT_EQ(around.guard().cause(), station::LetGo::velocity);
+  EXPECT_EQ(around.guard().cause(), station::ReleaseCause::velocity);
 }
 
 /// The owner's side with its motor, and whatever lies in the slots.
@@ -285,7 +287,7 @@ TEST(DeviceServer, CommandsThatSomethingRepeatsAreSilenceWhateverTimeTheyBear) {
     }
     EXPECT_TRUE(both.motor.within) << stale.name;
     EXPECT_EQ(both.motor.most_N, 1.5) << stale.name;
-    EXPECT_EQ(both.owner.guard().cause(), station::LetGo::timed_out) << stale.name;
+    EXPECT_EQ(both.owner.guard().cause(), station::ReleaseCause::timed_out) << stale.name;
     EXPECT_FALSE(both.motor.now.enabled) << stale.name;
   }
 }

@@ -237,7 +237,7 @@ TEST(SeveralJoints, OneThatIsBeyondWhatItsDeviceAllowsHasTheWallLetAllGo) {
   for (const Carriage* joint : arm.joints) EXPECT_EQ(joint->command.force_N, 0.1);
   arm.joints[2]->carry_to(0.06);
   run(5);
-  EXPECT_EQ(wall.cause(), LetGo::position);
+  EXPECT_EQ(wall.cause(), ReleaseCause::position);
   EXPECT_EQ(wall.health(), DeviceHealth::lost);
   for (const Carriage* joint : arm.joints) EXPECT_FALSE(joint->command.enabled);
 }

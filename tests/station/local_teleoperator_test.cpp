@@ -197,7 +197,7 @@ TEST(LocalTeleoperator, LettingGoEndsWithoutAForceAndWithoutAStepInIt) {
   bench.master.largest_step_N = 0.0;
   int ticks = 0;
   while (ticks < 5000 && (ticks == 0 || !bench.loop.at_rest())) {
-    bench.loop.let_go(tick(bench.number++));
+    bench.loop.step_to_rest(tick(bench.number++));
     ++ticks;
   }
   EXPECT_LT(ticks, 5000);

@@ -296,7 +296,7 @@ TEST(MotorLaw, AJointThatMayRunNoneGetsNoneAndTheWallLetsGoOfWhoInsists) {
     guarded.write(command);
     EXPECT_FALSE(one.link.wanted.motors[0].law.acts());
   }
-  EXPECT_EQ(guarded.cause(), station::LetGo::force);
+  EXPECT_EQ(guarded.cause(), station::ReleaseCause::force);
   EXPECT_EQ(one.link.wanted.motors[0].enabled, 0);
 }
 
