@@ -234,7 +234,7 @@ TEST(ArmTapping, ALeaderOfHalfTheSizeMovesTheFollowersToolTwiceAsFar) {
 }
 
 TEST(ArmTapping, TheGearedPairSettlesAsRecommendedInEitherHandAndPlainHardly) {
-  for (const char* hand : {"arms/geared-pair.toml", "arms/soft-hand.toml"}) {
+  for (const char* hand : {"arms/geared-pair.toml", "arms/light-grip.toml"}) {
     EXPECT_EQ(share_that_settles(geared(hand), 3), 1.0) << hand;
   }
   ArmTappingParams plain = geared("arms/bare.toml");

@@ -71,7 +71,7 @@ TEST(Handle, FeelsTheForceOnTheToolTimesScaleAndGain) {
 }
 
 TEST(Handle, TapsSettleAsRecommendedInEitherHandWherePlainRings) {
-  for (const char* hand : {"arms/inverse3-arm.toml", "arms/soft-hand.toml"}) {
+  for (const char* hand : {"arms/inverse3-arm.toml", "arms/light-grip.toml"}) {
     EXPECT_EQ(share_that_settles(shipped(hand), 3), 1.0) << hand;
     ArmTappingParams plain = shipped(hand);
     plain.control.method = ArmMethod::position_force;
