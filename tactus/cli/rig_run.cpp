@@ -1,8 +1,8 @@
 #include <tactus/cli/guarded_link.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/line_writer.hpp>
+#include <tactus/cli/operator_input.hpp>
 #include <tactus/cli/outcome_files.hpp>
-#include <tactus/cli/person.hpp>
 #include <tactus/cli/rig_drive.hpp>
 #include <tactus/cli/rig_guard.hpp>
 #include <tactus/cli/rig_report.hpp>
@@ -318,7 +318,7 @@ Check run_rig(const SupervisedOptions& options, const ObserverOptions& observer_
     driven[side].emplace(*std::move(made));
   }
   servo.rate_Hz = found->rate_Hz;
-  const auto person = Person::listen_to(STDIN_FILENO, only.value_or(SiteRole::master), exchange, errors);
+  const auto person = OperatorInput::listen_to(STDIN_FILENO, only.value_or(SiteRole::master), exchange, errors);
   if (!person) return person.error();
   const RigSurroundings around{.request = request,
                                .folder = folder,

@@ -1,7 +1,7 @@
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/line_writer.hpp>
+#include <tactus/cli/operator_input.hpp>
 #include <tactus/cli/outcome_files.hpp>
-#include <tactus/cli/person.hpp>
 #include <tactus/cli/rig_run.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/cli/supervised_report.hpp>
@@ -273,7 +273,7 @@ Check run_supervised(const SupervisedOptions& options, const ObserverOptions& ob
   const auto interruption = Interruption::start(exchange.end, Interrupted::site);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
-  const auto person = Person::listen_to(STDIN_FILENO, here.one.value_or(SiteRole::master), exchange, errors);
+  const auto person = OperatorInput::listen_to(STDIN_FILENO, here.one.value_or(SiteRole::master), exchange, errors);
   if (!person) return person.error();
   auto observers = Observers::open(observer_options, request, here.one);
   if (!observers) return observers.error();

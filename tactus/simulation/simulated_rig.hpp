@@ -25,16 +25,16 @@ struct BenchedMaster {
     }
   };
   /// What it can tell of the person.
-  struct Person {
+  struct Operator {
     mechanics::LinearSpring::Params grip{.stiffness_N_per_m = 40.0, .damping_N_s_per_m = 23.0};
     mechanics::Operator::Correction correction;
     static constexpr auto fields() {
-      return List{field("grip", &Person::grip, "Passive impedance of hand and arm."),
-                  field("correction", &Person::correction, "Slow correction of the handle's position.")};
+      return List{field("grip", &Operator::grip, "Passive impedance of hand and arm."),
+                  field("correction", &Operator::correction, "Slow correction of the handle's position.")};
     }
   };
   Device master;
-  Person person;
+  Operator person;
   static constexpr auto fields() {
     return List{field("master", &BenchedMaster::master, "The master device."),
                 field("operator", &BenchedMaster::person, "The person at the master.")};

@@ -2,7 +2,7 @@
 
 #include <tactus/control/packet.hpp>
 #include <tactus/experiments/arm_faults/plan.hpp>
-#include <tactus/experiments/faults/faulty_person.hpp>
+#include <tactus/experiments/faults/faulty_operator.hpp>
 #include <tactus/simulation/bad_number.hpp>
 #include <tactus/simulation/fault_moment.hpp>
 #include <tactus/simulation/faulty_actuator.hpp>
@@ -36,7 +36,7 @@ class ArmFaultInjection {
         span_(plan.start_s, plan.start_s + plan.length_s, tick_s) {}
 
   Site master, slave;
-  FaultyPerson person;
+  FaultyOperator person;
 
   [[nodiscard]] Site& at(FaultSite site) noexcept { return site == FaultSite::master ? master : slave; }
   [[nodiscard]] const simulation::FaultSpan& span() const noexcept { return span_; }

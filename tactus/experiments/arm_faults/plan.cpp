@@ -1,6 +1,6 @@
 #include <tactus/experiments/arm_faults/plan.hpp>
+#include <tactus/experiments/faults/fault_operator.hpp>
 #include <tactus/experiments/faults/internal/families.hpp>
-#include <tactus/experiments/faults/person.hpp>
 #include <tactus/experiments/faults/schedule.hpp>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ FaultPlan draw_arm_plan(FaultKind kind, std::int64_t index, std::int64_t seed, c
   // Half of all faults begin where the person presses most.
   if (random.uniform() < 0.5) {
     const double moving_s = plan.start_s - fault_schedule::still_until_s;
-    plan.start_s = fault_schedule::still_until_s + FaultPerson(plan, 0.0, true).deepest_after_s(moving_s);
+    plan.start_s = fault_schedule::still_until_s + FaultOperator(plan, 0.0, true).deepest_after_s(moving_s);
   }
   const double least_rad = std::min(2.0 * gate.encoder.fastest_m_per_s / rate_Hz, most_spike_rad);
   switch (kind) {

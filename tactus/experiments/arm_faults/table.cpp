@@ -68,7 +68,7 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
   if (const auto contact = mechanics::Environment::make(params.wall.environment(), tick); !contact) {
     return under("wall", contact.error());
   }
-  if (const auto person = arm_plants::Person::make(params.person, tick, leader->tool()); !person) {
+  if (const auto person = arm_plants::ToolOperator::make(params.person, tick, leader->tool()); !person) {
     return under("operator", person.error());
   }
   return ArmFaultBench{.setup = *setup,

@@ -180,7 +180,7 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const Urdfs
 }
 
 ArmPair::ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, ArmDevice leader, ArmDevice follower,
-                 const std::optional<arm::Chain>& other_follower, arm_plants::Person person,
+                 const std::optional<arm::Chain>& other_follower, arm_plants::ToolOperator person,
                  station::JointBarePair sites, double wall_m, const mechanics::Environment& contact)
     : tick_s_(1.0 / setup.params.servo.rate_Hz),
       steps_(steps_in_a_tick(setup.params.servo)),
@@ -248,7 +248,7 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmModelParams& m
   if (!leader) return under("arm", leader.error());
   auto follower = ArmPlant::make(follows, setup.follower.start);
   if (!follower) return under(differs(params.arm) ? "arm.follower" : "arm", follower.error());
-  auto person = arm_plants::Person::make(params.person, tick, leader->tool());
+  auto person = arm_plants::ToolOperator::make(params.person, tick, leader->tool());
   if (!person) return under("operator", person.error());
   auto sites = bare_arm_sites(setup, model_params);
   if (!sites) return sites.error();

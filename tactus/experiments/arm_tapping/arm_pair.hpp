@@ -127,8 +127,9 @@ class ArmPair {
 
  private:
   ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, arm_plants::ArmDevice leader,
-          arm_plants::ArmDevice follower, const std::optional<arm::Chain>& other_follower, arm_plants::Person person,
-          station::JointBarePair sites, double wall_m, const mechanics::Environment& contact);
+          arm_plants::ArmDevice follower, const std::optional<arm::Chain>& other_follower,
+          arm_plants::ToolOperator person, station::JointBarePair sites, double wall_m,
+          const mechanics::Environment& contact);
   /// Where the leader leads the follower's tool, along the axes of its base, by its joints.
   [[nodiscard]] arm::Vector3 led_to_m(const arm::JointVector& leader) const;
   [[nodiscard]] double apart_m(const arm_plants::ToolState& leader, const arm_plants::ToolState& follower) const;
@@ -138,7 +139,7 @@ class ArmPair {
   double step_s_;
   arm_plants::ArmDevice leader_;
   arm_plants::ArmDevice follower_;
-  arm_plants::Person person_;
+  arm_plants::ToolOperator person_;
   station::JointBarePair sites_;
   station::JointBarePair::Output latest_;
   arm::Chain leader_chain_;  ///< to tell what joints do at the tool

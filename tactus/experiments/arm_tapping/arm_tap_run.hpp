@@ -16,7 +16,7 @@ class ArmTapRun {
 
   /// The sites' part of a tick. Real-time safe.
   void step_sites(const station::Tick& tick) noexcept { pair_.step_sites(tick); }
-  /// Person and arms, until the next tick; for each tick that the sites missed as well. Not once it is over. Real-time
+  /// Operator and arms, until the next tick; for each tick that the sites missed as well. Not once it is over. Real-time
   /// safe.
   void step_arms();
 

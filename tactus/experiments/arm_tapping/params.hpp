@@ -2,7 +2,7 @@
 
 #include <tactus/arm_control/arm_follower.hpp>
 #include <tactus/arm_control/arm_leader.hpp>
-#include <tactus/arm_plants/person.hpp>
+#include <tactus/arm_plants/tool_operator.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/supervision.hpp>
 #include <tactus/core/parameters.hpp>
@@ -291,7 +291,7 @@ struct ArmTappingTask {
 struct ArmTappingParams {
   ArmTappingTask task;
   ArmPairParams arm;
-  arm_plants::Person::Params person;
+  arm_plants::ToolOperator::Params person;
   ArmControlParams control;
   ArmWallParams wall;
   ArmClockParams servo;

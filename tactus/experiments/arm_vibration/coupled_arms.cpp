@@ -191,7 +191,7 @@ Result<CoupledArmsResult> run_coupled_arms(const CoupledArmsSetup& setup) {
   if (!follower) return follower.error();
   const signal::Random random = signal::Random(static_cast<std::uint64_t>(p.task.seed)).fork(4);
   LoopClock exchange(p.host, p.host.exchange_phase, random);
-  auto person = arm_plants::Person::make(p.person, Seconds{record_s}, leader->arm.plant().tool());
+  auto person = arm_plants::ToolOperator::make(p.person, Seconds{record_s}, leader->arm.plant().tool());
   if (!person) return under("operator", person.error());
   const Vector3 began_m = leader->arm.plant().tool().position_m;
   const mechanics::MinimumJerk reach{

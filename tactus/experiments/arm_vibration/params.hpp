@@ -108,7 +108,7 @@ struct ArmVibrationParams {
   VibrationHost host;
   ReleasedLaw::Params control;
   ArmParams arm;
-  arm_plants::Person::Params person;
+  arm_plants::ToolOperator::Params person;
   static constexpr auto fields() {
     using P = ArmVibrationParams;
     return List{field("task", &P::task, "What happens."),

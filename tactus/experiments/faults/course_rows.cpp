@@ -1,8 +1,8 @@
 #include <tactus/experiments/faults/duty.hpp>
+#include <tactus/experiments/faults/fault_operator.hpp>
 #include <tactus/experiments/faults/faulty_configuration.hpp>
 #include <tactus/experiments/faults/internal/families.hpp>
 #include <tactus/experiments/faults/pairs.hpp>
-#include <tactus/experiments/faults/person.hpp>
 
 namespace tactus::experiments::fault_families {
 
@@ -241,7 +241,7 @@ void draw_course(FaultPlan& plan, signal::Random& random, double) {
       break;
     case FaultKind::stale_commands:
       plan.site = FaultSite::master;
-      plan.start_s = FaultPerson(plan, 0.0, false).deepest_after_s(plan.start_s);
+      plan.start_s = FaultOperator(plan, 0.0, false).deepest_after_s(plan.start_s);
       plan.length_s = 1.5;
       plan.size = drive_timeout_s;
       break;

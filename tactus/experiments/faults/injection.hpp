@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/experiments/faults/faulty_person.hpp>
+#include <tactus/experiments/faults/faulty_operator.hpp>
 #include <tactus/experiments/faults/plan.hpp>
 #include <tactus/experiments/faults/schedule.hpp>
 #include <tactus/simulation/bad_number.hpp>
@@ -45,7 +45,7 @@ class FaultInjection {
 
   Site master, slave;
   simulation::FaultyForceSensor force_sensor;
-  FaultyPerson person;
+  FaultyOperator person;
 
   [[nodiscard]] Site& at(FaultSite site) noexcept { return site == FaultSite::master ? master : slave; }
   [[nodiscard]] simulation::FaultSpan& span() noexcept { return span_; }

@@ -1,11 +1,11 @@
 #include <tactus/control/supervised_site.hpp>
+#include <tactus/experiments/faults/fault_operator.hpp>
 #include <tactus/experiments/faults/faulty_configuration.hpp>
 #include <tactus/experiments/faults/faulty_site.hpp>
 #include <tactus/experiments/faults/handle.hpp>
 #include <tactus/experiments/faults/injection.hpp>
 #include <tactus/experiments/faults/judge.hpp>
 #include <tactus/experiments/faults/pairs.hpp>
-#include <tactus/experiments/faults/person.hpp>
 #include <tactus/experiments/faults/run.hpp>
 #include <tactus/simulation/site_plants.hpp>
 #include <tactus/station/step.hpp>
@@ -38,7 +38,7 @@ class FaultRun::Run {
   using Master = FaultySite<simulation::MasterPlant, control::SupervisedMaster>;
   using Slave = FaultySite<simulation::SlavePlant, control::SupervisedSlave>;
 
-  Run(const simulation::Teleoperator::Params& params, const FaultPlan& plan, const FaultPerson& person,
+  Run(const simulation::Teleoperator::Params& params, const FaultPlan& plan, const FaultOperator& person,
       const simulation::Clock& clock, Master master, Slave slave)
       : params_(params),
         plan_(plan),
@@ -125,7 +125,7 @@ class FaultRun::Run {
   simulation::Clock clock_;
   double tick_s_;
   std::vector<FaultInjection> injections_;  ///< all that goes wrong; the first counts for the judge
-  FaultPerson person_;
+  FaultOperator person_;
   FaultHandle handle_;
   Master master_;
   Slave slave_;
@@ -159,8 +159,8 @@ Result<FaultRun::Run> FaultRun::Run::make(const simulation::Teleoperator::Params
   const auto clock = simulation::Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
   const Seconds tick{clock->tick_s};
-  const FaultPerson person(plan, params.environment.position_m / params.control.position_scale,
-                           params.control.supervision.probe.force_N > 0.0);
+  const FaultOperator person(plan, params.environment.position_m / params.control.position_scale,
+                             params.control.supervision.probe.force_N > 0.0);
   const double start_m = person.path_m(0.0);
   auto master = simulation::MasterPlant::make(params.master, params.person, *clock, start_m);
   if (!master) return master.error();
@@ -196,7 +196,7 @@ Result<FaultRun::Run> FaultRun::Run::make(const simulation::Teleoperator::Params
 }
 
 control::SiteRequests FaultRun::Run::requests(FaultSite site) const {
-  control::SiteRequests pressed = FaultPerson::presses(moment().now_s, end_s(), judge_.rearms());
+  control::SiteRequests pressed = FaultOperator::presses(moment().now_s, end_s(), judge_.rearms());
   for (const FaultInjection& injection : injections_) {
     pressed = injection.person.presses(pressed, site, injection.moment());
   }

@@ -10,11 +10,11 @@
 namespace tactus::experiments {
 
 /// What becomes of the person's hand and buttons. Of a plan that is for something else they do as they are meant to.
-class FaultyPerson {
+class FaultyOperator {
  public:
   enum class Hand { holds, lets_go, is_clamped };
 
-  explicit FaultyPerson(const FaultPlan& plan) : plan_(plan) {}
+  explicit FaultyOperator(const FaultPlan& plan) : plan_(plan) {}
 
   /// What holds the handle. Once a tick. Real-time safe.
   [[nodiscard]] Hand hand(const FaultMoment& moment) const noexcept {
