@@ -154,7 +154,8 @@ void add_serve(CLI::App& app, const std::string& command, int& status) {
                      "Folder for report.html, results.json, the figure and a log of every tick");
   verb->remove_option(verb->get_option("--json"));  // what is printed is where to look, not results
   add_log_limit_option(*verb, options->log_limit);
-  verb->add_option("--duration", options->duration_s, "Seconds to serve; 0 is until interrupted")
+  verb->add_option("--duration-s", options->duration_s, "Time to serve; 0: until interrupted")
+      ->type_name("S")
       ->check(real_between(0.0, 1e6));
   verb->callback([options, &app, &command, &status] {
     if (const auto error = serve(*options, command)) {

@@ -18,6 +18,9 @@ std::string did_you_mean(std::string_view given, const std::vector<std::string>&
   return nearest.empty() ? "" : ": did you mean " + std::string(nearest) + "?";
 }
 
+/// The present name of an option that had another one; empty for any other.
+std::string new_name_of(std::string_view option) { return option == "--duration" ? "--duration-s" : ""; }
+
 std::vector<std::string> option_names_of(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
@@ -51,6 +54,10 @@ std::string unknown_word(const CLI::App& app, int argc, char** argv) {
       const std::string name = word.substr(0, word.find('='));
       const auto options = option_names_of(*at);
       if (name != "--" && std::find(options.begin(), options.end(), name) == options.end()) {
+        if (const std::string now = new_name_of(name);
+            std::find(options.begin(), options.end(), now) != options.end()) {
+          return quoted(name) + " is now called " + now;
+        }
         return quoted(name) + " is no option of " + at->get_name() + did_you_mean(name, options);
       }
       continue;

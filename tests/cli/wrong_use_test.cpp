@@ -53,7 +53,7 @@ TEST_F(WrongUse, WhatIsNoNumberOrNotInRange) {
   const std::string file = quick_experiment();
   for (const std::string value : {"nan", "-1", "inf", "1x", ""}) {
     const Words named{"'" + value + "' is no number in [0 - "};
-    expect({{"serve", "--port", "0", "--duration", value}, 2, {"--duration", named[0] + "1e+06]"}});
+    expect({{"serve", "--port", "0", "--duration-s", value}, 2, {"--duration-s", named[0] + "1e+06]"}});
     expect({{"stability", "margins", file, "--uncertainty", value}, 2, {"--uncertainty", named[0] + "0.9]"}});
     expect({{"emulate", "inverse3", "--late-s", value}, 2, {"--late-s", named[0] + "10]"}});
   }
@@ -73,6 +73,10 @@ TEST_F(WrongUse, NoCommandAnUnknownOneAndAnUnknownOption) {
   expect({{"run", quick_experiment(), "--set"}, 2, {"--set", "KEY=VALUE"}});
   expect({{"schema", "grasping"}, 2, {"'grasping'", "tapping, force-display"}});
   expect({{"schema", "tapping", "--verbose"}, 2, {"--verbose"}});
+}
+
+TEST_F(WrongUse, AnOldNameOfAnOptionIsRefusedWithItsNewOne) {
+  expect({{"serve", "--duration", "1"}, 2, {"'--duration' is now called --duration-s"}});
 }
 
 TEST_F(WrongUse, AFileThatIsMissingAFolderOrEmpty) {

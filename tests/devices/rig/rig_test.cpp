@@ -93,6 +93,8 @@ TEST(Rig, EveryMistakeIsToldWithItsLineAndRemedy) {
       problem_of(side + "bits_per_s = 1000000\n" + one),
       "rig.toml:4:1: arm.leader.bits_per_s: unknown key: [arm.leader] can have bus, port, framing, reply_timeout_s, "
       "watchdog_s, elbow");
+  EXPECT_EQ(problem_of(side + "patience_s = 0.002\n" + one),
+            "rig.toml:4:1: arm.leader.patience_s: this key is now called reply_timeout_s");
   EXPECT_EQ(
       problem_of("[arm.leader]\nbus = \"damiau\"\nport = \"/dev/a\"\n" + one),
       "rig.toml:2:7: arm.leader.bus: 'damiau' is not a bus that tactus can drive; write one of damiao, dynamixel, "
