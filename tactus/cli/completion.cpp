@@ -61,7 +61,7 @@ std::string bash_script(const CLI::App& app) {
          "  case \"$path $before\" in\n" +
          values +
          "  esac\n"
-         "  # Behind an option that takes any value, and where no verb or option is begun, stand files.\n"
+         "  # Files complete an option that takes any value, and a word that is no command or option.\n"
          "  COMPREPLY=()\n"
          "  if [ \"$choices\" != - ]; then\n"
          "    words=$choices\n"
@@ -83,8 +83,8 @@ std::string bash_script(const CLI::App& app) {
 
 void add_completion(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("completion", "Print what completes this command in a shell");
-  verb->add_option("SHELL", *shell, "Which shell")->required()->check(CLI::IsMember({"bash"}));
+  CLI::App* verb = app.add_subcommand("completion", "Print the shell completion of this command");
+  verb->add_option("SHELL", *shell, "Shell")->required()->check(CLI::IsMember({"bash"}));
   verb->callback([&app, shell] { std::cout << bash_script(app); });
 }
 

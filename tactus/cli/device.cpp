@@ -13,7 +13,7 @@ void end_command(const CLI::App& app, const Result<bool>& well, int& status) {
 }
 
 void add_device(CLI::App& app, const std::string& command, int& status) {
-  CLI::App* verb = app.add_subcommand("device", "Motors and handles that you own");
+  CLI::App* verb = app.add_subcommand("device", "List, check, calibrate and watch your motors and handles");
   verb->require_subcommand(1);
   add_device_list(*verb, app, status);
   add_device_check(*verb, app, command, status);

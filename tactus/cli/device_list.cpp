@@ -71,8 +71,9 @@ Result<bool> list(const ListOptions& options) {
 
 void add_device_list(CLI::App& device, const CLI::App& app, int& status) {
   auto options = std::make_shared<ListOptions>();
-  CLI::App* verb = device.add_subcommand("list", "Serial adapters and CAN interfaces; with --probe who answers there");
-  verb->add_option("PORT", options->ports, "These alone");
+  CLI::App* verb = device.add_subcommand(
+      "list", "List serial adapters and CAN interfaces, and with --probe the devices behind them");
+  verb->add_option("PORT", options->ports, "Ports to list; all by default");
   verb->add_flag("--probe", options->probe,
                  "Ask at each port who is there. Motors change nothing of that; leave it out where a port has a device "
                  "that is none of yours to ask");

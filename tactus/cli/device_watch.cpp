@@ -156,10 +156,10 @@ Result<bool> watch(const WatchOptions& options) {
 
 void add_device_watch(CLI::App& device, const CLI::App& app, int& status) {
   auto options = std::make_shared<WatchOptions>();
-  CLI::App* verb = device.add_subcommand("watch", "Show where each joint is, without power, until Ctrl-C");
-  verb->add_option("RIG", options->rig, "The rig file")->required();
-  verb->add_option("NAME", options->name, "A pair, a side or a joint of it, as arm.leader");
-  verb->add_option("--for", options->duration_s, "So many seconds; 0: until Ctrl-C")
+  CLI::App* verb = device.add_subcommand("watch", "Show the position of each joint, without power, until Ctrl-C");
+  verb->add_option("RIG", options->rig, "Rig file")->required();
+  verb->add_option("NAME", options->name, "Pair, side or joint of the rig, such as arm.leader");
+  verb->add_option("--duration-s", options->duration_s, "Time to run; 0: until interrupted")
       ->type_name("S")
       ->check(real_between(0.0, 1e6));
   verb->callback([options, &app, &status] { end_command(app, watch(*options), status); });

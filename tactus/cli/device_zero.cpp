@@ -158,21 +158,23 @@ Result<bool> limits(const LimitsOptions& options) {
 
 void add_device_zero(CLI::App& device, const CLI::App& app, int& status) {
   auto options = std::make_shared<ZeroOptions>();
-  CLI::App* verb =
-      device.add_subcommand("zero", "Write offsets into the rig file with which joints are at zero where they are now");
-  verb->add_option("RIG", options->rig, "The rig file")->required();
-  verb->add_option("JOINT", options->joints, "Joints of it, or all of a side, as arm.leader.elbow or arm.leader")
+  CLI::App* verb = device.add_subcommand(
+      "zero", "Set the present position of joints to zero, and write the offsets into the rig file");
+  verb->add_option("RIG", options->rig, "Rig file")->required();
+  verb->add_option("JOINT", options->joints,
+                   "Joints, or a side for all of its joints, such as arm.leader.elbow or arm.leader")
       ->required();
-  verb->add_option("--motor", options->motor, "Of these one motor alone: its identifier, or its joint's name")
+  verb->add_option("--motor", options->motor, "Only this motor: its identifier, or the name of its joint")
       ->type_name("ID|JOINT");
   verb->callback([options, &app, &status] { end_command(app, zero(*options), status); });
 }
 
 void add_device_limits(CLI::App& device, const CLI::App& app, int& status) {
   auto options = std::make_shared<LimitsOptions>();
-  CLI::App* verb = device.add_subcommand("limits", "The limits of motors and file, and which of them hold");
-  verb->add_option("RIG", options->rig, "The rig file")->required();
-  verb->add_option("NAME", options->name, "A pair, a side or a joint of it, as arm.leader");
+  CLI::App* verb =
+      device.add_subcommand("limits", "Show the limits of the motors and of the file, and which of them apply");
+  verb->add_option("RIG", options->rig, "Rig file")->required();
+  verb->add_option("NAME", options->name, "Pair, side or joint of the rig, such as arm.leader");
   verb->callback([options, &app, &status] { end_command(app, limits(*options), status); });
 }
 

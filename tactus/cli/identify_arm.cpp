@@ -193,11 +193,12 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
 
 void add_identify_arm(CLI::App& identify, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<IdentifyArmOptions>();
-  CLI::App* verb = identify.add_subcommand("arm", "Dynamics of an arm from recordings of free motion of all joints");
+  CLI::App* verb =
+      identify.add_subcommand("arm", "Identify the dynamics of an arm from recordings of free motion of all joints");
   options->arm.output.own_files = {"model.toml", "arm.urdf", "armatures.toml"};
   verb->add_option("RECORDING", options->files,
                    "Recordings: .csv, .tsv, .txt, with or without header, or .mat; "
-                   "or the log of a rig, whose follower is taken while it follows")
+                   "or the log of a rig (the follower, while it follows)")
       ->required();
   add_arm_urdf_options(*verb, options->urdf);
   add_arm_options(*verb, options->arm, command,

@@ -45,14 +45,15 @@ struct Recipe {
 };
 
 constexpr Recipe by_isolation{
-    "isolate", "A master from the motor outward, by successive isolation", "Successive isolation",
+    "isolate", "Identify a leader from the motor outward, by successive isolation", "Successive isolation",
     "Found from the motor outward, each stage with what the earlier ones found. The intervals hold what the residuals "
     "of a stage leave open and what the earlier stages did not know.",
     [](identification::Rig& rig, const identification::IsolationProgress& progress) {
       return identification::isolate(rig, {}, progress);
     }};
 constexpr Recipe in_the_hand{
-    "quick", "A master in the operator's hand within a minute, nothing taken apart", "Quick identification",
+    "quick", "Identify a leader in the operator's hand within a minute, without taking it apart",
+    "Quick identification",
     "Found from sweeps and bursts on the held master, the whole chain at once, each value drawn to its data sheet as "
     "much as that is trusted. What the data cannot tell stands where the data sheet left it.",
     [](identification::Rig& rig, const identification::IsolationProgress& progress) {
@@ -202,9 +203,10 @@ void add_bench_command(CLI::App& identify_command, const Recipe& recipe, const s
                        const std::string& command, int& status) {
   auto options = std::make_shared<BenchOptions>();
   CLI::App* verb = identify_command.add_subcommand(recipe.verb, recipe.description);
-  verb->add_option("--rig", options->rig, "What stands on the bench: simulated")->required()->type_name("RIG");
-  verb->add_option("--seed", options->seed, "Which of the simulated rigs")->check(CLI::NonNegativeNumber);
-  verb->add_option("--session", options->session, "Folder that keeps every run, to stop and go on later")
+  verb->add_option("--rig", options->rig, "Rig on the bench: simulated")->required()->type_name("RIG");
+  verb->add_option("--seed", options->seed, "Number of the simulated rig")->check(CLI::NonNegativeNumber);
+  verb->add_option("--session", options->session,
+                   "Folder that keeps every run, so that you can stop and continue later")
       ->type_name("DIR");
   options->output.own_files = {"model.toml", "rig.toml"};
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json, model.toml and rig.toml");

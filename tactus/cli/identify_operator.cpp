@@ -224,14 +224,14 @@ Check identify_operator(OperatorOptions options, const std::string& command) {
 void add_identify_operator(CLI::App& identify, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<OperatorOptions>();
   CLI::App* verb = identify.add_subcommand(
-      "operator", "Impedance of the hand over time, from a master's motion and the hand's force");
+      "operator", "Estimate the impedance of the hand over time, from the leader's motion and the hand force");
   add_axis_options(*verb, options->axis, command);
   verb->remove_option(verb->get_option("--external"));
-  verb->get_option("--position")->description("Column of the master's position; in a MATLAB file NAME:COLUMN");
-  verb->get_option("--force")->description("Column of the hand's force or torque on the master");
-  verb->get_option("--force-sign")->description("-1 turns the hand's force round; 1 says that its sign is right");
+  verb->get_option("--position")->description("Column of the leader's position; in a MATLAB file NAME:COLUMN");
+  verb->get_option("--force")->description("Column of the force or torque of the hand on the leader");
+  verb->get_option("--force-sign")->description("-1 reverses the hand force; 1 confirms its sign");
   verb->get_option("--out")->description("Folder for report.html and results.json");
-  verb->add_option("--lower-Hz", options->estimate.lower_Hz, "Lower edge of the band, above what the person intends")
+  verb->add_option("--lower-Hz", options->estimate.lower_Hz, "Lower edge of the band, above intended motion")
       ->type_name("HZ");
   verb->add_option("--upper-Hz", options->estimate.upper_Hz, "Upper edge of the band")->type_name("HZ");
   verb->add_option("--window-s", options->estimate.window_s, "Length of a window")->type_name("S");

@@ -39,15 +39,16 @@ Result<live::ServerOptions> place_of(const std::string& text) {
 }  // namespace
 
 void add_observer_options(CLI::App& verb, ObserverOptions& options) {
-  constexpr const char* group = "Who looks on, in real time";
-  verb.add_option("--live", options.live,
-                  "Show every tick to Foxglove and PlotJuggler here; without a value, at a free port of the loopback")
+  constexpr const char* group = "Observers, in real time";
+  verb.add_option(
+          "--live", options.live,
+          "Serve every control cycle to Foxglove and PlotJuggler; without a value, on a free port of the loopback")
       ->type_name("[[HOST:]PORT]")
       ->expected(0, 1)
       ->group(group);
   CLI::Option* const ros2 =
       verb.add_flag("--ros2", options.ros2,
-                    "Publish to ROS 2 nodes under CRTK names; alone, run the taps and take operator/servo_jp too")
+                    "Publish to ROS 2 nodes under CRTK names; alone, run the taps and accept operator/servo_jp too")
           ->group(group);
   verb.add_option("--namespace", options.name_space, "Namespace of the ROS 2 topics")
       ->type_name("NAME")

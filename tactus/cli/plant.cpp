@@ -149,15 +149,15 @@ Check own_plant(const PlantOptions& options) {
 void add_plant(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<PlantOptions>();
   CLI::App* verb = app.add_subcommand(
-      "plant", "Own the simulated devices of an experiment, for a `tactus run --realtime --plant` in another process");
+      "plant", "Simulate the devices of an experiment for `tactus run --realtime --plant` in another process");
   add_experiment_options(*verb, options->experiment);
-  verb->add_option("--name", options->name, "Name that the other process asks for")->type_name("NAME");
-  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")->type_name("S");
+  verb->add_option("--name", options->name, "Name that the other process connects to")->type_name("NAME");
+  verb->add_option("--duration-s", options->duration_s, "Time to run; 0: until interrupted")->type_name("S");
   verb->add_option("--silence-s", options->silence_s,
-                   "The longest silence of the other process before the motors get no force, 0.001 to 10")
+                   "Timeout of the other process, after which the motors get no force, 0.001 to 10")
       ->type_name("S");
   add_servo_options(*verb, options->servo);
-  add_json_option(*verb, options->json, command, "Print one JSON document; the lines go to standard error");
+  add_json_option(*verb, options->json, command, "Print one JSON document; progress goes to standard error");
   verb->callback([options, &app, &status] {
     if (const auto error = own_plant(*options)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

@@ -187,22 +187,25 @@ Check run(const RelayOptions& options) {
 
 void add_relay(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RelayOptions>();
-  CLI::App* verb = app.add_subcommand("relay", "Stand between two sites and lose, delay, reorder and double packets");
-  verb->add_option("EXPERIMENT", options->file, "Experiment file whose section [channel] says what to do")->required();
+  CLI::App* verb =
+      app.add_subcommand("relay", "Relay packets between two sites with loss, delay, reordering and duplication");
+  verb->add_option("EXPERIMENT", options->file, "Experiment file whose section [channel] describes the network")
+      ->required();
   add_set_option(*verb, options->set);
   const auto address = [&](const char* name, std::string& value, const char* help) {
     verb->add_option(name, value, help)->type_name("HOST:PORT")->required();
   };
-  address("--master", options->master, "Where the master listens");
-  address("--for-master", options->for_master, "Where the relay listens for it: the master's --peer");
-  address("--slave", options->slave, "Where the slave listens");
-  address("--for-slave", options->for_slave, "Where the relay listens for it: the slave's --peer");
+  address("--master", options->master, "Address on which the master listens");
+  address("--for-master", options->for_master,
+          "Address on which the relay listens for the master: the master's --peer");
+  address("--slave", options->slave, "Address on which the slave listens");
+  address("--for-slave", options->for_slave, "Address on which the relay listens for the slave: the slave's --peer");
   verb->add_option("--mean-burst", options->mean_burst,
-                   "Mean number of packets lost one after the other; up to 1 each is lost on its own")
+                   "Mean number of packets lost in a row; up to 1 each loss is independent")
       ->check(real_between(0.0, 10000.0));
   verb->add_option("--duplicate-fraction", options->duplicate_fraction, "Share of the packets that are sent twice")
       ->check(real_between(0.0, 1.0));
-  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")
+  verb->add_option("--duration-s", options->duration_s, "Time to run; 0: until interrupted")
       ->type_name("S")
       ->check(real_between(0.0, 1e6));
   add_json_option(*verb, options->json, command);

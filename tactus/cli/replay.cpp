@@ -65,11 +65,12 @@ std::string json_of(const runtime::Replay& replay) {
 
 void add_replay(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* verb = app.add_subcommand("replay", "Step the sites of a logged run in real time again, on what they read");
+  CLI::App* verb =
+      app.add_subcommand("replay", "Repeat the control cycles of a logged run with the logged readings, and compare");
   verb->add_option("LOG", options->log,
                    "Log (.mcap) of `run --realtime --out` or `run --site --out`, of a rig too, or its folder")
       ->required();
-  verb->add_flag("--check", options->check, "End with status 1 where anything differs from the log");
+  verb->add_flag("--check", options->check, "Exit with status 1 if anything differs from the log");
   add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
     const auto replayed = runtime::replay(options->log);

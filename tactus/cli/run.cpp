@@ -230,20 +230,20 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* verb = app.add_subcommand("run", "Run an experiment, in virtual or in real time");
   add_experiment_options(*verb, options->experiment);
-  verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations: key=a,b,c")
+  verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations; may be repeated")
       ->type_name("KEY=A,B,C")
       ->allow_extra_args(false);
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json, the figures and the log");
   options->output.own_files = {recording_file};
   add_log_limit_option(*verb, options->log_limit);
   verb->add_flag("--realtime", options->real_time,
-                 "Run taps of one axis or of two arms at the real clock, on a servo thread, with simulated devices, "
-                 "those of a plant or your own");
-  CLI::Option* plant = verb->add_option("--plant", options->plant,
-                                        "Drive the devices of the `tactus plant` of that name, not ones of its own")
-                           ->type_name("NAME");
+                 "Run taps of one axis or of two arms in real time on a servo thread, with simulated devices, "
+                 "the devices of a plant, or your own");
+  CLI::Option* plant =
+      verb->add_option("--plant", options->plant, "Drive the devices of the `tactus plant` with this name")
+          ->type_name("NAME");
   verb->add_option("--plant-silence-s", options->plant_silence_s,
-                   "The longest silence of that plant before both sites let go, 0.001 to 10")
+                   "Timeout of that plant, after which both sites release their force, 0.001 to 10")
       ->type_name("S")
       ->needs(plant);
   add_servo_options(*verb, options->servo);

@@ -5,7 +5,8 @@
 namespace tactus::cli {
 
 void add_stability_limit(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
-  add_stability_command(stability, "limit", "Gain limit: linear, of the linear rig in time, and of taps",
+  add_stability_command(stability, "limit",
+                        "Find the gain limit of the linear model, of the linear rig in time, and of taps",
                         stability::report_limit, name, command, status);
 }
 

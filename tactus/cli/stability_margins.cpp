@@ -10,8 +10,8 @@ void add_stability_margins(CLI::App& stability, const std::string& name, const s
                                                      : stability::report_margins(request, options);
   };
   add_stability_command(stability, "margins",
-                        "Margins, poles and gain limit of the linear loop in contact, of one axis or two arms", report,
-                        name, command, status);
+                        "Compute margins, poles and gain limit of the linear loop in contact, of one axis or two arms",
+                        report, name, command, status);
 }
 
 }  // namespace tactus::cli

@@ -5,7 +5,7 @@
 namespace tactus::cli {
 
 void add_stability_scorecard(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
-  add_stability_command(stability, "scorecard", "A master device judged by the induced motion that it allows",
+  add_stability_command(stability, "scorecard", "Rate a leader device by the induced motion that it allows",
                         stability::report_scorecard, name, command, status);
 }
 

@@ -8,7 +8,7 @@ void add_stability_two_port(CLI::App& stability, const std::string& name, const 
   const auto report = [](const auto& request, const auto& options, const auto&) {
     return stability::report_two_port(request, options);
   };
-  add_stability_command(stability, "two-port", "What the hand feels over frequency, absolute stability and passivity",
+  add_stability_command(stability, "two-port", "Compute transparency over frequency, absolute stability and passivity",
                         report, name, command, status);
 }
 

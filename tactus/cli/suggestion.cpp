@@ -19,7 +19,9 @@ std::string did_you_mean(std::string_view given, const std::vector<std::string>&
 }
 
 /// The present name of an option that had another one; empty for any other.
-std::string new_name_of(std::string_view option) { return option == "--duration" ? "--duration-s" : ""; }
+std::string new_name_of(std::string_view option) {
+  return option == "--duration" || option == "--for" ? "--duration-s" : "";
+}
 
 std::vector<std::string> option_names_of(const CLI::App& app) {
   std::vector<std::string> names;

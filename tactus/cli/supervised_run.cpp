@@ -220,23 +220,27 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
 }  // namespace
 
 void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
-  constexpr const char* group = "Under supervision, in real time";
+  constexpr const char* group = "With supervision, in real time";
   const auto add = [&verb](const char* name, auto& value, const char* help, const char* type) {
     return verb.add_option(name, value, help)->type_name(type)->group(group);
   };
   add("--device", options.devices,
-      "Drive this device, which the program must bring, in place of the simulated one, at both sites or at one; or the "
-      "leader and follower of a rig file, or of a pair of it, of which --site drives one",
+      "Drive this device, which the program must provide, in place of the simulated one, at both sites or at one; or "
+      "the "
+      "leader and follower of a rig file or of one of its pairs (with --site, one of them)",
       "[SITE=]NAME|RIG.toml[:PAIR]")
       ->allow_extra_args(false);
-  add("--site", options.site, "Run only this site, the other being elsewhere", "SITE")
+  add("--site", options.site, "Run only this site; the other one runs elsewhere", "SITE")
       ->check(CLI::IsMember({"master", "slave"}));
-  add("--peer", options.peer, "Where the other site listens", "HOST:PORT");
-  add("--listen", options.listen, "Where to listen; without it at the peer's port on every own address", "[HOST:]PORT");
-  add("--key", options.key, "The key that both sites share, made by `tactus key`", "FILE");
-  verb.add_flag("--unencrypted", options.unencrypted, "Plain text, on this host's loopback only")->group(group);
-  verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as the slave is heard")->group(group);
-  add("--duration-s", options.duration_s, "How long to run; 0 is until interrupted", "S");
+  add("--peer", options.peer, "Address on which the other site listens", "HOST:PORT");
+  add("--listen", options.listen, "Address to listen on; by default the peer's port on every address of this host",
+      "[HOST:]PORT");
+  add("--key", options.key, "Key that both sites share, created by `tactus key`", "FILE");
+  verb.add_flag("--unencrypted", options.unencrypted, "Send plain text, on the loopback of this host only")
+      ->group(group);
+  verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as a packet of the slave is received")
+      ->group(group);
+  add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S");
 }
 
 Check run_supervised(const SupervisedOptions& options, const ObserverOptions& observer_options,

@@ -197,7 +197,7 @@ TEST_F(DeviceRig, ZeroOfOneMotorLeavesTheOthersOfItsArm) {
 }
 
 TEST_F(DeviceRig, WatchShowsEachJointALineAndLimitsWhichOneHolds) {
-  const Outcome watched = device({"dynamixel"}, servos, "watch rig.toml arm.leader.elbow --for 0.5");
+  const Outcome watched = device({"dynamixel"}, servos, "watch rig.toml arm.leader.elbow --duration-s 0.5");
   EXPECT_EQ(watched.status, 0) << watched.err;
   EXPECT_EQ(watched.out.find("# time_s joint unit position moved velocity temperature_C age_ms state\n"), 0U);
   EXPECT_TRUE(says(watched, " arm.leader.elbow rad 0.0000 0.0000 0.000 35 ")) << watched.out;

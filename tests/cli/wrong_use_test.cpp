@@ -77,6 +77,7 @@ TEST_F(WrongUse, NoCommandAnUnknownOneAndAnUnknownOption) {
 
 TEST_F(WrongUse, AnOldNameOfAnOptionIsRefusedWithItsNewOne) {
   expect({{"serve", "--duration", "1"}, 2, {"'--duration' is now called --duration-s"}});
+  expect({{"device", "watch", "rig.toml", "--for", "1"}, 2, {"'--for' is now called --duration-s"}});
 }
 
 TEST_F(WrongUse, AFileThatIsMissingAFolderOrEmpty) {
