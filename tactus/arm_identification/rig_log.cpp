@@ -178,8 +178,8 @@ Result<std::vector<ArmRecording>> read_rig_log(const std::string& file, const st
   }
   if (stretches.empty()) {
     return wrong(ErrorCode::missing,
-                 "the follower did not follow for " + format_number(shortest_stretch_s) +
-                     " s with all its drives heard each " + format_number(longest_pause_s) +
+                 "the follower did not follow for " + rounded_number(shortest_stretch_s) +
+                     " s with all its drives heard each " + rounded_number(longest_pause_s) +
                      " s: record it on a machine that does nothing else",
                  file);
   }

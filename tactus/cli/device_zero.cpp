@@ -134,7 +134,7 @@ report::Table limits_table(const RigSide& side, const BusFinding& found, const s
                    one.joint.gives_force ? number(one.joint.torque_limit_Nm) : "-",
                    one.joint.gives_force ? what_holds(most_Nm, one.joint.torque_limit_Nm) : "no force", number(fastest),
                    number(one.joint.velocity_limit_rad_per_s),
-                   format_number(one.joint.lower_rad) + " to " + format_number(one.joint.upper_rad),
+                   rounded_number(one.joint.lower_rad) + " to " + rounded_number(one.joint.upper_rad),
                    number(one.joint.temperature_limit_C)});
   }
   return table;

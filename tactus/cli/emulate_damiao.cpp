@@ -61,8 +61,8 @@ Result<std::unique_ptr<emulation::EmulatedArm>> make_arm(const DamiaoOptions& op
   }
   constexpr double farthest_rad = 3.0;
   if (!options.led.empty() && options.led[0] > farthest_rad) {
-    return wrong("--led", format_number(options.led[0]) + " rad is more than an arm can be led, " +
-                              format_number(farthest_rad) + " rad: name less");
+    return wrong("--led", rounded_number(options.led[0]) + " rad is more than an arm can be led, " +
+                              rounded_number(farthest_rad) + " rad: name less");
   }
   if (!options.led.empty()) settings.led = {.reach_rad = options.led[0], .after_s = options.led[1]};
   return emulation::EmulatedArm::make(settings);

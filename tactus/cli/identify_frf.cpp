@@ -92,8 +92,8 @@ Result<std::vector<Pair>> read_runs(const FrfOptions& options) {
       }
       const double first_s = runs.empty() ? *input->sample_time_s : *runs.front().input.sample_time_s;
       if (std::abs(*signal->sample_time_s - first_s) > 1e-3 * first_s) {
-        return inconsistent("the sample time is " + format_number(*signal->sample_time_s) + " s and not " +
-                                format_number(first_s) + " s as before; only runs of one rate can be put together",
+        return inconsistent("the sample time is " + rounded_number(*signal->sample_time_s) + " s and not " +
+                                rounded_number(first_s) + " s as before; only runs of one rate can be put together",
                             file);
       }
     }

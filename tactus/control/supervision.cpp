@@ -97,9 +97,9 @@ Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, S
   if (tried_after_s > carried_after_s && params.answer_within_s <= tried_after_s) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "answer_within_s",
-                 .message = format_number(params.answer_within_s) + " s must be more than " +
+                 .message = rounded_number(params.answer_within_s) + " s must be more than " +
                             (carried_after_s > params.blend_s ? "support.raise_s" : "blend_s") +
-                            " and probe.duration_s together, " + format_number(tried_after_s) +
+                            " and probe.duration_s together, " + rounded_number(tried_after_s) +
                             " s: a slave answers once its motor was tried",
                  .place = {}};
   }

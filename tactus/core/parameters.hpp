@@ -124,6 +124,10 @@ constexpr void for_each_field(Visit&& visit) {
 /// A number as a person writes it: the shortest text that reads back equal.
 std::string format_number(double value);
 
+/// A number in a message: as `format_number`, but with 6 significant digits if that would take more than 9, as a
+/// computed one usually does (-6.1 for -6.1000000000000005).
+std::string rounded_number(double value);
+
 /// `must be greater than 0 kg`, `must lie between 1 and 20 kHz`, ...
 std::string describe_bounds(const Bounds& bounds, const Unit& unit);
 

@@ -316,7 +316,7 @@ Check doubt_sign(const SignalRoles& roles, const Signals& signals) {
   constexpr double surely_turned = -0.7;
   if (!(correlation < surely_turned)) return std::nullopt;
   return refuse(ErrorCode::inconsistent, roles,
-                "displayed force and tip force go against one another (correlation " + format_number(correlation) +
+                "displayed force and tip force go against one another (correlation " + rounded_number(correlation) +
                     "): both are positive when they push back; turn one round with --displayed-force-sign -1 or "
                     "--tip-force-sign -1");
 }
@@ -378,7 +378,7 @@ Result<Signals> read_signals(const SignalRoles& roles) {
   if (signals.samples < fewest_samples || signals.duration_s() < shortest_recording_s) {
     return refuse(ErrorCode::inconsistent, roles,
                   "the recording has " + std::to_string(signals.samples) + " samples in " +
-                      format_number(signals.duration_s()) +
+                      rounded_number(signals.duration_s()) +
                       " s, too few to tell anything: record at least 200 samples and half a second, better 5 s");
   }
   const bool changes = std::any_of(all_roles.begin(), all_roles.end(), [&](Role role) {

@@ -25,7 +25,7 @@ inline Check check_range(double lower, double upper, const char* lower_name, con
   if (lower <= upper) return std::nullopt;
   return Error{.code = ErrorCode::inconsistent,
                .parameter = std::string("task.") + upper_name,
-               .message = format_number(upper) + " is less than " + lower_name + ", " + format_number(lower) +
+               .message = rounded_number(upper) + " is less than " + lower_name + ", " + rounded_number(lower) +
                           ": raise one or lower the other",
                .place = {}};
 }

@@ -11,8 +11,8 @@ Result<RemotePath> RemotePath::make(const Params& params, Seconds dt) {
   if (params.lowest_m > params.highest_m) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "lowest_m",
-                 .message = format_number(params.lowest_m) + " m is above highest_m, " +
-                            format_number(params.highest_m) + " m: raise one or lower the other",
+                 .message = rounded_number(params.lowest_m) + " m is above highest_m, " +
+                            rounded_number(params.highest_m) + " m: raise one or lower the other",
                  .place = {}};
   }
   return RemotePath(params, params.fastest_m_per_s * dt.value, std::llround(params.timeout_s / dt.value));

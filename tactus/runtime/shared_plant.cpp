@@ -118,7 +118,7 @@ bool SharedPlant::lost() const noexcept {
 
 Error SharedPlant::why_lost() const {
   const std::string plant = "the plant '" + segment_.name() + "' ";
-  const std::string bound = format_number(silence_.value) + " s";
+  const std::string bound = rounded_number(silence_.value) + " s";
   if (segment_.is_cut()) {
     return plant_error(ErrorCode::failed,
                        plant +

@@ -38,9 +38,9 @@ class DelayLine {
     if (!(ticks <= static_cast<double>(Capacity))) {
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = "delay_s",
-                   .message = format_number(params.delay_s) + " s is " + format_number(ticks) +
+                   .message = rounded_number(params.delay_s) + " s is " + rounded_number(ticks) +
                               " ticks, and this delay line holds at most " + std::to_string(Capacity) + " (" +
-                              format_number(static_cast<double>(Capacity) * dt.value) +
+                              rounded_number(static_cast<double>(Capacity) * dt.value) +
                               " s): shorten the delay or lengthen the tick",
                    .place = {}};
     }

@@ -13,8 +13,8 @@ Result<Clock> Clock::make(const ServoParams& servo, const PlantClockParams& plan
   if (late_substeps >= substeps) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "servo.computation_delay_s",
-                 .message = format_number(servo.computation_delay_s) + " s, rounded to plant steps of " +
-                            format_number(substep_s) + " s, must be less than a tick, " + format_number(tick_s) +
+                 .message = rounded_number(servo.computation_delay_s) + " s, rounded to plant steps of " +
+                            rounded_number(substep_s) + " s, must be less than a tick, " + rounded_number(tick_s) +
                             " s: shorten the delay or lower the rate",
                  .place = {}};
   }

@@ -72,7 +72,7 @@ Check TeleoperatorOf<Pair>::arm(double start_m, double blend_s) {
   }
   ticks_ = 0;
   if (to_follow == 0) return std::nullopt;
-  std::string why = "the sites do not follow " + format_number(arming_timeout_s) + " s after they were armed";
+  std::string why = "the sites do not follow " + rounded_number(arming_timeout_s) + " s after they were armed";
   if (const auto stop = stopped()) {
     why = "the sites cannot be armed: the " + std::string(name_of(stop->site)) + " stops for the cause \"" +
           std::string(name_of(stop->cause)) + "\"";

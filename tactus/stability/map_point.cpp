@@ -75,7 +75,7 @@ Result<LanePlan> make_plan(const MapParams& params) {
   if (longest_s > 60.0) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "task.speed_m_per_s",
-                 .message = "the reach would take " + format_number(longest_s) + " s, over a minute: go faster",
+                 .message = "the reach would take " + rounded_number(longest_s) + " s, over a minute: go faster",
                  .place = {}};
   }
   return LanePlan{

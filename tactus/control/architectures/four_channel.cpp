@@ -15,8 +15,8 @@ Check check_share(const char* parameter, double share, const char* loop_paramete
   if (std::fabs(share - transparent) <= round_off * std::max(1.0, transparent)) return {};
   return Error{.code = ErrorCode::inconsistent,
                .parameter = parameter,
-               .message = format_number(share) + " does not meet the condition of transparency: write " +
-                          format_number(transparent) + ", 1 + " + loop_parameter,
+               .message = rounded_number(share) + " does not meet the condition of transparency: write " +
+                          rounded_number(transparent) + ", 1 + " + loop_parameter,
                .place = {}};
 }
 

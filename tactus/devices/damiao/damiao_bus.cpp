@@ -100,8 +100,9 @@ MotorSheet DamiaoBus::sheet(std::size_t motor) const {
                    .problem = asked.questions.problem()};
   if (facts.software_version >= 0) {
     sheet.firmware = std::to_string(facts.software_version);
-    sheet.scales = format_number(facts.position_scale_rad) + " rad, " + format_number(facts.velocity_scale_rad_per_s) +
-                   " rad/s, " + format_number(facts.torque_scale_Nm) + " Nm";
+    sheet.scales = rounded_number(facts.position_scale_rad) + " rad, " +
+                   rounded_number(facts.velocity_scale_rad_per_s) + " rad/s, " + rounded_number(facts.torque_scale_Nm) +
+                   " Nm";
   }
   return sheet;
 }

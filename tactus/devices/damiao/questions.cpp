@@ -184,7 +184,7 @@ Check Questions::problem() const {
   const std::string motor = "motor " + std::to_string(stated_.id) + " (" + name_of(stated_.model) + ")";
   const std::string reg =
       std::string("register ") + std::to_string(static_cast<int>(which_)) + " (" + name_of_register(which_) + ")";
-  const std::string found = format_number(found_), expected = format_number(expected_) + unit_of(which_);
+  const std::string found = rounded_number(found_), expected = rounded_number(expected_) + unit_of(which_);
   std::string message;
   switch (wrong_) {
     case Wrong::nothing:

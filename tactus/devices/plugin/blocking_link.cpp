@@ -196,7 +196,7 @@ Check BlockingLink::wait_until_asked(Seconds longest) {
   }
   stop();
   if (Check problem = shared_->problem()) return problem;
-  return driver_failed("the driver did not complete a cycle within " + format_number(longest.value) +
+  return driver_failed("the driver did not complete a cycle within " + rounded_number(longest.value) +
                        " s: check that the device is on and reachable");
 }
 

@@ -174,7 +174,7 @@ std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const s
   const auto add = [&](const char* key, std::string message) {
     problems.push_back({ErrorCode::inconsistent, join(one.path, key), std::move(message), {}});
   };
-  const auto rounded = [](double value) { return format_number(std::round(value * 1e3) * 1e-3); };
+  const auto rounded = [](double value) { return rounded_number(std::round(value * 1e3) * 1e-3); };
   const double position_rad = joint.first_position_rad(found.reading.position_rad);
   if (!joint.contains(position_rad)) {
     MotorJoint turned = joint;
@@ -195,7 +195,7 @@ std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const s
   }
   const double most_Nm = found.sheet.torque_limit_Nm * joint.gear;
   if (joint.gives_force && joint.torque_limit_Nm > most_Nm * (1.0 + 1e-9)) {
-    add(words.force_limit, format_number(joint.torque_limit_Nm) + " " + words.force_unit +
+    add(words.force_limit, rounded_number(joint.torque_limit_Nm) + " " + words.force_unit +
                                " is more than its motor is set to give, " + rounded(most_Nm) + " " + words.force_unit +
                                ": lower it, or raise the limit in the motor with its maker's tool");
   }

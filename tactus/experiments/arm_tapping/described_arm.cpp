@@ -60,9 +60,9 @@ Check check_start(const DescribedArm& of, const std::string& key) {
     if (start_rad >= limits.lower_rad && start_rad <= limits.upper_rad) continue;
     return Error{.code = ErrorCode::out_of_bounds,
                  .parameter = key,
-                 .message = "joint '" + of.joints[i] + "' starts at " + format_number(start_rad) +
-                            ", outside its range from " + format_number(limits.lower_rad) + " to " +
-                            format_number(limits.upper_rad) + " in " + of.urdf + ": set start_rad of joint_" +
+                 .message = "joint '" + of.joints[i] + "' starts at " + rounded_number(start_rad) +
+                            ", outside its range from " + rounded_number(limits.lower_rad) + " to " +
+                            rounded_number(limits.upper_rad) + " in " + of.urdf + ": set start_rad of joint_" +
                             std::to_string(i + 1) + " within it",
                  .place = {}};
   }

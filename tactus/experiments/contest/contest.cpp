@@ -51,8 +51,8 @@ Check check(const GainSearch& search) {
   if (search.lowest_gain < search.highest_gain) return {};
   return Error{.code = ErrorCode::inconsistent,
                .parameter = "task.highest_gain",
-               .message = format_number(search.highest_gain) + " is not above lowest_gain, " +
-                          format_number(search.lowest_gain) + ": raise one or lower the other",
+               .message = rounded_number(search.highest_gain) + " is not above lowest_gain, " +
+                          rounded_number(search.lowest_gain) + ": raise one or lower the other",
                .place = {}};
 }
 
