@@ -51,7 +51,7 @@ Check check_model(const TappingParams& params, const Bench& bench) {
                  rounded_number(modelled) + " " + unit + " is not of this master, whose own is " +
                      rounded_number(real) + " " + unit + ", and task.model_error allows " + rounded_number(share) +
                      " of it: describe the device under [master], or name the model.toml of tactus identify with the "
-                     "results.json beside it",
+                     "results.json next to it",
                  {}};
   };
   if (bench.given.contains("master.mechanism.motor.mass_kg")) return {};

@@ -61,7 +61,7 @@ Result<ArmBench> make_arm_bench(configuration::Document document, const std::vec
   const bool hand_given = std::any_of(bench.given.begin(), bench.given.end(),
                                       [](const std::string& key) { return key.starts_with("operator"); });
   if (!hand_given && params->person.hand.stiffness_N_per_m > light_grip.stiffness_N_per_m) {
-    bench.hands.push_back({"a soft one", light_grip});
+    bench.hands.push_back({"a light grip", light_grip});
   }
   if (!bench.given.contains("task.direction")) {
     for (const TapDirection one : {TapDirection::down, TapDirection::along_x, TapDirection::along_y}) {

@@ -37,7 +37,7 @@ struct ArmDraws {
 };
 std::vector<Situation> situations(const ArmBench& bench, const ArmDraws& draws);
 
-/// `in a soft hand, along-y, pose 3`.
+/// `in a light grip, along-y, pose 3`.
 std::string words_of(const ArmBench& bench, const Situation& situation);
 
 /// What came of a gain.

@@ -215,7 +215,8 @@ Check Knowledge::fits(const control::MasterModel& model) const {
   if (model_mass_kg_ > 0.0 && off(model.motor.mass_kg, model_mass_kg_)) {
     return Error{ErrorCode::inconsistent,
                  "control.model.motor.mass_kg",
-                 rounded_number(model.motor.mass_kg) + " kg is not what the results.json beside the model says, " +
+                 rounded_number(model.motor.mass_kg) +
+                     " kg is not what the value in the results.json next to the model, " +
                      rounded_number(model_mass_kg_) + " kg: keep both files of one identification together",
                  {}};
   }
@@ -223,7 +224,7 @@ Check Knowledge::fits(const control::MasterModel& model) const {
     return Error{ErrorCode::inconsistent,
                  "control.model.linkage.stiffness_N_per_m",
                  rounded_number(model.linkage.stiffness_N_per_m) +
-                     " N/m is not what the results.json beside the model says, " +
+                     " N/m is not what the value in the results.json next to the model, " +
                      rounded_number(model_stiffness_N_per_m_) + " N/m: keep both files of one identification together",
                  {}};
   }

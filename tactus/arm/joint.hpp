@@ -170,7 +170,7 @@ struct JointParams {
   static constexpr auto fields() {
     using J = JointParams;
     return List{field("kind", &J::kind, "Whether it turns about its axis or slides along it."),
-                field("origin", &J::origin, "Where the joint stands on the link before."),
+                field("origin", &J::origin, "Place of the joint on the link before."),
                 field("axis", &J::axis, "Its direction in the frame of its link."),
                 field("body", &J::body, "The link that it moves, with all that is fixed to it."),
                 field("drive", &J::drive, "What turns with its motor."),

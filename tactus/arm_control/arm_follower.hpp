@@ -37,7 +37,7 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
         List{field("joints", &TorqueObserverParams::joints,
                    "What it takes the joints for: elastic ones filter in third order."),
              field("dead_band_share", &TorqueObserverParams::dead_band_share, tactus::units::none, between(0.0, 4.0),
-                   "Share of each joint's Coulomb friction that torque must exceed to be told.")});
+                   "Share of each joint's Coulomb friction that torque must exceed to be reported.")});
   }
 };
 
@@ -80,7 +80,7 @@ class ArmFollower {
                 "The most that the drives' damping may come to there; 0 is no limit."),
           field("feed_forward", &P::feed_forward, "What carries the follower and helps it against friction."),
           field("wanted_motion", &P::wanted_motion,
-                "What moves it as the leader wants, beside its drives, where it touches nothing."),
+                "What moves it as the leader wants in free motion, in addition to its drives."),
           field("torque", &P::torque, "Where the external torque that comes back is from."),
           field("observer", &P::observer, "The observer of external torque.")};
     }

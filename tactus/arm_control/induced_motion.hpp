@@ -49,9 +49,9 @@ class InducedMotion {
     InertiaModel inertia = InertiaModel::full;
     JointModel joints = JointModel::rigid;
     static constexpr auto fields() {
-      return List{field("hand", &Params::hand, "The hand that is believed to hold the tool."),
+      return List{field("hand", &Params::hand, "The assumed hand on the tool."),
                   field("washout_Hz", &Params::washout_Hz, tactus::units::hertz, between(0.0, 50.0),
-                        "Corner below which induced motion is left to the person; 0 takes out slow motion too."),
+                        "Corner below which induced motion is left to the operator; 0 takes out slow motion too."),
                   field("inertia", &Params::inertia, "The full mass matrix, or its diagonal alone."),
                   field("joints", &Params::joints, "What the joints are taken for.")};
     }

@@ -109,7 +109,7 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
   };
   // Half of the rows say something new at this rate, half are held out, and a number needs two.
   if (static_cast<double>(data.rows() * data.joints()) < 8.0 * (result.base_parameters + 3 * data.joints())) {
-    return in_file(inconsistent(short_text(result.duration_s) + " s are too short to tell " +
+    return in_file(inconsistent(short_text(result.duration_s) + " s are too short to determine " +
                                 std::to_string(result.base_parameters) +
                                 " parameters and friction, and to hold half of it out; record more motion"));
   }

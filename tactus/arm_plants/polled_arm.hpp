@@ -25,8 +25,8 @@ struct KnownReading {
 class PolledArm {
  public:
   struct Params {
-    /// Ticks from a command to the tick that works on its answer: 1 where the host waits for the answers, 2 where its
-    /// time for them ends before they come, more where an adapter holds them back. 1 to 1000.
+    /// Control cycles from a command to the cycle that uses its reply: 1 where the host waits for the answers, 2 where
+    /// its time for them ends before they come, more where an adapter holds them back. 1 to 1000.
     int answer_ticks = 1;
     /// Of each joint, the share of the ticks in which it is not heard, 0 to below 1; none for 0 everywhere.
     Joints<double> lost_share = {};

@@ -45,7 +45,7 @@ Result<stability::TipLoad> linear_wall(const experiments::ArmWallParams& wall, s
                .parameter = "wall.law",
                .message = "a surface of the law " + std::string(name_of(wall.law)) +
                           " is the stiffer the harder it is pressed, so its loop is linear about a contact force "
-                          "alone: judge it by tactus stability margins, where --preload says which, or write "
+                          "alone: judge it by tactus stability margins, where --preload gives the force, or write "
                           "kelvin-voigt",
                .place = {}};
 }

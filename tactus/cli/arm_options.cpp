@@ -82,7 +82,7 @@ Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std:
     if (log && !given->empty()) {
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = {},
-                   .message = "the log " + file + " tells by itself what is what: leave it out",
+                   .message = "the log " + file + " names its own columns: leave it out",
                    .place = name};
     }
   }

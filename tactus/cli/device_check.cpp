@@ -209,7 +209,7 @@ Result<bool> print(const std::vector<Checked>& all, const CheckOptions& options)
       for (const Checked& checked : all) slowest_Hz = std::min(slowest_Hz, checked.found.rate_Hz);
       std::cout << "Clean: each motor is what was stated; " << std::llround(slowest_Hz) << " cycles a second.\n";
       if (!options.rig.empty() && alike(all)) {
-        std::cout << "Motors of one model cannot tell whether two were swapped: move each joint by hand under "
+        std::cout << "Motors of one model cannot detect that two were swapped: move each joint by hand under "
                      "'tactus device watch "
                   << report::printable(options.rig) << "'.\n";
       }

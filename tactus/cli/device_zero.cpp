@@ -29,7 +29,7 @@ Error unheard(const RigSide& side, const BusFinding& found) {
     if (!motor.problems.empty()) return motor.problems.front();
   }
   if (!found.problems.empty()) return found.problems.front();
-  return {.code = ErrorCode::failed, .parameter = side.path, .message = "its motors were not heard", .place = {}};
+  return {.code = ErrorCode::failed, .parameter = side.path, .message = "its motors did not respond", .place = {}};
 }
 
 struct ZeroOptions {

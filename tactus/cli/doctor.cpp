@@ -39,8 +39,8 @@ report::Table table_of(const std::vector<Finding>& findings) {
 
 std::string answer(const std::vector<Finding>& findings) {
   return runtime::can_keep_time(findings)
-             ? "Yes: a loop can be run here, as well as the verdicts say."
-             : "No: mend what is bad. A loop runs here all the same, and counts its late ticks.";
+             ? "Yes: a loop can be run here, as well as the verdicts state."
+             : "No: fix what is bad. A loop runs here all the same, and counts its late control cycles.";
 }
 
 std::string text_of(const std::vector<Finding>& findings) {

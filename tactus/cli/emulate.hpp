@@ -44,7 +44,7 @@ std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_option
 inline const std::string& of_motor(const std::vector<std::string>& models, std::int64_t id) {
   return models[std::min(static_cast<std::size_t>(id), models.size()) - 1];
 }
-inline constexpr const char* models_help = "Model of each, with commas between; the last one goes on";
+inline constexpr const char* models_help = "Model of each, separated by commas; the last one applies to the rest";
 
 /// The words of an enum, for an option that takes one.
 template <NamedEnum E>

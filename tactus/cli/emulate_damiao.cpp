@@ -126,11 +126,12 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
                                      "An arm with its weight, which the first motors move together; the others each "
                                      "turn a joint of their own. It hangs, and without power it falls")
                          ->type_name("URDF");
-  verb.add_option("--tip", options->tip, "Link at which that arm ends, where the URDF goes on or branches")
+  verb.add_option("--tip", options->tip, "Link at which that arm ends, if the URDF continues or branches")
       ->type_name("LINK")
       ->needs(arm);
-  verb.add_option("--armature", options->armature_kg_m2,
-                  "Inertia of each motor's rotor at its joint, in kg m², with commas between; the last one goes on")
+  verb.add_option(
+          "--armature", options->armature_kg_m2,
+          "Inertia of each motor's rotor at its joint, in kg m², separated by commas; the last one applies to the rest")
       ->delimiter(',')
       ->check(real_between(1e-6, 10.0))
       ->needs(arm);
@@ -142,8 +143,8 @@ std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
       ->check(real_between(-12.0, 12.0))
       ->needs(arm);
   verb.add_option("--led", options->led,
-                  "Then a hand leads each joint by so much, in rad, back and forth about there, from so many seconds "
-                  "after it was let go")
+                  "Afterwards a hand moves each joint back and forth by this reach in rad, from this time in s "
+                  "after the release")
       ->type_name("REACH,SECONDS")
       ->delimiter(',')
       ->expected(2)

@@ -97,7 +97,7 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = {},
                  .message = "the follower followed in " + std::to_string(recordings->size()) +
-                            " stretches, and one is taken: arm once, and record it anew",
+                            " stretches, but only one is used: arm once, and record it again",
                  .place = options.file};
   }
   const arm_identification::ArmRecording* const recording = &recordings->front();

@@ -85,7 +85,7 @@ report::Table parameters_table(const ArmIdentification& found) {
                        {.title = "95 % from"},
                        {.title = "to"},
                        {.title = "Unit", .align = report::Column::Align::left},
-                       {.title = "Told by", .align = report::Column::Align::left}});
+                       {.title = "Determined by", .align = report::Column::Align::left}});
   for (const ArmJointFit& joint : found.joints) {
     for (const ArmParameter& p : joint.parameters) {
       table.add_row({joint.name, p.name, report::number(p.value, 4), report::number(p.lower, 4),
@@ -98,7 +98,7 @@ report::Table parameters_table(const ArmIdentification& found) {
 /// What the recordings do not tell of each joint.
 report::Table untold_table(const ArmIdentification& found) {
   report::Table table({{.title = "Joint", .align = report::Column::Align::left},
-                       {.title = "Not told, so as the URDF has it", .align = report::Column::Align::left}});
+                       {.title = "Not determined, so as in the URDF", .align = report::Column::Align::left}});
   for (const ArmJointFit& joint : found.joints) {
     std::string names;
     for (const ArmParameter& p : joint.parameters) {
@@ -122,11 +122,11 @@ std::string words_of(const ArmIdentification& found) {
                      report::number(found.cutoff_Hz, 3) + " Hz. Torques depend on " +
                      std::to_string(found.base_parameters) +
                      " combinations of bodies and armatures; with friction the "
-                     "recordings tell " +
+                     "recordings determine " +
                      std::to_string(found.determined_combinations) + " combinations better than the URDF, and " +
                      std::to_string(told) + " of " + std::to_string(all) +
                      " single parameters. The others stay near the URDF: other values would give the same torques. "
-                     "`identify excitation` designs a motion that tells more.";
+                     "`identify excitation` designs a motion that determines more.";
   if (found.scaled_efforts) {
     std::string scaled;
     for (const ArmJointFit& joint : found.joints) {
@@ -142,7 +142,8 @@ std::string words_of(const ArmIdentification& found) {
 /// What a URDF has no place for, as `run --with` takes it.
 std::string armatures_of(const arm_identification::ArmModel& model, const std::string& command) {
   std::string text =
-      "# " + command + "\n# For `tactus run --with`: what turns with each motor, beside arm.urdf.\n\n[arm.joints]\n";
+      "# " + command +
+      "\n# For `tactus run --with`: the inertia of each motor, in addition to arm.urdf.\n\n[arm.joints]\n";
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     text += "joint_" + std::to_string(j + 1) +
             " = { armature_kg_m2 = " + format_number(model.joints[j].arm.drive.armature_kg_m2) + " }\n";
@@ -168,7 +169,7 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
   const auto described = urdf::with_dynamics(options.urdf.file, identified,
                                              "Bodies, damping and friction as tactus identified them; bodies include "
                                              "all that is fixed to a link. Armatures, offsets and other parts of "
-                                             "friction stand in model.toml.");
+                                             "friction are in model.toml.");
   if (!described) return described.error();
 
   const report::Table joints = joints_table(*found, recordings.front().effort_unit);

@@ -55,7 +55,7 @@ constexpr Recipe in_the_hand{
     "quick", "Identify a leader in the operator's hand within a minute, without taking it apart",
     "Quick identification",
     "Found from sweeps and bursts on the held master, the whole chain at once, each value drawn to its data sheet as "
-    "much as that is trusted. What the data cannot tell stands where the data sheet left it.",
+    "much as that is trusted. What the data do not determine keeps the value of the data sheet.",
     [](identification::Rig& rig, const identification::IsolationProgress& progress) {
       return identification::identify_quickly(rig, {}, progress);
     }};
@@ -141,7 +141,7 @@ report::Table table_of(const Isolation& isolation, const SimulatedRig& rig) {
     const auto truth = rig.truth(parameter.name);
     table.add_row({parameter.name, report::number(parameter.value, 4), report::number(parameter.interval_95[0], 4),
                    report::number(parameter.interval_95[1], 4), parameter.unit,
-                   parameter.determined ? "" : "the data cannot tell", truth ? report::number(*truth, 4) : "–"});
+                   parameter.determined ? "" : "not determined by the data", truth ? report::number(*truth, 4) : "–"});
   }
   return table;
 }

@@ -140,7 +140,7 @@ report::Table promises_table(const ArmExcitation& found) {
                        {.title = "95 % from"},
                        {.title = "to"},
                        {.title = "Unit", .align = report::Column::Align::left},
-                       {.title = "Will be told", .align = report::Column::Align::left}});
+                       {.title = "Will be determined", .align = report::Column::Align::left}});
   for (const ExcitedJoint& joint : found.joints) {
     for (const ArmParameter& p : joint.parameters) {
       table.add_row({joint.name, p.name, report::number(p.value, 4), report::number(p.lower, 4),
@@ -155,7 +155,7 @@ std::string words_of(const ExcitationOptions& options, const ArmExcitation& foun
   std::string text =
       report::number(options.request.duration_s, 3) + " s from rest to rest, below " +
       report::number(options.request.highest_Hz, 3) + " Hz, within " +
-      report::number(100.0 * options.request.share, 3) + " % of every limit. With this noise it will tell " +
+      report::number(100.0 * options.request.share, 3) + " % of every limit. With this noise it will determine " +
       std::to_string(found.worth.determined_combinations) + " of " + std::to_string(all) +
       " combinations of bodies, armatures and friction better than the URDF does; a random motion "
       "within the same limits " +
@@ -221,7 +221,7 @@ Check identify_excitation(ExcitationOptions options, const std::string& name, co
   }
   const std::string words = words_of(options, *found);
   const report::Table use = use_table(*found);
-  report::Page page("Motion that tells most of " + (urdf->name.empty() ? options.urdf.file : urdf->name));
+  report::Page page("Motion that determines most of " + (urdf->name.empty() ? options.urdf.file : urdf->name));
   page.paragraph(words);
   page.table(use);
   page.table(promises_table(*found));

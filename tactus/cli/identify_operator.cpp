@@ -67,7 +67,7 @@ const char* word_of(ImpedanceVerdict verdict) {
 const char* reason_of(ImpedanceVerdict verdict) {
   switch (verdict) {
     case ImpedanceVerdict::determined:
-      return "the data tell";
+      return "determined";
     case ImpedanceVerdict::still:
       return "too little motion";
     case ImpedanceVerdict::hand_drives:
@@ -152,9 +152,10 @@ std::string summary_of(const OperatorImpedances& found, const AxisRecording& axi
     told += (told.empty() ? "" : ", ") + std::string(quantity.name) + " in " + std::to_string(count);
   }
   return "Judged from " + report::number(found.lower_Hz, 2) + " to " + report::number(found.upper_Hz, 2) +
-         " Hz: below, what the person intends cannot be told from stiffness and damping. Of " +
-         std::to_string(found.windows.size()) + " windows the data tell " + told +
-         "; in brackets what they do not tell. The last row is the whole recording. ± is the 95 % interval. Position " +
+         " Hz: below, intended motion cannot be distinguished from stiffness and damping. Of " +
+         std::to_string(found.windows.size()) + " windows the data determine " + told +
+         "; in brackets what they do not determine. The last row is the whole recording. ± is the 95 % interval. "
+         "Position " +
          axis.position.name + ", force " + axis.force.name + ".";
 }
 
@@ -187,9 +188,10 @@ report::Page page_of(const OperatorImpedances& found, const AxisRecording& axis,
                      const std::string& summary, const std::string& command) {
   report::Page page("Impedance of the hand on " + axis.position.name);
   page.paragraph(summary);
-  report::Figure figure{.title = "Impedance over time",
-                        .caption = "Each value is of a window around its time; a gap where the data do not tell.",
-                        .panels = {}};
+  report::Figure figure{
+      .title = "Impedance over time",
+      .caption = "Each value is of a window around its time; a gap where the data do not determine it.",
+      .panels = {}};
   for (const Quantity& quantity : quantities) figure.panels.push_back(panel_of(found, quantity, axis.rotary));
   page.figure(figure);
   page.table(table);

@@ -53,7 +53,7 @@ Result<Motion> recorded(const PredictionOptions& options) {
   if (!command->sample_time_s) {
     return Error{.code = ErrorCode::missing,
                  .parameter = {},
-                 .message = "the recording does not say its sample time: add a column of times",
+                 .message = "the recording does not state its sample time: add a column of times",
                  .place = options.recording};
   }
   // From where the slave is at the start, so that the filters start at rest.

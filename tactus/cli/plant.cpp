@@ -40,15 +40,15 @@ std::string line_of(const PlantStatus& now, const PlantStatus& before, std::int6
   return std::to_string(second) + " s: " + std::to_string(now.readings - before.readings) + " readings, " +
          std::to_string(now.commands - before.commands) + " commands, " +
          (now.controller ? "driven by process " + std::to_string(*now.controller) : "nobody drives") + ", " +
-         std::to_string(now.missed - before.missed) + " ticks missed" +
+         std::to_string(now.missed - before.missed) + " control cycles missed" +
          (now.held_back > before.held_back
               ? ", " + std::to_string(now.held_back - before.held_back) + " commands held back to the limits"
               : "") +
-         (now.released > before.released ? std::string(", let go: ") + station::in_words(now.cause) : "") + "\n";
+         (now.released > before.released ? std::string(", released: ") + station::in_words(now.cause) : "") + "\n";
 }
 
 std::string text_of(const std::string& name, const PlantStatus& status, const runtime::ServoReport& servo) {
-  report::Table table({{"readings"}, {"commands"}, {"taps"}, {"held back"}, {"let go"}, {"ticks missed"}},
+  report::Table table({{"readings"}, {"commands"}, {"taps"}, {"held back"}, {"released"}, {"control cycles missed"}},
                       "Plant '" + name + "'");
   table.add_row({std::to_string(status.readings), std::to_string(status.commands), std::to_string(status.taps),
                  std::to_string(status.held_back), std::to_string(status.released), std::to_string(status.missed)});
@@ -136,12 +136,14 @@ Check own_plant(const PlantOptions& options) {
                                                                          configuration::to_toml(*params))
                                                  : "\n" + text_of(options.name, server.status(), report));
   if (told || !server.status().cut) return told;
-  return Error{.code = ErrorCode::failed,
-               .parameter = {},
-               .message = "plant '" + options.name +
-                          "': another process has shortened its shared memory; the plant let go: start it again, and "
-                          "find out what writes to /dev/shm",
-               .place = "--name"};
+  return Error{
+      .code = ErrorCode::failed,
+      .parameter = {},
+      .message =
+          "plant '" + options.name +
+          "': another process has shortened its shared memory; the plant released its force: start it again, and "
+          "find out what writes to /dev/shm",
+      .place = "--name"};
 }
 
 }  // namespace

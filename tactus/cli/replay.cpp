@@ -33,12 +33,12 @@ std::string exact(double value) {
 }
 
 std::string text_of(const runtime::Replay& replay) {
-  std::string text = "Replayed " + std::to_string(replay.ticks) + " ticks of " + replay.of + ": ";
+  std::string text = "Replayed " + std::to_string(replay.ticks) + " control cycles of " + replay.of + ": ";
   if (const auto& found = replay.difference) {
     const std::string tap = replay.taps > 0 ? " of tap " + std::to_string(found->tap) : "";
-    text += "the first difference is at tick " + std::to_string(found->tick) + tap + ", topic " + found->topic +
-            (found->joint.empty() ? "" : " (" + report::printable(found->joint) + ")") + ", signal " + found->signal +
-            ": recorded " + exact(found->recorded) + ", replayed " + exact(found->replayed) + ".\n";
+    text += "the first difference is in control cycle " + std::to_string(found->tick) + tap + ", topic " +
+            found->topic + (found->joint.empty() ? "" : " (" + report::printable(found->joint) + ")") + ", signal " +
+            found->signal + ": recorded " + exact(found->recorded) + ", replayed " + exact(found->replayed) + ".\n";
     if (replay.version != version()) {
       text += "The log was written by version " + replay.version + ", this is " + std::string(version()) + ".\n";
     }

@@ -108,7 +108,7 @@ Check refuse_unclean(const Rig& rig, const std::vector<const RigSide*>& sides, L
   if (clean) return std::nullopt;
   return Error{.code = ErrorCode::failed,
                .parameter = {},
-               .message = "it is not clean, so nothing was driven: mend what 'tactus device check' tells",
+               .message = "it is not clean, so nothing was driven: fix what 'tactus device check' reports",
                .place = rig.name()};
 }
 

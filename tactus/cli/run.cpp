@@ -164,7 +164,7 @@ Check refuse_what_makes_no_sense(const CLI::App& verb, const RunOptions& options
            "a device runs at the real clock: add --realtime for both sites in this program, or --site for one of two"},
       Rule{options.supervised.wanted() && !options.vary.empty(),
            {"--vary"},
-           "sites that a person arms run one combination: write --set in place of --vary"},
+           "sites that an operator arms run one combination: write --set in place of --vary"},
       Rule{!options.supervised.wanted(),
            {"--arm", "--duration-s"},
            "the taps of an experiment are armed by nobody and end by themselves: add --realtime --device or --site"},

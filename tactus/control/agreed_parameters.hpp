@@ -37,7 +37,7 @@ struct AgreedParams {
     using P = AgreedParams;
     return List{
         field("control.architecture", &P::architecture, "Each site takes the other to be its half."),
-        field("servo.rate_Hz", &P::rate_Hz, units::hertz, positive, "Ticks count at both sites."),
+        field("servo.rate_Hz", &P::rate_Hz, units::hertz, positive, "Control cycles per second, equal at both sites."),
         field("control.position_scale", &P::position_scale, units::none, positive, "The master commands by it."),
         field("control.force_gain", &P::force_gain, units::none, non_negative, "The master displays by it."),
         field("control.force_limit_N", &P::force_limit_N, units::newton, positive, "What the hand gets at most."),
@@ -46,7 +46,7 @@ struct AgreedParams {
         field("control.handle_gate", &P::handle_gate, "What the actuator on the handle does at most."),
         field("control.slave_gate", &P::slave_gate, "What the slave's motor does at most."),
         field("control", &P::groups, "All that architectures have of their own."),
-        field("control.supervision.packets", &P::packets, "What a site believes of the other."),
+        field("control.supervision.packets", &P::packets, "What a site accepts of the other."),
         field("control.supervision.silence", &P::silence, "What a site does in silence."),
         field("control.supervision.watchdog", &P::watchdog, "When it holds."),
         field("control.supervision.answer_within_s", &P::answer_within_s, units::second, positive,

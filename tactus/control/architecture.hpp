@@ -30,7 +30,7 @@ struct ControlParams : PositionForceMaster::Params {
   static constexpr auto fields() {
     return joined(
         List{field("architecture", &ControlParams::architecture,
-                   "How the sites work together; the architecture's page tells which of the keys below it uses.")},
+                   "How the sites work together; the architecture's page lists which of the keys below it uses.")},
         PositionForceMaster::Params::fields(),
         List{field("slave", &ControlParams::slave, "The slave's position controller."),
              field("slave_force", &ControlParams::slave_force, "Where the slave's tip force comes from."),
@@ -40,7 +40,7 @@ struct ControlParams : PositionForceMaster::Params {
              field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
              field("", &ControlParams::groups, "The groups of the architectures."),
              field("supervision", &ControlParams::supervision,
-                   "States, watchdogs and what a site believes of the other; used where sites are supervised: by "
+                   "States, watchdogs and what a site accepts of the other; used by supervised sites: by "
                    "`tactus faults` and `tactus run --site`.")});
   }
 

@@ -24,7 +24,7 @@ class OverloadCheck {
     double window_s = 0.5;
     static constexpr auto fields() {
       return List{field("missed_share", &Params::missed_share, units::none, positive_up_to(0.9),
-                        "Share of missed ticks from which on the site holds."),
+                        "Share of missed control cycles above which the site holds."),
                   field("window_s", &Params::window_s, units::second, positive_up_to(10.0),
                         "Time constant with which the share forgets.")};
     }

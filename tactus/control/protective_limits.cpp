@@ -51,7 +51,7 @@ Check refuse(std::vector<Unchosen> found) {
   for (std::size_t i = 1; i < found.size(); ++i) {
     message += (i == 1 ? "" : i + 1 < found.size() ? ", " : " and ") + found[i].key + " = " + found[i].value;
   }
-  message += ": set each to what the device, and whoever touches it, can stand";
+  message += ": set each to what the device, and whoever touches it, can bear";
   return Error{.code = ErrorCode::inconsistent, .parameter = found.front().key, .message = message, .place = {}};
 }
 

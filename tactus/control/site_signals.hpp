@@ -59,7 +59,7 @@ struct HandEstimate {
   static constexpr auto signals() {
     using R = HandEstimate;
     return List{observed("estimated_grip", &R::estimated_grip, units::none, "master", "hand", "",
-                         "How firmly the person holds, over identified."),
+                         "How firmly the operator holds, over identified."),
                 observed("estimated_grip_deviation", &R::estimated_grip_deviation, units::none, "master", "hand", "",
                          "Standard deviation of that; 0 where nothing is estimated."),
                 observed("linkage_excess", &R::linkage_excess, units::none, "master", "hand", "",

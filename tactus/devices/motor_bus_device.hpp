@@ -24,7 +24,7 @@ enum class Trouble : std::int64_t {
   motor_fault,     ///< its motor says that something is wrong
   no_power,        ///< its motor was asked to have power and has none
   guard_gone,      ///< the guard process of its motors is gone, see `GuardState`
-  guard_acted      ///< this program stood still, and the guard process has switched its motors off
+  guard_acted      ///< this program was stopped, and the guard process has switched its motors off
 };
 constexpr auto enumerators(Trouble) {
   return std::array{Enumerator{Trouble::none, "none"},

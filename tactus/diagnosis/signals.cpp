@@ -379,7 +379,7 @@ Result<Signals> read_signals(const SignalRoles& roles) {
     return refuse(ErrorCode::inconsistent, roles,
                   "the recording has " + std::to_string(signals.samples) + " samples in " +
                       rounded_number(signals.duration_s()) +
-                      " s, too few to tell anything: record at least 200 samples and half a second, better 5 s");
+                      " s, too few to judge: record at least 200 samples and half a second, better 5 s");
   }
   const bool changes = std::any_of(all_roles.begin(), all_roles.end(), [&](Role role) {
     return is_position(role) && signals.find(role) != nullptr && !signals.find(role)->constant();

@@ -74,7 +74,7 @@ class BoucWenSpring {
                 "Average stiffness: tip-to-tip slope of a closed loop of the reference deflection (the master's "
                 "linkage: 3950, paper A, Table I)."),
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
-                "Viscous damping beside the spring (the master's linkage: 0.02)."),
+                "Viscous damping in parallel with the spring (the master's linkage: 0.02)."),
           field("hysteretic_fraction", &Params::hysteretic_fraction, units::none, between(0.0, 0.99),
                 "Share of the small-deflection stiffness that is lost at large deflection; 0 is a linear spring."),
           field("slip_deflection_m", &Params::slip_deflection_m, units::metre, positive,

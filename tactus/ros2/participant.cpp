@@ -39,7 +39,7 @@ void on_log(void*, const dds_log_data_t* line) {
     collected->append(line->message, line->size);
   } else if (const int before = lines.fetch_add(1); before < most_lines) {
     std::cerr << "DDS: " << std::string_view(line->message, line->size) << "\n"
-              << (before == most_lines - 1 ? "DDS: what else it has to say is not shown\n" : "");
+              << (before == most_lines - 1 ? "DDS: further messages are not shown\n" : "");
   }
 }
 

@@ -29,7 +29,7 @@ class RemotePath {
           field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(2.0),
                 "Fastest that the hand follows."),
           field("timeout_s", &Params::timeout_s, units::second, between(0.001, 10.0),
-                "Without a wish for this long the hand stays where it is.")};
+                "Without a request for this time the hand stays at its position.")};
     }
   };
   struct Input {

@@ -67,7 +67,7 @@ Result<bool> replay_arms(const LogContent& content, const experiments::ArmTappin
   if (words == content.summary.metadata.end()) {
     return refuse_replay(ErrorCode::missing,
                          "the log does not have the URDF of its arms (urdf): it is of an earlier version, which did "
-                         "not leave it, so it is not replayed; record it anew");
+                         "not leave it, so it is not replayed; record it again");
   }
   const experiments::Urdfs urdfs = urdfs_in(words->second);
   Check failed;

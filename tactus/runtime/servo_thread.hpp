@@ -25,15 +25,16 @@ struct ServoThreadParams {
   std::int64_t core = -1;
   double spin_s = 0.0;
   static constexpr auto fields() {
-    return List{
-        field("rate_Hz", &ServoThreadParams::rate_Hz, units::hertz, between(1.0, 20000.0), "Ticks per second."),
-        field("priority", &ServoThreadParams::priority, between(1, 99),
-              "Priority of the thread under SCHED_FIFO; threads of the kernel that serve interrupts stand at 50."),
-        field("core", &ServoThreadParams::core, between(-1, 1023),
-              "The one core to run on; -1 leaves the choice open."),
-        field("spin_s", &ServoThreadParams::spin_s, units::second, between(0.0, 0.0005),
-              "The last part of each wait, spent asking the clock instead of asleep; at most half a tick, so that the "
-              "core is never held for whole ticks.")};
+    return List{field("rate_Hz", &ServoThreadParams::rate_Hz, units::hertz, between(1.0, 20000.0),
+                      "Control cycles per second."),
+                field("priority", &ServoThreadParams::priority, between(1, 99),
+                      "Priority of the thread under SCHED_FIFO; threads of the kernel that serve interrupts have 50."),
+                field("core", &ServoThreadParams::core, between(-1, 1023),
+                      "The one core to run on; -1 leaves the choice open."),
+                field("spin_s", &ServoThreadParams::spin_s, units::second, between(0.0, 0.0005),
+                      "The last part of each wait, spent polling the clock instead of sleeping; at most half a control "
+                      "cycle, so that the "
+                      "core is never held for whole cycles.")};
   }
 };
 

@@ -122,7 +122,7 @@ Result<Joints<DeviceLimits>> limits_in(const Words& words, std::size_t joints) {
     for (const auto& [name, member] : limit_names) {
       const std::string key = joint_key(joint, name);
       if (take_number(words, key, limits[joint].*member)) continue;
-      return Error{.code = ErrorCode::missing, .parameter = key, .message = "is no number there", .place = {}};
+      return Error{.code = ErrorCode::missing, .parameter = key, .message = "is not a number there", .place = {}};
     }
   }
   return limits;

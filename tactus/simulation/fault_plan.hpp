@@ -191,10 +191,10 @@ struct FaultPlan {
         field("length_s", &FaultPlan::length_s, units::second, non_negative, "How long it lasts."),
         field("size", &FaultPlan::size, units::none, any_finite,
               "How far an encoder spikes or wraps in m, how much a force sensor is off in N; of another fault what its "
-              "row says."),
+              "row states."),
         field("choice", &FaultPlan::choice, non_negative,
               "The plan's number: which input, value and state a bad number takes."),
-        field("seed", &FaultPlan::seed, non_negative, "Of the packets' fates and the person's path."),
+        field("seed", &FaultPlan::seed, non_negative, "Of the packets' fates and the operator's path."),
         field("impairment", &FaultPlan::impairment, "How the network treats packets while the fault lasts.")};
   }
 };

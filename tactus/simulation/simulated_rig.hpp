@@ -37,7 +37,7 @@ struct BenchedMaster {
   Operator person;
   static constexpr auto fields() {
     return List{field("master", &BenchedMaster::master, "The master device."),
-                field("operator", &BenchedMaster::person, "The person at the master.")};
+                field("operator", &BenchedMaster::person, "The operator at the master.")};
   }
 };
 

@@ -26,8 +26,8 @@ struct TeleoperatorParams {
   static constexpr auto fields() {
     return List{field("master", &TeleoperatorParams::master, "The master device."),
                 field("slave", &TeleoperatorParams::slave, "The slave device."),
-                field("environment", &TeleoperatorParams::environment, "The wall before the slave."),
-                field("operator", &TeleoperatorParams::person, "The person at the master."),
+                field("environment", &TeleoperatorParams::environment, "The wall in front of the slave."),
+                field("operator", &TeleoperatorParams::person, "The operator at the master."),
                 field("channel", &TeleoperatorParams::channel, "The link between the sites."),
                 field("servo", &TeleoperatorParams::servo, "The servo clock."),
                 field("plant", &TeleoperatorParams::plant, "The clock of the simulated plants."),
@@ -58,7 +58,8 @@ struct TeleoperatorRecord {
     constexpr const char* onward = "toward the environment";
     constexpr const char* back = "pushes the hand back";
     return List{
-        observed("time_s", &TeleoperatorRecord::time_s, units::second, "", "", "", "Virtual time of the tick."),
+        observed("time_s", &TeleoperatorRecord::time_s, units::second, "", "", "",
+                 "Virtual time of the control cycle."),
         observed("master_position_m", &TeleoperatorRecord::master_position_m, units::metre, "master", "hand", onward,
                  "Measured, at the motor."),
         observed("induced_position_m", &TeleoperatorRecord::induced_position_m, units::metre, "master", "hand", onward,
@@ -78,15 +79,15 @@ struct TeleoperatorRecord {
         observed("sent_force_N", &TeleoperatorRecord::sent_force_N, units::newton, "slave", "slave",
                  "the slave is pushed back", "Tip force that the slave sent to the master, measured or estimated."),
         observed("contact_force_N", &TeleoperatorRecord::contact_force_N, units::newton, "environment", "slave",
-                 "the wall is pressed", "True, mean until the next tick."),
+                 "the wall is pressed", "True, mean until the next control cycle."),
         observed("peak_contact_force_N", &TeleoperatorRecord::peak_contact_force_N, units::newton, "environment",
-                 "slave", "the wall is pressed", "True, largest substep until the next tick."),
+                 "slave", "the wall is pressed", "True, largest substep until the next control cycle."),
         observed("touched", &TeleoperatorRecord::touched, units::none, "environment", "", "",
-                 "The tip met the wall before the next tick."),
+                 "The tip met the wall before the next control cycle."),
         observed("touched_at_s", &TeleoperatorRecord::touched_at_s, units::second, "environment", "", "",
                  "When the tip met the wall, where it did; else 0."),
         observed("estimated_grip", &TeleoperatorRecord::estimated_grip, units::none, "master", "hand", "",
-                 "How firmly the person holds, over identified, as the master's controller believes."),
+                 "How firmly the operator holds, over identified, as the master's controller assumes."),
         observed("estimated_grip_deviation", &TeleoperatorRecord::estimated_grip_deviation, units::none, "master",
                  "hand", "", "Standard deviation of that; 0 where nothing is estimated.")};
   }

@@ -18,7 +18,7 @@ struct ChannelParams {
   std::int64_t seed = 1;
   static constexpr auto fields() {
     return List{field("delay_s", &ChannelParams::delay_s, units::second, between(0.0, 1.0),
-                      "Shortest delay, rounded to whole ticks."),
+                      "Shortest delay, rounded to whole control cycles."),
                 field("jitter_s", &ChannelParams::jitter_s, units::second, between(0.0, 1.0),
                       "Longest delay on top of it, drawn evenly for every message."),
                 field("loss_fraction", &ChannelParams::loss_fraction, units::none, between(0.0, 1.0),
@@ -32,9 +32,9 @@ struct LinkParams {
   ChannelParams to_slave{.seed = 1};
   ChannelParams to_master{.seed = 2};
   static constexpr auto fields() {
-    return List{field("to_slave", &LinkParams::to_slave, "The way from master to slave."),
+    return List{field("to_slave", &LinkParams::to_slave, "The link from master to slave."),
                 field("to_master", &LinkParams::to_master,
-                      "The way from slave to master; a message arrives at the next tick at the earliest.")};
+                      "The link from slave to master; a message arrives in the next control cycle at the earliest.")};
   }
 };
 

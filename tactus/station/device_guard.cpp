@@ -29,7 +29,7 @@ const char* in_words(ReleaseCause cause) {
     case ReleaseCause::timed_out:
       return "commands stopped coming";
     case ReleaseCause::not_finite:
-      return "a command or a reading was no number";
+      return "a command or a reading was not a number";
     case ReleaseCause::force:
       return "commands insisted on more force than the device may give";
     case ReleaseCause::rate:
@@ -160,7 +160,7 @@ Check check_limits(const DeviceLimits& limits, bool simulated) {
                    .parameter = name,
                    .message =
                        "a device that is not simulated must state this limit of its own: without it nothing "
-                       "stands between a wrong controller and the motor",
+                       "is between a wrong controller and the motor",
                    .place = {}};
     }
   }

@@ -11,7 +11,7 @@ Check refuse_unsupervised(bool supervised, bool master_is_real, bool slave_is_re
   return Error{.code = ErrorCode::inconsistent,
                .parameter = master_is_real ? "master" : "slave",
                .message =
-                   "a device that is not simulated needs supervised sites, which a person arms and can stop: "
+                   "a device that is not simulated needs supervised sites, which an operator arms and can stop: "
                    "drive it by a LocalTeleoperator",
                .place = {}};
 }

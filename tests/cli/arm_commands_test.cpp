@@ -89,11 +89,11 @@ TEST_F(ArmCommands, what_a_recording_does_not_tell_is_named) {
   write("short.csv", text.substr(0, text.find("\n2.50,") + 1));
   const Outcome poor = identify({"short.csv"}, numbers);
   ASSERT_EQ(poor.status, 0) << poor.err;
-  const std::size_t at = poor.out.find("Not told, so as the URDF has it");
+  const std::size_t at = poor.out.find("Not determined, so as in the URDF");
   ASSERT_NE(at, std::string::npos) << poor.out;
   const std::string line = poor.out.substr(poor.out.find("shoulder_1", at), 60);
   EXPECT_TRUE(line.starts_with("shoulder_1  mass, ")) << line;
-  EXPECT_NE(poor.out.find("`identify excitation` designs a motion that tells more"), std::string::npos);
+  EXPECT_NE(poor.out.find("`identify excitation` designs a motion that determines more"), std::string::npos);
 }
 
 TEST_F(ArmCommands, a_motion_that_tells_most_is_left_as_a_table_within_the_limits) {
@@ -141,8 +141,7 @@ TEST_F(ArmCommands, a_table_wants_its_columns_named_and_a_log_does_not) {
   make_folder("log");
   const Outcome named = identify({"log"}, {"--time", "1"});
   EXPECT_EQ(named.status, 2);
-  EXPECT_NE(named.err.find("--time: the log log tells by itself what is what: leave it out"), std::string::npos)
-      << named.err;
+  EXPECT_NE(named.err.find("--time: the log log names its own columns: leave it out"), std::string::npos) << named.err;
 }
 
 TEST_F(ArmCommands, a_file_without_a_header_and_several_files_are_read_as_one_with_it) {

@@ -63,7 +63,7 @@ TEST_F(DeviceRig, APairThatIsWhatItsFileSaysIsClean) {
   EXPECT_EQ(clean.status, 0) << clean.out << clean.err;
   EXPECT_EQ(clean.out.find("Clean: each motor is what was stated; "), 0U) << clean.out;
   EXPECT_TRUE(says(clean,
-                   "Motors of one model cannot tell whether two were swapped: move each joint by hand under "
+                   "Motors of one model cannot detect that two were swapped: move each joint by hand under "
                    "'tactus device watch rig.toml'.\n"));
   const Outcome json = device(motors, servos + follower, "check rig.toml arm.follower.elbow --json");
   expect_of_schema(json);
@@ -102,7 +102,7 @@ TEST_F(DeviceRig, MotorsThatAreNotTheStatedOnesAreToldWithTheirLine) {
   EXPECT_EQ(twins.status, 1);
   EXPECT_TRUE(says(twins, "rig.toml:16:9: arm.follower.elbow.motor: motor 2 (DM4310) answers twice")) << twins.out;
   const Outcome other = device({"dynamixel --fault wrong-model:1"}, servos, "check rig.toml");
-  EXPECT_TRUE(says(other, "rig.toml:7:9: arm.leader.shoulder.model: servo 1 tells model number 1220 (XC330-T288)"))
+  EXPECT_TRUE(says(other, "rig.toml:7:9: arm.leader.shoulder.model: servo 1 reports model number 1220 (XC330-T288)"))
       << other.out;
   const Outcome elsewhere = device({"dynamixel --fault wrong-model:1"}, servos, "check rig.toml arm.leader.elbow");
   EXPECT_EQ(elsewhere.status, 1);

@@ -83,7 +83,7 @@ TEST_F(Plant, ThatIsKilledEndsTheRunAndIsReplacedByTheNext) {
   EXPECT_NE(content("second.log").find("is driven already (process "), std::string::npos) << content("second.log");
   EXPECT_EQ(content("dead.status"), "2\n");
   EXPECT_NE(content("dead.log").find("is dead (process "), std::string::npos) << content("dead.log");
-  EXPECT_NE(content("plant.out").find("ticks missed"), std::string::npos) << content("plant.out");
+  EXPECT_NE(content("plant.out").find("control cycles missed"), std::string::npos) << content("plant.out");
   EXPECT_EQ(tactus({"replay", "results/log", "--check"}).status, 0) << "the log shows how it ended";
 }
 

@@ -80,19 +80,21 @@ TEST_F(RigRun, APairOfSevenJointsAlignsAndTeleoperatesWithALogThatIsWhole) {
   // It stands 0.2 rad away; what is left holds against the friction of the joint, less than 0.02 rad at 4 N m/rad.
   const auto follows = [](const std::string& said) { return apart(said, "5") < 0.02; };
   const std::string said =
-      shell_until({"; armed 1 times, held 0 times, ", ", not responding in 0, lost in 0 ticks; "}, "damiao --motors 7",
+      shell_until({"; armed 1 times, held 0 times, ", ", not responding in 0, lost in 0 cycles; "}, "damiao --motors 7",
                   "damiao --motors 7", pair("damiao", "DM4310", 7, "offset_rad = 0.2\n"),
                   "$RUN --arm --duration-s 6 --out run --overwrite <&9; echo status $?\n"
                   "$TACTUS replay run/log --check; echo replayed $?",
                   follows);
   EXPECT_NE(said.find("; armed 1 times, held 0 times, a device late in "), std::string::npos) << said;
-  EXPECT_NE(said.find(", not responding in 0, lost in 0 ticks; "), std::string::npos) << said;
+  EXPECT_NE(said.find(", not responding in 0, lost in 0 cycles; "), std::string::npos) << said;
   EXPECT_NE(said.find("5 s: leader active, follower active (none), "), std::string::npos) << said;
   EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)
       << said;
   EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
-  EXPECT_NE(said.find(" ticks of both sites of 7 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
-            std::string::npos)
+  EXPECT_NE(
+      said.find(
+          " control cycles of both sites of 7 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
+      std::string::npos)
       << said;
   EXPECT_PRED1(follows, said);
 }
@@ -152,7 +154,7 @@ TEST_F(RigRun, AMotorThatFallsSilentHoldsBothWithoutForceAndIsSaid) {
   EXPECT_NE(said.find("follower active"), std::string::npos) << said;
   EXPECT_NE(said.find("bit for bit.\nreplayed 0\n"), std::string::npos) << said;
   EXPECT_NE(said.find("leader hold, follower hold (device), "), std::string::npos) << said;
-  EXPECT_NE(said.find("; follower: joint_2 unheard for "), std::string::npos) << said;
+  EXPECT_NE(said.find("; follower: joint_2 not responding for "), std::string::npos) << said;
   EXPECT_NE(said.find("; the follower is not responding: look at 'tactus device check'\n"), std::string::npos) << said;
   EXPECT_EQ(said.find("not responding in 0,"), std::string::npos) << said;
   // Nobody knows whether it is off: its last status was another.
@@ -212,7 +214,7 @@ TEST_F(RigRun, NothingIsDrivenBeforeTheRigIsClean) {
                                  "$RUN --arm --duration-s 6 <&9; echo status $?");
   EXPECT_NE(said.find("arm.follower.joint_1.motor: motor 1: too hot: "), std::string::npos) << said;
   EXPECT_NE(
-      said.find("tactus: rig.toml: it is not clean, so nothing was driven: mend what 'tactus device check' tells"),
+      said.find("tactus: rig.toml: it is not clean, so nothing was driven: fix what 'tactus device check' reports"),
       std::string::npos)
       << said;
   EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
@@ -333,17 +335,19 @@ class ArmRun : public RigRun {
 };
 
 TEST_F(ArmRun, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
-  const std::string said = arms_until({"; armed 1 times, held 0 times, ", ", not responding in 0, lost in 0 ticks; "},
+  const std::string said = arms_until({"; armed 1 times, held 0 times, ", ", not responding in 0, lost in 0 cycles; "},
                                       "$ARMS --arm --duration-s 12 --out run --overwrite <&9; echo status $?\n"
                                       "$TACTUS replay run/log --check; echo replayed $?");
-  EXPECT_NE(said.find(", not responding in 0, lost in 0 ticks; "), std::string::npos) << said;
+  EXPECT_NE(said.find(", not responding in 0, lost in 0 cycles; "), std::string::npos) << said;
   EXPECT_NE(said.find("11 s: leader active, follower active (none), "), std::string::npos) << said;
   EXPECT_NE(said.find("; armed 1 times, held 0 times, "), std::string::npos) << said;
   EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)
       << said;
   EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
-  EXPECT_NE(said.find(" ticks of both sites of 8 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
-            std::string::npos)
+  EXPECT_NE(
+      said.find(
+          " control cycles of both sites of 8 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
+      std::string::npos)
       << said;
   EXPECT_LT(apart(said, "11"), 0.06) << said;
 }

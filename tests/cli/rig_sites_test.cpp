@@ -117,8 +117,9 @@ TEST_F(RigSites, TheFollowerGoesToItsLeaderAndBothHoldWhereTheLinkIsCut) {
     EXPECT_EQ(told.out.find(other), std::string::npos) << told.out;
     const auto replayed = tactus({"replay", std::string(log) + "/log", "--check"});
     EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
-    EXPECT_NE(replayed.out.find(topic[1] == 'm' ? "ticks of the master of 3 joints: every output is the recorded one"
-                                                : "ticks of the slave of 3 joints: every output is the recorded one"),
+    EXPECT_NE(replayed.out.find(topic[1] == 'm'
+                                    ? "control cycles of the master of 3 joints: every output is the recorded one"
+                                    : "control cycles of the slave of 3 joints: every output is the recorded one"),
               std::string::npos)
         << replayed.out;
   }
@@ -233,7 +234,7 @@ TEST_F(RigSites, WhatMakesNoSenseIsRefusedWithTheRemedy) {
   };
   EXPECT_NE(refusal(with({"--device", "follower.toml"})).find("name it alone"), std::string::npos);
   const std::string silent = refusal(with({"--set", "control.architecture=position-force"}));
-  EXPECT_NE(silent.find("control.architecture: a follower of position-force does not tell where it is"),
+  EXPECT_NE(silent.find("control.architecture: a follower of position-force does not send its position"),
             std::string::npos)
       << silent;
   const Outcome other = tactus({"run", TACTUS_EXAMPLE_FOLDER "/rigs/joints.toml", "--site", "slave", "--device",

@@ -47,7 +47,7 @@ class EnergyTank {
                 "Damping with which the master draws energy when its tank is empty; less in proportion up to the "
                 "desired level."),
           field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
-                "Highest speed of the motor, encoder step over tick included."),
+                "Highest speed of the motor, encoder step per control cycle included."),
           field("velocity", &Params::velocity, "Filter of the velocity on which the drawing damping acts.")};
     }
   };

@@ -144,7 +144,7 @@ Result<Controllers> make_four_channel_cancellation(const ControlParams& params, 
 
 Architecture four_channel_architecture() {
   return {.name = "four-channel",
-          .summary = "both sites tell the other position and force (Lawrence), with local force loops",
+          .summary = "both sites send position and force (Lawrence), with local force loops",
           .make = make_four_channel,
           .keys = own_keys<FourChannelParams>("four_channel", "Architecture four-channel: gains of its channels.")};
 }

@@ -15,7 +15,7 @@ struct SlaveModel {
     return List{field("mass_kg", &SlaveModel::mass_kg, units::kilogram, positive, "Moving mass M."),
                 field("viscous_damping_N_s_per_m", &SlaveModel::viscous_damping_N_s_per_m,
                       units::newton_second_per_metre, non_negative, "Viscous damping h."),
-                field("friction", &SlaveModel::friction, "Friction beside the viscous part."),
+                field("friction", &SlaveModel::friction, "Friction in addition to the viscous part."),
                 field("actuator_gain", &SlaveModel::actuator_gain, units::none, any_finite,
                       "K_a: force in N for one unit of the command.")};
   }

@@ -111,7 +111,7 @@ class InducedMotionModel {
     static constexpr auto fields() {
       return List{
           field("master", &Params::master, "Master and hand."),
-          field("fidelity", &Params::fidelity, "How much of them the model tells apart."),
+          field("fidelity", &Params::fidelity, "How much of them the model distinguishes."),
           field("step", &Params::step, "How the model is advanced."),
           field("friction", &Params::friction, "On which velocity Coulomb friction acts, in the model that has it."),
           field("friction_band_m_per_s", &Params::friction_band_m_per_s, units::metre_per_second, positive,

@@ -14,7 +14,7 @@
 
 namespace tactus::control {
 
-/// Where cancellation learns how firmly the person holds.
+/// Source of the firmness of the operator's grip for cancellation.
 enum class OperatorEstimate {
   off,        ///< nowhere: the operator of the model is fixed, as in paper A
   online,     ///< from what the displayed force does to the motor

@@ -22,15 +22,15 @@ struct DamiaoBusParams {
   std::vector<MotorParams> motors;  ///< 1 to 15
 
   static constexpr auto fields() {
-    return List{
-        field("framing", &DamiaoBusParams::framing, "How frames of CAN become bytes."),
-        field("watchdog_s", &DamiaoBusParams::watchdog_s, units::second, between(0.002, 1.0),
-              "A motor lets go when it hears nothing for so long: its register TIMEOUT, set before it gets power. One "
-              "that is not heard for so long is silent."),
-        field("reply_timeout_s", &DamiaoBusParams::reply_timeout_s, units::second, between(0.0002, 0.05),
-              "The longest wait for the next answer of a cycle."),
-        field("shortest_cycle_s", &DamiaoBusParams::shortest_cycle_s, units::second, between(0.0001, 0.1),
-              "A cycle takes at least that, where the wire allows more.")};
+    return List{field("framing", &DamiaoBusParams::framing, "How frames of CAN become bytes."),
+                field("watchdog_s", &DamiaoBusParams::watchdog_s, units::second, between(0.002, 1.0),
+                      "A motor that receives no command for this time disables itself: its register TIMEOUT, set "
+                      "before it gets power. A motor "
+                      "without a reply for this time is not responding."),
+                field("reply_timeout_s", &DamiaoBusParams::reply_timeout_s, units::second, between(0.0002, 0.05),
+                      "The longest wait for the next answer of a cycle."),
+                field("shortest_cycle_s", &DamiaoBusParams::shortest_cycle_s, units::second, between(0.0001, 0.1),
+                      "A cycle takes at least that, where the wire allows more.")};
   }
 };
 

@@ -41,7 +41,7 @@ Result<E> value_of(const std::string& key, const std::string& word) {
     all += (all.empty() ? "" : ", ") + std::string(entry.name);
   }
   return Error{
-      .code = ErrorCode::unknown_key, .parameter = key, .message = "'" + word + "' is none of " + all, .place = {}};
+      .code = ErrorCode::unknown_key, .parameter = key, .message = "'" + word + "' is not one of " + all, .place = {}};
 }
 
 std::string key_of_motor(std::size_t motor, const char* key) {

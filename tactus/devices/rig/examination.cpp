@@ -95,17 +95,17 @@ const char* remedy_of(MotorFault fault) {
     case MotorFault::hot:
       return "too hot: let it cool, and lower the torque limit";
     case MotorFault::lost_master:
-      return "let go when nobody spoke to it: this is cleared when it gets power";
+      return "released because it received no command: this is cleared when it gets power";
     case MotorFault::overload:
       return "overloaded: take the load off; this is cleared when it gets power";
     case MotorFault::encoder:
-      return "does not know where it is: start anew";
+      return "does not know its position: start again";
     case MotorFault::refused:
       return "refused what it was asked: switch it off and on";
     case MotorFault::unknown_status:
       return "reports a status that is not known: switch it off and on, and look at its firmware";
     case MotorFault::stays_on:
-      return "was told to switch off and does not report that it is off: switch off its supply, wait until it stands "
+      return "was commanded to switch off and does not report that it is off: switch off its supply, wait until it is "
              "still, and switch it on again";
   }
   return "";

@@ -78,7 +78,7 @@ std::string describe_powered(const RigSide& side, const PoweredMotor& motor) {
   const RigJoint& joint = side.joints[motor.motor];
   const auto seconds = [](std::int64_t ns) { return rounded_number(static_cast<double>(ns) * 1e-9) + " s"; };
   const std::string what =
-      motor.off ? " did not switch off within " + seconds(off_within_ns) + " when it was told to, and is off now"
+      motor.off ? " did not switch off within " + seconds(off_within_ns) + " when commanded to, and is off now"
                 : " did not report within " + seconds(farewell_ns) + " that it is off";
   return joint.path + ": motor " + std::to_string(joint.motor.id) +
          (side.bus.port.empty() ? std::string() : " at " + side.bus.port) + " (" + std::string(bus_name(side.bus)) +

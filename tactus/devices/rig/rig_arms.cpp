@@ -112,8 +112,8 @@ Result<RigSide> in_order(const RigSide& side, const experiments::DescribedArm& a
     const auto found = std::ranges::find(side.joints, arm.joints[i], &RigJoint::name);
     if (found == side.joints.end()) {
       return problem_at(side.path, ErrorCode::missing,
-                        "the arm of " + arm.urdf + " has a joint " + arm.joints[i] + ", and the rig has none: write [" +
-                            join(side.path, arm.joints[i]) + "]");
+                        "the arm of " + arm.urdf + " has a joint " + arm.joints[i] +
+                            ", and the rig has no such joint: write [" + join(side.path, arm.joints[i]) + "]");
     }
     if (Check error = add(*found, asked[i])) return *std::move(error);
     if (Check error = check_limits(*found, arm.arm.chain.joints[i].limits, arm.urdf)) return *std::move(error);

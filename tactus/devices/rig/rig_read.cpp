@@ -27,9 +27,10 @@ struct DamiaoSide {
                 field("port", &DamiaoSide::port, "Serial port of the adapter, or interface of CAN."),
                 field("framing", &DamiaoSide::framing, "How frames of CAN become bytes."),
                 field("reply_timeout_s", &DamiaoSide::reply_timeout_s, units::second, between(0.0002, 0.05),
-                      "The longest wait for an answer; a motor that keeps it waiting three times in a row is silent."),
+                      "Timeout of a reply; a motor that exceeds it three times in a row is not responding."),
                 field("watchdog_s", &DamiaoSide::watchdog_s, units::second, between(0.005, 1.0),
-                      "A motor that hears nothing for so long lets go, and one that is unheard for so long is lost.")};
+                      "A motor that receives no command for this time disables itself, and one without a reply for "
+                      "this time is lost.")};
   }
   void put_into(StatedBus& stated) const {
     stated = {.kind = bus,

@@ -147,7 +147,7 @@ Result<Outcome> arm_faults(const Request& request, const Progress& progress) {
   const FaultsShown shown{
       .kind = std::string(name_of(params->task.kind)),
       .subject =
-          "Two supervised arms, a person who taps a stiff surface through them, and one fault in each run, drawn by "
+          "Two supervised arms, an operator who taps a stiff surface through them, and one fault in each run, drawn by "
           "its "
           "seed, at a joint that is drawn too. A witness outside of the sites reads what reaches the motors, what was "
           "sent when, and what becomes of both tools.",

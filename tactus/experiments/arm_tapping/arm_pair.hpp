@@ -52,7 +52,7 @@ struct ArmRecord {
   static constexpr auto signals() {
     using R = ArmRecord;
     return List{observed("contact_N", &R::contact_N, units::newton, "slave", "tool", "out of the surface",
-                         "Of the surface on the follower's tool, mean over the tick."),
+                         "Of the surface on the follower's tool, mean over the control cycle."),
                 observed("hand_N", &R::hand_N, units::newton, "master", "tool", "into the surface",
                          "Of the hand's spring and damper on the leader's tool."),
                 observed("leader_m", &R::leader_m, units::metre, "master", "tool", "out of the surface",

@@ -20,7 +20,7 @@ struct HarmBounds {
         field("speed_m_per_s", &HarmBounds::speed_m_per_s, units::metre_per_second, positive,
               "Speed that handle and tool may reach."),
         field("strayed_m", &HarmBounds::strayed_m, units::metre, positive,
-              "How far they may go beyond the ends of the way on which the person leads them."),
+              "How far they may go beyond the ends of the path on which the operator leads them."),
         field("hand_force_N", &HarmBounds::hand_force_N, units::newton, positive, "Force between hand and handle."),
         field("tool_force_N", &HarmBounds::tool_force_N, units::newton, positive,
               "Force between the tool and what it touches."),

@@ -42,7 +42,7 @@ Result<std::vector<double>> load_profile(const ForceDisplayParams& params) {
   if (!signal->sample_time_s) {
     return Error{.code = ErrorCode::missing,
                  .parameter = "profile.sample_time_s",
-                 .message = "the file does not say when its samples were taken: give the time between samples",
+                 .message = "the file does not state the times of its samples: give the time between samples",
                  .place = {}};
   }
   const double recorded_s = static_cast<double>(signal->values.size()) * *signal->sample_time_s;

@@ -215,9 +215,9 @@ TEST(DamiaoBus, AMotorThatDoesNotSayThatItIsOffWhenItIsAskedMakesTheBusRefused) 
     bench.command_all(0.3);
     bench.run(500 * ms);
     EXPECT_EQ(bench.bus->state(), BusState::refused);
-    EXPECT_EQ(bench.problem(), "motor 2 (DM4310) was told 5 times to switch off and does not report that it is off (" +
-                                   status_text(status) +
-                                   "): switch off its supply, wait until it stands still, and switch it on again");
+    EXPECT_EQ(bench.problem(),
+              "motor 2 (DM4310) was commanded 5 times to switch off and does not report that it is off (" +
+                  status_text(status) + "): switch off its supply, wait until it is at rest, and switch it on again");
     EXPECT_EQ(bench.peer->motor(1).most_torque_Nm(), 0.0);
   }
 }

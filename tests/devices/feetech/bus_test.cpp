@@ -209,7 +209,7 @@ TEST(FeetechBus, AnotherModelIsRefusedByItsName) {
   rig.run(500 * ms);
   EXPECT_EQ(rig.bus.state(), BusState::refused);
   EXPECT_EQ(describe(*rig.bus.problem()),
-            "servo 3 tells model number 777 (STS3215) where HLS3625 is stated: state the model that is there, or "
+            "servo 3 reports model number 777 (STS3215) where HLS3625 is stated: state the model that is there, or "
             "change the servo");
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(rig.peer.largest_current(i), 0);
 }

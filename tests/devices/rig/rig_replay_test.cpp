@@ -117,7 +117,7 @@ TEST_F(RigReplay, TheLogOfTwoArmsReplaysBitForBitAndEveryChangeIsFound) {
       if (table.topic == "/slave/joint_4") table.values[0][10] += 1.0;
     }
   });
-  EXPECT_NE(late.find("topic /slave/joint_4: tick 10 is missing"), std::string::npos) << late;
+  EXPECT_NE(late.find("topic /slave/joint_4: control cycle 10 is missing"), std::string::npos) << late;
 }
 
 /// As of a program that was killed: what all topics have is replayed.
