@@ -8,7 +8,7 @@ namespace tactus::arm_control {
 using arm::ArmReading;
 using arm::JointVector;
 
-/// What FACTR's leader does beside carrying itself and displaying a share of the follower's torque:
+/// What FACTR's leader does alongside carrying itself and displaying a share of the follower's torque:
 ///
 ///     τ = Coriolis ± dither·|bias| + (I − J⁺J)·(−k_n·(q − q0) − d_n·q̇) + limits − damping·q̇
 ///

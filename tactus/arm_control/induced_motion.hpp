@@ -31,8 +31,8 @@ constexpr auto enumerators(InertiaModel) {
 /// motion. What the site's own friction feed-forward takes away is not there. It enters as a damper of the size of its
 /// secant, so that the implicit step below holds it whatever it is.
 ///
-/// Slow motion is washed out of what is told (first-order high-pass, `washout_Hz`): the person corrects it, and a model
-/// without that correction would let the follower press ever harder. At 0 it is left in.
+/// Slow motion is washed out of what is told (first-order high-pass, `washout_Hz`): the operator corrects it, and a
+/// model without that correction would let the follower press ever harder. At 0 it is left in.
 ///
 /// Elastic joints have a motor and a link each: the armature turns with w, the rest of M and the hand with the links,
 /// and springs and dampers lie between. Position and velocity told are the motors', which drives measure.
@@ -60,12 +60,12 @@ class InducedMotion {
   struct Site {
     double damping_N_s_per_m = 0.0;                ///< of a damper at the tool
     JointVector drive_damping_N_m_s_per_rad = {};  ///< of the leader's drives; none where it has no rows
-    double drive_damping_limit_N_s_per_m = 0.0;    ///< of what that is at the tool; 0 is none
+    double drive_damping_limit_N_s_per_m = 0.0;    ///< of what that is at the tool; 0: none
     double friction_share = 0.0;                   ///< of the friction that feed-forward takes away
     double friction_velocity_rad_per_s = 0.3;
   };
 
-  /// What the leader is believed to be.
+  /// What the leader is assumed to be.
   struct Arm {
     arm::Chain::Params chain;
     arm::Vector3 tool_m = arm::Vector3::Zero();  ///< on its last link

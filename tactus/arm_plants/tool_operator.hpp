@@ -14,8 +14,8 @@
 
 namespace tactus::arm_plants {
 
-/// A smooth plane that the tool meets: it pushes along its normal by what the law of one axis says of the depth and of
-/// the speed into it. Real-time safe.
+/// A smooth plane that the tool meets: it pushes along its normal by what the law of one axis states of the depth and
+/// of the speed into it. Real-time safe.
 struct Wall {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitZ();  ///< out of it, of length 1
@@ -28,8 +28,8 @@ struct Wall {
   }
 };
 
-/// The person who holds the leader's tool: a hand (`arm::HandImpedance`, whose mass the arm carries) that follows an
-/// intended path, and slow correction. The person sees or feels the tool off the path and shifts the aim, as an
+/// The operator who holds the leader's tool: a hand (`arm::HandImpedance`, whose mass the arm carries) that follows an
+/// intended path, and slow correction. The operator sees or feels the tool off the path and shifts the aim, as an
 /// integrator on the error, low-passed near 5 Hz and a reaction time late. On the path lies physiological tremor, the
 /// same along each axis of the base and a third of a cycle apart. The attitude is held where it was at first. What one
 /// axis has in `mechanics::Operator`, in three.

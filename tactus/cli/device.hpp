@@ -11,7 +11,7 @@ class App;
 
 namespace tactus::cli {
 
-/// The verbs below `device`. `app` says the program's name in errors; `status` becomes the exit status.
+/// The commands below `device`. `app` states the program's name in errors; `status` becomes the exit status.
 /// `command` is the whole command line.
 void add_device_check(CLI::App& device, const CLI::App& app, const std::string& command, int& status);
 void add_device_list(CLI::App& device, const CLI::App& app, int& status);

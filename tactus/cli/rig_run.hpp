@@ -18,7 +18,7 @@ namespace tactus::cli {
 /// Whether a `--device` names a rig file: `FILE.toml`, or `FILE.toml:PAIR`.
 bool names_a_rig(const std::string& device);
 
-/// Whether an experiment of that kind says how a rig is driven.
+/// Whether an experiment of that kind states how a rig is driven.
 bool drives_a_rig(std::string_view kind);
 
 /// Drives a pair of a rig under supervision until it is over: what `tactus run EXPERIMENT --realtime --device

@@ -13,7 +13,7 @@
 namespace tactus::control {
 
 /// The parameters that both sites must have in common before they arm, each under the key of an experiment file. They
-/// are those with which both sites compute, and those on which a person at one site relies at the other: limits and
+/// are those with which both sites compute, and those on which an operator at one site relies at the other: limits and
 /// time-outs. The groups of all architectures count, so both sites must have the same ones registered. What is not here
 /// either concerns one site alone, as the master's model and filters and where the slave's force comes from, or the
 /// host that it runs on, as the longest stall.
@@ -66,7 +66,7 @@ Agreement agreement_of(const ControlParams& params, Seconds dt);
 /// differs (`SiteRecord::differs`) is the number of the joint; `first_disagreement` is for one axis. Allocates.
 Agreement agreement_of(const JointParams auto& params, Seconds dt);
 
-/// One key with both values, as a person writes them.
+/// One key with both values, as an operator writes them.
 struct Disagreement {
   std::string key;
   std::string own;

@@ -14,7 +14,8 @@ namespace tactus::control {
 /// What a site takes the other to say, while messages fail and when they come again.
 ///
 /// - A message that is fresh every tick passes unchanged, bit for bit.
-/// - In silence a position goes on at its estimated velocity for `extrapolation_s`; then velocity, force and wave decay
+/// - In silence a position continues at its estimated velocity for `extrapolation_s`; then velocity, force and wave
+/// decay
 ///   with the time constant `decay_s`, so a position goes no farther than v·(extrapolation + decay).
 /// - Where the site does not follow, the position stays where it was and all else fades to zero at the rate below.
 /// - What then comes again differs from what stands. The difference is kept and closed at a bounded rate, so neither

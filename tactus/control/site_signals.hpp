@@ -8,12 +8,12 @@
 
 /// What the two sites of a teleoperator measure, command and tell one another, and what a controller of a site is. Of
 /// one axis each, or, as `Joints` of the same, of a device of several; positions and forces are positive toward the
-/// environment unless said otherwise.
+/// environment unless stated otherwise.
 namespace tactus::control {
 
 /// What one site tells the other at a tick. Each architecture fills the members that it uses; the rest stay zero.
 ///
-/// Its one description: what is checked, mended and sent over a network follows from it, in this order.
+/// Its one description: what is checked, corrected and sent over a network follows from it, in this order.
 struct Message {
   double position_m = 0.0;
   double velocity_m_per_s = 0.0;
@@ -34,7 +34,7 @@ struct Message {
   }
 };
 
-/// The newest message of the other site. A site gets one every tick; `fresh` tells whether it arrived since the last.
+/// The newest message of the other site. A site gets one every tick; `fresh` reports whether it arrived since the last.
 struct Arrival {
   Message message;
   bool fresh = false;
@@ -45,13 +45,13 @@ struct MasterInput {
   double motor_position_m = 0.0;
   double hand_force_N = 0.0;  ///< of the hand on the handle, positive when it pushes toward the environment
   Arrival arrival;
-  double grip = 1.0;         ///< how firmly the person holds, over nominal, where a sensor tells; 1 without one
+  double grip = 1.0;         ///< how firmly the operator holds, over nominal, where a sensor tells; 1 without one
   double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
   DriveReport motor_report = {};
 };
 
-/// How firmly the person holds the handle and what else differs from the model that was identified, as the master's
-/// controller believes it. Where nothing is estimated, as identified and without deviation.
+/// How firmly the operator holds the handle and what else differs from the model that was identified, as the master's
+/// controller assumes it. Where nothing is estimated, as identified and without deviation.
 struct HandEstimate {
   double estimated_grip = 1.0;
   double estimated_grip_deviation = 0.0;
@@ -75,7 +75,7 @@ struct MasterOutput {
   double induced_position_m = 0.0;   ///< the estimate of what the displayed force did to the motor, at this instant
   double intended_position_m = 0.0;  ///< measured less induced
   HandEstimate hand = {};
-  DriveLaw law = {};       ///< what the motor's drive gives beside `motor_force_N`
+  DriveLaw law = {};       ///< what the motor's drive gives alongside `motor_force_N`
   double support_N = 0.0;  ///< of `motor_force_N`, what carries the device: it stays where the rest fades
 };
 
@@ -92,7 +92,7 @@ struct SlaveInput {
 struct SlaveOutput {
   double motor_force_N = 0.0;  ///< positive toward the environment
   Message message;
-  DriveLaw law = {};       ///< what the motor's drive gives beside `motor_force_N`
+  DriveLaw law = {};       ///< what the motor's drive gives alongside `motor_force_N`
   double support_N = 0.0;  ///< of `motor_force_N`, what carries the device: it stays where the rest fades
 };
 
@@ -109,12 +109,12 @@ bool is_finite(const Joints<T>& joints) noexcept {
   return finite;
 }
 
-/// What the force sensor says that pushes back against the motor, in N: the hand, or what is at the tip. Real-time
+/// What the force sensor states that pushes back against the motor, in N: the hand, or what is at the tip. Real-time
 /// safe.
 inline double resisting_N(const MasterInput& input) noexcept { return -input.hand_force_N; }
 inline double resisting_N(const SlaveInput& input) noexcept { return input.tip_force_N; }
 
-/// Takes over each number that is one, and of what a drive tells what is of motors; what was read last stays in the
+/// Takes over each number that is one, and of what a drive reports what is of motors; what was read last stays in the
 /// place of the others. Whether all were taken. One number after the other, for a copy of the whole would wait for them
 /// to be written. Real-time safe.
 inline bool take_over(double& last, double read) noexcept {

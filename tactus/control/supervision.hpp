@@ -211,7 +211,7 @@ class SupervisionOf {
   [[nodiscard]] bool is_held() const noexcept {
     return support_.holds() && (support_.rises() || (tries() && !proved_));
   }
-  /// The packet that says `message`. Once a tick.
+  /// The packet that states `message`. Once a tick.
   Packet packet(const Payload& message) noexcept;
   /// A slave's command is `position_m` until it follows.
   void stand(const Lengths& position_m) noexcept {
@@ -308,7 +308,7 @@ class SupervisionOf {
   std::int64_t answered_arming_ = 0;  ///< that packets tell: a slave's only once its motor was tried
   bool proved_ = false;               ///< the motor was tried since the site was armed, or need not be
   bool probing_ = false;              ///< the trial is under way
-  bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, its device was silent or moved
+  bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, its device did not respond or moved
   double share_ = 0.0;
   SiteState before_ = SiteState::configure;
 };

@@ -23,8 +23,8 @@ struct SupportFinding {
 };
 
 /// The support of a device as it comes in: its share, the holding law of each joint meanwhile (`SupportCheck`) and what
-/// the joints' motion says of it. Joints are judged until all of it has come in, `settles_s` have passed and the motors
-/// were tried. Then the law yields as friction does, until the coupling takes its place.
+/// the joints' motion states of it. Joints are judged until all of it has come in, `settles_s` have passed and the
+/// motors were tried. Then the law yields as friction does, until the coupling takes its place.
 template <class Payload>
 class SupportRaiseOf {
  public:

@@ -8,7 +8,7 @@
 
 namespace tactus::diagnosis {
 
-/// A velocity that was recorded beside a position, as a drive or its host tells it.
+/// A velocity that was recorded alongside a position, as a drive or its host tells it.
 struct ReportedVelocity {
   std::string name = {};  ///< of its column
   double scale = 1.0;     ///< the told velocity over that with which the position moves, without sign

@@ -8,8 +8,8 @@
 
 namespace tactus::experiments {
 
-/// Brings every number that stands directly in `params` to the nearest end of its closed bounds. For values drawn
-/// around what a person wrote: a tremor of 29 Hz is allowed, and so must be every draw around it.
+/// Brings every number that is directly in `params` to the nearest end of its closed bounds. For values drawn
+/// around what an operator wrote: a tremor of 29 Hz is allowed, and so must be every draw around it.
 template <Described T>
 void limit_to_bounds(T& params) {
   for_each_field<T>([&](const auto& f) {

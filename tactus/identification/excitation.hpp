@@ -81,7 +81,7 @@ struct MultisineParams {
 };
 Result<std::vector<double>> multisine_N(const MultisineParams& params, Seconds tick);
 
-/// Plus or minus the amplitude, drawn anew at the end of each hold; the same for the same seed.
+/// Plus or minus the amplitude, drawn again at the end of each hold; the same for the same seed.
 struct RandomBinaryParams {
   double amplitude_N = 1.0;
   double hold_s = 1e-3;

@@ -58,7 +58,7 @@ struct FrequencyResponse {
   std::vector<double> frequency_Hz;
   std::vector<std::complex<double>> response;
   /// Radius of the circle around `response` in the complex plane that holds the true one with a probability of 95 %;
-  /// infinite where the data cannot tell (a single run without smoothing).
+  /// infinite where the data cannot determine (a single run without smoothing).
   std::vector<double> radius_95;
   /// 0 to 1; 0 where a signal has no power. Empty for the ETFE.
   std::vector<double> coherence;

@@ -48,7 +48,7 @@ class LiveView final : public Application {
   std::optional<Status> receive(ClientId client, std::string_view topic, std::string_view encoding,
                                 std::string_view bytes) override;
   void leave(ClientId client) override;
-  /// Who comes next finds what the experiment says.
+  /// Who comes next finds what the experiment states.
   void stand_alone() override;
   /// Shows what the loops did since it was first called.
   void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) override;

@@ -48,7 +48,7 @@ struct BoucWenMotion {
 /// solution (first elastic down to z = 0, then exponential toward ±d), so the spring is exactly rate-independent and
 /// any step size is exact; β = γ also keeps it passive. The textbook's Euler step of ż is neither.
 ///
-/// The parameters are those of the elasto-slip spring, so either can stand in the other's place; only the slip
+/// The parameters are those of the elasto-slip spring, so either can be in the other's place; only the slip
 /// deflection differs in meaning, because an exponential has no last slip.
 ///
 /// `stiffness_N_per_m` is the tip-to-tip slope K of a closed loop of amplitude A = `reference_deflection_m`, in which z

@@ -37,7 +37,7 @@ struct ElastoSlipElements {
   }
 };
 
-/// Spring with rate-independent hysteresis: a spring that never slips beside four elasto-slip elements (Iwan,
+/// Spring with rate-independent hysteresis: a spring that never slips alongside four elasto-slip elements (Iwan,
 /// Maxwell-slip), and a viscous damper:  F = K∞ δ + Σ kᵢ (δ − zᵢ) + b δ̇.
 ///
 /// Physical parameters. From rest the stiffness is K₀; a share h (`hysteretic_fraction`) of it slips away in four equal
@@ -112,7 +112,7 @@ class ElastoSlipSpring {
   [[nodiscard]] double initial_stiffness_N_per_m() const noexcept { return initial_stiffness_N_per_m_; }
   /// K∞: the slope once every element slips, in N/m.
   [[nodiscard]] double sustained_stiffness_N_per_m() const noexcept { return sustained_stiffness_N_per_m_; }
-  /// The elements as they stand: stiffnesses, slips and sliders.
+  /// The elements as they are: stiffnesses, slips and sliders.
   [[nodiscard]] const ElastoSlipElements<double>& elements() const noexcept { return elements_; }
 
  private:

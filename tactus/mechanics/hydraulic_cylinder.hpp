@@ -10,7 +10,7 @@
 namespace tactus::mechanics {
 
 /// Friction that falls from its static to its Coulomb value as the piston gets going: f(v) = F_c + (F_s − F_c)·exp(−(v
-/// / v_s)²), beside the viscous part. Source: B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7),
+/// / v_s)²), alongside the viscous part. Source: B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7),
 /// 1994.
 struct StribeckFriction {
   double coulomb_N = 150.0;

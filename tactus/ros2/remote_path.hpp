@@ -9,11 +9,11 @@
 namespace tactus::ros2 {
 
 /// Where another program means the hand to be, made into a path that a hand could take: x ← x + clamp(aim − x, ±v·dt),
-/// the aim clamped to the reach. Until the first wish the path is the scripted one. When no wish has come for a while,
-/// the hand stays where it is: a program that has died must not go on pushing.
+/// the aim clamped to the reach. Until the first request the path is the scripted one. When no request has come for a
+/// while, the hand stays where it is: a program that has died must not continue pushing.
 ///
-/// It stands before the person, so all that follows from it passes cancellation, limits and safety gates as the
-/// person's own motion does. An element.
+/// It is before the operator, so all that follows from it passes cancellation, limits and safety gates as the
+/// operator's own motion does. An element.
 class RemotePath {
  public:
   struct Params {
@@ -33,7 +33,7 @@ class RemotePath {
     }
   };
   struct Input {
-    double scripted_m = 0.0;  ///< where the hand would be without a wish
+    double scripted_m = 0.0;  ///< where the hand would be without a request
     std::optional<double> requested_m =
         {};  ///< that has arrived since the last tick; one that is not finite counts as none
   };
@@ -46,7 +46,7 @@ class RemotePath {
   double step(const Input& input) noexcept;
   void reset() noexcept;
 
-  /// Whether a wish has ever come.
+  /// Whether a request has ever come.
   [[nodiscard]] bool driven() const noexcept { return driven_; }
 
  private:

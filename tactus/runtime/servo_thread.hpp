@@ -51,7 +51,7 @@ struct TickEvidence {
 /// Why a tick was late that had one period to begin and end its step; `none` where it was not. Where the wait for the
 /// processor was longer than the step, the machine woke the thread late. Else the step was too long: because of us
 /// where at least half of it was our own processor time, where it waited, or where memory came from disk; else because
-/// of the machine. Where a hypervisor does not tell the time that it steals, stolen time counts as our own.
+/// of the machine. Where a hypervisor does not report the time that it steals, stolen time counts as our own.
 station::LateCause classify(const TickEvidence& tick, std::int64_t period_ns) noexcept;
 
 /// How a servo thread kept time.

@@ -66,7 +66,7 @@ class SiteLinkOf {
 
   /// What came since the second before. Once a second.
   LinkSecond end_second() noexcept;
-  /// Tells once why the sites that hear each other cannot work together. Once a second.
+  /// Tells once why the sites that receive packets of each other cannot work together. Once a second.
   void report_mismatch(const control::AgreementCheck& agreement, SiteExchange& exchange) noexcept;
   /// After the last tick.
   [[nodiscard]] LinkTotals totals() const;
@@ -95,7 +95,7 @@ class SiteLinkOf {
   Arrivals second_;
   std::uint64_t second_expected_ = 0, second_arrived_ = 0;
   // Of the mismatches.
-  std::int64_t listened_session_ = 0;  ///< that was heard when the second before ended
+  std::int64_t listened_session_ = 0;  ///< that was received when the second before ended
   int listened_s_ = 0;                 ///< for how many seconds
   std::int64_t told_session_ = 0;
   std::uint16_t told_version_ = 0;

@@ -13,9 +13,9 @@
 /// A master on a simulated bench, its parameters hidden from whoever identifies it.
 namespace tactus::simulation {
 
-/// The device and the person of a bench as an experiment's file states them: what `tactus run --with` loads.
+/// The device and the operator of a bench as an experiment's file states them: what `tactus run --with` loads.
 struct BenchedMaster {
-  /// What a bench can tell of the device.
+  /// What a bench can determine of the device.
   struct Device {
     mechanics::CableChain::Params mechanism;
     mechanics::CurrentAmplifier::Params amplifier;
@@ -24,7 +24,7 @@ struct BenchedMaster {
                   field("amplifier", &Device::amplifier, "Current amplifier of the motor.")};
     }
   };
-  /// What it can tell of the person.
+  /// What it can determine of the operator.
   struct Operator {
     mechanics::LinearSpring::Params grip{.stiffness_N_per_m = 40.0, .damping_N_s_per_m = 23.0};
     mechanics::Operator::Correction correction;

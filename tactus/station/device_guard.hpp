@@ -7,7 +7,7 @@
 #include <array>
 #include <cstdint>
 
-/// The second wall: what a device allows, whoever commands it.
+/// The device guard: what a device allows, whoever commands it.
 namespace tactus::station {
 
 /// Why a device was given no more force.
@@ -34,7 +34,7 @@ inline constexpr Bounds silence_bounds = between(0.001, 10.0);
 /// A command beyond `force_N` or faster than `rate_N_per_s` is held back to it; one that insists for longer than
 /// `timeout` is no slip, and latches. A number that is none, and a device beyond `velocity_m_per_s` or `position_m`,
 /// latch at once. From then on the force falls to zero, then the drive is switched off, and stays so until `rearm`. A
-/// limit of 0 is none, and without a rate limit the force falls at once.
+/// limit of 0: none, and without a rate limit the force falls at once.
 ///
 /// Toward zero a force may always fall as fast as `force_N` over `control::longest_stop_s`, however slow the rate limit
 /// is: the gates stop that fast.
@@ -43,7 +43,7 @@ inline constexpr Bounds silence_bounds = between(0.001, 10.0);
 /// the same share, and a gain beyond its limit is held back too: to none, where the device states none. Once it has let
 /// go a drive has no law.
 ///
-/// It stands behind `control::SafetyGate`, wherever the controller runs, and shares nothing with it but what both are
+/// It is behind `control::SafetyGate`, wherever the controller runs, and shares nothing with it but what both are
 /// for: no limiter, no filter, no clock of ticks. Speed is distance over time since a mark that moves on every
 /// `speed_window_ns`, so it takes an encoder's step for what it is, and finds a jump.
 class DeviceGuard {
@@ -56,7 +56,7 @@ class DeviceGuard {
   DeviceCommand pass(const DeviceCommand& wanted, const Tick& tick) noexcept;
   /// Latches, for what is found elsewhere. The first cause stays.
   void release(ReleaseCause cause) noexcept;
-  /// Nothing is latched any more. The force goes on from where it is.
+  /// Nothing is latched any more. The force continues from where it is.
   void rearm() noexcept;
 
   /// What was latched.
@@ -89,8 +89,8 @@ class DeviceGuard {
 template <class Reading>
 Check check_limits(const DeviceOf<Reading>& device);
 
-/// A device behind its wall, for the process whose servo thread drives it. `lost` once the wall has let go, of all
-/// joints where one was wrong. All but `limits` is real-time safe as far as the device is.
+/// A device behind its guard, for the process whose servo thread drives it. `lost` once the wall has released its
+/// force, of all joints where one was wrong. All but `limits` is real-time safe as far as the device is.
 template <class Reading>
 class GuardedDeviceOf final : public DeviceOf<Reading> {
  public:
@@ -111,7 +111,7 @@ class GuardedDeviceOf final : public DeviceOf<Reading> {
   [[nodiscard]] DeviceHealth health() const noexcept override {
     return cause() == ReleaseCause::none ? device_->health() : DeviceHealth::lost;
   }
-  /// What was latched, at the first joint that has let go.
+  /// What was latched, at the first joint that has released its force.
   [[nodiscard]] ReleaseCause cause() const noexcept {
     ReleaseCause found = ReleaseCause::none;
     for_each_joint(

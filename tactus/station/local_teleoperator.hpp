@@ -11,8 +11,8 @@ namespace tactus::station {
 
 /// Both sites of a teleoperator on one computer, each with its device: what a servo thread steps.
 ///
-/// Where a device can do less than its safety gate lets through, the gate is tightened to that: what a site believes to
-/// be applied then is. A device that is not simulated stands behind a `GuardedDevice`, and is refused where it states
+/// Where a device can do less than its safety gate lets through, the gate is tightened to that: what a site assumes to
+/// be applied then is. A device that is not simulated is behind a `GuardedDevice`, and is refused where it states
 /// no limits of its own, where a limit of its gates was never chosen, and by sites without supervision.
 template <class Pair>
 class DevicePair {
@@ -33,7 +33,7 @@ class DevicePair {
   /// the devices allow (`tightened`). Errors name `master` and `slave`: of other numbers of joints, too.
   static Result<DevicePair> around(Pair sites, Device& master, Device& slave);
 
-  /// One tick. `request` is what the person presses, at both sites, or, without supervision, the share of the force
+  /// One tick. `request` is what the operator presses, at both sites, or, without supervision, the share of the force
   /// that is let in. Real-time safe as far as the devices are.
   Output step(const Tick& tick, const Request& request) noexcept {
     return sites_.step(*master_, *slave_, tick, request);
@@ -78,7 +78,7 @@ class DevicePair {
   Device* slave_;
 };
 
-/// With a person who arms it and holds a dead-man switch.
+/// With an operator who arms it and holds a dead-man switch.
 using LocalTeleoperator = DevicePair<SupervisedPair>;
 /// As in the papers, at work from the first tick on. For simulated devices only.
 using BareTeleoperator = DevicePair<BarePair>;

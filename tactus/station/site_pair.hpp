@@ -11,8 +11,8 @@
 
 namespace tactus::station {
 
-/// The way of one site of a pair: what it hears at this tick, and the channel into which it speaks. Messages for a site
-/// without supervision, packets for one with it.
+/// The way of one site of a pair: what it receives at this tick, and the channel into which it speaks. Messages for a
+/// site without supervision, packets for one with it.
 template <class Payload>
 struct TransportEnd {
   using Delivery = typename ChannelOf<Payload>::Delivery;
@@ -23,7 +23,7 @@ struct TransportEnd {
   double tick_s;
   bool a_tick_later;  ///< what arrived has lain there since the tick before
 
-  /// Puts what has come into what the site senses. A side of fewer joints, as a handle that leads a tool, says fewer
+  /// Puts what has come into what the site senses. A side of fewer joints, as a handle that leads a tool, states fewer
   /// numbers: those of the first joints.
   template <class Sensors>
   void hear(Sensors& sensors) const noexcept {
@@ -64,7 +64,7 @@ class SitePair {
     Step<Master> master;
     Step<Slave> slave;
   };
-  /// Of supervised sites what the person presses, at both; of others the share of the controllers' forces.
+  /// Of supervised sites what the operator presses, at both; of others the share of the controllers' forces.
   using Request = typename Master::Request;
 
   /// With a slave that rests at `slave_start_m`. Errors name `control` and `channel`.
@@ -88,15 +88,15 @@ class SitePair {
             .slave = station::step(slave_, slave, of_slave, tick, request)};
   }
 
-  /// Goes on with the channels of `made`, which has not been stepped, and gives it the own ones; what is on its way is
-  /// lost. Between ticks. Real-time safe.
+  /// Continues with the channels of `made`, which has not been stepped, and gives it the own ones; what is on its way
+  /// is lost. Between ticks. Real-time safe.
   void exchange_channels(SitePair& made) noexcept requires(!supervised) {
     made.to_slave_.continue_from(to_slave_);
     made.to_master_.continue_from(to_master_);
     std::swap(to_slave_, made.to_slave_);
     std::swap(to_master_, made.to_master_);
   }
-  /// Goes on with the controllers of `made`, brought to rest at the latest tick (`Site::exchange_controller`); the
+  /// Continues with the controllers of `made`, brought to rest at the latest tick (`Site::exchange_controller`); the
   /// gates stay. Between ticks; does not allocate, but takes as long as a thousand ticks.
   void exchange_controllers(SitePair& made) noexcept requires(!supervised) {
     constexpr int ticks_to_rest = 1000;
@@ -106,7 +106,7 @@ class SitePair {
 
   [[nodiscard]] const Master& master() const noexcept { return master_; }
   [[nodiscard]] const Slave& slave() const noexcept { return slave_; }
-  /// What has come for the master, which it hears at its next tick.
+  /// What has come for the master, which it receives at its next tick.
   [[nodiscard]] const Payload& at_master() const noexcept { return at_master_.message; }
   /// Neither site commands a force.
   [[nodiscard]] bool at_rest() const noexcept {
@@ -143,7 +143,7 @@ class SitePair {
   double tick_s_;
 };
 
-/// As sites run on a machine: armed by a person, watched, held where anything is wrong.
+/// As sites run on a machine: armed by an operator, watched, held where anything is wrong.
 using SupervisedPair = SitePair<control::SupervisedMaster, control::SupervisedSlave>;
 /// As the papers have them: a controller and its gate, at work from the first tick on. For simulated devices.
 using BarePair = SitePair<control::MasterSite, control::SlaveSite>;

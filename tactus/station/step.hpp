@@ -21,8 +21,8 @@ concept Drivable = requires(D& device, const Tick& tick,
   noexcept;
 };
 
-/// A site that takes packets and is asked things by a person. One without supervision hears messages, and is told which
-/// share of its controller's force to let in.
+/// A site that takes packets and is asked things by an operator. One without supervision receives messages, and is told
+/// which share of its controller's force to let in.
 template <class Site>
 concept Supervised = requires(Site& site, const typename Site::Packet& packet) {
   { site.take(packet) }
@@ -66,8 +66,8 @@ Joints<DeviceCommand> command_of(const Joints<Output>& output, bool enabled = tr
   return command;
 }
 
-/// What the device reads, and its health. Of a device that is lost no position is a number, so that its site lets go;
-/// nor of one that is silent, where no supervision could make its site hold.
+/// What the device reads, and its health. Of a device that is lost no position is a number, so that its site releases
+/// its force; nor of one that does not respond, where no supervision could make its site hold.
 template <class Site, Drivable Device>
 auto read(Device& device, const Tick& tick, DeviceHealth& health) noexcept {
   auto reading = device.read(tick);
@@ -84,7 +84,7 @@ auto read(Device& device, const Tick& tick, DeviceHealth& health) noexcept {
 ///
 /// A way of a supervised site has `receive(tick, take)`, which hands each packet that has come to `take`, and
 /// `send(packet, tick)`; one of a site without supervision has `hear(sensors)`, which puts what has come there, and
-/// `send(message)`. `request` is what the person presses, or the share of the force. Real-time safe as far as device
+/// `send(message)`. `request` is what the operator presses, or the share of the force. Real-time safe as far as device
 /// and way are.
 template <class Site, Drivable Device, class Transport>
 Step<Site> step(Site& site, Device& device, Transport& transport, const Tick& tick,

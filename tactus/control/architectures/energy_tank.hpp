@@ -6,8 +6,8 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
 
-/// Two layers: position-force control says what force would be transparent, and a tank of energy at each site says how
-/// much of it may be had.
+/// Two layers: position-force control states what force would be transparent, and a tank of energy at each site states
+/// how much of it may be had.
 ///
 /// The motor's work is paid from the site's own tank and what the world does to the motor flows into it. So no site
 /// gives more than it got, whatever the other layer, the channel or the other site do. Sites send each other packets of

@@ -19,7 +19,7 @@
 /// measured at the slave's tip. One class for each site.
 namespace tactus::control {
 
-/// Whether cancellation of induced master motion stands in the command path.
+/// Whether cancellation of induced master motion is in the command path.
 enum class CancellationMode { off, on };
 constexpr auto enumerators(CancellationMode) {
   return std::array{Enumerator{CancellationMode::off, "off"}, Enumerator{CancellationMode::on, "on"}};
@@ -48,7 +48,7 @@ struct MasterStages {
 /// it drives the model of cancellation too; so does what compensation of the way from motor to hand makes of the force.
 /// That takes the force saturated, for the hand should get no more than the limit. What the actuator on the handle does
 /// is no part of the model. An online estimate of the hand lessens the force before damping (`AdmissibleForce`). With
-/// cancellation off the model still runs beside the loop, so that its estimate can be
+/// cancellation off the model still runs alongside the loop, so that its estimate can be
 /// looked at.
 class PositionForceMaster {
  public:

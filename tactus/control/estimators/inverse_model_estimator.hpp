@@ -11,7 +11,7 @@
 
 namespace tactus::control {
 
-/// How friction depends on velocity, beside the viscous part of the linear model.
+/// How friction depends on velocity, alongside the viscous part of the linear model.
 enum class FrictionLaw { none, sigmoid, smooth_coulomb, dead_band_coulomb };
 
 /// The words for a friction law in a file.

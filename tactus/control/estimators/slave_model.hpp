@@ -5,7 +5,7 @@
 
 namespace tactus::control {
 
-/// What an observer believes of the slave, M ẍ = K_a u − h ẋ − friction(ẋ) + F_e: one rigid body without delay.
+/// What an observer assumes of the slave, M ẍ = K_a u − h ẋ − friction(ẋ) + F_e: one rigid body without delay.
 struct SlaveModel {
   double mass_kg = 0.032;
   double viscous_damping_N_s_per_m = 0.0;

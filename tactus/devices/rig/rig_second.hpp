@@ -84,7 +84,7 @@ void note_support(RigSecond& second, const Site& site, bool of_leader) noexcept 
   second.support = site.support().found();
   second.support_of_leader = of_leader;
 }
-/// Begins anew what a second gathers. What stopped the sites is told until they are armed again.
+/// Begins again what a second gathers. What stopped the sites is told until they are armed again.
 inline void begin_anew(RigSecond& second, bool stands) noexcept {
   second.most_torque = 0.0;
   if (!stands) second.leader_trouble = second.follower_trouble = {};

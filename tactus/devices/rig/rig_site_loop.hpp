@@ -13,7 +13,7 @@ namespace tactus::devices {
 /// One site of several joints, of either role.
 using JointSite = runtime::JointSupervisedSite;
 
-/// Whether the slave of these parameters tells where its motors are, so that its master can see how far it is.
+/// Whether the slave of these parameters reports where its motors are, so that its master can see how far it is.
 bool tells_its_place(const Joints<control::ControlParams>& control, Seconds tick);
 
 /// One side of a pair on this computer, the other side being elsewhere: the link, a supervised site of several joints
@@ -22,7 +22,7 @@ bool tells_its_place(const Joints<control::ControlParams>& control, Seconds tick
 /// It arms as `RigLoop` does. No motor has power until somebody arms at the leader's; that is not heard while the
 /// follower tells of a joint that is farther from its leader than it may be, is not heard itself, or works by other
 /// parameters. The leader then stands and arms; the follower, which sees it do so, stands and follows the arming, but
-/// not from a place that is farther from where it is told to be than it may be.
+/// not from a place that is farther from where it is commanded to be than it may be.
 class RigSiteLoop {
  public:
   struct Params {
@@ -49,7 +49,7 @@ class RigSiteLoop {
   /// fault of the run. After the last tick.
   [[nodiscard]] const RigSecond& last() const noexcept { return at_end_ ? *at_end_ : second_; }
   [[nodiscard]] runtime::LinkTotals link_totals() const { return link_.totals(); }
-  /// The seconds that ended, as they end; of the other side its state as it tells it, and no more. One other thread.
+  /// The seconds that ended, as they end; of the other side its state as it reports it, and no more. One other thread.
   [[nodiscard]] std::optional<RigSecond> next_second() noexcept { return next_of(*shared_); }
 
  private:

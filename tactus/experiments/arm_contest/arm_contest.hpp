@@ -103,7 +103,7 @@ struct ArmContestParams {
 /// A competitor: its name, and what it sets on top of a pair's experiment, as `key=value`.
 struct ArmContestMethod {
   std::string_view name;
-  bool recommended;  ///< stands on the experiment as recommended, without `task.bare`
+  bool recommended;  ///< is on the experiment as recommended, without `task.bare`
   std::vector<std::string_view> settings;
   std::string_view explanation;  ///< what it does, in one sentence
 };

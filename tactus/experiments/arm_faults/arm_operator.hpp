@@ -21,7 +21,7 @@ struct ArmWay {
   }
 };
 
-/// The person of a run at the leader's tool: the path and the buttons of `FaultOperator`, led by a hand in three
+/// The operator of a run at the leader's tool: the path and the buttons of `FaultOperator`, led by a hand in three
 /// dimensions. While motors are tried the hand stays where it is.
 class ArmFaultOperator {
  public:
@@ -72,7 +72,7 @@ class ArmFaultOperator {
   [[nodiscard]] double hand_N() const { return felt_N_; }
 
  private:
-  /// Beyond the deepest that the person goes, so that the tool starts before the wall.
+  /// Beyond the deepest that the operator goes, so that the tool starts before the wall.
   static constexpr double wall_from_start_m = 0.02;
 
   [[nodiscard]] arm::Vector3 leader_at(double path_m) const {

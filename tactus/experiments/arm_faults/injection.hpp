@@ -45,7 +45,7 @@ class ArmFaultInjection {
 
   /// No packet passes either way.
   [[nodiscard]] bool cuts() const noexcept { return plan_.kind == FaultKind::cut && moment_.during; }
-  /// A drive of `site` has no power, and says so.
+  /// A drive of `site` has no power, and states it.
   [[nodiscard]] bool is_without_power(FaultSite site) const noexcept {
     return plan_.kind == FaultKind::power_lost && plan_.site == site && moment_.during;
   }
@@ -59,7 +59,7 @@ class ArmFaultInjection {
     control::DriveReport& tells = joint.motor_report;
     if (plan_.kind == FaultKind::encoder_reversed) tells.velocity_m_per_s = -tells.velocity_m_per_s;
     if (plan_.kind == FaultKind::encoder_freeze) tells.velocity_m_per_s = 0.0;
-    // What a drive believes to give, from its current.
+    // What a drive assumes to give, from its current.
     if (plan_.kind == FaultKind::motor_reversed) tells.force_N = -tells.force_N;
     if (plan_.kind == FaultKind::torque_constant) tells.force_N /= plan_.size;
   }
@@ -72,7 +72,7 @@ class ArmFaultInjection {
     joint.law = joint.law.times(share);
   }
 
-  /// What `FaultProcessOf` asks, beside the clock.
+  /// What `FaultProcessOf` asks, alongside the clock.
   [[nodiscard]] bool sleeps() const noexcept { return false; }
   [[nodiscard]] double age_error_s(FaultSite) const noexcept { return 0.0; }
   void spoil(FaultSite site, control::JointPacket& packet) const noexcept {

@@ -11,14 +11,14 @@
 
 namespace tactus::experiments {
 
-/// What the sites believe of the arms and of the hand, as far as a tap draws errors of it.
+/// Parameters of arms and hand that the models of the sites have, as far as a tap draws errors of them.
 struct ArmModelParams {
   arm_control::InducedMotion::Arm induced;                ///< the leader, for the model of induced motion
   arm::HandImpedance hand;                                ///< that holds it, for the same
   arm::JointVector follower_joint_stiffness_N_m_per_rad;  ///< for an observer of elastic joints
 };
 
-/// All that a pair is made of, read and checked. What the sites believe to carry and to resist the arms is exact.
+/// All that a pair is made of, read and checked. Gravity compensation and friction compensation of the sites are exact.
 struct ArmPairSetup {
   ArmTappingParams params;
   DescribedArm leader;
@@ -65,38 +65,38 @@ struct ArmRecord {
 };
 
 /// What both arms are about, for who draws them: vectors along the axes of the bases, forces on the hand and the
-/// follower's tool. What a site says is that of the latest tick.
+/// follower's tool. Values of a site are those of the latest tick.
 struct ArmSnapshot {
   arm::JointVector leader_rad;  ///< of the links
   arm::JointVector follower_rad;
   arm::Vector3 leader_m;  ///< of the tools
   arm::Vector3 follower_m;
-  /// What the leader's motors and their law do beside carrying the arm, as the force at the tool whose torques come
-  /// nearest to theirs.
+  /// What the leader's motors and their law do in addition to gravity compensation, as the force at the tool whose
+  /// torques come nearest to theirs.
   arm::Vector3 displayed_N;
-  arm::Vector3 sent_N;     ///< of what the follower's site tells of the torques that resist it, the same
+  arm::Vector3 sent_N;     ///< of the resisting torques that the follower's site sends, the same
   arm::Vector3 induced_m;  ///< motion of the leader's tool that its site takes from the command
   arm::Vector3 command_m;  ///< where the leader's site sends the follower's tool
 };
 
-/// Two simulated arms with their sites, the leader in a person's hand, in virtual time. The sites are bare, as the
+/// Two simulated arms with their sites, the leader in an operator's hand, in virtual time. The sites are bare, as the
 /// papers have theirs, behind the widest gates.
 ///
-/// One tick: `station::step` of the leader's site with what the follower told at the tick before, then of the
-/// follower's with what the leader tells now, where the commands of the tick before go to the drives, as on a bus; the
-/// person aims; the arms step.
+/// One tick: `station::step` of the leader's site with what the follower sent at the tick before, then of the
+/// follower's with what the leader sends now, where the commands of the tick before go to the drives, as on a bus; the
+/// operator aims; the arms step.
 class ArmPair {
  public:
   /// The wall lies `wall_m` outward from where the follower's tool begins.
   static Result<ArmPair> make(const ArmPairSetup& setup, const ArmModelParams& model_params, double wall_m);
 
-  /// One tick, with where the person wants the follower's tool now and a tick later, from where it began; the hand goes
-  /// that over `ArmPairSetup::tool_scale`. `share` is that of what the controllers want, the arms' support with it; 0
-  /// lets go.
+  /// One tick, with where the operator wants the follower's tool now and a tick later, from where it began; the hand
+  /// goes that over `ArmPairSetup::tool_scale`. `share` is that of what the controllers want, the arms' support with
+  /// it; 0 releases the tool.
   ArmRecord step(const arm::Vector3& path_m, const arm::Vector3& path_at_next_tick_m, double share = 1.0);
   /// The parts of a tick, for a clock that is not the pair's own: first what a servo thread owes the drives in time...
   void step_sites(const station::Tick& tick, double share = 1.0) noexcept;
-  /// ...then person and arms, for as long as a tick takes; at a tick that the sites missed, these alone, under the
+  /// ...then operator and arms, for as long as a tick takes; at a tick that the sites missed, these alone, under the
   /// commands that the drives have. Real-time safe, as the other.
   ArmRecord step_arms(const arm::Vector3& path_m, const arm::Vector3& path_at_next_tick_m);
   /// What the sites did at the latest tick.
@@ -106,12 +106,12 @@ class ArmPair {
 
   /// What `exchange` takes over.
   struct Parts {
-    bool hand = false;         ///< spring and damper of the person; the mass is the arm's
+    bool hand = false;         ///< spring and damper of the operator; the mass is the arm's
     bool wall = false;         ///< how hard it is; it stays where it is
     bool controllers = false;  ///< of both sites
     bool operator==(const Parts&) const = default;
   };
-  /// Goes on with these parts of `made`, a pair of the same arms and clock that has not been stepped; `made` gets the
+  /// Continues with these parts of `made`, a pair of the same arms and clock that has not been stepped; `made` gets the
   /// own ones. Arms stay where they are. Controllers are first brought to rest at this very instant
   /// (`Site::exchange_controller`): as long as 1000 ticks of the sites. Between ticks; does not allocate.
   void exchange(ArmPair& made, const Parts& parts) noexcept;
@@ -142,7 +142,7 @@ class ArmPair {
   arm_plants::ToolOperator person_;
   station::JointBarePair sites_;
   station::JointBarePair::Output latest_;
-  arm::Chain leader_chain_;  ///< to tell what joints do at the tool
+  arm::Chain leader_chain_;  ///< maps joints to the tool
   arm::Vector3 leader_tool_m_;
   std::int64_t tick_ = 0;
   arm::Vector3 outward_;

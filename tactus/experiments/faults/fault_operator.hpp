@@ -12,7 +12,7 @@
 
 namespace tactus::experiments {
 
-/// The person of a run: where the hand means to be and which buttons are pressed when. Drawn by the plan's seed.
+/// The operator of a run: where the hand means to be and which buttons are pressed when. Drawn by the plan's seed.
 class FaultOperator {
  public:
   /// `wall_m` is where the slave meets the wall, on the master's side. Who `waits` keeps the hand still while the

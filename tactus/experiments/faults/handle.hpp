@@ -10,7 +10,7 @@
 
 namespace tactus::experiments {
 
-/// What holds the master's handle from tick to tick, as the faults have it: the person's hand, nobody, or a clamp.
+/// What holds the master's handle from tick to tick, as the faults have it: the operator's hand, nobody, or a clamp.
 class FaultHandle {
  public:
   explicit FaultHandle(const mechanics::LinearSpring::Params& grip) : grip_(grip) {}
@@ -35,7 +35,7 @@ class FaultHandle {
   /// What a clamp holds a handle with.
   static constexpr mechanics::LinearSpring::Params clamp{.stiffness_N_per_m = 20000.0, .damping_N_s_per_m = 50.0};
 
-  /// Lets go of the handle, clamps it or takes it again.
+  /// releases the handle, clamps it or takes it again.
   void hold(simulation::MasterPlant& plant, const FaultOperator& person, const std::vector<FaultInjection>& injections,
             double now_s) {
     Hand hand = Hand::holds;

@@ -4,7 +4,7 @@
 
 namespace tactus::experiments {
 
-/// What a person at the handle, and whoever is at the tool, may be exposed to by a fault: the largest that a run
+/// What an operator at the handle, and whoever is at the tool, may be exposed to by a fault: the largest that a run
 /// survives with.
 struct HarmBounds {
   double given_J = 0.25;

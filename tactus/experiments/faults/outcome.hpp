@@ -8,7 +8,7 @@
 /// What came of a run with a fault.
 namespace tactus::experiments {
 
-/// What a fault did at one site to whoever holds the handle or stands at the tool, from its first tick until the person
+/// What a fault did at one site to whoever holds the handle or is at the tool, from its first tick until the operator
 /// clears it. Truths, whatever the sensors say.
 struct SiteHarm {
   double given_J = 0.0;
@@ -37,7 +37,7 @@ struct SiteHarm {
   }
 };
 
-/// What a fault did to two arms besides: truths of both, from its first tick until the person clears it.
+/// What a fault did to two arms besides: truths of both, from its first tick until the operator clears it.
 struct ArmHarm {
   double fastest_joint_share = 0.0;
   double sank_m = 0.0;
@@ -54,7 +54,7 @@ struct ArmHarm {
   }
 };
 
-/// What a witness saw that stands outside of both sites: it reads what reaches the motors, and remembers when each
+/// What a witness saw that is outside of both sites: it reads what reaches the motors, and remembers when each
 /// packet was sent. It shares no code with what it judges.
 struct FaultOutcome {
   std::int64_t not_finite = 0;             ///< forces at a motor that were no numbers

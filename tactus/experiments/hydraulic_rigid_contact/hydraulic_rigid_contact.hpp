@@ -43,7 +43,7 @@ struct HydraulicRigidContactTask {
   }
 };
 
-/// The person's arm and the master that it moves: a mass on a spring and damper to where the person means to be.
+/// The operator's arm and the master that it moves: a mass on a spring and damper to where the operator means to be.
 struct HydraulicMasterParams {
   double mass_kg = 1.0;
   mechanics::LinearSpring::Params hand{.stiffness_N_per_m = 800.0, .damping_N_s_per_m = 40.0};

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-/// The main experiment: a person taps a stiff wall through the teleoperator (paper A, Fig. 13).
+/// The main experiment: an operator taps a stiff wall through the teleoperator (paper A, Fig. 13).
 namespace tactus::experiments {
 
 /// Taps that differ. A single tap near the boundary of stability is decided by accident, so each tap draws its approach
@@ -69,7 +69,7 @@ struct TappingParams : simulation::Teleoperator::Params {
   }
 };
 
-/// For what runs these sites without supervision, which `who` tells, as "the live page": refuses others.
+/// For what runs these sites without supervision, which `who` names, as "the live page": refuses others.
 Check refuse_supervised(const TappingParams& params, const std::string& who);
 
 enum class Verdict { settled, ringing, limit_cycle, diverged, stopped };
