@@ -196,7 +196,7 @@ TEST(ArmAdvise, DampingIsFoundForABarePairAndItsGainHoldsOnTapsThatNoSearchSaw) 
   EXPECT_EQ(last, 1.0);
   ASSERT_TRUE(advice->start);
   EXPECT_GE(advice->start->settled_fraction, 0.95);
-  // Plain settles up to about 2.8 in a firm hand (docs/theory/arms.md), damping in the drives lifts that.
+  // Plain settles up to about 2.8 in a firm hand (docs/theory/arm-methods.md), damping in the drives lifts that.
   EXPECT_NE(advice->start->method.words().find("in the leader's drives"), std::string::npos)
       << advice->start->method.words();
   EXPECT_GT(advice->start->force_gain, 2.0);
