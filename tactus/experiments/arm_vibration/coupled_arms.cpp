@@ -179,7 +179,7 @@ Result<CoupledArmsSetup> set_up_coupled_arms(const ArmVibrationParams& params, c
 
 Result<CoupledArmsResult> run_coupled_arms(const CoupledArmsSetup& setup) {
   const ArmVibrationParams& p = setup.params;
-  const bool held = p.task.held_by == HeldBy::person;
+  const bool held = p.task.held_by == HeldBy::hand;
   const auto law = ReleasedLaw::make(p.control, setup.believed);
   if (!law) return under("control", law.error());
   ArmPlant::Params leader_arm = setup.arm;
@@ -256,7 +256,7 @@ Result<CoupledArmsTheory> theory_of(const CoupledArmsSetup& setup) {
   const arm::JointMatrix none = arm::JointMatrix::Zero(joints, joints);
   const arm_control::CoupledArm free{.inertia = chain->mass_matrix(setup.start), .damping = none, .stiffness = none};
   arm_control::CoupledArm leader = free;
-  if (setup.params.task.held_by == HeldBy::person) {
+  if (setup.params.task.held_by == HeldBy::hand) {
     const arm::HandImpedance& hand = setup.params.person.hand;
     const arm::Jacobian tool = chain->jacobian(setup.start, joints - 1, setup.arm.tool_m);
     const arm::JointMatrix moving = tool.topRows<3>().transpose() * tool.topRows<3>();

@@ -16,16 +16,16 @@ constexpr auto enumerators(ArmVibrationKind) {
 }
 
 /// Who holds the leader.
-enum class HeldBy { person, nobody };
+enum class HeldBy { hand, nobody };
 constexpr auto enumerators(HeldBy) {
-  return std::array{Enumerator{HeldBy::person, "person"}, Enumerator{HeldBy::nobody, "nobody"}};
+  return std::array{Enumerator{HeldBy::hand, "operator"}, Enumerator{HeldBy::nobody, "nobody"}};
 }
 
 /// What happens to the pair, and which joint is looked at.
 struct ArmVibrationTask {
   ArmVibrationKind kind = ArmVibrationKind::arm_vibration;
   std::int64_t joint = 2;
-  HeldBy held_by = HeldBy::person;
+  HeldBy held_by = HeldBy::hand;
   double reach_m = 0.2;
   double push_N = 10.0;
   double duration_s = 4.0;
