@@ -35,6 +35,6 @@ int main() {
       undisturbed.step({.grip_position_m = hand_m, .grip_velocity_m_per_s = 0.05});
     }
   }
-  std::printf("The impacts moved the motor by up to %.0f um, and what a slave would be told by up to %.0f um.\n",
+  std::printf("The impacts moved the motor by up to %.0f um, and the command to a slave by up to %.0f um.\n",
               1e6 * moved_m, 1e6 * left_m);
 }

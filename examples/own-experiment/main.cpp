@@ -36,7 +36,8 @@ experiments::Presentation VirtualWallExperiment::present(const experiments::Requ
       runs.front().settings, {{"stiffest", "N/m"}, {"settling", "ms"}, {"pressed in", "mm"}}, title);
   report::Page page(request.name + ": " + title);
   page.paragraph(
-      "A person holds the master's handle and presses onto a spring and damper that exist in the servo loop only. The "
+      "An operator holds the master's handle and presses onto a spring and damper that exist in the servo loop only. "
+      "The "
       "wall is made stiffer until the handle no longer comes to rest on it.");
   std::vector<report::Figure> figures;
   for (const Run& run : runs) {

@@ -29,8 +29,7 @@ struct VirtualWallTask {
     using namespace tactus;
     return List{
         field("kind", &T::kind, "Which experiment this is."),
-        field("press_m", &T::press_m, units::metre, between(0.001, 0.1),
-              "How far beyond the wall the person means to go."),
+        field("press_m", &T::press_m, units::metre, between(0.001, 0.1), "How far beyond the wall the operator aims."),
         field("observation_s", &T::observation_s, units::second, between(0.2, 10.0),
               "How long the press is observed from the first touch."),
         field("softest_N_per_m", &T::softest_N_per_m, units::newton_per_metre, between(1.0, 1e7),
@@ -63,7 +62,7 @@ struct VirtualWallParams {
     using P = VirtualWallParams;
     using namespace tactus;
     return List{field("master", &P::master, "The device that renders the wall."),
-                field("operator", &P::person, "The person who holds it."),
+                field("operator", &P::person, "The operator who holds it."),
                 field("servo", &P::servo, "The servo clock."),
                 field("plant", &P::plant, "The clock of the simulated device."),
                 field("wall", &P::wall, "What the wall is besides stiff."),

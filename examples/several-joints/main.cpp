@@ -69,7 +69,7 @@ int main(int count, char** arguments) {
     const control::SiteRequests pressed = pressed_at(time_s);
     // A follower that is armed holds its place: at the end all forces go.
     const bool over = time_s > 3.0;
-    const auto done = over ? sites->let_go(tick) : sites->step(tick, pressed);
+    const auto done = over ? sites->step_to_rest(tick) : sites->step(tick, pressed);
     streams.push(tick, pressed, *sites, done);
     for (std::size_t joint = 0; joint < joints; ++joint) {
       felt_N[joint] = std::max(felt_N[joint], std::fabs(done.master.output.site[joint].motor_force_N));

@@ -48,10 +48,10 @@ Check check_model(const TappingParams& params, const Bench& bench) {
     if (std::fabs(modelled / real - 1.0) <= share) return {};
     return Error{ErrorCode::inconsistent,
                  std::string("control.model.") + key,
-                 format_number(modelled) + " " + unit + " is not of this master, whose own is " + format_number(real) +
-                     " " + unit + ", and task.model_error allows " + format_number(share) +
+                 rounded_number(modelled) + " " + unit + " is not of this master, whose own is " +
+                     rounded_number(real) + " " + unit + ", and task.model_error allows " + rounded_number(share) +
                      " of it: describe the device under [master], or name the model.toml of tactus identify with the "
-                     "results.json beside it",
+                     "results.json next to it",
                  {}};
   };
   if (bench.given.contains("master.mechanism.motor.mass_kg")) return {};

@@ -15,7 +15,7 @@ namespace tactus::advice {
 
 /// The range of the search for force gains, that of the contest: what settles at the highest always does.
 inline constexpr double lowest_gain = 0.25, highest_gain = 32.0;
-/// Stages that a searched method has beside cancellation, at most.
+/// Stages that a searched method has alongside cancellation, at most.
 inline constexpr std::size_t most_stages = 2;
 /// By what a gain limit is divided for the gain that is advised.
 inline constexpr double reserve = 1.15;
@@ -24,7 +24,7 @@ inline constexpr double reserve = 1.15;
 struct Candidate {
   Method method;
   double force_limit_N = 0.0;
-  experiments::GainLimit limit;  ///< on all rigs, in the person's own grip
+  experiments::GainLimit limit;  ///< on all rigs, in the operator's own grip
   /// The limit less the reserve, three digits, and lowered until it holds on rigs that no search saw. Of a start, the
   /// gain that was given, where one was.
   double force_gain = 0.0;
@@ -38,7 +38,7 @@ struct Candidate {
   /// The grip over one's own, of `any_grip`, that no longer settles above `first_gain`; none where each holds as far as
   /// was tried.
   std::optional<double> limiting_grip = {};
-  // On the rig that is believed:
+  // On the rig that is assumed:
   std::optional<double> hand_error;  ///< `experiments::GainScore::spectral_error`
   double effort_N = 0.0;             ///< `experiments::FreeSpaceScore::hand_force_rms_N`
 };
@@ -54,9 +54,9 @@ struct Advice {
 };
 
 /// Searches, on draws of the bench's knowledge: every combination of the stages of position-force control with at most
-/// `most_stages` at a time; then, of the best, other values of their numbers; beside them the one with an estimate of
-/// the grip, and a stage at most, that is best over all grips; then more rigs for those. A gain holds
-/// where 95 % of the taps settle on each rig, the median within 100 ms and two round trips
+/// `most_stages` at a time; then, of the best, other values of their numbers; alongside them the one with an estimate
+/// of the grip, and a stage at most, that is best over all grips; then more rigs for those. A gain holds where 95 % of
+/// the taps settle on each rig, the median within 100 ms and two round trips
 /// (`experiments::taps_settle`). Where nothing settles, other architectures and then smaller displays are tried. Of
 /// those within a tenth of the largest gain, the one with the largest first gain is taken, and of those again, the one
 /// with the smallest error at the hand.

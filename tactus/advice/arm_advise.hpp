@@ -21,7 +21,7 @@ inline constexpr double most_effort_factor = 5.0;
 
 struct ArmCandidate {
   Method method;
-  std::string note;  ///< what it is beside that, as `what the file has`; empty for what the search found
+  std::string note;  ///< what it is alongside that, as `what the file has`; empty for what the search found
   /// On the taps that decide: what the gain is taken from.
   experiments::GainLimit limit;
   /// The limit less `reserve`, three digits, and lowered until 95 % of the taps of each hand settle that no search saw.
@@ -84,8 +84,8 @@ struct ArmAdvice {
 ///
 /// A gain holds where at least 95 % of the taps settle in each hand, as `arm-tapping` counts, and of each that does not
 /// three alike in hand, pose and direction do. One that is advised holds at half of it too, for less may settle less:
-/// a person begins there. Of those within the costs, the one with the largest presence is taken; of those within a
-/// tenth of it, the one of least effort. What the file has is shown beside it and never taken.
+/// a user begins there. Of those within the costs, the one with the largest presence is taken; of those within a
+/// tenth of it, the one of least effort. What the file has is shown alongside it and never taken.
 ///
 /// Equal benches give equal advice. Errors: those of reading the document. Not real-time safe; minutes, on all cores.
 Result<ArmAdvice> advise(const ArmBench& bench, const experiments::Progress& progress);

@@ -60,8 +60,8 @@ Result<ArmBench> make_arm_bench(configuration::Document document, const std::vec
   if (bench.given.contains("control.force_gain")) bench.asked_gain = params->control.force_gain;
   const bool hand_given = std::any_of(bench.given.begin(), bench.given.end(),
                                       [](const std::string& key) { return key.starts_with("operator"); });
-  if (!hand_given && params->person.hand.stiffness_N_per_m > soft_hand.stiffness_N_per_m) {
-    bench.hands.push_back({"a soft one", soft_hand});
+  if (!hand_given && params->person.hand.stiffness_N_per_m > light_grip.stiffness_N_per_m) {
+    bench.hands.push_back({"a light grip", light_grip});
   }
   if (!bench.given.contains("task.direction")) {
     for (const TapDirection one : {TapDirection::down, TapDirection::along_x, TapDirection::along_y}) {

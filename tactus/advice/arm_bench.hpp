@@ -22,11 +22,11 @@ struct ArmHand {
   arm::HandImpedance hand;
 };
 
-/// A soft hand, as experiments/arms/soft-hand.toml has it. Every pair is tried in it beside the file's own.
-inline constexpr arm::HandImpedance soft_hand{
+/// A light grip, as experiments/arms/light-grip.toml has it. Every pair is tried in it alongside the file's own.
+inline constexpr arm::HandImpedance light_grip{
     .mass_kg = 0.1, .stiffness_N_per_m = 60.0, .damping_N_s_per_m = 10.0, .lever_m = 0.05};
 
-/// Poses beside the file's own that a search may see, and all that there are with it: what confirms an answer sees
+/// Poses alongside the file's own that a search may see, and all that there are with it: what confirms an answer sees
 /// those too that no search saw.
 inline constexpr std::size_t seen_poses = 7, most_poses = 12;
 
@@ -45,8 +45,8 @@ struct ArmBench {
 };
 
 /// From a document on which the files of `--with` and the values of `set` stand already. Only `set` holds conditions:
-/// other files describe the pair, and what they recommend is searched anew. One hand where `set` has a key of
-/// `operator`, or where the file's own is as soft as `soft_hand`; one pose or direction where it has that.
+/// other files describe the pair, and what they recommend is searched again. One hand where `set` has a key of
+/// `operator`, or where the file's own is as soft as `light_grip`; one pose or direction where it has that.
 ///
 /// Errors: those of reading the document and of `ArmTaps::make`, where the document has them.
 Result<ArmBench> make_arm_bench(configuration::Document document, const std::vector<std::string>& set);

@@ -31,7 +31,7 @@ std::string words_of(const ArmCandidate& candidate) {
 }
 
 std::string both_hands(const ArmBench& bench) {
-  return bench.hands.size() > 1 ? "in your hand and in a soft one" : "in your hand";
+  return bench.hands.size() > 1 ? "in your hand and in a light grip" : "in your hand";
 }
 
 /// A value for each hand, as `10.7 / 7`.

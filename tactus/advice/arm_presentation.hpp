@@ -12,7 +12,7 @@ namespace tactus::advice {
 /// without a start.
 experiments::Settings settings_of(const ArmBench& bench, const ArmCandidate& candidate);
 
-/// The advice in one sentence that a person can act on.
+/// The advice in one sentence that a user can act on.
 std::string sentence(const ArmBench& bench, const ArmAdvice& advice);
 
 /// What `tactus run --with` loads: `settings_of` the start, which there must be, as TOML below command and sentence.

@@ -47,7 +47,7 @@ std::vector<Situation> situations(const ArmBench& bench, const ArmDraws& draws) 
 }
 
 std::string words_of(const ArmBench& bench, const Situation& situation) {
-  return (bench.hands[situation.hand].name == "yours" ? "in your hand, " : "in a soft hand, ") +
+  return (bench.hands[situation.hand].name == "yours" ? "in your hand, " : "in a light grip, ") +
          std::string(name_of(situation.direction)) + ", pose " + std::to_string(situation.pose);
 }
 

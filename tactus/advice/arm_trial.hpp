@@ -29,7 +29,7 @@ struct ArmDraws {
   std::size_t first_pose = 1;
   std::size_t poses = 0;
   bool own_pose = true;
-  std::size_t own_taps = 0;  ///< beside these, in each hand at the first pose, in its directions by turns
+  std::size_t own_taps = 0;  ///< alongside these, in each hand at the first pose, in its directions by turns
   /// Plants in steps of 250 µs, where the file has shorter ones: what settles does so too, and 1 to 3 % are felt more
   /// or less.
   bool coarse = true;
@@ -37,7 +37,7 @@ struct ArmDraws {
 };
 std::vector<Situation> situations(const ArmBench& bench, const ArmDraws& draws);
 
-/// `in a soft hand, along-y, pose 3`.
+/// `in a light grip, along-y, pose 3`.
 std::string words_of(const ArmBench& bench, const Situation& situation);
 
 /// What came of a gain.

@@ -19,13 +19,13 @@ struct Bench {
   Conditions given;
   Knowledge knowledge;
   std::filesystem::path results = {};  ///< where the knowledge comes from; empty: what the document states
-  std::vector<std::string> set = {};   ///< of what was given, the values that stand in no file: `key=value`
+  std::vector<std::string> set = {};   ///< of what was given, the values that are in no file: `key=value`
 };
 
 /// From a document on which the files of `with` and the values of `set` stand already. What is known comes from the
-/// results.json beside a file that holds the controller's model; without one, from the document's `task.model_error`,
-/// which then counts for the searched rigs and no longer for each tap. Errors: `inconsistent` for another kind than
-/// tapping; those of reading the files.
+/// results.json alongside a file that holds the controller's model; without one, from the document's
+/// `task.model_error`, which then counts for the searched rigs and no longer for each tap. Errors: `inconsistent` for
+/// another kind than tapping; those of reading the files.
 Result<Bench> make_bench(configuration::Document document, const std::vector<std::string>& with,
                          const std::vector<std::string>& set);
 

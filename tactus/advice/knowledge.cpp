@@ -215,16 +215,17 @@ Check Knowledge::fits(const control::MasterModel& model) const {
   if (model_mass_kg_ > 0.0 && off(model.motor.mass_kg, model_mass_kg_)) {
     return Error{ErrorCode::inconsistent,
                  "control.model.motor.mass_kg",
-                 format_number(model.motor.mass_kg) + " kg is not what the results.json beside the model says, " +
-                     format_number(model_mass_kg_) + " kg: keep both files of one identification together",
+                 rounded_number(model.motor.mass_kg) +
+                     " kg is not what the value in the results.json next to the model, " +
+                     rounded_number(model_mass_kg_) + " kg: keep both files of one identification together",
                  {}};
   }
   if (model_stiffness_N_per_m_ > 0.0 && off(model.linkage.stiffness_N_per_m, model_stiffness_N_per_m_)) {
     return Error{ErrorCode::inconsistent,
                  "control.model.linkage.stiffness_N_per_m",
-                 format_number(model.linkage.stiffness_N_per_m) +
-                     " N/m is not what the results.json beside the model says, " +
-                     format_number(model_stiffness_N_per_m_) + " N/m: keep both files of one identification together",
+                 rounded_number(model.linkage.stiffness_N_per_m) +
+                     " N/m is not what the value in the results.json next to the model, " +
+                     rounded_number(model_stiffness_N_per_m_) + " N/m: keep both files of one identification together",
                  {}};
   }
   return {};

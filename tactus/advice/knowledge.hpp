@@ -18,7 +18,7 @@
 /// What of a teleoperator is known, and how well: rigs drawn from it. Cold: it allocates.
 namespace tactus::advice {
 
-/// The keys that a person has given, which nobody changes.
+/// The keys that a user has given, which nobody changes.
 using Conditions = std::set<std::string, std::less<>>;
 
 /// A number that is not known exactly.
@@ -36,7 +36,7 @@ struct Known {
 };
 
 /// Parameters with their joint distribution. Those of an identified master are normal in the variable that
-/// identification fits (a logarithm, for most) and move the simulated master and its person: the controller's model
+/// identification fits (a logarithm, for most) and move the simulated master and its operator: the controller's model
 /// stays what was found. Those of a stated error of the model are even and move the model, as `task.model_error` does.
 class Knowledge {
  public:
@@ -55,7 +55,7 @@ class Knowledge {
   static Knowledge wrong_model(double share);
 
   [[nodiscard]] const std::vector<Uncertain>& parameters() const { return parameters_; }
-  /// Whether an identification stands behind it.
+  /// Whether an identification is behind it.
   [[nodiscard]] bool of_identification() const { return of_identification_; }
 
   /// By how much of it the controller's model may be wrong, as it was stated; 0 for an identification.
@@ -64,8 +64,8 @@ class Knowledge {
   /// An error unless the controller's model is the one that was identified, to 1 %. `inconsistent`.
   [[nodiscard]] Check fits(const control::MasterModel& model) const;
 
-  /// The rig of a draw: 0 is what is believed. What is known more is so at the believed value; the others keep what
-  /// their draw has beside it. Taps of a seed of their own.
+  /// The rig of a draw: 0 is what is assumed. What is known more is so at the assumed value; the others keep what
+  /// their draw has alongside it. Taps of a seed of their own.
   [[nodiscard]] experiments::TappingParams drawn(const experiments::TappingParams& believed, std::uint64_t draw,
                                                  const Known& known = {}) const;
 

@@ -13,7 +13,7 @@ namespace tactus::advice {
 /// One way to have a thing, such as a notch in the command.
 struct Choice {
   experiments::Settings settings;
-  std::string words = {};   ///< for a person: `a notch in the command at {} Hz`, {} for the number; empty for without
+  std::string words = {};   ///< for a user: `a notch in the command at {} Hz`, {} for the number; empty for without
   std::string tuned = {};   ///< key whose number is the one in the words and may be moved; empty for none
   std::string within = {};  ///< words of the choice of an earlier dimension that this is a part of; empty for none
   bool operator==(const Choice&) const = default;
@@ -26,11 +26,11 @@ using Dimension = std::vector<Choice>;
 struct Method {
   std::vector<Choice> choices;
   [[nodiscard]] experiments::Settings settings() const;
-  /// Whether one of the choices has these words, as they stand in it.
+  /// Whether one of the choices has these words, as they are in it.
   [[nodiscard]] bool has(std::string_view words) const;
   /// Choices that have a number to be tuned: damping, compensation, filters.
   [[nodiscard]] std::size_t stages() const;
-  /// For a person, `cancellation and local damping of 5 N s/m`; `no stage` for none.
+  /// For a user, `cancellation and local damping of 5 N s/m`; `no stage` for none.
   [[nodiscard]] std::string words() const;
   bool operator==(const Method&) const = default;
 };
@@ -39,7 +39,7 @@ struct Method {
 inline constexpr std::string_view grip_estimate = "an estimate of the grip";
 
 /// The dimensions of position-force control that are searched: cancellation, an estimate of the grip within it, local
-/// damping, hand compensation, filter of the command, filter of the force. Notches stand at the master's mode in the
+/// damping, hand compensation, filter of the command, filter of the force. Notches are at the master's mode in the
 /// hand as `model` has it.
 std::vector<Dimension> position_force_dimensions(const control::MasterModel& model);
 /// Other architectures, for where position-force control settles at no gain. They reflect less of the force.

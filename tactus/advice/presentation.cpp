@@ -42,7 +42,7 @@ std::string words_of(const Bench& bench, const Candidate& candidate) {
     return is_control(key) && !key.starts_with("control.model.") && key != "control.force_gain" &&
            key != "control.force_limit_N";
   });
-  return candidate.method.words() + (more ? " (beside what you gave)" : "");
+  return candidate.method.words() + (more ? " (in addition to what you gave)" : "");
 }
 
 std::string range_of(const Obstacle& obstacle) {

@@ -12,7 +12,7 @@ namespace tactus::advice {
 /// without a start.
 experiments::Settings settings_of(const Bench& bench, const Candidate& candidate);
 
-/// The advice in one sentence that a person can act on.
+/// The advice in one sentence that a user can act on.
 std::string sentence(const Bench& bench, const Advice& advice);
 /// The measurement that would buy most gain, and how much.
 std::string next_measurement(const Bench& bench, const Advice& advice);

@@ -22,7 +22,7 @@ struct Draws {
   bool coarse = true;  ///< plants in steps of 20 µs, where the file has shorter ones: within 1 % (the contest's)
 };
 
-/// Grips of a person, over the one of the file.
+/// Grips of an operator, over the one of the file.
 inline constexpr std::array own_grip{1.0};
 inline constexpr std::array any_grip{1.0, 0.25, 4.0};
 
@@ -30,7 +30,7 @@ inline constexpr std::array any_grip{1.0, 0.25, 4.0};
 class Trial {
  public:
   /// Draws that make no rig, as a cable too stiff for the plants' steps, are passed over. Errors: why the rig that is
-  /// believed, or too many of the draws, can not be.
+  /// assumed, or too many of the draws, can not be.
   static Result<Trial> make(const Knowledge& knowledge, const experiments::TappingParams& believed, const Draws& draws,
                             std::span<const double> grips = own_grip);
 

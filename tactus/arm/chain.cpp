@@ -84,7 +84,7 @@ Check check(const Body& body) {
   return Error{.code = ErrorCode::inconsistent,
                .parameter = "xx_kg_m2",
                .message = "no body has this inertia: one principal moment exceeds the sum of the other two by " +
-                          format_number(-2.0 * least) +
+                          rounded_number(-2.0 * least) +
                           " kg m^2; correct the moments, which are those about the centre of mass",
                .place = {}};
 }

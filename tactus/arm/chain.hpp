@@ -28,7 +28,7 @@ using Regressor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::C
 using ParameterVector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most * joint_parameters, 1>;
 using BodyVector = Eigen::Matrix<double, body_parameters, 1>;
 
-/// Where a link is: a point p of its frame stands at `rotation`·p + `position_m` in that of the base.
+/// Where a link is: a point p of its frame is at `rotation`·p + `position_m` in that of the base.
 struct LinkPose {
   Matrix3 rotation = Matrix3::Identity();
   Vector3 position_m = Vector3::Zero();
@@ -109,7 +109,7 @@ class Chain {
 
  private:
   using Link = detail::ChainLink;
-  /// How a link stands in the link before.
+  /// How a link is in the link before.
   struct Step {
     Matrix3 rotation;
     Vector3 offset_m;

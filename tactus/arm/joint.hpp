@@ -12,7 +12,7 @@
 /// frame of the link before, the base before the first. Units of a joint that slides: see units.hpp.
 namespace tactus::arm {
 
-/// Where a joint stands on the link before: first turned about the fixed axes x, y, z by roll, pitch, yaw
+/// Where a joint is on the link before: first turned about the fixed axes x, y, z by roll, pitch, yaw
 /// (R = Rz·Ry·Rx), then moved, as `<origin>` of URDF.
 struct JointOrigin {
   double x_m = 0.0;
@@ -94,7 +94,7 @@ struct Drive {
   }
 };
 
-/// The torque that motion takes beside inertia and gravity, positive where it needs a positive torque of the motor:
+/// The torque that motion takes alongside inertia and gravity, positive where it needs a positive torque of the motor:
 ///
 ///     tanh(v / v0) · (Coulomb + load · |transmitted torque| + excess · exp(−(v / vs)²)) + viscous · v + offset
 ///
@@ -170,7 +170,7 @@ struct JointParams {
   static constexpr auto fields() {
     using J = JointParams;
     return List{field("kind", &J::kind, "Whether it turns about its axis or slides along it."),
-                field("origin", &J::origin, "Where the joint stands on the link before."),
+                field("origin", &J::origin, "Place of the joint on the link before."),
                 field("axis", &J::axis, "Its direction in the frame of its link."),
                 field("body", &J::body, "The link that it moves, with all that is fixed to it."),
                 field("drive", &J::drive, "What turns with its motor."),

@@ -9,7 +9,7 @@ namespace tactus::arm {
 struct ArmReading {
   JointVector position;
   JointVector velocity;
-  JointVector torque;  ///< N m that the motor gives to the joint, as its drive believes
+  JointVector torque;  ///< N m that the motor gives to the joint, as its drive assumes
 };
 
 /// The law that a drive runs by itself, much faster than its bus ("MIT mode" of Damiao's and many others' motors):

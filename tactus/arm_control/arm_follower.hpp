@@ -22,9 +22,9 @@ constexpr auto enumerators(TorqueSource) {
   return std::array{Enumerator{TorqueSource::observer, "observer"}, Enumerator{TorqueSource::sensor, "sensor"}};
 }
 
-/// An observer of external torque, of rigid joints or of elastic ones, and what of it is believed.
+/// An observer of external torque, of rigid joints or of elastic ones, and what of it is assumed.
 ///
-/// A joint that rests bears any torque within its Coulomb friction, and an observer cannot tell that from one from
+/// A joint that rests bears any torque within its Coulomb friction, and an observer cannot determine that from one from
 /// outside. A dead band tells only what exceeds it: |r| − share·Coulomb, with the sign of r, or nothing. Without it, a
 /// false torque stands against the hand, times the gain; along a direction in which the tool hardly moves it is a
 /// large force. With it, forces within friction are not felt.
@@ -37,7 +37,7 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
         List{field("joints", &TorqueObserverParams::joints,
                    "What it takes the joints for: elastic ones filter in third order."),
              field("dead_band_share", &TorqueObserverParams::dead_band_share, tactus::units::none, between(0.0, 4.0),
-                   "Share of each joint's Coulomb friction that torque must exceed to be told.")});
+                   "Share of each joint's Coulomb friction that torque must exceed to be reported.")});
   }
 };
 
@@ -45,8 +45,8 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
 /// tells the torque from outside. What their gains come to at the tool beyond its limits is taken away over the bus
 /// (`ToolLimit`), with passive ports it may stay behind (`PassiveFollower`), and in free motion the torque of the
 /// wanted motion is added there (`WantedMotion`). What the bus carries saturates at each joint's effort limit, at 100 N
-/// m at most. Gates stand behind it (`follower_site`). With the coupling `tool` it hears and tells three numbers, those
-/// of the leader's handle.
+/// m at most. Gates are behind it (`follower_site`). With the coupling `tool` it receives and tells three numbers,
+/// those of the leader's handle.
 class ArmFollower {
  public:
   struct Params {
@@ -80,12 +80,12 @@ class ArmFollower {
                 "The most that the drives' damping may come to there; 0 is no limit."),
           field("feed_forward", &P::feed_forward, "What carries the follower and helps it against friction."),
           field("wanted_motion", &P::wanted_motion,
-                "What moves it as the leader wants, beside its drives, where it touches nothing."),
+                "What moves it as the leader wants in free motion, in addition to its drives."),
           field("torque", &P::torque, "Where the external torque that comes back is from."),
           field("observer", &P::observer, "The observer of external torque.")};
     }
   };
-  /// What the site believes of its arm.
+  /// What the site assumes of its arm.
   struct Arm {
     arm::Chain::Params chain;
     arm::Vector3 tool_m = arm::Vector3::Zero();  ///< on its last link
@@ -99,7 +99,7 @@ class ArmFollower {
   };
   struct Output {
     ArmCommand command;
-    JointVector support;  ///< of the command's torque, what carries the arm and helps it against friction, N m
+    JointVector support;  ///< of the command's torque, gravity compensation and helps it against friction, N m
     ArmMessage message;
   };
 

@@ -20,7 +20,7 @@ enum class ArmMethod {
   position_force,      ///< the follower's external torque comes back, times a gain
   cancellation,        ///< the same, and what it does to the leader is taken from the command (`InducedMotion`)
   position_position,   ///< each drive pulls its arm to the other's position; a gain on the leader's stiffness
-  factr,               ///< position-force with what FACTR's leader does beside (`FactrLaw`)
+  factr,               ///< position-force with what FACTR's leader does alongside (`FactrLaw`)
   feedback_avoidance,  ///< position-force whose torque fades where the leader moves along (`FeedbackAvoidance`)
   four_channel  ///< positions and torques both ways, disturbances observed (`FourChannel`); the follower takes part
 };
@@ -56,18 +56,18 @@ struct DriveDamping {
   }
 };
 
-/// The site of the arm that a person holds. Its torque is
+/// The site of the arm that an operator holds. Its torque is
 ///
 ///     feed-forward + gain·external torque of the follower − Jᵀ·damping·J·q̇ − drive damping·q̇,
 ///
 /// of which the second part is displayed and the last is the drives' own. What the last comes to at the tool
 /// beyond a limit is given back over the bus (`ToolLimit`). With `factr` and `feedback_avoidance` it is what their
-/// classes say beside that, and with passive ports a damper acts beside it (`PassiveLeader`). With position-position it
-/// is feed-forward and the drives' law, towards the follower; with four-channel what `FourChannel` adds as well. What
-/// the bus carries saturates at each joint's effort limit. Gates stand behind it (`leader_site`); the model of induced
-/// motion lives on what `applied` says that they let through. Sources: position-position as openarm_teleop ships it
-/// (enactic, Apache-2.0, `bilateral_step`), the gain on the leader's stiffness as i2rt's YAM has it (`bilateral_kp`,
-/// MIT); the rest as on one axis
+/// classes say alongside that, and with passive ports a damper acts alongside it (`PassiveLeader`). With
+/// position-position it is feed-forward and the drives' law, towards the follower; with four-channel what `FourChannel`
+/// adds as well. What the bus carries saturates at each joint's effort limit. Gates are behind it (`leader_site`); the
+/// model of induced motion lives on what `applied` states that they let through. Sources: position-position as
+/// openarm_teleop ships it (enactic, Apache-2.0, `bilateral_step`), the gain on the leader's stiffness as i2rt's YAM
+/// has it (`bilateral_kp`, MIT); the rest as on one axis
 /// (`control::PositionForceMaster`).
 class ArmLeader {
  public:
@@ -102,14 +102,14 @@ class ArmLeader {
                 tactus::units::newton_second_per_metre, between(0.0, 1e4),
                 "The most that drive_damping may come to at the tool, in any direction; 0 is no limit."),
           field("force_low_pass_Hz", &P::force_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
-                "First-order low-pass on the displayed torque; 0 is none."),
+                "First-order low-pass on the displayed torque; 0: no filter."),
           field("force_low_pass_each", &P::force_low_pass_each, "Corners of joints that have one of their own."),
           field("command_low_pass_Hz", &P::command_low_pass_Hz, tactus::units::hertz, between(0.0, 400.0),
-                "First-order low-pass on the command to the follower; 0 is none."),
+                "First-order low-pass on the command to the follower; 0: no filter."),
           field("command_low_pass_each", &P::command_low_pass_each, "Corners of joints that have one of their own."),
           field("feed_forward", &P::feed_forward, "What carries the leader and helps it against friction."),
           field("model", &P::model, "The model of induced motion."),
-          field("factr", &P::factr, "With factr alone: its law beside the displayed torque."),
+          field("factr", &P::factr, "With factr alone: its law, in addition to the displayed torque."),
           field("avoidance", &P::avoidance, "With feedback-avoidance alone: its gain of each joint."),
           field("four_channel", &P::four_channel, "With four-channel alone: the law of both arms."),
           field(
@@ -118,7 +118,7 @@ class ArmLeader {
     }
   };
 
-  /// What the site believes of its arm, once for what carries it and once for the motion that torques induce.
+  /// What the site assumes of its arm, once for what carries it and once for the motion that torques induce.
   struct Arm {
     arm::Chain::Params carried;
     InducedMotion::Arm induced;
@@ -127,7 +127,7 @@ class ArmLeader {
   struct Output {
     ArmCommand command;
     ArmMessage message;
-    JointVector support;    ///< of the command's torque, what carries the arm and helps it against friction, N m
+    JointVector support;    ///< of the command's torque, gravity compensation and helps it against friction, N m
     JointVector displayed;  ///< of the command's torque, what comes from the follower, N m
     JointVector induced;    ///< position that was taken from the command, rad
   };

@@ -24,8 +24,8 @@ JointVector each(const Joints<Input>& joints, std::size_t of_arm, Get&& get) noe
 template <class Input>
 ArmReading reading_of(const Joints<Input>& input, std::size_t of_arm) noexcept {
   return {.position = each(input, of_arm, [](const Input& joint) { return joint.motor_position_m; }),
-          .velocity = each(input, of_arm, [](const Input& joint) { return joint.motor_tells.velocity_m_per_s; }),
-          .torque = each(input, of_arm, [](const Input& joint) { return joint.motor_tells.force_N; })};
+          .velocity = each(input, of_arm, [](const Input& joint) { return joint.motor_report.velocity_m_per_s; }),
+          .torque = each(input, of_arm, [](const Input& joint) { return joint.motor_report.force_N; })};
 }
 
 /// What a joint tells as force resists it, and so has the other sign than the torque that turns it up.
@@ -71,7 +71,7 @@ void put_beside(const Joints<DriveGains>& beside, const Joints<Input>& input, Jo
                       .stiffness_N_per_m = beside[i].stiffness_N_m_per_rad,
                       .damping_N_s_per_m = beside[i].damping_N_m_s_per_rad};
     output[at].message.position_m = input[at].motor_position_m;
-    output[at].message.velocity_m_per_s = input[at].motor_tells.velocity_m_per_s;
+    output[at].message.velocity_m_per_s = input[at].motor_report.velocity_m_per_s;
   }
 }
 

@@ -4,9 +4,9 @@
 #include <tactus/arm_control/arm_leader.hpp>
 #include <tactus/control/site.hpp>
 
-/// The controllers of two arms as sites of several joints, like any other: gates stand behind them, supervision around
+/// The controllers of two arms as sites of several joints, like any other: gates are behind them, supervision around
 /// them, and `station::step` steps them. Of a joint's message the force is the torque from outside that resists it, and
-/// its device tells velocity and torque of its motors and takes a law (`control::DriveLaw`). What the site believes to
+/// its device reports velocity and torque of its motors and takes a law (`control::DriveLaw`). What the site assumes to
 /// carry the arm is its support: it stays while the coupling comes and goes. Where the leader leads the tool
 /// (`ToolCoupling`) the follower's first three joints carry the messages of the leader's three; its others say nothing.
 namespace tactus::arm_control {
@@ -15,15 +15,15 @@ namespace tactus::arm_control {
 /// nothing but the arm's own limits shapes its motion.
 control::SafetyGate::Params widest_gate();
 
-/// The site of the arm that a person holds. `gates` has one for each joint; the law of a drive passes them with its
-/// force. Joints beside the arm's, such as that of a gripper, stand behind them: each drive pulls its own, with the
+/// The site of the arm that an operator holds. `gates` has one for each joint; the law of a drive passes them with its
+/// force. Joints alongside the arm's, such as that of a gripper, are behind them: each drive pulls its own, with the
 /// gains `beside`, to where the other side's is, and nothing carries it. Errors: those of `ArmLeader::make`; those of a
 /// gate, under `gate` and the joint; `inconsistent` for another number of gates, or more than `most_joints` joints.
 Result<control::JointMasterSite> leader_site(const ArmLeader::Params& params, const ArmLeader::Arm& arm,
                                              const Joints<control::SafetyGate::Params>& gates, Seconds dt,
                                              const Joints<DriveGains>& beside = {});
 /// The same of the arm that touches things. What its device reads as force at the tip is taken for what sensors in the
-/// joints tell, where `params.torque` says so.
+/// joints tell, where `params.torque` states it.
 Result<control::JointSlaveSite> follower_site(const ArmFollower::Params& params, const ArmFollower::Arm& arm,
                                               const Joints<control::SafetyGate::Params>& gates, Seconds dt,
                                               const Joints<DriveGains>& beside = {});

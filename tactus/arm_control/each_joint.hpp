@@ -6,7 +6,7 @@
 
 namespace tactus::arm_control {
 
-/// What a file says of each joint, `joint_1` to `joint_8`; an arm uses as many as it has.
+/// What a file states of each joint, `joint_1` to `joint_8`; an arm uses as many as it has.
 template <Described T>
 struct EachJoint {
   T joint_1 = {}, joint_2 = {}, joint_3 = {}, joint_4 = {}, joint_5 = {}, joint_6 = {}, joint_7 = {}, joint_8 = {};

@@ -20,14 +20,14 @@ namespace tactus::arm_control {
 /// one of first order. A joint with a corner of its own has a row of that filter's, over the signals of all. Damping of
 /// the springs is left out, and c and gravity are taken where the motors are. Positive in the direction in which the
 /// position grows. Starts at rest with nothing from outside, whatever torque the first reading tells: before its first
-/// command a drive tells none, though the arm has weight. Sources: A. De Luca, A. Albu-Schäffer, S. Haddadin, G.
+/// command a drive reports none, though the arm has weight. Sources: A. De Luca, A. Albu-Schäffer, S. Haddadin, G.
 /// Hirzinger, Collision detection and safe reaction with the DLR-III lightweight robot arm, IROS 2006 (links behind
 /// springs, with sensors of τ_J); M. W. Spong, Modeling and control of elastic joint robots, 1987 (the model).
 class ElasticTorqueObserver {
  public:
   using Params = ExternalTorqueObserver::Params;
 
-  /// `arm` and `joint_stiffness`, in N m/rad, are what it is believed to be. Errors: those of `Chain::make`; a cutoff
+  /// `arm` and `joint_stiffness`, in N m/rad, are what it is assumed to be. Errors: those of `Chain::make`; a cutoff
   /// out of bounds or beyond half the sample rate; `inconsistent` unless each joint has a stiffness.
   static Result<ElasticTorqueObserver> make(const Params& params, const arm::Chain::Params& arm,
                                             const JointVector& joint_stiffness, Seconds dt);

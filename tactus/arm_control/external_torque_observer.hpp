@@ -16,11 +16,11 @@ using arm::JointVector;
 ///
 ///     r = g/(s + g) · (d/dt(M q̇) − Ṁ q̇ + c + gravity + friction − τ),   g = 2π·cutoff of the joint
 ///
-/// Ticks stand in for the integral: M·(q̇_k − q̇_{k−1})/dt is what d/dt(M q̇) − Ṁ q̇ comes to, torque, bias and friction
+/// Ticks are in for the integral: M·(q̇_k − q̇_{k−1})/dt is what d/dt(M q̇) − Ṁ q̇ comes to, torque, bias and friction
 /// are the means of both ticks, and r answers a step of external torque by exactly 1 − exp(−g·k·dt) after k ticks. That
-/// form has no integrator that could drift. Velocity is what the drive tells: its step δ makes a noise of about M·δ·g.
-/// On elastic joints the link's own swing is taken for a torque from outside: `ElasticTorqueObserver` is for those.
-/// Positive in the direction in which the position grows. Cutoff: up to half the sample rate. Starts at rest.
+/// form has no integrator that could drift. Velocity is what the drive reports: its step δ makes a noise of about
+/// M·δ·g. On elastic joints the link's own swing is taken for a torque from outside: `ElasticTorqueObserver` is for
+/// those. Positive in the direction in which the position grows. Cutoff: up to half the sample rate. Starts at rest.
 /// Source: A. De Luca, R. Mattone, Actuator failure detection and isolation using generalized momenta, ICRA 2003.
 class ExternalTorqueObserver {
  public:
@@ -34,7 +34,7 @@ class ExternalTorqueObserver {
     }
   };
 
-  /// `model` is what the arm is believed to be. Errors: a cutoff out of bounds or beyond half the sample rate.
+  /// `model` is what the arm is assumed to be. Errors: a cutoff out of bounds or beyond half the sample rate.
   static Result<ExternalTorqueObserver> make(const Params& params, const arm::Chain& model, Seconds dt);
 
   /// Torque in N m that is not the motors', the model's gravity's, motion's or friction's. Once a tick, with the

@@ -70,7 +70,7 @@ class FourChannel {
               Seconds dt);
 
   struct Output {
-    JointVector torque;    ///< over the bus beside what carries the arm, N m
+    JointVector torque;    ///< over the bus alongside gravity compensation, N m
     JointVector external;  ///< r, for the other side, N m
   };
   /// Once a tick. Real-time safe.

@@ -31,8 +31,8 @@ constexpr auto enumerators(InertiaModel) {
 /// motion. What the site's own friction feed-forward takes away is not there. It enters as a damper of the size of its
 /// secant, so that the implicit step below holds it whatever it is.
 ///
-/// Slow motion is washed out of what is told (first-order high-pass, `washout_Hz`): the person corrects it, and a model
-/// without that correction would let the follower press ever harder. At 0 it is left in.
+/// Slow motion is washed out of what is told (first-order high-pass, `washout_Hz`): the operator corrects it, and a
+/// model without that correction would let the follower press ever harder. At 0 it is left in.
 ///
 /// Elastic joints have a motor and a link each: the armature turns with w, the rest of M and the hand with the links,
 /// and springs and dampers lie between. Position and velocity told are the motors', which drives measure.
@@ -49,9 +49,9 @@ class InducedMotion {
     InertiaModel inertia = InertiaModel::full;
     JointModel joints = JointModel::rigid;
     static constexpr auto fields() {
-      return List{field("hand", &Params::hand, "The hand that is believed to hold the tool."),
+      return List{field("hand", &Params::hand, "The assumed hand on the tool."),
                   field("washout_Hz", &Params::washout_Hz, tactus::units::hertz, between(0.0, 50.0),
-                        "Corner below which induced motion is left to the person; 0 takes out slow motion too."),
+                        "Corner below which induced motion is left to the operator; 0 takes out slow motion too."),
                   field("inertia", &Params::inertia, "The full mass matrix, or its diagonal alone."),
                   field("joints", &Params::joints, "What the joints are taken for.")};
     }
@@ -60,12 +60,12 @@ class InducedMotion {
   struct Site {
     double damping_N_s_per_m = 0.0;                ///< of a damper at the tool
     JointVector drive_damping_N_m_s_per_rad = {};  ///< of the leader's drives; none where it has no rows
-    double drive_damping_limit_N_s_per_m = 0.0;    ///< of what that is at the tool; 0 is none
+    double drive_damping_limit_N_s_per_m = 0.0;    ///< of what that is at the tool; 0: none
     double friction_share = 0.0;                   ///< of the friction that feed-forward takes away
     double friction_velocity_rad_per_s = 0.3;
   };
 
-  /// What the leader is believed to be.
+  /// What the leader is assumed to be.
   struct Arm {
     arm::Chain::Params chain;
     arm::Vector3 tool_m = arm::Vector3::Zero();  ///< on its last link

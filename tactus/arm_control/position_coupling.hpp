@@ -32,7 +32,7 @@ struct CoupledArm {
 };
 
 /// How fast motion grows, in 1/s, where nothing is old but a host reads the leader's velocities `scale` times too large
-/// and tells its drives velocities by as much too small (`arm_plants::MotorParams::velocity_scale`): the follower is
+/// and reports its drives velocities by as much too small (`arm_plants::MotorParams::velocity_scale`): the follower is
 /// asked for σ·scale·q̇₁, the leader for σ·q̇₂/scale. The largest real part of the loop's poles, so below 0, but for what
 /// nothing holds, where all dies out. `scale` is of one joint each, positive. Not real-time safe.
 ///

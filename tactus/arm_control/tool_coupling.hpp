@@ -34,13 +34,13 @@ constexpr auto enumerators(Coupling) {
 ///
 /// External torque τ comes back as the force that does on the handle the work that τ does on the motion that the handle
 /// commands: f = scale·Aᵀ·(H⁻¹Jᵀ)ᵀ·τ. That of a force F at the tool is scale·Aᵀ·F up to the damping, so at a scale of 2
-/// it is twice as large; moments about the tool are not told. Sources: Y. Nakamura, H. Hanafusa, Inverse kinematic
+/// it is twice as large; moments about the tool are not reported. Sources: Y. Nakamura, H. Hanafusa, Inverse kinematic
 /// solutions with singularity robustness, 1986; C. Wampler, Manipulator inverse kinematic solutions based on vector
 /// formulations and damped least-squares methods, 1986 (damped least squares); O. Khatib, A unified approach for motion
 /// and force control of robot manipulators, 1987 (forces by the transpose of the map of motion).
 class ToolCoupling {
  public:
-  /// The follower's arm as its site believes it, and where its tool is on the last link.
+  /// The follower's arm as its site assumes it, and where its tool is on the last link.
   struct Arm {
     const arm::Chain::Params& params;
     const arm::Chain& chain;
@@ -51,7 +51,7 @@ class ToolCoupling {
   /// Errors: `inconsistent` unless they are three that slide, along three directions.
   static Result<arm::Matrix3> axes_of(const arm::Chain::Params& leader);
 
-  /// `scale`: metres of the tool for one of the handle, above 0. `axes` as `axes_of` says. Errors: `inconsistent` for
+  /// `scale`: metres of the tool for one of the handle, above 0. `axes` as `axes_of` states. Errors: `inconsistent` for
   /// an arm of fewer than three joints, and for axes that are not three directions.
   static Result<ToolCoupling> make(double scale, const arm::Matrix3& axes, const Arm& arm, Seconds dt);
 

@@ -16,17 +16,17 @@ using arm::JointVector;
 ///     τ = (1 − s)·(M(q)·a + viscous·v + Coulomb·tanh(v/v1))
 ///
 /// v and a are the velocity that the leader tells and its derivative, both behind a Butterworth low-pass of second
-/// order whose states they are. Nothing of it is the follower's own motion but the slow M(q), so it closes no loop in
+/// order whose states they are. No part of it is the follower's own motion but the slow M(q), so it closes no loop in
 /// free motion. (Friction that is made good by the measured velocity does, and halves the gain that settles.)
 ///
-/// In contact it would: v is where the person goes, not where the arm can go, and what it pushes comes back as force.
+/// In contact it would: v is where the operator goes, not where the arm can go, and what it pushes comes back as force.
 /// So s, 1 in contact and 0 away from it, takes it away. A joint is in contact whose torque from outside, behind a
 /// low-pass of 10 Hz, exceeds twice its Coulomb friction and a hundredth of its effort limit; s then rises within 3 ms.
 /// It falls by 1/e for each 0.15 m that the tool goes without contact: a tool that bounces off is still close to what
 /// it bounced off.
 ///
-/// Gravity and Coriolis torque are not in it: `FeedForward` carries the arm, and Coriolis torque is small where arms
-/// follow a hand.
+/// Gravity and Coriolis torque are not in it: `FeedForward` compensates gravity, and Coriolis torque is small where
+/// arms follow a hand.
 class WantedMotion {
  public:
   struct Params {
@@ -36,7 +36,7 @@ class WantedMotion {
                         "-3 dB of the wanted velocity that it follows, at half the sample rate at most; 0 adds none.")};
     }
   };
-  /// What it believes of the follower.
+  /// What it assumes of the follower.
   struct Arm {
     const arm::Chain::Params& params;
     const arm::Chain& chain;

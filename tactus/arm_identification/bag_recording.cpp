@@ -67,7 +67,7 @@ Result<ArmRecording> read_bag_arm(const std::string& file, const std::vector<std
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = {},
                    .message = "joint '" + joint + "' of " + chosen.front() +
-                              " has not a position and an effort in every message: record it anew",
+                              " has not a position and an effort in every message: record it again",
                    .place = file};
     }
     const double steps = std::max(1.0, static_cast<double>(one.time_s.size()) - 1.0);

@@ -7,10 +7,10 @@
 
 #include <Eigen/Core>
 
-/// Parameters of an arm that bodies can have, from data and from what was believed before.
+/// Parameters of an arm that bodies can have, from data and from what was assumed before.
 namespace tactus::arm_identification {
 
-/// Of a joint beside its body: armature, Coulomb friction, viscous friction, offset, load-dependent friction,
+/// Of a joint alongside its body: armature, Coulomb friction, viscous friction, offset, load-dependent friction,
 /// Stribeck's excess, and by how much the logarithm of the velocity within which friction turns round is off.
 inline constexpr int local_parameters = 7;
 /// What is found for a joint: its body as a logarithm of a Cholesky factor (10), then those of the joint.
@@ -25,7 +25,7 @@ struct JointSums {
   double rows = 0.0;
 };
 
-/// What was believed of one joint before, and how firmly.
+/// What was assumed of one joint before, and how firmly.
 struct JointPrior {
   arm::Body body = {};
   double armature = 0.0;  ///< [kg m²], greater than 0
@@ -37,7 +37,7 @@ struct JointPrior {
   bool load = false;             ///< whether there is load-dependent friction
   bool stribeck = false;         ///< whether there is Stribeck's excess
   bool turning = false;          ///< whether the velocity within which friction turns round is sought
-  double turning_log = 0.0;      ///< what its logarithm was believed to be, less the one that the columns are made with
+  double turning_log = 0.0;      ///< what its logarithm was assumed to be, less the one that the columns are made with
 };
 
 struct ConsistentFit {
@@ -53,7 +53,7 @@ struct ConsistentFit {
   /// Standard deviation of a body's or a joint's number, to first order: `k` counts the ten of the body as
   /// `arm::linear_parameters` does, then the local ones.
   [[nodiscard]] double deviation(int joint, int k) const;
-  /// Standard deviation of each row of what the fit says of a joint's effort, as far as the parameters are uncertain.
+  /// Standard deviation of each row of what the fit states of a joint's effort, as far as the parameters are uncertain.
   /// `columns`: those of the bodies, then the local ones.
   [[nodiscard]] Eigen::VectorXd prediction_deviation(int joint, const Eigen::MatrixXd& columns) const;
 };

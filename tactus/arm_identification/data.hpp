@@ -11,7 +11,7 @@
 
 namespace tactus::arm_identification {
 
-/// How friction turns round and what it has beside.
+/// How friction turns round and what it has alongside.
 struct FrictionShape {
   std::size_t direction = 2;  ///< of `ArmData::directions`
   double log_change = 0.0;    ///< of v0 from that
@@ -32,7 +32,7 @@ class ArmData {
   static constexpr std::array directions{0.005, 0.02, 0.06, 0.15, 0.35};
   static constexpr std::array slownesses{0.1, 0.3};
 
-  /// `chain` tells where the joints are and which way gravity points; its bodies do not matter.
+  /// `chain` determines where the joints are and which way gravity points; its bodies do not matter.
   ArmData(const arm::Chain& chain, std::vector<ArmMotion> motions);
 
   [[nodiscard]] Eigen::Index rows() const { return effort.rows(); }
@@ -48,7 +48,7 @@ class ArmData {
                                       const std::array<double, local_parameters>& own) const;
   /// Bodies and armature alone [N m].
   [[nodiscard]] Eigen::VectorXd rigid_torque(int joint, const ConsistentFit& fit) const;
-  /// What a fit says the effort is, at every row.
+  /// What a fit states the effort is, at every row.
   [[nodiscard]] Eigen::VectorXd predicted(int joint, const ConsistentFit& fit, const FrictionColumns& law) const;
 
   std::vector<double> speed;            ///< rms, by joint [rad/s]

@@ -53,7 +53,7 @@ Check check_request(const ExcitationRequest& request, std::size_t joints) {
   const auto refuse = [](const char* name, double value, const std::string& bounds) {
     return Error{.code = ErrorCode::out_of_bounds,
                  .parameter = name,
-                 .message = "is " + format_number(value) + "; it must be " + bounds,
+                 .message = "is " + rounded_number(value) + "; it must be " + bounds,
                  .place = {}};
   };
   if (!(request.duration_s >= 1.0 && request.duration_s <= 600.0)) {
@@ -72,9 +72,9 @@ Check check_request(const ExcitationRequest& request, std::size_t joints) {
   }
   const double harmonics = std::floor(request.duration_s * request.highest_Hz + 1e-9);
   if (harmonics < 2.0 || harmonics > most_harmonics) {
-    return inconsistent("highest_Hz", "a series of " + format_number(request.duration_s) + " s has " +
-                                          format_number(harmonics) + " harmonics up to " +
-                                          format_number(request.highest_Hz) + " Hz; ask for 2 to " +
+    return inconsistent("highest_Hz", "a series of " + rounded_number(request.duration_s) + " s has " +
+                                          rounded_number(harmonics) + " harmonics up to " +
+                                          rounded_number(request.highest_Hz) + " Hz; ask for 2 to " +
                                           std::to_string(most_harmonics));
   }
   return {};
@@ -223,13 +223,13 @@ Error nowhere(const MotionInformation& information, const MotionLimits& limits, 
   std::string why;
   if (use.clearance_m < 0.0) {
     why = "in the middle of all ranges a point of the link behind joint '" + joints[use.nearest] + "' is " +
-          format_number(std::ceil(-1e3 * use.clearance_m)) + " mm outside of the box";
+          rounded_number(std::ceil(-1e3 * use.clearance_m)) + " mm outside of the box";
   }
   for (Index j = 0; j < limits.lower.size() && why.empty(); ++j) {
     if (use.effort[j] <= limits.effort[j]) continue;
     why = "in the middle of all ranges joint '" + joints[static_cast<std::size_t>(j)] + "' takes " +
-          format_number(std::ceil(100.0 * use.effort[j]) / 100.0) + " N m to hold the arm, and " +
-          format_number(limits.effort[j]) + " N m may be used";
+          rounded_number(std::ceil(100.0 * use.effort[j]) / 100.0) + " N m to hold the arm, and " +
+          rounded_number(limits.effort[j]) + " N m may be used";
   }
   if (why.empty()) why = "none of " + std::to_string(most_draws) + " poses that were tried is";
   return inconsistent("no motion was found within the limits: " + why +
@@ -243,7 +243,7 @@ MotionWorth worth_of(const MotionInformation& information, const FourierMotion& 
   worth.condition = std::sqrt(gains.maxCoeff() / std::max(1e-300, gains[gains.size() - parameters]));
   worth.information_nats = 0.5 * (1.0 + gains.array().max(0.0)).log().sum();
   // Half of the prior's variance is left where the information is as much as that of the prior.
-  worth.told_combinations = static_cast<int>((gains.array() > 1.0).count());
+  worth.determined_combinations = static_cast<int>((gains.array() > 1.0).count());
   return worth;
 }
 

@@ -34,20 +34,20 @@ struct ExcitedJoint {
   std::string name = {};
   double least = 0.0, greatest = 0.0;  ///< positions [rad]
   double velocity_rad_per_s = 0.0;     ///< greatest speed
-  double effort_N_m = 0.0;             ///< greatest torque, by the URDF's masses and the friction that is believed
+  double effort_N_m = 0.0;             ///< greatest torque, by the URDF's masses and the friction that is assumed
   arm::JointLimits limits = {};        ///< those of the URDF
   double noise_N_m = 0.0;
-  /// As believed, with the 95 % intervals that `identify_arm` will give if its residual is the noise.
+  /// As assumed, with the 95 % intervals that `identify_arm` will give if its residual is the noise.
   std::vector<ArmParameter> parameters = {};
 };
 
-/// How well a motion tells an arm.
+/// How well a motion determines an arm.
 struct MotionWorth {
   /// Of the information in base parameters and friction, each direction against what the URDF leaves in doubt: square
   /// root of the greatest over the least eigenvalue.
   double condition = 0.0;
-  double information_nats = 0.0;  ///< by which the doubt of all parameters together shrinks: ½ log|1 + information|
-  int told_combinations = 0;      ///< as in `ArmIdentification`
+  double information_nats = 0.0;    ///< by which the doubt of all parameters together shrinks: ½ log|1 + information|
+  int determined_combinations = 0;  ///< as in `ArmIdentification`
 };
 
 struct ArmExcitation {
@@ -55,7 +55,7 @@ struct ArmExcitation {
   std::vector<ExcitedJoint> joints = {};
   MotionWorth worth = {};
   bool searched = true;  ///< false where no search ended within the limits: the best random motion then
-  /// Beside it: random motions of the same series, each as large as the same limits let it. Medians of
+  /// Alongside it: random motions of the same series, each as large as the same limits let it. Medians of
   /// `compared_motions`.
   MotionWorth random = {};
   /// The median random motion, for a recording to compare with.

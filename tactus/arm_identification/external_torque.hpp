@@ -38,8 +38,8 @@ struct ExternalTorque {
 ///
 /// Everything passes the model's zero-phase filter, so nothing lags; the first and last 1/cutoff of the recording are
 /// left out. A contact is where the torque of a joint exceeds its threshold for at least half a period of the cutoff;
-/// it begins and ends where the torque passes half of the height that it has beside, since the filter spreads an edge
-/// evenly. Contacts closer than a period are one. Errors: those of `ArmMotion::make`. Not real-time safe.
+/// it begins and ends where the torque passes half of the height that it has alongside, since the filter spreads an
+/// edge evenly. Contacts closer than a period are one. Errors: those of `ArmMotion::make`. Not real-time safe.
 Result<ExternalTorque> estimate_external_torque(const ArmModel& model, const ArmRecording& recording);
 
 }  // namespace tactus::arm_identification

@@ -14,7 +14,7 @@ namespace tactus::arm_identification {
 Check check_efforts(const ArmData& data, const Eigen::VectorXd& bodies, const std::vector<std::string>& joints,
                     const ArmRecording& recording);
 
-/// What is believed of each joint: the URDF, friction and armature of the size of its torques where that has none.
+/// What is assumed of each joint: the URDF, friction and armature of the size of its torques where that has none.
 /// `scaled`: whether efforts cannot be torques in N m; then each has the scale with which the URDF explains it best.
 std::vector<JointPrior> priors_of(const ArmData& data, const arm::Chain& chain, const arm::Chain::Params& urdf,
                                   const Eigen::VectorXd& bodies, bool& scaled);

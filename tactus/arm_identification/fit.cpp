@@ -109,7 +109,7 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
   };
   // Half of the rows say something new at this rate, half are held out, and a number needs two.
   if (static_cast<double>(data.rows() * data.joints()) < 8.0 * (result.base_parameters + 3 * data.joints())) {
-    return in_file(inconsistent(short_text(result.duration_s) + " s are too short to tell " +
+    return in_file(inconsistent(short_text(result.duration_s) + " s are too short to determine " +
                                 std::to_string(result.base_parameters) +
                                 " parameters and friction, and to hold half of it out; record more motion"));
   }
@@ -178,7 +178,7 @@ Result<ArmIdentification> identify_arm(std::span<const ArmRecording> recordings,
     thresholds.push_back(threshold_margin * std::max(left.cwiseAbs().maxCoeff(), held_out.cwiseAbs().maxCoeff()));
     result.joints.push_back(std::move(fit));
   }
-  result.told_combinations = told_of(whole.found);
+  result.determined_combinations = told_of(whole.found);
   result.model = model_of(data, whole, joints, urdf, result.cutoff_Hz, thresholds);
   return result;
 }

@@ -19,7 +19,7 @@ struct ArmJointFit {
   double relative = 0.0;      ///< residual_rms / effort_rms
   /// The same for a model found from the first half of all rows alone, over the second half.
   double held_out_relative = 0.0;
-  /// Beside it, halves and filters alike: ordinary least squares of base parameters, Coulomb friction of the sign,
+  /// Alongside it, halves and filters alike: ordinary least squares of base parameters, Coulomb friction of the sign,
   /// viscous friction and offset.
   double least_squares_relative = 0.0;
   /// Share of the samples of the second half that lie within the 95 % interval of the first half's prediction.
@@ -33,10 +33,12 @@ struct ArmIdentification {
   ArmModel model = {};
   double duration_s = 0.0;
   double cutoff_Hz = 0.0;
-  /// Efforts are of a unit of their own at each joint, such as motor currents: the URDF tells how much of it is a N m.
+  /// Efforts are of a unit of their own at each joint, such as motor currents: the URDF determines how much of it is a
+  /// N m.
   bool scaled_efforts = false;
-  int base_parameters = 0;    ///< combinations that any motion could tell at all
-  int told_combinations = 0;  ///< those that these recordings tell better than the URDF does, friction included
+  int base_parameters = 0;  ///< combinations that any motion could tell at all
+  int determined_combinations =
+      0;  ///< those that these recordings determine better than the URDF does, friction included
 };
 
 /// Finds the dynamics of an arm from free motion of all its joints.

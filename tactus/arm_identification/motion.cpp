@@ -101,11 +101,11 @@ Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_H
   const double duration_s = dt.value * static_cast<double>(recording.samples());
   if (duration_s < shortest_periods / cutoff_Hz || recording.samples() < 50) {
     return fail(inconsistent("lasts " + short_number(duration_s) + " s with " + std::to_string(recording.samples()) +
-                             " samples, too short for motion below " + format_number(cutoff_Hz) +
+                             " samples, too short for motion below " + rounded_number(cutoff_Hz) +
                              " Hz; record at least " + short_number(shortest_periods / cutoff_Hz) + " s"));
   }
   if (cutoff_Hz * dt.value > 0.2) {
-    return fail(inconsistent("cutoff_Hz", "a cutoff of " + format_number(cutoff_Hz) + " Hz is too high for " +
+    return fail(inconsistent("cutoff_Hz", "a cutoff of " + rounded_number(cutoff_Hz) + " Hz is too high for " +
                                               short_number(1.0 / dt.value) +
                                               " samples a second; take at most a fifth of that with --cutoff-Hz"));
   }

@@ -30,12 +30,12 @@ struct MotionUse {
   bool within = true;                 ///< whether no limit is left
 };
 
-/// What the torques of a motion tell of an arm, judged as `fit_consistently` would: whitened by the noise of each
-/// joint's effort and by what was believed before.
+/// What the torques of a motion determine of an arm, judged as `fit_consistently` would: whitened by the noise of each
+/// joint's effort and by what was assumed before.
 class MotionInformation {
  public:
-  /// `chain`: what the arm is believed to be, with friction; `prior`: a fit without data to the same beliefs; `noise`:
-  /// of each joint's effort [N m]; `rows_per_s`: how often its noise is new.
+  /// `chain`: what the arm is assumed to be, with friction; `prior`: a fit without data to the same model_params;
+  /// `noise`: of each joint's effort [N m]; `rows_per_s`: how often its noise is new.
   MotionInformation(const arm::Chain& chain, const ConsistentFit& prior, arm::JointVector noise, double rows_per_s,
                     MotionLimits limits);
 

@@ -86,7 +86,7 @@ std::vector<ArmParameter> parameters_of(const ConsistentFit& fit, const Consiste
     const double factor = exponential && value > 0.0 ? std::exp(parameter_normal_95 * deviation / value) : 1.0;
     parameter.lower = exponential ? value / factor : value - parameter_normal_95 * deviation;
     parameter.upper = exponential ? value * factor : value + parameter_normal_95 * deviation;
-    parameter.told =
+    parameter.determined =
         exponential ? deviation / value <= 0.5 * before /
                                                nothing.local[static_cast<std::size_t>(joint)]
                                                             [static_cast<std::size_t>(row.place - arm::body_parameters)]

@@ -177,7 +177,7 @@ Result<ArmRecording> recording_of(const std::filesystem::path& file, const std::
   for (const ToldJoint& joint : joints) {
     if (joint.time_s.size() < 2) {
       return at_file(inconsistent("joint '" + names[static_cast<std::size_t>(&joint - joints.data())] +
-                                  "' told less than two positions"),
+                                  "' has fewer than two positions"),
                      file);
     }
     if (Check wrong = check_times(joint.time_s)) return at_file(*std::move(wrong), file);
@@ -192,7 +192,7 @@ Result<ArmRecording> recording_of(const std::filesystem::path& file, const std::
   }
   Steps steps{.first_s = first_s, .step_s = sample_time.value, .count = 0};
   if (last_s > first_s) steps.count = 1 + static_cast<std::size_t>((last_s - first_s) / steps.step_s);
-  if (steps.count < 2) return at_file(inconsistent("the joints told nothing at the same time"), file);
+  if (steps.count < 2) return at_file(inconsistent("no time has values of all joints"), file);
   ArmRecording result{.file = file,
                       .position_names = names,
                       .effort_names = names,

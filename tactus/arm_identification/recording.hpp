@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-/// What recordings tell of a whole arm.
+/// What recordings determine of a whole arm.
 namespace tactus::arm_identification {
 
 /// Which columns of a recording are what: choices as `recording::read_columns` takes them.
 struct ArmColumns {
   std::string time = {};
-  std::string time_unit = {};  ///< s, ms, us or ns, instead of what the file says; empty: as the file says
+  std::string time_unit = {};  ///< s, ms, us or ns, instead of what the file states; empty: as the file states
   std::string position = {};
   std::string velocity = {};  ///< empty: from the positions
   std::string effort = {};    ///< torques or motor currents
@@ -25,7 +25,7 @@ struct ArmRecording {
   std::vector<std::string> position_names = {};
   std::vector<std::string> effort_names = {};
   std::string effort_unit = {};                    ///< as the file has it, of the first joint; empty where it has none
-  double start_s = 0.0;                            ///< what the file says of the first sample
+  double start_s = 0.0;                            ///< what the file states of the first sample
   Seconds sample_time{0.0};                        ///< mean over the file
   std::vector<std::vector<double>> position = {};  ///< [rad], m of joints that slide
   std::vector<std::vector<double>> velocity = {};  ///< [rad/s]; empty where the file has none

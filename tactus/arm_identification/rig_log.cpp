@@ -85,7 +85,7 @@ Result<ToldJoint> told_in(const LogTable& table, const std::string& file) {
     return wrong(
         ErrorCode::missing,
         "topic " + table.topic + " has no " + names[i] +
-            ": the log is not of a rig's joints, or of an earlier version, which did not leave it; record it anew",
+            ": the log is not of a rig's joints, or of an earlier version, which did not leave it; record it again",
         file);
   }
   const auto& [position, age_s, velocity, force, stiffness] = found;
@@ -161,8 +161,8 @@ Result<std::vector<ArmRecording>> read_rig_log(const std::string& file, const st
       std::string all;
       for (const std::string& name : of_rig) all += (all.empty() ? "" : ", ") + name;
       return wrong(ErrorCode::inconsistent,
-                   "the arm's joint '" + joint + "' is none of the rig's, which are " + all +
-                       ": call those of the rig file as the URDF does, and record it anew",
+                   "the arm's joint '" + joint + "' is not a joint of the rig, whose joints are " + all +
+                       ": call those of the rig file as the URDF does, and record it again",
                    file);
     }
     const auto number = std::to_string(found - of_rig.begin() + 1);
@@ -178,8 +178,8 @@ Result<std::vector<ArmRecording>> read_rig_log(const std::string& file, const st
   }
   if (stretches.empty()) {
     return wrong(ErrorCode::missing,
-                 "the follower did not follow for " + format_number(shortest_stretch_s) +
-                     " s with all its drives heard each " + format_number(longest_pause_s) +
+                 "the follower did not follow for " + rounded_number(shortest_stretch_s) +
+                     " s with a reply of each drive every " + rounded_number(longest_pause_s) +
                      " s: record it on a machine that does nothing else",
                  file);
   }

@@ -22,12 +22,12 @@ struct RowsFit {
   std::vector<FrictionColumns> friction;
 };
 
-/// The whole fit, with the forms of friction, on some of the rows; nothing of it sees the others.
+/// The whole fit, with the forms of friction, on some of the rows; no part of it sees the others.
 RowsFit fit_rows(const ArmData& data, RowSpan span, std::vector<JointPrior> priors, bool scales_known);
-/// Effort less what the fit says, over `span`.
+/// Effort less what the fit states, over `span`.
 Eigen::VectorXd residual_of(const ArmData& data, const RowsFit& fit, int joint, RowSpan span);
 /// Of each joint, what ordinary least squares leaves over `judged` when it has seen `seen`: all joints together, base
-/// parameters by leaving out what the data do not tell, friction with the sign of the velocity.
+/// parameters by leaving out what the data do not determine, friction with the sign of the velocity.
 std::vector<double> ordinary_least_squares(const ArmData& data, RowSpan seen, RowSpan judged);
 
 }  // namespace tactus::arm_identification

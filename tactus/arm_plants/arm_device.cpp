@@ -7,7 +7,7 @@ ArmDevice::Reading ArmDevice::read(const station::Tick&) noexcept {
   for (std::size_t i = 0; i < reading_.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     reading_[i].position_m = now.position[at];
-    reading_[i].motor_tells = {.velocity_m_per_s = now.velocity[at], .force_N = now.torque[at]};
+    reading_[i].motor_report = {.velocity_m_per_s = now.velocity[at], .force_N = now.torque[at]};
   }
   return reading_;
 }

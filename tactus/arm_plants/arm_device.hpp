@@ -11,7 +11,7 @@ namespace tactus::arm_plants {
 /// which a command acts from the next tick on. Sensors of torque in its joints, where something `touches` it, tell
 /// exactly that, as the force that pushes back.
 ///
-/// A value: a copy goes on by itself. A tick does not allocate.
+/// A value: a copy continues by itself. A tick does not allocate.
 class ArmDevice final : public station::JointDevice {
  public:
   using Reading = Joints<station::DeviceReading>;
@@ -29,7 +29,7 @@ class ArmDevice final : public station::JointDevice {
 
   /// What touches the tool from outside at this tick, for the sensors in the joints.
   void touches(const ToolForce& on_tool) noexcept;
-  /// What it says of itself from now on.
+  /// What it states of itself from now on.
   void set_health(station::DeviceHealth health) noexcept { health_ = health; }
   /// One step of the arm.
   void step(const ToolForce& on_tool) { plant_.step(on_tool); }

@@ -23,7 +23,8 @@ Check check(const PolledArm::Params& params, std::size_t joints) {
                    std::to_string(params.answer_ticks) + ": must be 1 to " + std::to_string(most_ticks));
   }
   if (!(params.outage_ticks >= 1.0)) {
-    return refused(ErrorCode::out_of_bounds, "outage_ticks", "must be 1 or more: an outage lasts a tick at least");
+    return refused(ErrorCode::out_of_bounds, "outage_ticks",
+                   "must be 1 or more: an outage lasts at least one control cycle");
   }
   if (params.lost_share.size() == 0) return {};
   if (params.lost_share.size() != joints) {

@@ -18,15 +18,15 @@ struct KnownReading {
 
 /// A simulated arm behind a bus that a host polls: at each tick of the host every drive gets a command, and answers
 /// with what it reads then. The host works on answers of an earlier tick. Of a joint whose frames are lost the drive
-/// goes on by the law it has, and the host by the reading it has, as openarm_can does; nobody is told.
+/// continues by the law it has, and the host by the reading it has, as openarm_can does; nobody is told.
 ///
-/// A value: a copy goes on by itself. A tick does not allocate.
+/// A value: a copy continues by itself. A tick does not allocate.
 /// Source of the order in a tick: openarm_teleop (Apache-2.0), `bilateral_step`.
 class PolledArm {
  public:
   struct Params {
-    /// Ticks from a command to the tick that works on its answer: 1 where the host waits for the answers, 2 where its
-    /// time for them ends before they come, more where an adapter holds them back. 1 to 1000.
+    /// Control cycles from a command to the cycle that uses its reply: 1 where the host waits for the answers, 2 where
+    /// its time for them ends before they come, more where an adapter holds them back. 1 to 1000.
     int answer_ticks = 1;
     /// Of each joint, the share of the ticks in which it is not heard, 0 to below 1; none for 0 everywhere.
     Joints<double> lost_share = {};
@@ -35,7 +35,7 @@ class PolledArm {
     std::uint64_t seed = 1;
   };
 
-  /// The host knows the arm as it stands at `now_s`. Errors: `out_of_bounds` for a number outside its range above, and
+  /// The host knows the arm as it is at `now_s`. Errors: `out_of_bounds` for a number outside its range above, and
   /// for outages so short that the share cannot be reached (`outage_ticks` below share/(1 − share)); `inconsistent` for
   /// another number of shares than of joints.
   static Result<PolledArm> make(const Params& params, ArmPlant plant, double now_s);

@@ -45,7 +45,7 @@ Result<stability::TipLoad> linear_wall(const experiments::ArmWallParams& wall, s
                .parameter = "wall.law",
                .message = "a surface of the law " + std::string(name_of(wall.law)) +
                           " is the stiffer the harder it is pressed, so its loop is linear about a contact force "
-                          "alone: judge it by tactus stability margins, where --preload says which, or write "
+                          "alone: judge it by tactus stability margins, where --preload gives the force, or write "
                           "kelvin-voigt",
                .place = {}};
 }
@@ -118,14 +118,15 @@ LeaderGains leader_gains(const ArmPairSetup& setup, const Rubbing& rubbing, cons
 }
 
 /// The model of induced motion as its site believes, at the pose.
-Result<LinearInducedMotion::Matrices> believed(const ArmPairSetup& setup, const experiments::ArmBeliefs& beliefs,
+Result<LinearInducedMotion::Matrices> believed(const ArmPairSetup& setup,
+                                               const experiments::ArmModelParams& model_params,
                                                const LeaderGains& leader, double friction_speed_rad_per_s) {
   const auto& control = setup.params.control;
-  const auto chain = arm::Chain::make(beliefs.induced.chain);
+  const auto chain = arm::Chain::make(model_params.induced.chain);
   if (!chain) return chain.error();
-  const Matrix tool = chain->jacobian(setup.leader.start, chain->joints() - 1, beliefs.induced.tool_m);
+  const Matrix tool = chain->jacobian(setup.leader.start, chain->joints() - 1, model_params.induced.tool_m);
   const Matrix moving = tool.topRows(3);
-  const arm::HandImpedance& hand = beliefs.hand;
+  const arm::HandImpedance& hand = model_params.hand;
   Matrix inertia = chain->mass_matrix(setup.leader.start);
   if (control.model.inertia == arm_control::InertiaModel::diagonal) inertia = Matrix(inertia.diagonal().asDiagonal());
   inertia += hand.mass_kg * moving.transpose() * moving;
@@ -134,7 +135,7 @@ Result<LinearInducedMotion::Matrices> believed(const ArmPairSetup& setup, const 
   Matrix of_site = control.damping_N_s_per_m * moving.transpose() * moving - leader.given_back;
   of_site.diagonal() += leader.drive_damping;
   const Vector rubbing =
-      Rubbing(beliefs.induced.chain, friction_speed_rad_per_s)
+      Rubbing(model_params.induced.chain, friction_speed_rad_per_s)
           .left(control.feed_forward.friction_share, control.feed_forward.friction_velocity_rad_per_s);
   if (control.model.joints == arm_control::JointModel::rigid) {
     return LinearInducedMotion::Matrices{
@@ -143,7 +144,7 @@ Result<LinearInducedMotion::Matrices> believed(const ArmPairSetup& setup, const 
   const Eigen::Index n = inertia.rows();
   Vector armature(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    armature[i] = beliefs.induced.chain.joints[static_cast<std::size_t>(i)].drive.reflected_kg_m2();
+    armature[i] = model_params.induced.chain.joints[static_cast<std::size_t>(i)].drive.reflected_kg_m2();
   }
   const auto two = [n](const Matrix& of_motors, const Matrix& of_links, const Vector& between) {
     const Matrix joins = between.asDiagonal();
@@ -153,16 +154,17 @@ Result<LinearInducedMotion::Matrices> believed(const ArmPairSetup& setup, const 
   };
   const Matrix motors = armature.asDiagonal();
   const Matrix none = Matrix::Zero(n, n);
-  return LinearInducedMotion::Matrices{.inertia = two(motors, inertia - motors, Vector::Zero(n)),
-                                       .damping = two(of_site, held, beliefs.induced.joint_damping_N_m_s_per_rad),
-                                       .stiffness = two(none, stiffness, beliefs.induced.joint_stiffness_N_m_per_rad),
-                                       .rubbing = rubbing};
+  return LinearInducedMotion::Matrices{
+      .inertia = two(motors, inertia - motors, Vector::Zero(n)),
+      .damping = two(of_site, held, model_params.induced.joint_damping_N_m_s_per_rad),
+      .stiffness = two(none, stiffness, model_params.induced.joint_stiffness_N_m_per_rad),
+      .rubbing = rubbing};
 }
 
 /// The follower's site tells what its sensors do, or an observer.
 using Observer = std::variant<std::monostate, LinearRigidObserver, LinearElasticObserver>;
 
-Observer observer_of(const ArmPairSetup& setup, const experiments::ArmBeliefs& beliefs, const Matrix& inertia,
+Observer observer_of(const ArmPairSetup& setup, const experiments::ArmModelParams& model_params, const Matrix& inertia,
                      double tick_s, Allotment& states) {
   const auto& follower = setup.params.control.follower;
   if (follower.torque == arm_control::TorqueSource::sensor) return {};
@@ -176,12 +178,12 @@ Observer observer_of(const ArmPairSetup& setup, const experiments::ArmBeliefs& b
     armature[i] = setup.follower.arm.chain.joints[static_cast<std::size_t>(i)].drive.reflected_kg_m2();
   }
   return LinearElasticObserver(cutoff_Hz, tick_s, inertia - Matrix(armature.asDiagonal()), armature,
-                               beliefs.follower_joint_stiffness_N_m_per_rad, states);
+                               model_params.follower_joint_stiffness_N_m_per_rad, states);
 }
 
 }  // namespace
 
-Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmBeliefs& beliefs,
+Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmModelParams& model_params,
                               const ArmLinearisation& linearisation) {
   const experiments::ArmTappingParams& params = setup.params;
   const auto& control = params.control;
@@ -223,7 +225,7 @@ Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmB
   std::optional<LinearInducedMotion> model;
   Stretch acting;
   if (control.method == ArmMethod::cancellation) {
-    const auto matrices = believed(setup, beliefs, leader_site, linearisation.friction_speed_rad_per_s);
+    const auto matrices = believed(setup, model_params, leader_site, linearisation.friction_speed_rad_per_s);
     if (!matrices) return matrices.error();
     model.emplace(*matrices, control.model.washout_Hz, tick_s, n, states);
     acting = states.take(n);
@@ -255,7 +257,7 @@ Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmB
   const auto& forward = control.follower.feed_forward;
   const Vector overcome = forward.friction_share * rubbing.fed_forward(forward.friction_velocity_rad_per_s);
   const Matrix inertia = follower_chain->mass_matrix(touches);
-  const Observer observer = observer_of(setup, beliefs, inertia, tick_s, states);
+  const Observer observer = observer_of(setup, model_params, inertia, tick_s, states);
 
   const auto tick = [&](const Vector& state, const Vector& displayed, Vector& next, Vector& output) {
     output = force.step(heard.of(state), state, next);

@@ -22,18 +22,18 @@ struct ArmLinearisation {
 /// friction, and with cancellation the model of induced motion with its washout. Arms are continuous and held exactly
 /// from tick to tick (matrix exponential), sites work at the ticks.
 ///
-/// Left out: contact that breaks, steps of the drives, saturation, the observer's dead band, the person's slow
+/// Left out: contact that breaks, steps of the drives, saturation, the observer's dead band, the operator's slow
 /// correction, the curvature that a steady force adds. Coulomb friction is left out, or stands as a damper in the
 /// arms, in what observers and feed-forward take for it, and in the model (`ArmLinearisation`).
 class ArmLoop {
  public:
   /// Errors: `inconsistent`, under `control.method`, for a method whose loop has not been made linear, and under
   /// `wall.law` for a curved law without a preload; those of the parts. Not real-time safe.
-  static Result<ArmLoop> make(const experiments::ArmPairSetup& setup, const experiments::ArmBeliefs& beliefs,
+  static Result<ArmLoop> make(const experiments::ArmPairSetup& setup, const experiments::ArmModelParams& model_params,
                               const ArmLinearisation& linearisation = {});
 
   /// The loop opened where the torque is displayed, at the ticks: displayed torque of each joint in, torque that the
-  /// leader hears, behind its low-pass, out. The gain closes it.
+  /// leader receives, behind its low-pass, out. The gain closes it.
   [[nodiscard]] const stability::StateSpace& open() const { return open_; }
   /// What a tick makes of the state, at this force gain.
   [[nodiscard]] Eigen::MatrixXd closed(double force_gain) const { return open_.a + force_gain * open_.b * open_.c; }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// Maps of the linear limit of two arms over poses, directions, hands and whatever else a file says.
+/// Maps of the linear limit of two arms over poses, directions, hands and whatever else a file states.
 namespace tactus::arm_stability {
 
 /// The same experiment in another hand.

@@ -239,7 +239,8 @@ ArmMapReport report_arm_map(const ArmMap& map, const experiments::Request& reque
       "Each point is the largest force gain up to which the linear loop in contact is stable; with cancellation, also "
       "with each of " +
       std::to_string(models_drawn) +
-      " models of induced motion that err as the task says. Taps in simulation settle up to less: ringing must have "
+      " models of induced motion with the errors that the task draws. Taps in simulation settle up to less: ringing "
+      "must have "
       "ended, and the tool leaves the surface.");
   if (picture) page.figure(*picture, "Gain limit over what is varied and the hand that holds the leader.");
   page.table(limits);

@@ -9,15 +9,15 @@
 
 namespace tactus::arm_stability {
 
-/// What moves no faster than this, turning, decaying or growing, is left to the person and to friction, which the loop
-/// has not: no pole so near to 1 is counted. An arm of more joints than its hand holds has one at 1, for it rests at
-/// any elbow.
+/// What moves no faster than this, turning, decaying or growing, is left to the operator and to friction, which the
+/// loop has not: no pole so near to 1 is counted. An arm of more joints than its hand holds has one at 1, for it rests
+/// at any elbow.
 inline constexpr double persons_Hz = 1.0;
 
 /// The pole of a loop that decays slowest or grows fastest, and what moves in it.
 struct ArmMode {
   std::complex<double> pole;
-  double drift_per_s = 0.0;  ///< how fast the fastest of what is left to the person grows; below 0 it decays
+  double drift_per_s = 0.0;  ///< how fast the fastest of what is left to the operator grows; below 0 it decays
   double frequency_Hz = 0.0;
   bool of_leader = false;  ///< which arm has more of the motion's energy
   int joint = 0;           ///< from 0: the one of that arm that has most of it
@@ -38,7 +38,7 @@ inline constexpr double lowest_arm_gain = 0.01, highest_arm_gain = 100.0;
 /// √2 and bisection (`experiments::find_gain_limit`).
 experiments::GainLimit gain_limit(std::span<const ArmLoop> loops);
 
-/// How far every joint's displayed torque may change at once, each by itself, in gain and phase, until a pole stands on
+/// How far every joint's displayed torque may change at once, each by itself, in gain and phase, until a pole is on
 /// the unit circle, at least: the balanced disk margin of several loops. α is 1/max μ(S − I/2) over frequency, S the
 /// sensitivity where the torque is displayed, with the structured singular value's bound from above by scaling of the
 /// joints (Osborne 1960): what it promises holds, and more may. Of a loop that is not stable α is 0.

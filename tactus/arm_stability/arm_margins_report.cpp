@@ -85,7 +85,7 @@ report::Table table_of(const ArmAnalysis& a) {
     row(("surface about " + report::number(*a.preload_N, 3) + " N, N/m").c_str(),
         report::number(a.point.loops.front().wall_stiffness_N_per_m(), 3), std::nullopt);
   }
-  row("drift left to the person, 1/s", report::number(a.slowest.drift_per_s, 3), std::nullopt);
+  row("drift left to the operator, 1/s", report::number(a.slowest.drift_per_s, 3), std::nullopt);
   return table;
 }
 
@@ -140,9 +140,9 @@ Result<experiments::Outcome> report_arm_margins(const experiments::Request& requ
   report::Page page(request.name + ": stability margins of two arms");
   page.paragraph(verdict);
   page.paragraph(
-      "The torque that the follower tells moves the leader in the hand, and that motion goes to the follower as a "
+      "The torque that the follower sends moves the leader in the hand, and that motion goes to the follower as a "
       "command. This loop, linear and sampled, is judged here with the follower's tool on the wall. It does not see "
-      "contact that breaks, steps, saturation, dead bands, the person's slow correction, or friction that sticks.");
+      "contact that breaks, steps, saturation, dead bands, the operator's slow correction, or friction that sticks.");
   page.table(table);
   return experiments::outcome_of({.text = verdict + "\n\n" + table.to_text(),
                                   .json = json_of(request, analysis, friction_speed),

@@ -51,14 +51,15 @@ Result<ArmPoint> make_arm_point(const experiments::ArmTappingParams& params, con
                  .model_error = 0.0,
                  .follower_stiffness_N_per_m = into_the_wall(setup),
                  .loops = {}};
-  std::vector<experiments::ArmBeliefs> beliefs{setup.exact};
+  std::vector<experiments::ArmModelParams> model_params{setup.exact};
   const auto& follower = params.control.follower;
   const bool believes = params.control.method == arm_control::ArmMethod::cancellation ||
                         (follower.torque == arm_control::TorqueSource::observer &&
                          follower.observer.joints == arm_control::JointModel::elastic);
   if (believes) point.model_error = params.task.model_error;
-  for (std::size_t i = 0; point.model_error > 0.0 && i < taps->size(); ++i) beliefs.push_back(taps->tap(i).beliefs);
-  for (const experiments::ArmBeliefs& one : beliefs) {
+  for (std::size_t i = 0; point.model_error > 0.0 && i < taps->size(); ++i)
+    model_params.push_back(taps->tap(i).model_params);
+  for (const experiments::ArmModelParams& one : model_params) {
     auto loop = ArmLoop::make(setup, one, linearisation);
     if (!loop) return loop.error();
     point.loops.push_back(*std::move(loop));

@@ -8,7 +8,7 @@ namespace tactus::arm_stability {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// What holds an arm beside its weight: at its tool along the axes of the base, forces in the upper three rows and
+/// What holds an arm alongside its weight: at its tool along the axes of the base, forces in the upper three rows and
 /// moments in the lower, and at its motors. All are without delay.
 struct Holding {
   Matrix6 stiffness = Matrix6::Zero();  ///< N/m and N m/rad
@@ -24,7 +24,7 @@ struct Holding {
 /// damping of the joints, and how the weight changes with the pose; not steps, limits, play and friction, for which
 /// `holding.rubbing` stands. The curvature that a steady contact force adds is left out. Not real-time safe.
 ///
-/// Nothing of it is the controller's: `tests/arm_stability` holds it against differences of MuJoCo's arm. Errors: those
+/// No part of it is the controller's: `tests/arm_stability` holds it against differences of MuJoCo's arm. Errors: those
 /// of `arm::Chain::make`.
 Result<stability::StateSpace> linear_arm(const arm_plants::ArmPlant::Params& arm, const arm::JointVector& position,
                                          const Holding& holding);

@@ -1,9 +1,9 @@
 #include <tactus/advice/arm_presentation.hpp>
 #include <tactus/advice/presentation.hpp>
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
-#include <tactus/cli/verbs.hpp>
 
 #include <iostream>
 #include <memory>
@@ -57,12 +57,12 @@ Check advise(const AdviseOptions& options, const std::string& command) {
 
 void add_advise(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<AdviseOptions>();
-  CLI::App* verb =
-      app.add_subcommand("advise", "Say which method and force gain to start with, what limits it, what to measure");
+  CLI::App* verb = app.add_subcommand(
+      "advise", "Recommend a method and a force gain to start with, and report what limits the gain");
   add_experiment_options(*verb, options->experiment);
   options->output.own_files = {"advice.toml"};
   add_output_options(*verb, options->output, command,
-                     "Folder for report.html, results.json and advice.toml, for run --with");
+                     "Folder for report.html, results.json and advice.toml (a file for run --with)");
   verb->callback([options, &app, &command, &status] {
     if (const auto error = advise(*options, command)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

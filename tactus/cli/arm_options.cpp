@@ -82,7 +82,7 @@ Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std:
     if (log && !given->empty()) {
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = {},
-                   .message = "the log " + file + " tells by itself what is what: leave it out",
+                   .message = "the log " + file + " names its own columns: leave it out",
                    .place = name};
     }
   }
@@ -112,9 +112,8 @@ Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options) {
 
 void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options) {
   verb.add_option("--urdf", options.file, "URDF of the arm")->required()->type_name("FILE");
-  verb.add_option("--tip", options.tip, "Link at which the arm ends, where the URDF goes on or branches")
-      ->type_name("LINK");
-  verb.add_option("--gravity", options.gravity, "Free fall in the base's frame in m/s^2; 0,0,-9.81 if not given")
+  verb.add_option("--tip", options.tip, "Last link of the arm, if the URDF continues or branches")->type_name("LINK");
+  verb.add_option("--gravity", options.gravity, "Gravity in the frame of the base, in m/s^2; 0,0,-9.81 by default")
       ->type_name("X,Y,Z")
       ->delimiter(',')
       ->expected(3);
@@ -124,13 +123,13 @@ void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& com
   const auto add = [&](const char* name, std::vector<std::string>& into, const char* help) {
     return verb.add_option(name, into, help)->type_name("COLUMNS")->allow_extra_args(false);
   };
-  add("--time", options.time, "Column of the times of a table: its name, its number from 1, or two as sec,nanosec");
-  verb.add_option("--time-unit", options.time_unit, "Unit of the times, where the file does not state it")
+  add("--time", options.time, "Time column of a table: its name, its number from 1, or two as sec,nanosec");
+  verb.add_option("--time-unit", options.time_unit, "Unit of the times, if the file does not state it")
       ->type_name("UNIT")
       ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
-  add("--position", options.position, "Columns of the positions: q1,q2,... or a range as q1:q6 or 2:7");
-  add("--velocity", options.velocity, "Columns of the velocities; without it, from the positions");
-  add("--effort", options.effort, "Columns of the motors' torques or currents");
+  add("--position", options.position, "Position columns: q1,q2,... or a range such as q1:q6 or 2:7");
+  add("--velocity", options.velocity, "Velocity columns; by default derived from the positions");
+  add("--effort", options.effort, "Columns of the motor torques or currents");
   add_output_options(verb, options.output, command, out_help);
 }
 

@@ -12,7 +12,7 @@ namespace CLI {  // NOLINT: the name is not ours
 class App;
 }
 
-/// What the verbs that read recordings of an arm share.
+/// What the commands that read recordings of an arm share.
 namespace tactus::cli {
 
 struct ArmOptions {
@@ -33,7 +33,7 @@ struct ArmUrdfOptions {
 
 /// The arm of the file, with the gravity that was given. Errors: those of `urdf::read`, and of `arm::Gravity`.
 Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options);
-/// Adds `--urdf`, `--tip` and `--gravity` to a verb.
+/// Adds `--urdf`, `--tip` and `--gravity` to a command.
 void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options);
 
 /// A recording with these columns, or the stretches of a log (`read_rig_log`), which tells by itself what is what.
@@ -43,7 +43,7 @@ Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std:
                                                                       const ArmOptions& options,
                                                                       const std::vector<std::string>& joints);
 
-/// Adds the roles of columns, `--out` and `--json` to a verb.
+/// Adds the roles of columns, `--out` and `--json` to a command.
 void add_arm_options(CLI::App& verb, ArmOptions& options, const std::string& command, const std::string& out_help);
 
 }  // namespace tactus::cli

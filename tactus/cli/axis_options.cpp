@@ -10,21 +10,20 @@ namespace tactus::cli {
 void add_axis_options(CLI::App& verb, AxisOptions& options, const std::string& command) {
   identification::AxisRoles& roles = options.roles;
   verb.add_option("RECORDING", options.file, "Recording: .csv, .tsv, .txt or .mat (version 5)")->required();
-  verb.add_option("--position", roles.position, "Column of the position; in a MATLAB file NAME:COLUMN")
+  verb.add_option("--position", roles.position, "Position column; in a MATLAB file NAME:COLUMN")->type_name("NAME");
+  verb.add_option("--force", roles.force, "Column of the actuator force or torque")->type_name("NAME");
+  verb.add_option("--external", roles.external, "Column of a further force on the axis, such as a hand's; it is added")
       ->type_name("NAME");
-  verb.add_option("--force", roles.force, "Column of the actuator's force or torque")->type_name("NAME");
-  verb.add_option("--external", roles.external, "Column of another force that drives the axis, as a hand's; added")
-      ->type_name("NAME");
-  verb.add_option("--time", roles.time, "Column of the times, or two as sec,nanosec")->type_name("NAME");
-  verb.add_option("--time-unit", roles.time_unit, "Unit of the times, where the file does not state it")
+  verb.add_option("--time", roles.time, "Time column, or two as sec,nanosec")->type_name("NAME");
+  verb.add_option("--time-unit", roles.time_unit, "Unit of the times, if the file does not state it")
       ->type_name("UNIT")
       ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
-  verb.add_option("--sample-time-s", roles.sample_time_s, "Time between samples, where the file has none")
+  verb.add_option("--sample-time-s", roles.sample_time_s, "Time between samples, if the file has no times")
       ->type_name("S");
-  verb.add_option("--position-sign", roles.position_sign, "-1 turns the position round")
+  verb.add_option("--position-sign", roles.position_sign, "-1 reverses the position")
       ->type_name("SIGN")
       ->check(CLI::IsMember({-1.0, 1.0}));
-  verb.add_option("--force-sign", roles.force_sign, "-1 turns the actuator's force round")
+  verb.add_option("--force-sign", roles.force_sign, "-1 reverses the actuator force")
       ->type_name("SIGN")
       ->check(CLI::IsMember({-1.0, 1.0}));
   add_output_options(verb, options.output, command, "Folder for report.html, results.json and the model");

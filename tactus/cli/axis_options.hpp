@@ -12,7 +12,7 @@ namespace CLI {  // NOLINT: the name is not ours
 class App;
 }
 
-/// What the verbs that read one axis of a recording share.
+/// What the commands that read one axis of a recording share.
 namespace tactus::cli {
 
 struct AxisOptions {
@@ -21,7 +21,7 @@ struct AxisOptions {
   OutputOptions output;
 };
 
-/// Adds RECORDING, the roles of its columns, `--out` and `--json` to a verb.
+/// Adds RECORDING, the roles of its columns, `--out` and `--json` to a command.
 void add_axis_options(CLI::App& verb, AxisOptions& options, const std::string& command);
 
 /// The recording that the options name, once it is clear that results may be left where they shall be.

@@ -8,8 +8,8 @@ namespace tactus::cli {
 /// Whether what a descriptor leads to shows colour: a terminal that is not dumb, where `NO_COLOR` is unset or empty.
 bool shows_colour(int descriptor);
 
-/// Gives lines for a person colour, one after the other: verdicts in the rows of tables, and the name of the program
-/// that stands before an error.
+/// Gives lines for a user colour, one after the other: verdicts in the rows of tables, and the name of the program
+/// that is before an error.
 class Painter {
  public:
   /// `name` is that of the program in front of errors.
@@ -19,7 +19,7 @@ class Painter {
 
  private:
   std::string name_;
-  int rules_ = 0;  ///< of the table that is being printed: rows stand behind the second
+  int rules_ = 0;  ///< of the table that is being printed: rows are behind the second
 };
 
 }  // namespace tactus::cli

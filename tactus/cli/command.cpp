@@ -1,11 +1,11 @@
 #include <tactus/cli/colour.hpp>
 #include <tactus/cli/command.hpp>
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/help.hpp>
 #include <tactus/cli/plugin.hpp>
 #include <tactus/cli/printable_output.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/suggestion.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/cli/version_text.hpp>
 #include <tactus/report/text.hpp>
 
@@ -95,32 +95,34 @@ int run(int argc, char** argv) {
              if (unloaded) throw CLI::RuntimeError(exit_status(*unloaded));
            }
          },
-         "Shared object that adds drivers for rig files; before COMMAND")
+         "Load a shared object that adds drivers for rig files; write it before COMMAND")
       ->type_name("FILE.so")
       ->expected(1)
       ->take_all();
   app.option_defaults()->always_capture_default();
   // None is allowed here and refused below: CLI11 would call every unknown word a missing subcommand.
   app.require_subcommand(0, 1);
+  // In the order in which help lists them: those of a group together, as in examples.hpp.
   add_run(app, command, status);
-  add_advise(app, command, status);
-  add_estimate(app, command, status);
-  add_identify(app, command, status);
-  add_diagnose(app, command, status);
-  add_export(app, command, status);
-  add_key(app, status);
+  add_serve(app, command, status);
   add_plant(app, command, status);
+  add_key(app, status);
   add_relay(app, command, status);
-  add_replay(app, command, status);
+  add_doctor(app, command, status);
+  add_diagnose(app, command, status);
+  add_advise(app, command, status);
+  add_stability(app, command, status);
+  add_faults(app, command, status);
+  add_identify(app, command, status);
+  add_estimate(app, command, status);
   add_device(app, command, status);
   add_emulate(app, status);
-  add_faults(app, command, status);
-  add_stability(app, command, status);
-  add_doctor(app, command, status);
+  add_export(app, command, status);
+  add_replay(app, command, status);
   add_schema(app, status);
-  add_serve(app, command, status);
   add_completion(app);
   add_help(app, status);
+  add_examples(app);
   forget_empty_defaults(app);
   try {
     app.parse(argc, argv);

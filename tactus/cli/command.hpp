@@ -6,7 +6,7 @@ namespace tactus::cli {
 /// from `main` what this returns. `argc` and `argv` are those of `main`. In messages and reports the command calls
 /// itself by the file name in `argv[0]`.
 ///
-/// Returns the exit status: 0 done, 1 the job failed, 2 the request was wrong; why stands on standard error. To be
+/// Returns the exit status: 0 done, 1 the job failed, 2 the request was wrong; why is on standard error. To be
 /// called once: it prints to standard output and makes the process ignore SIGPIPE, so that the work is done, and the
 /// status that of the work, where a reader goes away.
 int run_command(int argc, char** argv);

@@ -1,4 +1,4 @@
-#include <tactus/cli/verbs.hpp>
+#include <tactus/cli/commands.hpp>
 
 #include <iostream>
 #include <memory>
@@ -11,7 +11,7 @@ namespace tactus::cli {
 
 namespace {
 
-const auto any_verb = [](const CLI::App*) { return true; };
+const auto any_command = [](const CLI::App*) { return true; };
 
 /// The words that a value is one of, from what help says of it (`TEXT:{h1,h2,etfe}`); empty where it may be any.
 std::string choices_of(const CLI::Option& option) {
@@ -26,7 +26,7 @@ std::string choices_of(const CLI::Option& option) {
 /// A case for each verb: what may stand behind it, and what behind its options.
 void add_cases(const CLI::App& app, const std::string& path, std::string& words, std::string& values) {
   std::string all;
-  for (const CLI::App* verb : app.get_subcommands(any_verb)) {
+  for (const CLI::App* verb : app.get_subcommands(any_command)) {
     all += verb->get_name() + " ";
     add_cases(*verb, path + " " + verb->get_name(), words, values);
   }
@@ -61,7 +61,7 @@ std::string bash_script(const CLI::App& app) {
          "  case \"$path $before\" in\n" +
          values +
          "  esac\n"
-         "  # Behind an option that takes any value, and where no verb or option is begun, stand files.\n"
+         "  # Files complete an option that takes any value, and a word that is no command or option.\n"
          "  COMPREPLY=()\n"
          "  if [ \"$choices\" != - ]; then\n"
          "    words=$choices\n"
@@ -83,8 +83,8 @@ std::string bash_script(const CLI::App& app) {
 
 void add_completion(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("completion", "Print what completes this command in a shell");
-  verb->add_option("SHELL", *shell, "Which shell")->required()->check(CLI::IsMember({"bash"}));
+  CLI::App* verb = app.add_subcommand("completion", "Print the shell completion of this command");
+  verb->add_option("SHELL", *shell, "Shell")->required()->check(CLI::IsMember({"bash"}));
   verb->callback([&app, shell] { std::cout << bash_script(app); });
 }
 

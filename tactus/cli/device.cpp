@@ -1,5 +1,5 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/device.hpp>
-#include <tactus/cli/verbs.hpp>
 
 #include <iostream>
 
@@ -7,13 +7,13 @@
 
 namespace tactus::cli {
 
-void end_verb(const CLI::App& app, const Result<bool>& well, int& status) {
+void end_command(const CLI::App& app, const Result<bool>& well, int& status) {
   if (!well) std::cerr << app.get_name() << ": " << describe(well.error()) << "\n";
   status = !well ? exit_status(well.error()) : (*well ? 0 : 1);
 }
 
 void add_device(CLI::App& app, const std::string& command, int& status) {
-  CLI::App* verb = app.add_subcommand("device", "Motors and handles that you own");
+  CLI::App* verb = app.add_subcommand("device", "List, check, calibrate and watch your motors and handles");
   verb->require_subcommand(1);
   add_device_list(*verb, app, status);
   add_device_check(*verb, app, command, status);

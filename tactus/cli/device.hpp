@@ -11,7 +11,7 @@ class App;
 
 namespace tactus::cli {
 
-/// The verbs below `device`. `app` says the program's name in errors; `status` becomes the exit status.
+/// The commands below `device`. `app` states the program's name in errors; `status` becomes the exit status.
 /// `command` is the whole command line.
 void add_device_check(CLI::App& device, const CLI::App& app, const std::string& command, int& status);
 void add_device_list(CLI::App& device, const CLI::App& app, int& status);
@@ -21,6 +21,6 @@ void add_device_limits(CLI::App& device, const CLI::App& app, int& status);
 void add_device_guard(CLI::App& device, const CLI::App& app, int& status);
 
 /// Says an error and sets the exit status; where `well` is false, 1.
-void end_verb(const CLI::App& app, const Result<bool>& well, int& status);
+void end_command(const CLI::App& app, const Result<bool>& well, int& status);
 
 }  // namespace tactus::cli

@@ -209,7 +209,7 @@ Result<bool> print(const std::vector<Checked>& all, const CheckOptions& options)
       for (const Checked& checked : all) slowest_Hz = std::min(slowest_Hz, checked.found.rate_Hz);
       std::cout << "Clean: each motor is what was stated; " << std::llround(slowest_Hz) << " cycles a second.\n";
       if (!options.rig.empty() && alike(all)) {
-        std::cout << "Motors of one model cannot tell whether two were swapped: move each joint by hand under "
+        std::cout << "Motors of one model cannot detect that two were swapped: move each joint by hand under "
                      "'tactus device watch "
                   << report::printable(options.rig) << "'.\n";
       }
@@ -264,25 +264,26 @@ Result<bool> check_bus(const CheckOptions& options) {
 
 void add_device_check(CLI::App& device, const CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* verb = device.add_subcommand("check", "Ask each motor what it is; what is wrong, and what mends it");
-  auto* rig = verb->add_option("RIG", options->rig, "The rig file");
-  verb->add_option("NAME", options->name, "A pair, a side or a joint of it, as arm.leader");
+  CLI::App* verb = device.add_subcommand("check", "Query each motor, report configuration errors, and suggest a fix");
+  auto* rig = verb->add_option("RIG", options->rig, "Rig file");
+  verb->add_option("NAME", options->name, "Pair, side or joint of the rig, such as arm.leader");
   add_json_option(*verb, options->json, command);
   std::vector<std::string> words;
   for (const auto& entry : enumerators(devices::BusKind{})) words.emplace_back(entry.name);
-  auto* bus = verb->add_option("--bus", options->kind, "Without a rig file: kind of bus")->check(CLI::IsMember(words));
+  auto* bus = verb->add_option("--bus", options->kind, "Kind of bus, without a rig file")->check(CLI::IsMember(words));
   auto* port = verb->add_option("--port", options->bus.port, "Serial port, or CAN interface")->type_name("PATH");
-  auto* motors = verb->add_option("--motors", options->motors, "Each motor's id and model, as in 1:DM4310,2:DM4310")
-                     ->type_name("ID:MODEL,...")
-                     ->delimiter(',');
+  auto* motors =
+      verb->add_option("--motors", options->motors, "Identifier and model of each motor, such as 1:DM4310,2:DM4310")
+          ->type_name("ID:MODEL,...")
+          ->delimiter(',');
   auto* framing = verb->add_option("--framing", options->bus.framing,
-                                   "Of CAN: usb2can, slcan, slcan-fd, socketcan or socketcan-fd");
-  auto* rate = verb->add_option("--bits-per-s", options->bus.bits_per_s, "Of servos: what each has set");
+                                   "CAN framing: usb2can, slcan, slcan-fd, socketcan or socketcan-fd");
+  auto* rate = verb->add_option("--bits-per-s", options->bus.bits_per_s, "Bit rate that the servos have stored");
   for (CLI::Option* one : {port, motors, framing, rate}) one->needs(bus);
   bus->needs(port)->needs(motors)->excludes(rig);
   verb->callback([options, bus, rig, &app, &status] {
     if (bus->count() + rig->count() == 0) throw CLI::RequiredError("RIG, or --bus with --port and --motors,");
-    end_verb(app, rig->count() > 0 ? check_rig(*options) : check_bus(*options), status);
+    end_command(app, rig->count() > 0 ? check_rig(*options) : check_bus(*options), status);
   });
 }
 

@@ -163,9 +163,9 @@ void add_device_guard(CLI::App& device, const CLI::App& app, int& status) {
       device.add_subcommand("guard",
                             "Switch off motors without a watchdog once standard input ends, or the program "
                             "that drives them stops; 'run' starts it by itself");
-  verb->add_option("RIG", options->rig, "The rig file")->required();
-  verb->add_option("SIDE", options->side, "A side of it, as arm.leader")->required();
-  verb->callback([options, &app, &status] { end_verb(app, guard(*options), status); });
+  verb->add_option("RIG", options->rig, "Rig file")->required();
+  verb->add_option("SIDE", options->side, "Side of the rig, such as arm.leader")->required();
+  verb->callback([options, &app, &status] { end_command(app, guard(*options), status); });
 }
 
 }  // namespace tactus::cli

@@ -46,7 +46,7 @@ Result<bool> list(const ListOptions& options) {
   if (options.ports.empty()) ports = devices::list_ports();
   for (const std::string& path : options.ports) ports.push_back({.path = path, .name = {}, .remark = {}});
   if (ports.empty()) {
-    std::cout << "No serial adapter and no CAN interface: plug one in, and look at what dmesg says.\n";
+    std::cout << "No serial adapter and no CAN interface: plug one in, and read the output of dmesg.\n";
   }
   bool well = true;
   for (const devices::FoundPort& port : ports) {
@@ -71,12 +71,14 @@ Result<bool> list(const ListOptions& options) {
 
 void add_device_list(CLI::App& device, const CLI::App& app, int& status) {
   auto options = std::make_shared<ListOptions>();
-  CLI::App* verb = device.add_subcommand("list", "Serial adapters and CAN interfaces; with --probe who answers there");
-  verb->add_option("PORT", options->ports, "These alone");
-  verb->add_flag("--probe", options->probe,
-                 "Ask at each port who is there. Motors change nothing of that; leave it out where a port has a device "
-                 "that is none of yours to ask");
-  verb->callback([options, &app, &status] { end_verb(app, list(*options), status); });
+  CLI::App* verb = device.add_subcommand(
+      "list", "List serial adapters and CAN interfaces, and with --probe the devices behind them");
+  verb->add_option("PORT", options->ports, "Ports to list; all by default");
+  verb->add_flag(
+      "--probe", options->probe,
+      "Query the devices at each port; this changes nothing in a motor. Do not use it if a port has a device that "
+      "is not yours");
+  verb->callback([options, &app, &status] { end_command(app, list(*options), status); });
 }
 
 }  // namespace tactus::cli

@@ -77,7 +77,7 @@ std::vector<Shown> look(Watched& watched, const BusReadings& now, const std::str
                    .moved_rad = heard ? position_rad - *watched.first_rad[i] : unknown,
                    .velocity_rad_per_s = joint.joint.velocity_rad_per_s(motor.velocity_rad_per_s),
                    .temperature_C = motor.temperature_C,
-                   .age_s = !heard ? unknown : 1e-9 * static_cast<double>(wire::monotonic_ns() - motor.heard_ns),
+                   .age_s = !heard ? unknown : 1e-9 * static_cast<double>(wire::monotonic_ns() - motor.received_ns),
                    .state = motor.fault != MotorFault::none ? name_of(motor.fault)
                             : outside                       ? "outside"
                                                             : "well"});
@@ -156,13 +156,13 @@ Result<bool> watch(const WatchOptions& options) {
 
 void add_device_watch(CLI::App& device, const CLI::App& app, int& status) {
   auto options = std::make_shared<WatchOptions>();
-  CLI::App* verb = device.add_subcommand("watch", "Show where each joint is, without power, until Ctrl-C");
-  verb->add_option("RIG", options->rig, "The rig file")->required();
-  verb->add_option("NAME", options->name, "A pair, a side or a joint of it, as arm.leader");
-  verb->add_option("--for", options->duration_s, "So many seconds; 0: until Ctrl-C")
+  CLI::App* verb = device.add_subcommand("watch", "Show the position of each joint, without power, until Ctrl-C");
+  verb->add_option("RIG", options->rig, "Rig file")->required();
+  verb->add_option("NAME", options->name, "Pair, side or joint of the rig, such as arm.leader");
+  verb->add_option("--duration-s", options->duration_s, "Time to run; 0: until interrupted")
       ->type_name("S")
       ->check(real_between(0.0, 1e6));
-  verb->callback([options, &app, &status] { end_verb(app, watch(*options), status); });
+  verb->callback([options, &app, &status] { end_command(app, watch(*options), status); });
 }
 
 }  // namespace tactus::cli

@@ -29,7 +29,7 @@ Error unheard(const RigSide& side, const BusFinding& found) {
     if (!motor.problems.empty()) return motor.problems.front();
   }
   if (!found.problems.empty()) return found.problems.front();
-  return {.code = ErrorCode::failed, .parameter = side.path, .message = "its motors were not heard", .place = {}};
+  return {.code = ErrorCode::failed, .parameter = side.path, .message = "its motors did not respond", .place = {}};
 }
 
 struct ZeroOptions {
@@ -134,7 +134,7 @@ report::Table limits_table(const RigSide& side, const BusFinding& found, const s
                    one.joint.gives_force ? number(one.joint.torque_limit_Nm) : "-",
                    one.joint.gives_force ? what_holds(most_Nm, one.joint.torque_limit_Nm) : "no force", number(fastest),
                    number(one.joint.velocity_limit_rad_per_s),
-                   format_number(one.joint.lower_rad) + " to " + format_number(one.joint.upper_rad),
+                   rounded_number(one.joint.lower_rad) + " to " + rounded_number(one.joint.upper_rad),
                    number(one.joint.temperature_limit_C)});
   }
   return table;
@@ -158,22 +158,24 @@ Result<bool> limits(const LimitsOptions& options) {
 
 void add_device_zero(CLI::App& device, const CLI::App& app, int& status) {
   auto options = std::make_shared<ZeroOptions>();
-  CLI::App* verb =
-      device.add_subcommand("zero", "Write offsets into the rig file with which joints are at zero where they are now");
-  verb->add_option("RIG", options->rig, "The rig file")->required();
-  verb->add_option("JOINT", options->joints, "Joints of it, or all of a side, as arm.leader.elbow or arm.leader")
+  CLI::App* verb = device.add_subcommand(
+      "zero", "Set the present position of joints to zero, and write the offsets into the rig file");
+  verb->add_option("RIG", options->rig, "Rig file")->required();
+  verb->add_option("JOINT", options->joints,
+                   "Joints, or a side for all of its joints, such as arm.leader.elbow or arm.leader")
       ->required();
-  verb->add_option("--motor", options->motor, "Of these one motor alone: its identifier, or its joint's name")
+  verb->add_option("--motor", options->motor, "Only this motor: its identifier, or the name of its joint")
       ->type_name("ID|JOINT");
-  verb->callback([options, &app, &status] { end_verb(app, zero(*options), status); });
+  verb->callback([options, &app, &status] { end_command(app, zero(*options), status); });
 }
 
 void add_device_limits(CLI::App& device, const CLI::App& app, int& status) {
   auto options = std::make_shared<LimitsOptions>();
-  CLI::App* verb = device.add_subcommand("limits", "The limits of motors and file, and which of them hold");
-  verb->add_option("RIG", options->rig, "The rig file")->required();
-  verb->add_option("NAME", options->name, "A pair, a side or a joint of it, as arm.leader");
-  verb->callback([options, &app, &status] { end_verb(app, limits(*options), status); });
+  CLI::App* verb =
+      device.add_subcommand("limits", "Show the limits of the motors and of the file, and which of them apply");
+  verb->add_option("RIG", options->rig, "Rig file")->required();
+  verb->add_option("NAME", options->name, "Pair, side or joint of the rig, such as arm.leader");
+  verb->callback([options, &app, &status] { end_command(app, limits(*options), status); });
 }
 
 }  // namespace tactus::cli

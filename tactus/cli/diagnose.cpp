@@ -1,5 +1,5 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/outcome_files.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/diagnosis/report.hpp>
 
@@ -44,7 +44,7 @@ Check diagnose(const DiagnoseOptions& options, const std::string& command) {
 
 void add_diagnose(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<DiagnoseOptions>();
-  CLI::App* verb = app.add_subcommand("diagnose", "Why does it shake? Oscillations in a recording, and their loop");
+  CLI::App* verb = app.add_subcommand("diagnose", "Find oscillations in a recording, and the loop that causes them");
   verb->add_option("RECORDING", options->file,
                    "Recording: .csv, .tsv, .txt, .mat (version 5), a log of tactus or a ROS 2 bag (.mcap)")
       ->required();
@@ -58,17 +58,18 @@ void add_diagnose(CLI::App& app, const std::string& command, int& status) {
   for (const diagnosis::Role role : diagnosis::all_roles) {
     const auto index = static_cast<std::size_t>(role);
     verb->add_option(diagnosis::option_of(role) + "-sign", options->roles.signs[index],
-                     "-1 turns the " + std::string(diagnosis::words_of(role)) + " round")
+                     "-1 reverses the " + std::string(diagnosis::words_of(role)))
         ->type_name("SIGN")
         ->check(CLI::IsMember({-1.0, 1.0}));
   }
-  verb->add_option("--joint", options->roles.joint, "Joint of a ROS 2 bag; without it, the one that moves most roughly")
+  verb->add_option("--joint", options->roles.joint,
+                   "Joint of a ROS 2 bag; by default the joint with the roughest motion")
       ->type_name("NAME");
-  verb->add_option("--time", options->roles.time, "Column of the times, or two as sec,nanosec")->type_name("NAME");
-  verb->add_option("--time-unit", options->roles.time_unit, "Unit of the times, where the file does not state it")
+  verb->add_option("--time", options->roles.time, "Time column, or two as sec,nanosec")->type_name("NAME");
+  verb->add_option("--time-unit", options->roles.time_unit, "Unit of the times, if the file does not state it")
       ->type_name("UNIT")
       ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
-  verb->add_option("--sample-time-s", options->roles.sample_time_s, "Time between samples, where the file has none")
+  verb->add_option("--sample-time-s", options->roles.sample_time_s, "Time between samples, if the file has no times")
       ->type_name("S");
   add_output_options(*verb, options->results, command, "Folder for report.html and results.json");
   verb->callback([options, name = app.get_name(), &command, &status] {

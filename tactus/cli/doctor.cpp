@@ -1,6 +1,6 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/servo_options.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
@@ -39,8 +39,8 @@ report::Table table_of(const std::vector<Finding>& findings) {
 
 std::string answer(const std::vector<Finding>& findings) {
   return runtime::can_keep_time(findings)
-             ? "Yes: a loop can be run here, as well as the verdicts say."
-             : "No: mend what is bad. A loop runs here all the same, and counts its late ticks.";
+             ? "Yes: a loop can be run here, as well as the verdicts state."
+             : "No: fix what is bad. A loop runs here all the same, and counts its late control cycles.";
 }
 
 std::string text_of(const std::vector<Finding>& findings) {
@@ -109,9 +109,10 @@ Result<bool> examine(const DoctorOptions& options, const std::string& command) {
 
 void add_doctor(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<DoctorOptions>();
-  CLI::App* verb = app.add_subcommand("doctor", "Can this machine keep time? What is missing, and what mends it");
-  verb->add_option("--rate-Hz", options->servo.rate_Hz, "Ticks per second to measure at")->type_name("HZ");
-  verb->add_option("--duration-s", options->duration_s, "How long to measure")->type_name("S");
+  CLI::App* verb =
+      app.add_subcommand("doctor", "Check whether this machine can run a control loop in real time, and suggest a fix");
+  verb->add_option("--rate-Hz", options->servo.rate_Hz, "Control cycles per second to measure at")->type_name("HZ");
+  verb->add_option("--duration-s", options->duration_s, "Time to measure")->type_name("S");
   add_servo_options(*verb, options->servo);
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json and the figure");
   verb->callback([options, &app, &command, &status] {

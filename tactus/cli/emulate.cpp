@@ -1,7 +1,7 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/emulate.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/standard_output.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/wire/port.hpp>
 #include <tactus/wire/talk.hpp>
 
@@ -19,9 +19,9 @@ namespace {
 
 /// A kind of motors is a line here.
 constexpr std::array emulated_kinds{
-    EmulatedKind{"damiao", "Motors of Damiao's DM series behind a serial CAN adapter", &add_damiao_options},
-    EmulatedKind{"dynamixel", "Dynamixel servos of the X series behind a serial line", &add_dynamixel_options},
-    EmulatedKind{"feetech", "Feetech's STS3215 or HLS3625 behind a serial line", &add_feetech_options},
+    EmulatedKind{"damiao", "Emulate Damiao DM motors behind a serial CAN adapter", &add_damiao_options},
+    EmulatedKind{"dynamixel", "Emulate Dynamixel X servos on a serial line", &add_dynamixel_options},
+    EmulatedKind{"feetech", "Emulate Feetech STS3215 or HLS3625 servos on a serial line", &add_feetech_options},
 };
 
 /// Hears nothing while whoever opened the terminal has set it to another bit rate, as motors behind a line do.
@@ -71,7 +71,7 @@ Check serve_inverse3(const std::function<Result<emulation::inverse3::Inverse3Ser
 }  // namespace
 
 void add_emulate(CLI::App& app, int& status) {
-  CLI::App* verb = app.add_subcommand("emulate", "Be motors or a handle: at a pseudo-terminal or port that it prints");
+  CLI::App* verb = app.add_subcommand("emulate", "Emulate motors or a haptic handle on a pseudo-terminal or port");
   verb->require_subcommand(1);
   const auto run = [&app, &status](CLI::App& chosen, const auto& emulated) {
     chosen.callback([emulated, &app, &status] {

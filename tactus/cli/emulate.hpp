@@ -23,14 +23,14 @@ namespace tactus::cli {
 struct EmulatedPeer {
   std::unique_ptr<wire::WireEnd> motors;
   std::unique_ptr<wire::WireEnd> line;
-  std::int64_t only_at_bits_per_s = 0;  ///< it hears nothing while the line is set to another rate; 0: at each
+  std::int64_t only_at_bits_per_s = 0;  ///< it receives nothing while the line is set to another rate; 0: at each
 };
 
 /// What `tactus emulate` can be: a word of its command line, and its options.
 struct EmulatedKind {
   const char* name;
   const char* summary;
-  /// Adds the options to the verb; the returned function makes the peer when they are read.
+  /// Adds the options to the command; the returned function makes the peer when they are read.
   std::function<Result<EmulatedPeer>()> (*add_options)(CLI::App& verb);
 };
 
@@ -40,11 +40,11 @@ std::function<Result<EmulatedPeer>()> add_feetech_options(CLI::App& verb);
 /// A server, not a line: it has no path but an address.
 std::function<Result<emulation::inverse3::Inverse3Server>()> add_inverse3_options(CLI::App& verb);
 
-/// Of a list of models, in which the last one goes on, that of the motor with this identifier, from 1.
+/// Of a list of models, in which the last one continues, that of the motor with this identifier, from 1.
 inline const std::string& of_motor(const std::vector<std::string>& models, std::int64_t id) {
   return models[std::min(static_cast<std::size_t>(id), models.size()) - 1];
 }
-inline constexpr const char* models_help = "Model of each, with commas between; the last one goes on";
+inline constexpr const char* models_help = "Model of each, separated by commas; the last one applies to the rest";
 
 /// The words of an enum, for an option that takes one.
 template <NamedEnum E>

@@ -61,8 +61,8 @@ Result<std::unique_ptr<emulation::EmulatedArm>> make_arm(const DamiaoOptions& op
   }
   constexpr double farthest_rad = 3.0;
   if (!options.led.empty() && options.led[0] > farthest_rad) {
-    return wrong("--led", format_number(options.led[0]) + " rad is more than an arm can be led, " +
-                              format_number(farthest_rad) + " rad: name less");
+    return wrong("--led", rounded_number(options.led[0]) + " rad is more than an arm can be led, " +
+                              rounded_number(farthest_rad) + " rad: name less");
   }
   if (!options.led.empty()) settings.led = {.reach_rad = options.led[0], .after_s = options.led[1]};
   return emulation::EmulatedArm::make(settings);
@@ -106,43 +106,45 @@ Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
 
 std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
   auto options = std::make_shared<DamiaoOptions>();
-  verb.add_option("--motors", options->motors, "How many, with the ids 1 and on; 2, or one for each joint of --arm")
+  verb.add_option("--motors", options->motors,
+                  "Number of motors, with identifiers from 1; by default 2, or one for each joint of --arm")
       ->check(CLI::Range(1, 15));
   verb.add_option("--model", options->models, models_help)->delimiter(',')->check(CLI::IsMember(words_of<MotorType>()));
   // A terminal passes no frames of Linux.
-  verb.add_option("--framing", options->framing, "Adapter: usb2can is Damiao's own, slcan is text")
+  verb.add_option("--framing", options->framing, "Adapter: usb2can is Damiao's own protocol, slcan is text")
       ->check(
           CLI::IsMember({name_of(AdapterType::usb2can), name_of(AdapterType::slcan), name_of(AdapterType::slcan_fd)}));
   verb.add_option(
           "--fault", options->faults,
-          "What goes wrong, as KIND[:MOTOR][@SECONDS][+SECONDS]: of which motor, from when and how long; may be "
-          "given again. Kinds: silence, wrong-scale, over-voltage, under-voltage, over-current, hot-drive, "
+          "Fault to inject, as KIND[:MOTOR][@SECONDS][+SECONDS]: at which motor, from when and how long; may be "
+          "repeated. Kinds: silence, wrong-scale, over-voltage, under-voltage, over-current, hot-drive, "
           "hot-winding, communication-lost, overload, status=0x7 (one that it does not have), ignores-disable, "
           "register-answer, twin, wrap, garbage, heartbeat, bus-off, split")
       ->type_name("FAULT");
-  verb.add_option("--seed", options->seed, "Of delays and garbage");
+  verb.add_option("--seed", options->seed, "Seed of delays and garbage");
   CLI::Option* arm = verb.add_option("--arm", options->arm,
                                      "An arm with its weight, which the first motors move together; the others each "
                                      "turn a joint of their own. It hangs, and without power it falls")
                          ->type_name("URDF");
-  verb.add_option("--tip", options->tip, "Link at which that arm ends, where the URDF goes on or branches")
+  verb.add_option("--tip", options->tip, "Link at which that arm ends, if the URDF continues or branches")
       ->type_name("LINK")
       ->needs(arm);
-  verb.add_option("--armature", options->armature_kg_m2,
-                  "Inertia of each motor's rotor at its joint, in kg m², with commas between; the last one goes on")
+  verb.add_option(
+          "--armature", options->armature_kg_m2,
+          "Inertia of each motor's rotor at its joint, in kg m², separated by commas; the last one applies to the rest")
       ->delimiter(',')
       ->check(real_between(1e-6, 10.0))
       ->needs(arm);
   verb.add_option(
           "--held", options->held_rad,
-          "Where a hand holds it at first, in rad, with commas between; it lets go once the motors carry the arm")
+          "Joint positions in rad at which a hand holds the arm until gravity compensation is on, separated by commas")
       ->type_name("Q,Q,...")
       ->delimiter(',')
       ->check(real_between(-12.0, 12.0))
       ->needs(arm);
   verb.add_option("--led", options->led,
-                  "Then a hand leads each joint by so much, in rad, back and forth about there, from so many seconds "
-                  "after it was let go")
+                  "Afterwards a hand moves each joint back and forth by this reach in rad, from this time in s "
+                  "after the release")
       ->type_name("REACH,SECONDS")
       ->delimiter(',')
       ->expected(2)

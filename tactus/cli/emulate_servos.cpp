@@ -80,19 +80,19 @@ std::shared_ptr<ServoOptions> add_servo_options(CLI::App& verb, const std::strin
                                                 const std::vector<std::string>& models, std::int64_t most_bits_per_s) {
   auto options = std::make_shared<ServoOptions>();
   options->models = {model};
-  verb.add_option("--motors", options->servos, "How many, with the ids 1 and on")->check(CLI::Range(1, 16));
+  verb.add_option("--motors", options->servos, "Number of servos, with identifiers from 1")->check(CLI::Range(1, 16));
   verb.add_option("--model", options->models, models_help)->delimiter(',')->check(CLI::IsMember(models));
-  verb.add_option("--bits-per-s", options->bits_per_s, "Pace of the line")
+  verb.add_option("--bits-per-s", options->bits_per_s, "Bit rate of the line")
       ->check(CLI::Range(std::int64_t{9600}, most_bits_per_s));
   verb.add_option(
           "--fault", options->faults,
-          "What goes wrong, as KIND[:ID][@SECONDS]: of which servo, and from when; may be given again. Kinds of "
-          "a servo: silent, power-cycle, hot, wrong-model, low-limit, twin, clash, error=0x24 (an error byte), "
+          "Fault to inject, as KIND[:ID][@SECONDS]: at which servo, and from when; may be repeated. Kinds of "
+          "a servo: silence, power-cycle, hot, wrong-model, low-limit, twin, clash, error=0x24 (an error byte), "
           "ignores-disable; of the line, without id and time: "
           "corrupt, garbage, split, echo")
       ->type_name("FAULT");
-  verb.add_option("--seed", options->seed, "Of what goes wrong on the line");
-  verb.add_flag("--deaf-otherwise", options->deaf_otherwise, "Hears nothing while the line is set to another pace");
+  verb.add_option("--seed", options->seed, "Seed of the faults on the line");
+  verb.add_flag("--deaf-otherwise", options->deaf_otherwise, "Receive nothing while the line has another bit rate");
   return options;
 }
 
@@ -102,7 +102,7 @@ std::function<Result<EmulatedPeer>()> add_dynamixel_options(CLI::App& verb) {
   std::vector<std::string> models;
   for (const auto& [name, number] : dynamixel_models) models.emplace_back(name);
   const auto options = add_servo_options(verb, "xl330-m288", models, 4'000'000);
-  verb.add_flag("--old-firmware", options->old_firmware, "Does not know fast sync read");
+  verb.add_flag("--old-firmware", options->old_firmware, "Do not support fast sync read");
   return [options] {
     DynamixelPeer::Params params;
     params.knows_fast_sync_read = !options->old_firmware;

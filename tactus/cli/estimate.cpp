@@ -1,7 +1,7 @@
 #include <tactus/cli/axis_options.hpp>
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/estimate.hpp>
 #include <tactus/cli/outcome_files.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
@@ -157,17 +157,17 @@ Check estimate_force(const EstimateOptions& options, const std::string& command)
 
 void add_estimate(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<EstimateOptions>();
-  CLI::App* estimate = app.add_subcommand("estimate", "Estimate what no sensor measures");
+  CLI::App* estimate = app.add_subcommand("estimate", "Estimate forces and torques that no sensor measures");
   estimate->require_subcommand(1);
   add_estimate_torque(*estimate, app.get_name(), command, status);
-  CLI::App* verb = estimate->add_subcommand("force", "Force of the environment from command and position");
+  CLI::App* verb = estimate->add_subcommand("force", "Estimate the force of the environment from command and position");
   add_axis_options(*verb, options->axis, command);
   options->axis.output.own_files = {signal_file};
   verb->get_option("--out")->description("Folder for " + std::string(signal_file) + ", report.html and results.json");
-  verb->add_option("--model", options->model, "Model file, as `identify inverse --out` writes it")->required();
+  verb->add_option("--model", options->model, "Model file, written by `identify inverse --out`")->required();
   verb->add_option("--compare", options->axis.roles.measured, "Column of the measured force")->type_name("NAME");
   verb->add_option("--compare-sign", options->axis.roles.measured_sign,
-                   "-1 where the file holds the force on the environment, not on the axis")
+                   "-1 if the file has the force on the environment, not on the axis")
       ->type_name("SIGN")
       ->check(CLI::IsMember({-1.0, 1.0}));
   verb->callback([options, name = app.get_name(), &command, &status] {

@@ -97,7 +97,7 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = {},
                  .message = "the follower followed in " + std::to_string(recordings->size()) +
-                            " stretches, and one is taken: arm once, and record it anew",
+                            " stretches, but only one is used: arm once, and record it again",
                  .place = options.file};
   }
   const arm_identification::ArmRecording* const recording = &recordings->front();
@@ -149,13 +149,13 @@ Check estimate_torque(const EstimateTorqueOptions& options, const std::string& c
 
 void add_estimate_torque(CLI::App& estimate, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<EstimateTorqueOptions>();
-  CLI::App* verb = estimate.add_subcommand("torque", "What pushes on the joints of an arm, and when");
+  CLI::App* verb = estimate.add_subcommand("torque", "Estimate the external torques on the joints of an arm");
   options->arm.output.own_files = {"external_torque.csv"};
   verb->add_option("RECORDING", options->file,
                    "Recording: .csv, .tsv, .txt, with or without header, or .mat; "
-                   "or the log of a rig, whose follower is taken while it follows")
+                   "or the log of a rig (the follower, while it follows)")
       ->required();
-  verb->add_option("--model", options->model, "Model file, as `identify arm --out` leaves it")
+  verb->add_option("--model", options->model, "Model file, written by `identify arm --out`")
       ->required()
       ->type_name("FILE");
   add_arm_options(*verb, options->arm, command, "Folder for external_torque.csv, report.html and results.json");

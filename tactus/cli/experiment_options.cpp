@@ -9,13 +9,15 @@
 namespace tactus::cli {
 
 CLI::Option* add_with_option(CLI::App& verb, std::vector<std::string>& with) {
-  return verb.add_option("--with", with, "File whose keys take the place of the experiment's, as an identified model")
+  return verb
+      .add_option("--with", with,
+                  "File whose keys replace those of the experiment, such as an identified model; may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
 }
 
 void add_set_option(CLI::App& verb, std::vector<std::string>& set) {
-  verb.add_option("--set", set, "Override one value: key=value")->type_name("KEY=VALUE")->allow_extra_args(false);
+  verb.add_option("--set", set, "Override one value; may be repeated")->type_name("KEY=VALUE")->allow_extra_args(false);
 }
 
 Result<configuration::Document> with_set(Result<configuration::Document> document,

@@ -20,9 +20,9 @@ struct ExperimentOptions {
   std::vector<std::string> set;
 };
 
-/// Adds `--with` to a verb.
+/// Adds `--with` to a command.
 CLI::Option* add_with_option(CLI::App& verb, std::vector<std::string>& with);
-/// Adds `--set` to a verb.
+/// Adds `--set` to a command.
 void add_set_option(CLI::App& verb, std::vector<std::string>& set);
 /// The document with these values, each `key=value`, on top. Errors: those of `document` and of `Document::set`.
 Result<configuration::Document> with_set(Result<configuration::Document> document, const std::vector<std::string>& set);
@@ -30,7 +30,7 @@ Result<configuration::Document> with_set(Result<configuration::Document> documen
 /// `inconsistent` for a key that is varied and has one value too: one of the two would be lost.
 Check refuse_set_and_varied(const std::vector<std::string>& set, const std::string& varied);
 
-/// Adds it to a verb: `EXPERIMENT`, `--with`, `--set`.
+/// Adds it to a command: `EXPERIMENT`, `--with`, `--set`.
 void add_experiment_options(CLI::App& verb, ExperimentOptions& options);
 
 /// What an experiment is called in reports and messages: its file's name without the ending, as it can be printed.

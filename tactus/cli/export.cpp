@@ -1,6 +1,6 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/output_folder.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/telemetry/export.hpp>
@@ -116,14 +116,14 @@ Check run(const ExportOptions& options) {
 
 void add_export(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* verb = app.add_subcommand("export", "Write a log as columns for other programs");
+  CLI::App* verb = app.add_subcommand("export", "Convert a log to CSV, MATLAB or HDF5");
   verb->add_option("LOG", options->log, "Log (.mcap), or the folder that holds it")->required();
   verb->add_option("--to", options->to, "Format: csv, mat or hdf5")
       ->required()
       ->check(CLI::IsMember({"csv", "mat", "hdf5"}));
-  verb->add_option("--topic", options->topic, "Only this topic; csv needs it where the log has several");
-  verb->add_option("--out", options->out, "File to write; without it, beside the log")->type_name("FILE");
-  verb->add_flag("--overwrite", options->overwrite, "Replace the file if it is there");
+  verb->add_option("--topic", options->topic, "Only this topic; csv needs it if the log has several");
+  verb->add_option("--out", options->out, "File to write; by default next to the log")->type_name("FILE");
+  verb->add_flag("--overwrite", options->overwrite, "Replace an existing file");
   add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
     if (const auto error = run(*options)) {

@@ -1,9 +1,9 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/servo_options.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/experiments/faults/experiment.hpp>
@@ -84,16 +84,18 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
 
 void add_faults(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<FaultsOptions>();
-  CLI::App* faults = app.add_subcommand("faults", "Faults on purpose: how many are survived, and how");
-  CLI::Option* file = faults->add_option(
-      "EXPERIMENT", options->file, "Experiment file (TOML) of the kind faults, or arm-tapping; else the built-in one");
+  CLI::App* faults = app.add_subcommand(
+      "faults", "Inject faults into supervised pairs, and report how many runs stay within the safety limits");
+  CLI::Option* file =
+      faults->add_option("EXPERIMENT", options->file,
+                         "Experiment file (TOML) of the kind faults or arm-tapping; a built-in one by default");
   add_with_option(*faults, options->with)->needs(file);
   add_set_option(*faults, options->set);
   faults->add_option("--seeds", options->seeds, "Runs of each fault");
-  faults->add_option("--only", options->only, "One fault by its id, as the rows of --json have it");
+  faults->add_option("--only", options->only, "Only the fault with this id, as in the rows of --json");
   add_output_options(*faults, options->output, command, "Folder for report.html, results.json and the figure");
-  CLI::Option* real_time = faults->add_flag("--realtime", options->real_time,
-                                            "After that some of them again at the real clock, on a servo thread");
+  CLI::Option* real_time =
+      faults->add_flag("--realtime", options->real_time, "Repeat some of them in real time on a servo thread");
   add_servo_options(*faults, options->servo);
   for (const char* name : {"--priority", "--core", "--spin-s"}) faults->get_option(name)->needs(real_time);
   faults->callback([options, name = app.get_name(), &command, &status] {

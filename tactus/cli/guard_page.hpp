@@ -23,7 +23,7 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 /// Owns the mapping of a page.
 class MappedGuardPage {
  public:
-  /// A new page, all zeros. None where the system gives no memory; errno says why.
+  /// A new page, all zeros. None where the system gives no memory; errno states why.
   static std::optional<MappedGuardPage> create();
   /// The page of another process; takes the descriptor. None where it is not one.
   static std::optional<MappedGuardPage> adopt(int descriptor);

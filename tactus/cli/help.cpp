@@ -1,12 +1,16 @@
+#include <tactus/cli/examples.hpp>
 #include <tactus/cli/help.hpp>
 #include <tactus/cli/suggestion.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -38,9 +42,43 @@ std::string in_lines(std::string_view text, std::size_t at, std::size_t indent, 
   return lines;
 }
 
+/// Options that several commands have, in the order in which help lists them: first what is read, last what is written.
+/// All others are in between, in the order in which the command adds them.
+constexpr std::array first_options{std::string_view("--help"), std::string_view("--with"), std::string_view("--set"),
+                                   std::string_view("--vary")};
+constexpr std::array last_options{
+    std::string_view("--duration-s"), std::string_view("--seed"),      std::string_view("--priority"),
+    std::string_view("--core"),       std::string_view("--spin-s"),    std::string_view("--out"),
+    std::string_view("--overwrite"),  std::string_view("--log-limit"), std::string_view("--json")};
+
+std::size_t rank_of(const CLI::Option& option) {
+  const auto index = [&option](const auto& names) {
+    const auto is_it = [&option](std::string_view name) { return option.check_name(std::string(name)); };
+    return static_cast<std::size_t>(std::find_if(names.begin(), names.end(), is_it) - names.begin());
+  };
+  if (const std::size_t at = index(first_options); at < first_options.size()) return at;
+  const std::size_t at = index(last_options);
+  return first_options.size() + (at < last_options.size() ? 1 + at : 0);
+}
+
 /// Help as CLI11 makes it, in lines that fit.
 class NarrowHelp final : public CLI::Formatter {
  public:
+  std::string make_group(std::string group, bool is_positional,
+                         std::vector<const CLI::Option*> options) const override {
+    std::stable_sort(options.begin(), options.end(),
+                     [](const CLI::Option* one, const CLI::Option* other) { return rank_of(*one) < rank_of(*other); });
+    return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
+  }
+  std::string make_footer(const CLI::App* app) const override {
+    const std::string example = app->get_footer();
+    if (example.empty()) return "";
+    std::string lines = in_lines(example, 2, 6, report::text_width() - 2);
+    for (std::size_t end = lines.find('\n'); end != std::string::npos; end = lines.find('\n', end + 3)) {
+      lines.insert(end, " \\");
+    }
+    return "Example:\n  " + lines + "\n";
+  }
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
     return two_columns(make_option_name(option, is_positional) + make_option_opts(option), make_option_desc(option));
   }
@@ -75,16 +113,30 @@ class NarrowHelp final : public CLI::Formatter {
 
 void set_help(CLI::App& app) { app.formatter(std::make_shared<NarrowHelp>()); }
 
+void add_examples(CLI::App& app) {
+  for (const Example& example : examples) {
+    CLI::App* at = &app;
+    for (std::string_view words = example.command; at != nullptr && !words.empty();) {
+      const std::size_t end = std::min(words.find(' '), words.size());
+      at = at->get_subcommand_no_throw(std::string(words.substr(0, end)));
+      words.remove_prefix(std::min(end + 1, words.size()));
+    }
+    if (at == nullptr) continue;
+    if (!example.group.empty()) at->group(std::string(example.group));
+    at->footer(app.get_name() + " " + std::string(example.words));
+  }
+}
+
 void add_help(CLI::App& app, int& status) {
   auto words = std::make_shared<std::vector<std::string>>();
-  CLI::App* verb = app.add_subcommand("help", "Print the help of a verb");
-  verb->add_option("VERB", *words, "The verb, with the one below it, as in identify frf");
+  CLI::App* verb = app.add_subcommand("help", "Print the help of a command");
+  verb->add_option("COMMAND", *words, "Command, with its subcommand, such as identify frf");
   verb->callback([&app, &status, words] {
     const CLI::App* asked = &app;
     for (const std::string& word : *words) {
       const CLI::App* next = verb_below(*asked, word);
       if (next == nullptr) {
-        std::cerr << app.get_name() << ": " << unknown_verb(*asked, word) << "\n";
+        std::cerr << app.get_name() << ": " << unknown_command(*asked, word) << "\n";
         status = 2;
         return;
       }

@@ -6,10 +6,14 @@ class App;
 
 namespace tactus::cli {
 
-/// Help of `app` and of verbs that are added later: no line is wider than the terminal (`report::text_width`).
+/// Sets the layout of the help of `app` and of commands that are added later: no line is wider than the terminal
+/// (`report::text_width`), and options that several commands have are always in the same order.
 void set_help(CLI::App& app);
 
-/// Adds `help [VERB...]`, which prints what `VERB... --help` does.
+/// Gives every command of `app` its group and its example. Call it when all commands have been added.
+void add_examples(CLI::App& app);
+
+/// Adds `help [COMMAND...]`, which prints the same as `COMMAND... --help`.
 void add_help(CLI::App& app, int& status);
 
 }  // namespace tactus::cli

@@ -1,5 +1,5 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/identify.hpp>
-#include <tactus/cli/verbs.hpp>
 
 #include <string>
 
@@ -8,7 +8,7 @@
 namespace tactus::cli {
 
 void add_identify(CLI::App& app, const std::string& command, int& status) {
-  CLI::App* verb = app.add_subcommand("identify", "Find a model from experiments or recordings");
+  CLI::App* verb = app.add_subcommand("identify", "Identify a model from experiments or recordings");
   verb->require_subcommand(1);
   const std::string name = app.get_name();
   add_identify_arm(*verb, name, command, status);

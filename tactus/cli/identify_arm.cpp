@@ -45,7 +45,7 @@ std::string json_of(const IdentifyArmOptions& options, const ArmIdentification& 
                 {"cutoff_Hz", found.cutoff_Hz},
                 {"scaled_efforts", found.scaled_efforts},
                 {"base_parameters", found.base_parameters},
-                {"told_combinations", found.told_combinations},
+                {"determined_combinations", found.determined_combinations},
                 {"joints", Json::array()}};
   for (const ArmJointFit& joint : found.joints) {
     document["joints"].push_back({{"name", joint.name},
@@ -85,11 +85,11 @@ report::Table parameters_table(const ArmIdentification& found) {
                        {.title = "95 % from"},
                        {.title = "to"},
                        {.title = "Unit", .align = report::Column::Align::left},
-                       {.title = "Told by", .align = report::Column::Align::left}});
+                       {.title = "Determined by", .align = report::Column::Align::left}});
   for (const ArmJointFit& joint : found.joints) {
     for (const ArmParameter& p : joint.parameters) {
       table.add_row({joint.name, p.name, report::number(p.value, 4), report::number(p.lower, 4),
-                     report::number(p.upper, 4), p.unit, p.told ? "recording" : "URDF"});
+                     report::number(p.upper, 4), p.unit, p.determined ? "recording" : "URDF"});
     }
   }
   return table;
@@ -98,11 +98,11 @@ report::Table parameters_table(const ArmIdentification& found) {
 /// What the recordings do not tell of each joint.
 report::Table untold_table(const ArmIdentification& found) {
   report::Table table({{.title = "Joint", .align = report::Column::Align::left},
-                       {.title = "Not told, so as the URDF has it", .align = report::Column::Align::left}});
+                       {.title = "Not determined, so as in the URDF", .align = report::Column::Align::left}});
   for (const ArmJointFit& joint : found.joints) {
     std::string names;
     for (const ArmParameter& p : joint.parameters) {
-      if (!p.told) names += (names.empty() ? "" : ", ") + p.name;
+      if (!p.determined) names += (names.empty() ? "" : ", ") + p.name;
     }
     table.add_row({joint.name, names.empty() ? "nothing" : names});
   }
@@ -115,18 +115,18 @@ std::string words_of(const ArmIdentification& found) {
   for (const ArmJointFit& joint : found.joints) {
     for (const ArmParameter& p : joint.parameters) {
       ++all;
-      told += p.told ? 1 : 0;
+      told += p.determined ? 1 : 0;
     }
   }
   std::string text = report::number(found.duration_s, 3) + " s of free motion below " +
                      report::number(found.cutoff_Hz, 3) + " Hz. Torques depend on " +
                      std::to_string(found.base_parameters) +
                      " combinations of bodies and armatures; with friction the "
-                     "recordings tell " +
-                     std::to_string(found.told_combinations) + " combinations better than the URDF, and " +
+                     "recordings determine " +
+                     std::to_string(found.determined_combinations) + " combinations better than the URDF, and " +
                      std::to_string(told) + " of " + std::to_string(all) +
                      " single parameters. The others stay near the URDF: other values would give the same torques. "
-                     "`identify excitation` designs a motion that tells more.";
+                     "`identify excitation` designs a motion that determines more.";
   if (found.scaled_efforts) {
     std::string scaled;
     for (const ArmJointFit& joint : found.joints) {
@@ -142,7 +142,8 @@ std::string words_of(const ArmIdentification& found) {
 /// What a URDF has no place for, as `run --with` takes it.
 std::string armatures_of(const arm_identification::ArmModel& model, const std::string& command) {
   std::string text =
-      "# " + command + "\n# For `tactus run --with`: what turns with each motor, beside arm.urdf.\n\n[arm.joints]\n";
+      "# " + command +
+      "\n# For `tactus run --with`: the inertia of each motor, in addition to arm.urdf.\n\n[arm.joints]\n";
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     text += "joint_" + std::to_string(j + 1) +
             " = { armature_kg_m2 = " + format_number(model.joints[j].arm.drive.armature_kg_m2) + " }\n";
@@ -168,7 +169,7 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
   const auto described = urdf::with_dynamics(options.urdf.file, identified,
                                              "Bodies, damping and friction as tactus identified them; bodies include "
                                              "all that is fixed to a link. Armatures, offsets and other parts of "
-                                             "friction stand in model.toml.");
+                                             "friction are in model.toml.");
   if (!described) return described.error();
 
   const report::Table joints = joints_table(*found, recordings.front().effort_unit);
@@ -193,11 +194,12 @@ Check identify_arm(const IdentifyArmOptions& options, const std::string& command
 
 void add_identify_arm(CLI::App& identify, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<IdentifyArmOptions>();
-  CLI::App* verb = identify.add_subcommand("arm", "Dynamics of an arm from recordings of free motion of all joints");
+  CLI::App* verb =
+      identify.add_subcommand("arm", "Identify the dynamics of an arm from recordings of free motion of all joints");
   options->arm.output.own_files = {"model.toml", "arm.urdf", "armatures.toml"};
   verb->add_option("RECORDING", options->files,
                    "Recordings: .csv, .tsv, .txt, with or without header, or .mat; "
-                   "or the log of a rig, whose follower is taken while it follows")
+                   "or the log of a rig (the follower, while it follows)")
       ->required();
   add_arm_urdf_options(*verb, options->urdf);
   add_arm_options(*verb, options->arm, command,

@@ -45,16 +45,17 @@ struct Recipe {
 };
 
 constexpr Recipe by_isolation{
-    "isolate", "A master from the motor outward, by successive isolation", "Successive isolation",
+    "isolate", "Identify a leader from the motor outward, by successive isolation", "Successive isolation",
     "Found from the motor outward, each stage with what the earlier ones found. The intervals hold what the residuals "
     "of a stage leave open and what the earlier stages did not know.",
     [](identification::Rig& rig, const identification::IsolationProgress& progress) {
       return identification::isolate(rig, {}, progress);
     }};
 constexpr Recipe in_the_hand{
-    "quick", "A master in the operator's hand within a minute, nothing taken apart", "Quick identification",
+    "quick", "Identify a leader in the operator's hand within a minute, without taking it apart",
+    "Quick identification",
     "Found from sweeps and bursts on the held master, the whole chain at once, each value drawn to its data sheet as "
-    "much as that is trusted. What the data cannot tell stands where the data sheet left it.",
+    "much as that is trusted. What the data do not determine keeps the value of the data sheet.",
     [](identification::Rig& rig, const identification::IsolationProgress& progress) {
       return identification::identify_quickly(rig, {}, progress);
     }};
@@ -140,7 +141,7 @@ report::Table table_of(const Isolation& isolation, const SimulatedRig& rig) {
     const auto truth = rig.truth(parameter.name);
     table.add_row({parameter.name, report::number(parameter.value, 4), report::number(parameter.interval_95[0], 4),
                    report::number(parameter.interval_95[1], 4), parameter.unit,
-                   parameter.determined ? "" : "the data cannot tell", truth ? report::number(*truth, 4) : "–"});
+                   parameter.determined ? "" : "not determined by the data", truth ? report::number(*truth, 4) : "–"});
   }
   return table;
 }
@@ -198,13 +199,14 @@ Check identify(const Recipe& recipe, const BenchOptions& options, const std::str
        {"rig.toml", "# The truth behind " + rig->name() + "\n" + configuration::to_toml(rig->truth().benched)}});
 }
 
-void add_bench_verb(CLI::App& identify_verb, const Recipe& recipe, const std::string& name, const std::string& command,
-                    int& status) {
+void add_bench_command(CLI::App& identify_command, const Recipe& recipe, const std::string& name,
+                       const std::string& command, int& status) {
   auto options = std::make_shared<BenchOptions>();
-  CLI::App* verb = identify_verb.add_subcommand(recipe.verb, recipe.description);
-  verb->add_option("--rig", options->rig, "What stands on the bench: simulated")->required()->type_name("RIG");
-  verb->add_option("--seed", options->seed, "Which of the simulated rigs")->check(CLI::NonNegativeNumber);
-  verb->add_option("--session", options->session, "Folder that keeps every run, to stop and go on later")
+  CLI::App* verb = identify_command.add_subcommand(recipe.verb, recipe.description);
+  verb->add_option("--rig", options->rig, "Rig on the bench: simulated")->required()->type_name("RIG");
+  verb->add_option("--seed", options->seed, "Number of the simulated rig")->check(CLI::NonNegativeNumber);
+  verb->add_option("--session", options->session,
+                   "Folder that keeps every run, so that you can stop and continue later")
       ->type_name("DIR");
   options->output.own_files = {"model.toml", "rig.toml"};
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json, model.toml and rig.toml");
@@ -218,9 +220,9 @@ void add_bench_verb(CLI::App& identify_verb, const Recipe& recipe, const std::st
 
 }  // namespace
 
-void add_identify_bench(CLI::App& identify_verb, const std::string& name, const std::string& command, int& status) {
-  add_bench_verb(identify_verb, by_isolation, name, command, status);
-  add_bench_verb(identify_verb, in_the_hand, name, command, status);
+void add_identify_bench(CLI::App& identify_command, const std::string& name, const std::string& command, int& status) {
+  add_bench_command(identify_command, by_isolation, name, command, status);
+  add_bench_command(identify_command, in_the_hand, name, command, status);
 }
 
 }  // namespace tactus::cli

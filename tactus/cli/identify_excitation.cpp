@@ -48,7 +48,7 @@ struct ExcitationOptions {
 nlohmann::ordered_json worth_json(const MotionWorth& worth) {
   return {{"condition", worth.condition},
           {"information_nats", worth.information_nats},
-          {"told_combinations", worth.told_combinations}};
+          {"determined_combinations", worth.determined_combinations}};
 }
 
 std::string json_of(const ExcitationOptions& options, const ArmExcitation& found) {
@@ -140,11 +140,11 @@ report::Table promises_table(const ArmExcitation& found) {
                        {.title = "95 % from"},
                        {.title = "to"},
                        {.title = "Unit", .align = report::Column::Align::left},
-                       {.title = "Will be told", .align = report::Column::Align::left}});
+                       {.title = "Will be determined", .align = report::Column::Align::left}});
   for (const ExcitedJoint& joint : found.joints) {
     for (const ArmParameter& p : joint.parameters) {
       table.add_row({joint.name, p.name, report::number(p.value, 4), report::number(p.lower, 4),
-                     report::number(p.upper, 4), p.unit, p.told ? "yes" : "no"});
+                     report::number(p.upper, 4), p.unit, p.determined ? "yes" : "no"});
     }
   }
   return table;
@@ -155,11 +155,11 @@ std::string words_of(const ExcitationOptions& options, const ArmExcitation& foun
   std::string text =
       report::number(options.request.duration_s, 3) + " s from rest to rest, below " +
       report::number(options.request.highest_Hz, 3) + " Hz, within " +
-      report::number(100.0 * options.request.share, 3) + " % of every limit. With this noise it will tell " +
-      std::to_string(found.worth.told_combinations) + " of " + std::to_string(all) +
+      report::number(100.0 * options.request.share, 3) + " % of every limit. With this noise it will determine " +
+      std::to_string(found.worth.determined_combinations) + " of " + std::to_string(all) +
       " combinations of bodies, armatures and friction better than the URDF does; a random motion "
       "within the same limits " +
-      std::to_string(found.random.told_combinations) + ". Condition number " +
+      std::to_string(found.random.determined_combinations) + ". Condition number " +
       report::number(found.worth.condition, 3) + " (random: " + report::number(found.random.condition, 3) + ").";
   if (!found.searched) {
     text +=
@@ -221,7 +221,7 @@ Check identify_excitation(ExcitationOptions options, const std::string& name, co
   }
   const std::string words = words_of(options, *found);
   const report::Table use = use_table(*found);
-  report::Page page("Motion that tells most of " + (urdf->name.empty() ? options.urdf.file : urdf->name));
+  report::Page page("Motion that determines most of " + (urdf->name.empty() ? options.urdf.file : urdf->name));
   page.paragraph(words);
   page.table(use);
   page.table(promises_table(*found));
@@ -236,11 +236,11 @@ Check identify_excitation(ExcitationOptions options, const std::string& name, co
 
 void add_identify_excitation(CLI::App& identify, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<ExcitationOptions>();
-  CLI::App* verb = identify.add_subcommand(
-      "excitation", "A motion of an arm within its limits that tells most, to record for `identify arm`");
+  CLI::App* verb = identify.add_subcommand("excitation",
+                                           "Design a motion of an arm within its limits, to record for `identify arm`");
   options->output.own_files = {"trajectory.csv"};
   add_arm_urdf_options(*verb, options->urdf);
-  verb->add_option("--duration-s", options->request.duration_s, "How long it lasts, from rest to rest")
+  verb->add_option("--duration-s", options->request.duration_s, "Duration of the motion, from rest to rest")
       ->type_name("S")
       ->check(real_between(1.0, 600.0))
       ->capture_default_str();
@@ -248,34 +248,34 @@ void add_identify_excitation(CLI::App& identify, const std::string& name, const 
       ->type_name("HZ")
       ->check(real_between(0.01, 5.0))
       ->capture_default_str();
-  verb->add_option("--rate-Hz", options->rate_Hz, "Rows of trajectory.csv a second")
+  verb->add_option("--rate-Hz", options->rate_Hz, "Rows of trajectory.csv per second")
       ->type_name("HZ")
       ->check(real_between(1.0, 4000.0))
       ->capture_default_str();
-  verb->add_option("--share", options->request.share, "Share of each joint's range, velocity and effort that is used")
+  verb->add_option("--share", options->request.share, "Share of the range, velocity and effort of each joint to use")
       ->type_name("SHARE")
       ->check(real_between(0.05, 1.0))
       ->capture_default_str();
   verb->add_option("--noise-N-m", options->noise_N_m,
-                   "What a model will leave of the efforts, rms, one for all or for each joint; 1 % of the limits if "
+                   "Expected RMS error of the efforts, one for all joints or one for each; 1 % of the limits if "
                    "not given")
       ->type_name("N_M")
       ->delimiter(',')
       ->check(real_between(1e-9, 1e6));
-  verb->add_option("--above-m", options->above_m, "Height along z of the base above which links and tool stay")
+  verb->add_option("--above-m", options->above_m, "Keep links and tool above this height along z of the base")
       ->type_name("Z")
       ->check(real_between(-100.0, 100.0));
-  verb->add_option("--box-m", options->box, "Two corners of the box in the base's frame in which they stay")
+  verb->add_option("--box-m", options->box, "Keep them in this box of the base's frame, given by two corners")
       ->type_name("X,Y,Z,X,Y,Z")
       ->delimiter(',')
       ->expected(6)
       ->check(real_between(-100.0, 100.0));
-  verb->add_option("--tool-m", options->tool, "A point of the last link's frame that stays there too")
+  verb->add_option("--tool-m", options->tool, "A further point, in the frame of the last link, to keep there")
       ->type_name("X,Y,Z")
       ->delimiter(',')
       ->expected(3)
       ->check(real_between(-100.0, 100.0));
-  verb->add_option("--seed", options->request.seed, "Which of the random starts of the search")
+  verb->add_option("--seed", options->request.seed, "Seed of the search")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   add_output_options(*verb, options->output, command, "Folder for trajectory.csv, report.html and results.json");

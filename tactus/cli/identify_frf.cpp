@@ -92,8 +92,8 @@ Result<std::vector<Pair>> read_runs(const FrfOptions& options) {
       }
       const double first_s = runs.empty() ? *input->sample_time_s : *runs.front().input.sample_time_s;
       if (std::abs(*signal->sample_time_s - first_s) > 1e-3 * first_s) {
-        return inconsistent("the sample time is " + format_number(*signal->sample_time_s) + " s and not " +
-                                format_number(first_s) + " s as before; only runs of one rate can be put together",
+        return inconsistent("the sample time is " + rounded_number(*signal->sample_time_s) + " s and not " +
+                                rounded_number(first_s) + " s as before; only runs of one rate can be put together",
                             file);
       }
     }
@@ -336,30 +336,32 @@ Check identify(const FrfOptions& options, const std::string& command) {
 
 }  // namespace
 
-void add_identify_frf(CLI::App& identify_verb, const std::string& name, const std::string& command, int& status) {
+void add_identify_frf(CLI::App& identify_command, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<FrfOptions>();
-  CLI::App* verb = identify_verb.add_subcommand("frf", "Frequency response from recordings, with 95 % bands");
+  CLI::App* verb =
+      identify_command.add_subcommand("frf", "Estimate a frequency response with 95 % bands from recordings");
   verb->add_option("RECORDING", options->files, "Recordings, averaged: .csv, .tsv, .txt or .mat (version 5)")
       ->required();
-  verb->add_option("--input", options->input, "Column of the input; in a MATLAB file NAME:COLUMN")
+  verb->add_option("--input", options->input, "Input column; in a MATLAB file NAME:COLUMN")
       ->required()
       ->type_name("NAME");
-  verb->add_option("--output", options->output, "Column of the output")->required()->type_name("NAME");
-  verb->add_option("--time", options->time, "Column of the times, or two as sec,nanosec")->type_name("NAME");
-  verb->add_option("--time-unit", options->time_unit, "Unit of the times, where the file does not state it")
+  verb->add_option("--output", options->output, "Output column")->required()->type_name("NAME");
+  verb->add_option("--time", options->time, "Time column, or two as sec,nanosec")->type_name("NAME");
+  verb->add_option("--time-unit", options->time_unit, "Unit of the times, if the file does not state it")
       ->type_name("UNIT")
       ->check(CLI::IsMember({"s", "ms", "us", "ns"}));
-  verb->add_option("--sample-time-s", options->sample_time_s, "Time between samples, where the file has none")
+  verb->add_option("--sample-time-s", options->sample_time_s, "Time between samples, if the file has no times")
       ->type_name("S");
-  verb->add_option("--method", options->method, "h1 (noise on the output), h2 (on the input) or etfe")
+  verb->add_option("--method", options->method, "Estimator: h1 (noise on the output), h2 (noise on the input) or etfe")
       ->check(CLI::IsMember({"h1", "h2", "etfe"}));
-  verb->add_option("--segment-samples", options->segment_samples, "Samples of a segment, a power of two")
+  verb->add_option("--segment-samples", options->segment_samples, "Samples per segment, a power of two")
       ->type_name("N");
-  verb->add_option("--smoothing-lines", options->smoothing_lines, "Lines that the ETFE averages, an odd number")
+  verb->add_option("--smoothing-lines", options->smoothing_lines,
+                   "Frequency lines that the ETFE averages, an odd number")
       ->type_name("N");
-  verb->add_option("--lower-Hz", options->lower_Hz, "Nothing below this frequency")->type_name("HZ");
-  verb->add_option("--upper-Hz", options->upper_Hz, "Nothing above this frequency")->type_name("HZ");
-  verb->add_flag("--compare", options->compare, "Say whether the recordings show one linear device");
+  verb->add_option("--lower-Hz", options->lower_Hz, "Lowest frequency to report")->type_name("HZ");
+  verb->add_option("--upper-Hz", options->upper_Hz, "Highest frequency to report")->type_name("HZ");
+  verb->add_flag("--compare", options->compare, "Report whether the recordings show one linear device");
   options->results.own_files = {"response.csv"};
   add_output_options(*verb, options->results, command,
                      "Folder for report.html, results.json, response.csv and the figure");

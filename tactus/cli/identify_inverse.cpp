@@ -148,7 +148,7 @@ Check identify_inverse(const InverseOptions& options, const std::string& command
 
 void add_identify_inverse(CLI::App& identify, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<InverseOptions>();
-  CLI::App* verb = identify.add_subcommand("inverse", "Inverse dynamic model of one axis from a recording");
+  CLI::App* verb = identify.add_subcommand("inverse", "Identify the inverse dynamics of one axis from a recording");
   options->axis.output.own_files = {"model.toml"};
   add_axis_options(*verb, options->axis, command);
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")->type_name("HZ");

@@ -50,8 +50,8 @@ constexpr std::array quantities{
 
 const char* word_of(ImpedanceVerdict verdict) {
   switch (verdict) {
-    case ImpedanceVerdict::told:
-      return "told";
+    case ImpedanceVerdict::determined:
+      return "determined";
     case ImpedanceVerdict::still:
       return "still";
     case ImpedanceVerdict::hand_drives:
@@ -66,8 +66,8 @@ const char* word_of(ImpedanceVerdict verdict) {
 
 const char* reason_of(ImpedanceVerdict verdict) {
   switch (verdict) {
-    case ImpedanceVerdict::told:
-      return "the data tell";
+    case ImpedanceVerdict::determined:
+      return "determined";
     case ImpedanceVerdict::still:
       return "too little motion";
     case ImpedanceVerdict::hand_drives:
@@ -152,9 +152,10 @@ std::string summary_of(const OperatorImpedances& found, const AxisRecording& axi
     told += (told.empty() ? "" : ", ") + std::string(quantity.name) + " in " + std::to_string(count);
   }
   return "Judged from " + report::number(found.lower_Hz, 2) + " to " + report::number(found.upper_Hz, 2) +
-         " Hz: below, what the person intends cannot be told from stiffness and damping. Of " +
-         std::to_string(found.windows.size()) + " windows the data tell " + told +
-         "; in brackets what they do not tell. The last row is the whole recording. ± is the 95 % interval. Position " +
+         " Hz: below, intended motion cannot be distinguished from stiffness and damping. Of " +
+         std::to_string(found.windows.size()) + " windows the data determine " + told +
+         "; in brackets what they do not determine. The last row is the whole recording. ± is the 95 % interval. "
+         "Position " +
          axis.position.name + ", force " + axis.force.name + ".";
 }
 
@@ -187,9 +188,10 @@ report::Page page_of(const OperatorImpedances& found, const AxisRecording& axis,
                      const std::string& summary, const std::string& command) {
   report::Page page("Impedance of the hand on " + axis.position.name);
   page.paragraph(summary);
-  report::Figure figure{.title = "Impedance over time",
-                        .caption = "Each value is of a window around its time; a gap where the data do not tell.",
-                        .panels = {}};
+  report::Figure figure{
+      .title = "Impedance over time",
+      .caption = "Each value is of a window around its time; a gap where the data do not determine it.",
+      .panels = {}};
   for (const Quantity& quantity : quantities) figure.panels.push_back(panel_of(found, quantity, axis.rotary));
   page.figure(figure);
   page.table(table);
@@ -224,14 +226,14 @@ Check identify_operator(OperatorOptions options, const std::string& command) {
 void add_identify_operator(CLI::App& identify, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<OperatorOptions>();
   CLI::App* verb = identify.add_subcommand(
-      "operator", "Impedance of the hand over time, from a master's motion and the hand's force");
+      "operator", "Estimate the impedance of the hand over time, from the leader's motion and the hand force");
   add_axis_options(*verb, options->axis, command);
   verb->remove_option(verb->get_option("--external"));
-  verb->get_option("--position")->description("Column of the master's position; in a MATLAB file NAME:COLUMN");
-  verb->get_option("--force")->description("Column of the hand's force or torque on the master");
-  verb->get_option("--force-sign")->description("-1 turns the hand's force round; 1 says that its sign is right");
+  verb->get_option("--position")->description("Column of the leader's position; in a MATLAB file NAME:COLUMN");
+  verb->get_option("--force")->description("Column of the force or torque of the hand on the leader");
+  verb->get_option("--force-sign")->description("-1 reverses the hand force; 1 confirms its sign");
   verb->get_option("--out")->description("Folder for report.html and results.json");
-  verb->add_option("--lower-Hz", options->estimate.lower_Hz, "Lower edge of the band, above what the person intends")
+  verb->add_option("--lower-Hz", options->estimate.lower_Hz, "Lower edge of the band, above intended motion")
       ->type_name("HZ");
   verb->add_option("--upper-Hz", options->estimate.upper_Hz, "Upper edge of the band")->type_name("HZ");
   verb->add_option("--window-s", options->estimate.window_s, "Length of a window")->type_name("S");

@@ -53,7 +53,7 @@ Result<Motion> recorded(const PredictionOptions& options) {
   if (!command->sample_time_s) {
     return Error{.code = ErrorCode::missing,
                  .parameter = {},
-                 .message = "the recording does not say its sample time: add a column of times",
+                 .message = "the recording does not state its sample time: add a column of times",
                  .place = options.recording};
   }
   // From where the slave is at the start, so that the filters start at rest.
@@ -148,20 +148,21 @@ Check identify(const PredictionOptions& options, const std::string& command) {
 
 }  // namespace
 
-void add_identify_prediction(CLI::App& identify_verb, const std::string& name, const std::string& command,
+void add_identify_prediction(CLI::App& identify_command, const std::string& name, const std::string& command,
                              int& status) {
   auto options = std::make_shared<PredictionOptions>();
-  CLI::App* verb =
-      identify_verb.add_subcommand("prediction", "Time constant of prediction blocks: closed form, limit, from data");
-  verb->add_option("EXPERIMENT", options->experiment, "inverse-model-chirp file: slave and estimator")->required();
+  CLI::App* verb = identify_command.add_subcommand(
+      "prediction", "Find the time constant of prediction blocks in closed form, and from data");
+  verb->add_option("EXPERIMENT", options->experiment, "Experiment file (TOML) of the kind inverse-model-chirp")
+      ->required();
   add_set_option(*verb, options->set);
   verb->add_option("--blocks", options->blocks, "Blocks in series, 1 to 4");
-  verb->add_option("--band", options->band_Hz, "Where the simulated chirp ends, in Hz")
+  verb->add_option("--band", options->band_Hz, "Last frequency of the simulated chirp, in Hz")
       ->check(real_between(0.1, 100.0));
   auto* recording =
-      verb->add_option("--recording", options->recording, "Free motion as recorded, in place of the simulated chirp");
-  verb->add_option("--command", options->command, "Its variable of the command")->needs(recording);
-  verb->add_option("--position", options->position, "Its variable of the slave's position, in m or rad")
+      verb->add_option("--recording", options->recording, "Recording of free motion, in place of the simulated chirp");
+  verb->add_option("--command", options->command, "Variable of the command")->needs(recording);
+  verb->add_option("--position", options->position, "Variable of the follower's position, in m or rad")
       ->needs(recording);
   verb->add_option("--command-column", options->command_column, "Column of that variable (.mat), from 1");
   verb->add_option("--position-column", options->position_column, "Column of that variable (.mat), from 1");

@@ -1,4 +1,4 @@
-#include <tactus/cli/verbs.hpp>
+#include <tactus/cli/commands.hpp>
 #include <tactus/link/key.hpp>
 
 #include <iostream>
@@ -11,8 +11,8 @@ namespace tactus::cli {
 
 void add_key(CLI::App& app, int& status) {
   auto file = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("key", "Make a key for the link between two sites");
-  verb->add_option("FILE", *file, "New file; copy it to the other site over a way you trust")->required();
+  CLI::App* verb = app.add_subcommand("key", "Create a key for the encrypted link between two sites");
+  verb->add_option("FILE", *file, "New file; copy it to the other site over a channel that you trust")->required();
   verb->callback([file, &app, &status] {
     if (const auto error = link::make_key_file(*file)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

@@ -19,7 +19,7 @@ namespace tactus::cli {
 
 namespace {
 
-constexpr std::chrono::milliseconds patience{200};
+constexpr std::chrono::milliseconds timeout{200};
 /// At once, so that it shows when somebody reads slowly.
 constexpr std::size_t piece = 4096;
 
@@ -114,7 +114,7 @@ Check LineWriter::finish(std::string_view last) {
   bool done = all_done();
   while (!done) {
     const auto moved = [&, seen = state.written] { return all_done() || state.written > seen; };
-    if (!state.changed.wait_for(lock, patience, moved)) break;
+    if (!state.changed.wait_for(lock, timeout, moved)) break;
     done = all_done();
   }
   const bool failed = state.failed;

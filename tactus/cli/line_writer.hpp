@@ -10,7 +10,7 @@
 namespace tactus::cli {
 
 /// Lines on their way to a terminal, a pipe or a file. A thread of its own writes them and waits for whoever does not
-/// read; those who say them never wait. They are shown as `printable_lines` says. At most `most_waiting` lines wait;
+/// read; those who say them never wait. They are shown as `printable_lines` states. At most `most_waiting` lines wait;
 /// those that come then are dropped and counted.
 class LineWriter {
  public:

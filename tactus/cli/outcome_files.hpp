@@ -11,7 +11,7 @@
 
 namespace tactus::cli {
 
-/// A file that a verb leaves beside report.html, results.json and the figures, and has named as its own.
+/// A file that a command leaves alongside report.html, results.json and the figures, and has named as its own.
 struct NamedText {
   std::string name;
   std::string text;
@@ -22,8 +22,8 @@ Check write_results(OutputFolder& output, const experiments::Outcome& outcome,
                     const std::vector<NamedText>& files = {});
 
 /// Writes the results to the folder, if there is one, and prints the outcome, as a table or as JSON. In this order, so
-/// that the report is there whoever reads what is printed. Where the report is it says after a table on standard output
-/// and else on standard error.
+/// that the report is there whoever reads what is printed. Where the report is it states after a table on standard
+/// output and else on standard error.
 Check write_outcome(OutputFolder& output, const experiments::Outcome& outcome,
                     const std::vector<NamedText>& files = {});
 
@@ -31,13 +31,13 @@ Check write_outcome(OutputFolder& output, const experiments::Outcome& outcome,
 Check write_outcome(const OutputOptions& options, const experiments::Outcome& outcome,
                     const std::vector<NamedText>& files = {});
 
-/// The same of a run at the real clock that said a line a second, and left a log. Files first: a terminal that nobody
-/// reads keeps nothing from them, and with them what it misses is no loss. `log_error` is what went wrong with the log,
-/// of which `removed` records went for its limit.
+/// The same of a run at the real clock that printed a line a second, and left a log. Files first: a terminal that
+/// nobody reads keeps nothing from them, and with them what it misses is no loss. `log_error` is what went wrong with
+/// the log, of which `removed` records went for its limit.
 Check leave_outcome(const experiments::Outcome& outcome, OutputFolder& folder, Check log_error, std::uint64_t removed,
                     LineWriter& output, LineWriter& errors);
 
-/// The error of a run whose outcome was left and that ended in this fault; what else went wrong is said before.
+/// The error of a run whose outcome was left and that ended in this fault; other failures are reported before.
 Error ended_in_a_fault(const std::string& fault, Check unwritten, LineWriter& errors);
 
 }  // namespace tactus::cli

@@ -76,13 +76,13 @@ bool is_link(const fs::path& path) {
 
 void add_output_options(CLI::App& verb, OutputOptions& options, const std::string& command, const std::string& help) {
   CLI::Option* out = verb.add_option("--out", options.folder, help)->type_name("DIR");
-  verb.add_flag("--overwrite", options.overwrite, "Replace what an earlier run left there")->needs(out);
+  verb.add_flag("--overwrite", options.overwrite, "Replace the files of an earlier run")->needs(out);
   add_json_option(verb, options.json, command);
 }
 
 void add_log_limit_option(CLI::App& verb, std::uint64_t& most_bytes) {
   verb.add_option("--log-limit", most_bytes,
-                  "The most that the log may take on the disk, as 500MB or 2GB: the oldest of its four parts goes")
+                  "Size limit of the log on disk, such as 500MB or 2GB; the oldest of its four parts is deleted")
       ->type_name("SIZE")
       ->transform(CLI::AsSizeValue(false))
       ->check([](const std::string& bytes) -> std::string {

@@ -17,23 +17,23 @@ class App;
 
 namespace tactus::cli {
 
-/// What a command line says about where results go.
+/// What a command line states about where results go.
 struct OutputOptions {
   std::optional<std::string> folder;  ///< none: nothing is left
   bool overwrite = false;
   JsonOption json;
-  /// What the verb writes beside report.html, results.json, figures and a log.
+  /// What the command writes alongside report.html, results.json, figures and a log.
   std::vector<std::string> own_files;
 };
 
-/// Adds `--out`, `--overwrite` and `--json` to a verb whose command line is `command`. `help` is that of `--out`.
+/// Adds `--out`, `--overwrite` and `--json` to a command whose command line is `command`. `help` is that of `--out`.
 void add_output_options(CLI::App& verb, OutputOptions& options, const std::string& command, const std::string& help);
-/// Adds `--log-limit` to a verb; 0 stands for none.
+/// Adds `--log-limit` to a command; 0 stands for none.
 void add_log_limit_option(CLI::App& verb, std::uint64_t& most_bytes);
 
 /// The folder of `--out`. What a run has left there is replaced as a whole with `--overwrite` and never without; a
 /// symbolic link is never followed, be it the folder itself or a file in it. The folder is one for results: neither the
-/// root of the file system nor the home folder, and without files of others unless an earlier report stands there.
+/// root of the file system nor the home folder, and without files of others unless an earlier report is there.
 class OutputFolder {
  public:
   /// Proves, before long work and without making the folder, that results may and could be written there: a request

@@ -1,9 +1,9 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/servo_options.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
@@ -40,18 +40,18 @@ std::string line_of(const PlantStatus& now, const PlantStatus& before, std::int6
   return std::to_string(second) + " s: " + std::to_string(now.readings - before.readings) + " readings, " +
          std::to_string(now.commands - before.commands) + " commands, " +
          (now.controller ? "driven by process " + std::to_string(*now.controller) : "nobody drives") + ", " +
-         std::to_string(now.missed - before.missed) + " ticks missed" +
+         std::to_string(now.missed - before.missed) + " control cycles missed" +
          (now.held_back > before.held_back
               ? ", " + std::to_string(now.held_back - before.held_back) + " commands held back to the limits"
               : "") +
-         (now.let_go > before.let_go ? std::string(", let go: ") + station::in_words(now.cause) : "") + "\n";
+         (now.released > before.released ? std::string(", released: ") + station::in_words(now.cause) : "") + "\n";
 }
 
 std::string text_of(const std::string& name, const PlantStatus& status, const runtime::ServoReport& servo) {
-  report::Table table({{"readings"}, {"commands"}, {"taps"}, {"held back"}, {"let go"}, {"ticks missed"}},
+  report::Table table({{"readings"}, {"commands"}, {"taps"}, {"held back"}, {"released"}, {"control cycles missed"}},
                       "Plant '" + name + "'");
   table.add_row({std::to_string(status.readings), std::to_string(status.commands), std::to_string(status.taps),
-                 std::to_string(status.held_back), std::to_string(status.let_go), std::to_string(status.missed)});
+                 std::to_string(status.held_back), std::to_string(status.released), std::to_string(status.missed)});
   return table.to_text() + "\n" + runtime::timing_text(servo);
 }
 
@@ -62,7 +62,7 @@ std::string json_of(const std::string& name, const PlantStatus& status, const ru
       {"commands", status.commands},
       {"taps", status.taps},
       {"held_back", status.held_back},
-      {"let_go", status.let_go},
+      {"released", status.released},
       {"cause", name_of(status.cause)},
       {"missed", status.missed},
       {"servo", report::parse_json<nlohmann::ordered_json>(runtime::servo_json(servo))}};
@@ -136,12 +136,14 @@ Check own_plant(const PlantOptions& options) {
                                                                          configuration::to_toml(*params))
                                                  : "\n" + text_of(options.name, server.status(), report));
   if (told || !server.status().cut) return told;
-  return Error{.code = ErrorCode::failed,
-               .parameter = {},
-               .message = "plant '" + options.name +
-                          "': another process has shortened its shared memory; the plant let go: start it again, and "
-                          "find out what writes to /dev/shm",
-               .place = "--name"};
+  return Error{
+      .code = ErrorCode::failed,
+      .parameter = {},
+      .message =
+          "plant '" + options.name +
+          "': another process has shortened its shared memory; the plant released its force: start it again, and "
+          "find out what writes to /dev/shm",
+      .place = "--name"};
 }
 
 }  // namespace
@@ -149,15 +151,15 @@ Check own_plant(const PlantOptions& options) {
 void add_plant(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<PlantOptions>();
   CLI::App* verb = app.add_subcommand(
-      "plant", "Own the simulated devices of an experiment, for a `tactus run --realtime --plant` in another process");
+      "plant", "Simulate the devices of an experiment for `tactus run --realtime --plant` in another process");
   add_experiment_options(*verb, options->experiment);
-  verb->add_option("--name", options->name, "Name that the other process asks for")->type_name("NAME");
-  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")->type_name("S");
+  verb->add_option("--name", options->name, "Name that the other process connects to")->type_name("NAME");
+  verb->add_option("--duration-s", options->duration_s, "Time to run; 0: until interrupted")->type_name("S");
   verb->add_option("--silence-s", options->silence_s,
-                   "The longest silence of the other process before the motors get no force, 0.001 to 10")
+                   "Timeout of the other process, after which the motors get no force, 0.001 to 10")
       ->type_name("S");
   add_servo_options(*verb, options->servo);
-  add_json_option(*verb, options->json, command, "Print one JSON document; the lines go to standard error");
+  add_json_option(*verb, options->json, command, "Print one JSON document; progress goes to standard error");
   verb->callback([options, &app, &status] {
     if (const auto error = own_plant(*options)) {
       std::cerr << app.get_name() << ": " << describe(*error) << "\n";

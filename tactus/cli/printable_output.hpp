@@ -15,9 +15,9 @@ namespace tactus::cli {
 std::string printable_lines(std::string_view text);
 
 /// While it lives, all that a stream is given reaches its place through `printable_lines`. Names from files, logs,
-/// datagrams and arguments stand in messages everywhere; here is the one place that all of them pass.
+/// datagrams and arguments are in messages everywhere; here is the one place that all of them pass.
 ///
-/// Whole lines go on at once, the rest when the stream is flushed. Any thread.
+/// Whole lines are passed on at once, the rest when the stream is flushed. Any thread.
 class PrintableOutput final : public std::streambuf {
  public:
   /// With a painter, what it makes of each line.

@@ -15,7 +15,7 @@ CLI::Validator real_between(double low, double high) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
     if (end != text.c_str() && *end == '\0' && value >= low && value <= high) return {};
-    return "'" + text + "' is no number in " + words;
+    return "'" + text + "' is not a number in " + words;
   };
   return {check, "FLOAT in " + range.str(), {}};
 }

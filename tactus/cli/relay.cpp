@@ -1,10 +1,10 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/passages.hpp>
 #include <tactus/cli/real_between.hpp>
 #include <tactus/cli/standard_output.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/link/socket.hpp>
@@ -46,13 +46,13 @@ struct RelayOptions {
 };
 
 /// One way through the relay: each packet is lost, late or doubled as the seed draws.
-class Way {
+class RelayDirection {
  public:
   struct Counters {
     std::uint64_t arrived = 0, lost = 0, doubled = 0, overflowed = 0, passed = 0;
   };
 
-  Way(const station::Channel::Params& params, double mean_burst, double duplicate_fraction)
+  RelayDirection(const station::Channel::Params& params, double mean_burst, double duplicate_fraction)
       : delay_ns_(params.delay_s * 1e9),
         jitter_ns_(params.jitter_s * 1e9),
         duplicate_fraction_(duplicate_fraction),
@@ -131,9 +131,9 @@ void wait(const link::Socket& one, const link::Socket& other, std::int64_t longe
   ppoll(both.data(), both.size(), &longest, nullptr);
 }
 
-void print(const Way::Counters& to_slave, const Way::Counters& to_master, const JsonOption& json,
+void print(const RelayDirection::Counters& to_slave, const RelayDirection::Counters& to_master, const JsonOption& json,
            const std::string& configuration) {
-  const std::array<std::pair<const char*, const Way::Counters*>, 2> ways{
+  const std::array<std::pair<const char*, const RelayDirection::Counters*>, 2> ways{
       {{"to_slave", &to_slave}, {"to_master", &to_master}}};
   nlohmann::ordered_json document;
   report::Table table(
@@ -161,8 +161,8 @@ Check run(const RelayOptions& options) {
   auto slave = socket_between(options.for_slave, options.slave);
   if (!slave) return slave.error();
 
-  Way to_slave(params->channel.to_slave, options.mean_burst, options.duplicate_fraction);
-  Way to_master(params->channel.to_master, options.mean_burst, options.duplicate_fraction);
+  RelayDirection to_slave(params->channel.to_slave, options.mean_burst, options.duplicate_fraction);
+  RelayDirection to_master(params->channel.to_master, options.mean_burst, options.duplicate_fraction);
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();
@@ -187,22 +187,25 @@ Check run(const RelayOptions& options) {
 
 void add_relay(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RelayOptions>();
-  CLI::App* verb = app.add_subcommand("relay", "Stand between two sites and lose, delay, reorder and double packets");
-  verb->add_option("EXPERIMENT", options->file, "Experiment file whose section [channel] says what to do")->required();
+  CLI::App* verb =
+      app.add_subcommand("relay", "Relay packets between two sites with loss, delay, reordering and duplication");
+  verb->add_option("EXPERIMENT", options->file, "Experiment file whose section [channel] describes the network")
+      ->required();
   add_set_option(*verb, options->set);
   const auto address = [&](const char* name, std::string& value, const char* help) {
     verb->add_option(name, value, help)->type_name("HOST:PORT")->required();
   };
-  address("--master", options->master, "Where the master listens");
-  address("--for-master", options->for_master, "Where the relay listens for it: the master's --peer");
-  address("--slave", options->slave, "Where the slave listens");
-  address("--for-slave", options->for_slave, "Where the relay listens for it: the slave's --peer");
+  address("--master", options->master, "Address on which the master listens");
+  address("--for-master", options->for_master,
+          "Address on which the relay listens for the master: the master's --peer");
+  address("--slave", options->slave, "Address on which the slave listens");
+  address("--for-slave", options->for_slave, "Address on which the relay listens for the slave: the slave's --peer");
   verb->add_option("--mean-burst", options->mean_burst,
-                   "Mean number of packets lost one after the other; up to 1 each is lost on its own")
+                   "Mean number of packets lost in a row; up to 1 each loss is independent")
       ->check(real_between(0.0, 10000.0));
   verb->add_option("--duplicate-fraction", options->duplicate_fraction, "Share of the packets that are sent twice")
       ->check(real_between(0.0, 1.0));
-  verb->add_option("--duration-s", options->duration_s, "How long to run; 0 is until interrupted")
+  verb->add_option("--duration-s", options->duration_s, "Time to run; 0: until interrupted")
       ->type_name("S")
       ->check(real_between(0.0, 1e6));
   add_json_option(*verb, options->json, command);

@@ -1,6 +1,6 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/standard_output.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
@@ -33,12 +33,12 @@ std::string exact(double value) {
 }
 
 std::string text_of(const runtime::Replay& replay) {
-  std::string text = "Replayed " + std::to_string(replay.ticks) + " ticks of " + replay.of + ": ";
+  std::string text = "Replayed " + std::to_string(replay.ticks) + " control cycles of " + replay.of + ": ";
   if (const auto& found = replay.difference) {
     const std::string tap = replay.taps > 0 ? " of tap " + std::to_string(found->tap) : "";
-    text += "the first difference is at tick " + std::to_string(found->tick) + tap + ", topic " + found->topic +
-            (found->joint.empty() ? "" : " (" + report::printable(found->joint) + ")") + ", signal " + found->signal +
-            ": recorded " + exact(found->recorded) + ", replayed " + exact(found->replayed) + ".\n";
+    text += "the first difference is in control cycle " + std::to_string(found->tick) + tap + ", topic " +
+            found->topic + (found->joint.empty() ? "" : " (" + report::printable(found->joint) + ")") + ", signal " +
+            found->signal + ": recorded " + exact(found->recorded) + ", replayed " + exact(found->replayed) + ".\n";
     if (replay.version != version()) {
       text += "The log was written by version " + replay.version + ", this is " + std::string(version()) + ".\n";
     }
@@ -65,11 +65,12 @@ std::string json_of(const runtime::Replay& replay) {
 
 void add_replay(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* verb = app.add_subcommand("replay", "Step the sites of a logged run in real time again, on what they read");
+  CLI::App* verb =
+      app.add_subcommand("replay", "Repeat the control cycles of a logged run with the logged readings, and compare");
   verb->add_option("LOG", options->log,
                    "Log (.mcap) of `run --realtime --out` or `run --site --out`, of a rig too, or its folder")
       ->required();
-  verb->add_flag("--check", options->check, "End with status 1 where anything differs from the log");
+  verb->add_flag("--check", options->check, "Exit with status 1 if anything differs from the log");
   add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
     const auto replayed = runtime::replay(options->log);

@@ -65,7 +65,7 @@ Result<RigDrive> joint_by_joint(const experiments::Request& request, const RigPa
         {.code = ErrorCode::inconsistent,
          .parameter = "control.architecture",
          .message = "a follower of " + joints[0].architecture +
-                    " does not tell where it is, so its leader on another host cannot see how far it is: write "
+                    " does not send its position, so its leader on another host cannot see how far it is: write "
                     "position-position or four-channel, or drive both in one program",
          .place = {}});
   }

@@ -42,14 +42,14 @@ std::string words_of(const devices::DeviceTrouble& trouble, const char* name, co
     case Trouble::bus_ended:
       return place + "its port was closed";
     case Trouble::bus_refused:
-      return place + "its motors are not what the rig file says";
+      return place + "its motors differ from the rig file";
     case Trouble::late:
-    case Trouble::silent: {
+    case Trouble::not_responding: {
       // A cycle ends in time where motors are silent; only a thread that stands still ends none.
       const bool stood = trouble.cycle_age_s > 0.5 * trouble.age_s;
       const std::string said = trouble.fault == devices::MotorFault::lost_master
-                                   ? joint + " had not heard from us in time"
-                                   : joint + " unheard for " + report::fixed(1e3 * trouble.age_s, 1) + " ms";
+                                   ? joint + " received no command in time"
+                                   : joint + " not responding for " + report::fixed(1e3 * trouble.age_s, 1) + " ms";
       return place + said +
              (stood ? ", no cycle of its bus for " + report::fixed(1e3 * trouble.cycle_age_s, 1) + " ms" : "");
     }
@@ -59,7 +59,7 @@ std::string words_of(const devices::DeviceTrouble& trouble, const char* name, co
     case Trouble::guard_gone:
       return place + "the guard process of its motors is gone, so they get no power: start the run again";
     case Trouble::guard_acted:
-      return place + "this program stood still, and the guard process switched its motors off";
+      return place + "this program was stopped, and the guard process switched its motors off";
     case Trouble::no_power:
       return place + joint + " has no power";
     default:
@@ -74,7 +74,7 @@ std::string evidence_of(const RigSecond& second, const devices::RigJoint& joint)
   const devices::JointWords& words = joint.words();
   if (second.fault == control::GateFault::contradicted) {
     return ", its position moved by " + report::fixed(found.travelled_m, 3) + " " + words.position_unit + " in " +
-           report::fixed(found.time_s, 3) + " s, its reported velocity says " + report::fixed(found.reported_m, 3) +
+           report::fixed(found.time_s, 3) + " s, its reported velocity gives " + report::fixed(found.reported_m, 3) +
            " " + words.position_unit;
   }
   if (second.fault == control::GateFault::encoder_frozen && found.time_s > 0.0) {
@@ -87,7 +87,7 @@ std::string evidence_of(const RigSecond& second, const devices::RigJoint& joint)
 /// What a gate latched, as the rest of a line; of a device that is lost the device says more.
 std::string words_of_fault(const RigSecond& second, const RigPair& pair) {
   const auto& trouble = second.fault_of_leader ? second.leader_trouble : second.follower_trouble;
-  const bool told = trouble.what > devices::Trouble::silent;
+  const bool told = trouble.what > devices::Trouble::not_responding;
   if (second.fault == control::GateFault::none || (told && second.fault == control::GateFault::not_finite)) return {};
   const devices::RigSide& side = second.fault_of_leader ? *pair.leader : *pair.follower;
   const devices::RigJoint& joint = joint_of(side, second.fault_joint);
@@ -110,13 +110,13 @@ std::string advice(const RigSecond& second, const RigPair& pair, std::optional<c
   using control::SiteState;
   const auto& joint = joint_of(any_side(pair), second.joint);
   if (const auto worse = std::max(second.leader_health, second.follower_health);
-      worse >= station::DeviceHealth::silent) {
-    return std::string("; the ") + (second.leader_health == worse ? "leader" : "follower") + " is " + name_of(worse) +
-           ": look at 'tactus device check'";
+      worse >= station::DeviceHealth::not_responding) {
+    return std::string("; the ") + (second.leader_health == worse ? "leader" : "follower") + " is " +
+           (worse == station::DeviceHealth::lost ? "lost" : "not responding") + ": look at 'tactus device check'";
   }
   if (second.too_far) {
     if (only && !(second.farthest > 0.0)) {
-      return std::string("; the ") + (*only == control::SiteRole::master ? "follower" : "leader") + " is not heard";
+      return std::string("; no packet from the ") + (*only == control::SiteRole::master ? "follower" : "leader");
     }
     return "; too far apart to arm: move " + leading(pair, joint) + " by " + report::fixed(second.farthest, 2) + " " +
            joint.words().position_unit + " to where its follower is";
@@ -168,11 +168,11 @@ std::string summary_of(const RigRun& run, const RigPair& pair) {
            " packets sent, " + std::to_string(run.link->link.inbound.counted) + " came";
   }
   const std::string fault = fault_of(run, pair);
-  return (fault.empty() ? "" : "Ended in a fault: " + fault + ". ") + std::to_string(totals.ticks) + " ticks in " +
-         report::fixed(totals.duration_s, 1) + " s, " + std::to_string(totals.active_ticks) +
+  return (fault.empty() ? "" : "Ended in a fault: " + fault + ". ") + std::to_string(totals.ticks) +
+         " control cycles in " + report::fixed(totals.duration_s, 1) + " s, " + std::to_string(totals.active_ticks) +
          " of them coupled; armed " + std::to_string(totals.armings) + " times, held " + std::to_string(totals.holds) +
-         " times, a device late in " + std::to_string(totals.late_ticks) + ", silent in " +
-         std::to_string(totals.silent_ticks) + ", lost in " + std::to_string(totals.lost_ticks) + " ticks; " +
+         " times, a device late in " + std::to_string(totals.late_ticks) + ", not responding in " +
+         std::to_string(totals.not_responding_ticks) + ", lost in " + std::to_string(totals.lost_ticks) + " cycles; " +
          std::to_string(run.servo.missed) + " deadlines missed, late " + std::to_string(run.servo.late_ours()) +
          " by us and " + std::to_string(run.servo.late_machine()) + " by the machine" + link + "; ended by " +
          run.ended_by + ".";
@@ -222,7 +222,7 @@ nlohmann::ordered_json json_of(const RigRun& run, const RigPair& pair) {
                    {"armings", totals.armings},
                    {"holds", totals.holds},
                    {"late_ticks", totals.late_ticks},
-                   {"silent_ticks", totals.silent_ticks},
+                   {"not_responding_ticks", totals.not_responding_ticks},
                    {"lost_ticks", totals.lost_ticks},
                    {"ended_by", run.ended_by},
                    {"lines_dropped", run.lines_dropped},

@@ -26,7 +26,7 @@ struct RigRun {
   std::optional<std::uint64_t> log_dropped;
 };
 
-/// A second for a terminal, with what a person does next where there is something; `only` as in `RigRun`.
+/// A second for a terminal, with what a user does next where there is something; `only` as in `RigRun`.
 std::string line_of(const devices::RigSecond& second, const devices::RigPair& pair,
                     std::optional<control::SiteRole> only = {});
 

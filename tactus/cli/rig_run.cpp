@@ -1,8 +1,8 @@
 #include <tactus/cli/guarded_link.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/line_writer.hpp>
+#include <tactus/cli/operator_input.hpp>
 #include <tactus/cli/outcome_files.hpp>
-#include <tactus/cli/person.hpp>
 #include <tactus/cli/rig_drive.hpp>
 #include <tactus/cli/rig_guard.hpp>
 #include <tactus/cli/rig_report.hpp>
@@ -108,7 +108,7 @@ Check refuse_unclean(const Rig& rig, const std::vector<const RigSide*>& sides, L
   if (clean) return std::nullopt;
   return Error{.code = ErrorCode::failed,
                .parameter = {},
-               .message = "it is not clean, so nothing was driven: mend what 'tactus device check' tells",
+               .message = "it is not clean, so nothing was driven: fix what 'tactus device check' reports",
                .place = rig.name()};
 }
 
@@ -181,7 +181,7 @@ struct RigSurroundings {
   runtime::ServoThreadParams servo;
   runtime::SiteExchange& exchange;
   const Interruption& interruption;
-  Onlookers& onlookers;
+  Observers& observers;
   LineWriter& output;
   LineWriter& errors;
   const std::vector<std::string>& names;  ///< of the joints
@@ -199,7 +199,7 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
   const std::vector<std::string>& names = around.names;
   LineWriter& lines = folder.json() ? around.errors : around.output;
   runtime::JointStreams streams(names.size(), around.only);
-  if (folder.wanted() || around.onlookers.any()) loop.leave_in(streams);
+  if (folder.wanted() || around.observers.any()) loop.leave_in(streams);
   std::optional<runtime::SiteLog> log;
   if (folder.wanted()) {
     if (Check error = folder.begin()) return error;
@@ -214,8 +214,8 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
     if (!created) return created.error();
     log.emplace(*std::move(created));
   }
-  around.onlookers.watch(streams);
-  if (Check error = around.onlookers.begin([&lines](const std::string& line) { lines.say(line); })) return error;
+  around.observers.watch(streams);
+  if (Check error = around.observers.begin([&lines](const std::string& line) { lines.say(line); })) return error;
   auto thread = runtime::ServoThread<Loop>::start(around.servo, std::move(loop));
   if (!thread) return thread.error();
   RigRun run;
@@ -225,9 +225,9 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
       lines.say(cli::line_of(*second, pair, around.only));
       run.seconds.push_back(*second);
     }
-    runtime::SiteMisfit misfit;
-    while (around.exchange.misfits.try_pop(misfit)) {
-      around.errors.say("tactus: " + around.drive.agreement->describe(misfit, *around.only) + "\n");
+    runtime::SiteMismatch mismatch;
+    while (around.exchange.mismatches.try_pop(mismatch)) {
+      around.errors.say("tactus: " + around.drive.agreement->describe(mismatch, *around.only) + "\n");
     }
   };
   constexpr unsigned between_looks_us = 20'000;
@@ -244,7 +244,7 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
     if (side) side->link->stop();
   }
   take_seconds();
-  if (const std::string seen = around.onlookers.end(); !seen.empty()) lines.say(seen);
+  if (const std::string seen = around.observers.end(); !seen.empty()) lines.say(seen);
   run.totals = (*thread)->step().totals();
   run.last = (*thread)->step().last();
   add_link(run, (*thread)->step());
@@ -269,9 +269,9 @@ bool names_a_rig(const std::string& device) {
   return device.ends_with(suffix) || device.find(std::string(suffix) + ":") != std::string::npos;
 }
 
-Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_on, runtime::ServoThreadParams servo,
-              const experiments::Request& request, OutputFolder& folder, std::uint64_t log_limit_bytes,
-              const std::optional<link::EndpointSettings>& link) {
+Check run_rig(const SupervisedOptions& options, const ObserverOptions& observer_options,
+              runtime::ServoThreadParams servo, const experiments::Request& request, OutputFolder& folder,
+              std::uint64_t log_limit_bytes, const std::optional<link::EndpointSettings>& link) {
   if (options.devices.size() > 1) return refused("--device", "a rig has the devices of both sites: name it alone");
   const std::optional<SiteRole> only = link ? std::optional(link->site) : std::nullopt;
   const auto [file, name] = parts_of(options.devices.front());
@@ -297,8 +297,8 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
   const auto interruption = Interruption::start(exchange.end, Interrupted::site);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
-  auto onlookers = Onlookers::open(looking_on, request, only, names);
-  if (!onlookers) return onlookers.error();
+  auto observers = Observers::open(observer_options, request, only, names);
+  if (!observers) return observers.error();
   std::optional<link::JointEndpoint> endpoint;
   std::optional<JointSite> site;
   if (link) {
@@ -318,7 +318,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
     driven[side].emplace(*std::move(made));
   }
   servo.rate_Hz = found->rate_Hz;
-  const auto person = Person::listen_to(STDIN_FILENO, only.value_or(SiteRole::master), exchange, errors);
+  const auto person = OperatorInput::listen_to(STDIN_FILENO, only.value_or(SiteRole::master), exchange, errors);
   if (!person) return person.error();
   const RigSurroundings around{.request = request,
                                .folder = folder,
@@ -328,7 +328,7 @@ Check run_rig(const SupervisedOptions& options, const OnlookerOptions& looking_o
                                .servo = servo,
                                .exchange = exchange,
                                .interruption = **interruption,
-                               .onlookers = *onlookers,
+                               .observers = *observers,
                                .output = output,
                                .errors = errors,
                                .names = names,

@@ -1,4 +1,4 @@
-#include <tactus/cli/onlookers.hpp>
+#include <tactus/cli/observers.hpp>
 #include <tactus/cli/ros2_session.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
@@ -35,7 +35,7 @@ std::string json_of(const experiments::Request& request, const Ros2Options& opti
                              {"published", counts.published},
                              {"dropped", counts.dropped},
                              {"messages_lost", counts.lost},
-                             {"wishes", counts.wishes},
+                             {"requests", counts.requests},
                              {"commands_refused", counts.refused},
                              {"servo", report::parse_json<nlohmann::ordered_json>(runtime::servo_json(servo))}});
 }
@@ -50,7 +50,7 @@ report::Table table_of(const Ros2Options& options, const HandSession& session, c
   table.add_row({"snapshots published", count(counts.published)});
   table.add_row({"snapshots dropped", count(counts.dropped)});
   table.add_row({"messages lost", count(counts.lost)});
-  table.add_row({"wishes for the hand", count(counts.wishes)});
+  table.add_row({"requests for the hand", count(counts.requests)});
   table.add_row({"commands refused", count(counts.refused)});
   return table;
 }
@@ -90,14 +90,14 @@ Result<experiments::Outcome> run_ros2_session(const experiments::Request& reques
   std::optional<telemetry::Recorder> recorder;
   runtime::RealTimeStreams::Teleoperator stream;
   runtime::RealTimeStreams streams;
-  auto onlookers = Onlookers::open({.live = options.live}, request);
-  if (!onlookers) return onlookers.error();
-  if (output.wanted() || onlookers->any()) streams.teleoperator = &stream;
-  onlookers->watch(streams);
+  auto observers = Observers::open({.live = options.live}, request);
+  if (!observers) return observers.error();
+  if (output.wanted() || observers->any()) streams.teleoperator = &stream;
+  observers->watch(streams);
   const auto say = [&output](const std::string& line) {
     if (!line.empty()) (output.json() ? std::cerr : std::cout) << line << std::flush;
   };
-  if (auto error = onlookers->begin(say)) return *std::move(error);
+  if (auto error = observers->begin(say)) return *std::move(error);
   const std::filesystem::path log_file = output.log_folder() / "log.mcap";
   if (output.wanted()) {
     if (auto error = output.begin()) return *std::move(error);
@@ -120,7 +120,7 @@ Result<experiments::Outcome> run_ros2_session(const experiments::Request& reques
   session->begin(*bridge, streams, options.end);
   const auto report = runtime::run_servo(servo, [&](const station::Tick& tick) noexcept { return (*session)(tick); });
   bridge->close();
-  say(onlookers->end());
+  say(observers->end());
   if (recorder) {
     if (auto error = recorder->stop()) return *std::move(error);
     if (auto error = telemetry::write_bag_metadata(log_file, recorder->log())) {

@@ -14,7 +14,7 @@ namespace tactus::cli {
 
 struct Ros2Options {
   std::string name_space = "tactus";
-  std::optional<std::string> live = {};   ///< as in `OnlookerOptions`
+  std::optional<std::string> live = {};   ///< as in `ObserverOptions`
   runtime::ServoThreadParams servo = {};  ///< the rate is that of the experiment
   const runtime::EndRequest& end;         ///< that somebody may make while it runs
   std::uint64_t log_limit_bytes = 0;      ///< as in `LogWriter::create`

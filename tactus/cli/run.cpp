@@ -1,7 +1,8 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/line_writer.hpp>
-#include <tactus/cli/onlookers.hpp>
+#include <tactus/cli/observers.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/ros2_session.hpp>
@@ -9,7 +10,6 @@
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/supervised_run.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/experiments/experiment.hpp>
 #include <tactus/runtime/real_time_arm_tap.hpp>
 #include <tactus/runtime/real_time_tapping.hpp>
@@ -43,7 +43,7 @@ struct RunOptions {
   double plant_silence_s = station::usual_silence.value;
   runtime::ServoThreadParams servo;
   SupervisedOptions supervised;
-  OnlookerOptions onlookers;
+  ObserverOptions observers;
 };
 
 Result<experiments::Request> make_request(const RunOptions& options, const std::string& command) {
@@ -80,31 +80,31 @@ Check run_in_real_time(const RunOptions& options, const experiments::Request& re
   const auto say = [&output](const std::string& line) {
     if (!line.empty()) (output.json() ? std::cerr : std::cout) << line << std::flush;
   };
-  std::optional<Onlookers> onlookers;
-  const auto open_onlookers = [&](const std::vector<std::string>& joints) -> Check {
-    auto opened = Onlookers::open(options.onlookers, request, {}, joints);
+  std::optional<Observers> observers;
+  const auto open_observers = [&](const std::vector<std::string>& joints) -> Check {
+    auto opened = Observers::open(options.observers, request, {}, joints);
     if (!opened) return opened.error();
-    onlookers.emplace(*std::move(opened));
+    observers.emplace(*std::move(opened));
     return std::nullopt;
   };
-  if (options.onlookers.any()) {
+  if (options.observers.any()) {
     real_time.look_on = [&](const std::vector<runtime::RealTimeStreams>& all) -> Check {
-      if (auto error = open_onlookers({})) return error;
-      for (const runtime::RealTimeStreams& streams : all) onlookers->watch(streams);
-      return onlookers->begin(say);
+      if (auto error = open_observers({})) return error;
+      for (const runtime::RealTimeStreams& streams : all) observers->watch(streams);
+      return observers->begin(say);
     };
     real_time.look_on_arms = [&](const runtime::ArmTapStreams& streams,
                                  const std::vector<std::string>& joints) -> Check {
-      if (auto error = open_onlookers(joints)) return error;
-      onlookers->watch(streams);
-      return onlookers->begin(say);
+      if (auto error = open_observers(joints)) return error;
+      observers->watch(streams);
+      return observers->begin(say);
     };
   }
   const auto done = [&] {
     ProgressLine line(request.name);
     return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
   }();
-  if (onlookers) say(onlookers->end());
+  if (observers) say(observers->end());
   if (!done) return done.error();
   if (done->interrupted) status = (*interruption)->exit_status();
   if (auto error = write_outcome(output, done->outcome)) return error;
@@ -128,8 +128,8 @@ Check run_among_ros2_nodes(const RunOptions& options, const experiments::Request
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();
-  const Ros2Options session{.name_space = options.onlookers.name_space,
-                            .live = options.onlookers.live,
+  const Ros2Options session{.name_space = options.observers.name_space,
+                            .live = options.observers.live,
                             .servo = options.servo,
                             .end = end,
                             .log_limit_bytes = options.log_limit};
@@ -144,7 +144,7 @@ Check run_among_ros2_nodes(const RunOptions& options, const experiments::Request
 Check refuse_what_makes_no_sense(const CLI::App& verb, const RunOptions& options) {
   const bool one_site = !options.supervised.site.empty();
   const bool own_devices = !options.supervised.devices.empty();
-  const bool at_real_clock = options.real_time || options.onlookers.ros2 || one_site;
+  const bool at_real_clock = options.real_time || options.observers.ros2 || one_site;
   struct Rule {
     bool broken;
     std::vector<const char*> options;  ///< of which the first that was given is named
@@ -164,7 +164,7 @@ Check refuse_what_makes_no_sense(const CLI::App& verb, const RunOptions& options
            "a device runs at the real clock: add --realtime for both sites in this program, or --site for one of two"},
       Rule{options.supervised.wanted() && !options.vary.empty(),
            {"--vary"},
-           "sites that a person arms run one combination: write --set in place of --vary"},
+           "sites that an operator arms run one combination: write --set in place of --vary"},
       Rule{!options.supervised.wanted(),
            {"--arm", "--duration-s"},
            "the taps of an experiment are armed by nobody and end by themselves: add --realtime --device or --site"},
@@ -194,7 +194,7 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
   auto output = OutputFolder::open(options.output);
   if (!output) return output.error();
   if (options.supervised.wanted()) {
-    return run_supervised(options.supervised, options.onlookers, options.servo, *request, *output, options.log_limit);
+    return run_supervised(options.supervised, options.observers, options.servo, *request, *output, options.log_limit);
   }
   const auto experiment = experiments::choose_experiment(request->document);
   if (!experiment) {
@@ -207,7 +207,7 @@ Check run(const RunOptions& options, const std::string& command, int& status) {
   }
 
   if (options.real_time) return run_in_real_time(options, *request, *output, status);
-  if (options.onlookers.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
+  if (options.observers.ros2) return run_among_ros2_nodes(options, *request, (*experiment)->kind(), *output);
 
   Result<experiments::Outcome> outcome = [&] {
     ProgressLine line(request->name);
@@ -230,25 +230,25 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* verb = app.add_subcommand("run", "Run an experiment, in virtual or in real time");
   add_experiment_options(*verb, options->experiment);
-  verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations: key=a,b,c")
+  verb->add_option("--vary", options->vary, "Run every value of a key, in all combinations; may be repeated")
       ->type_name("KEY=A,B,C")
       ->allow_extra_args(false);
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json, the figures and the log");
   options->output.own_files = {recording_file};
   add_log_limit_option(*verb, options->log_limit);
   verb->add_flag("--realtime", options->real_time,
-                 "Run taps of one axis or of two arms at the real clock, on a servo thread, with simulated devices, "
-                 "those of a plant or your own");
-  CLI::Option* plant = verb->add_option("--plant", options->plant,
-                                        "Drive the devices of the `tactus plant` of that name, not ones of its own")
-                           ->type_name("NAME");
+                 "Run taps of one axis or of two arms in real time on a servo thread, with simulated devices, "
+                 "the devices of a plant, or your own");
+  CLI::Option* plant =
+      verb->add_option("--plant", options->plant, "Drive the devices of the `tactus plant` with this name")
+          ->type_name("NAME");
   verb->add_option("--plant-silence-s", options->plant_silence_s,
-                   "The longest silence of that plant before both sites let go, 0.001 to 10")
+                   "Timeout of that plant, after which both sites release their force, 0.001 to 10")
       ->type_name("S")
       ->needs(plant);
   add_servo_options(*verb, options->servo);
   add_supervised_options(*verb, options->supervised);
-  add_onlooker_options(*verb, options->onlookers);
+  add_observer_options(*verb, options->observers);
   verb->callback([options, verb, &app, &command, &status] {
     Check error = refuse_what_makes_no_sense(*verb, *options);
     if (!error) error = run(*options, command, status);

@@ -1,5 +1,5 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/results_schemas.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/experiments/experiment.hpp>
 
@@ -47,16 +47,15 @@ Result<std::string_view> results_schema(const std::vector<std::string>& words) {
 
 void add_schema(CLI::App& app, int& status) {
   auto options = std::make_shared<SchemaOptions>();
-  CLI::App* verb =
-      app.add_subcommand("schema", "Print what an experiment file may say, or what results are, as JSON Schema");
+  CLI::App* verb = app.add_subcommand("schema", "Print the JSON Schema of an experiment file or of results");
   std::string kinds;
   for (const auto& experiment : experiments::experiments()) {
     kinds += (kinds.empty() ? "" : ", ") + std::string(experiment->kind());
   }
   verb->add_option("KIND", options->kind, "Kind of experiment: " + kinds);
   verb->add_flag("--reference", options->reference, "Print the reference page in Markdown instead");
-  verb->add_option("--results", options->verb, "Print the schema of what this verb prints with --json")
-      ->type_name("VERB")
+  verb->add_option("--results", options->verb, "Print the schema of the results that this command prints with --json")
+      ->type_name("COMMAND")
       ->expected(1, 2);
   verb->callback([options, kinds, &app, &status] {
     if (!options->verb.empty()) {

@@ -1,10 +1,10 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/real_between.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/cli/serve_report.hpp>
-#include <tactus/cli/verbs.hpp>
 #include <tactus/live/live_view.hpp>
 #include <tactus/live/server.hpp>
 #include <tactus/report/files.hpp>
@@ -142,19 +142,20 @@ Check serve(const ServeOptions& options, const std::string& command) {
 
 void add_serve(CLI::App& app, const std::string& command, int& status) {
   auto options = std::make_shared<ServeOptions>();
-  CLI::App* verb = app.add_subcommand("serve", "Serve the live page: be the operator in a browser");
+  CLI::App* verb = app.add_subcommand("serve", "Serve the live page, on which you are the operator in a browser");
   verb->add_option("EXPERIMENT", options->experiment,
-                   "Experiment file of the kind tapping or arm-tapping; its own, where none is named");
+                   "Experiment file of the kind tapping or arm-tapping; a built-in one by default");
   add_set_option(*verb, options->set);
-  verb->add_option("--port", options->server.port, "Port to listen on; 0 takes any that is free");
+  verb->add_option("--port", options->server.port, "Port to listen on; 0: any free port");
   verb->add_option("--listen", options->server.address, "Address of this machine to listen on")->type_name("ADDRESS");
   verb->add_flag("--allow-tuning", options->allow_tuning, "Let clients change parameters, within their bounds");
   verb->add_option("--page", options->page, "Folder of the built page")->type_name("DIR");
   add_output_options(*verb, options->output, command,
-                     "Folder for report.html, results.json, the figure and a log of every tick");
+                     "Folder for report.html, results.json, the figure and a log of every control cycle");
   verb->remove_option(verb->get_option("--json"));  // what is printed is where to look, not results
   add_log_limit_option(*verb, options->log_limit);
-  verb->add_option("--duration", options->duration_s, "Seconds to serve; 0 is until interrupted")
+  verb->add_option("--duration-s", options->duration_s, "Time to run; 0: until interrupted")
+      ->type_name("S")
       ->check(real_between(0.0, 1e6));
   verb->callback([options, &app, &command, &status] {
     if (const auto error = serve(*options, command)) {

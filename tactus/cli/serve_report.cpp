@@ -39,7 +39,7 @@ const char* word_of(LiveVerdict verdict) {
     case LiveVerdict::free:
       break;
   }
-  return "too short to tell";
+  return "too short to judge";
 }
 
 /// The contacts of one loop under one setting.
@@ -120,7 +120,7 @@ report::Table session_table(const ServeSession& session, const SessionHistory& h
   table.add_row({"turned away", count(session.server.turned_away), ""});
   table.add_row({"refused", count(session.server.refused), ""});
   table.add_row({"messages dropped for slow clients", count(session.server.dropped), ""});
-  table.add_row({"ticks that the view came too late for", count(session.lost_ticks), ""});
+  table.add_row({"control cycles that the view missed", count(session.lost_ticks), ""});
   return table;
 }
 

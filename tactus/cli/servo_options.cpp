@@ -5,11 +5,10 @@
 namespace tactus::cli {
 
 void add_servo_options(CLI::App& verb, runtime::ServoThreadParams& params) {
-  verb.add_option("--priority", params.priority, "Priority of the servo thread under SCHED_FIFO, 1 to 99")
-      ->type_name("N");
-  verb.add_option("--core", params.core, "The one core of the servo thread; -1 leaves the choice open")->type_name("N");
+  verb.add_option("--priority", params.priority, "SCHED_FIFO priority of the servo thread, 1 to 99")->type_name("N");
+  verb.add_option("--core", params.core, "Core of the servo thread; -1: any")->type_name("N");
   verb.add_option("--spin-s", params.spin_s,
-                  "The last part of each wait, spent asking the clock instead of asleep; at most half a tick")
+                  "Last part of each wait, spent polling the clock instead of sleeping; at most half a control cycle")
       ->type_name("S");
 }
 

@@ -8,7 +8,7 @@ class App;
 
 namespace tactus::cli {
 
-/// Adds how a servo thread keeps time to a verb: `--priority`, `--core`, `--spin-s`.
+/// Adds how a servo thread keeps time to a command: `--priority`, `--core`, `--spin-s`.
 void add_servo_options(CLI::App& verb, runtime::ServoThreadParams& params);
 
 }  // namespace tactus::cli

@@ -1,5 +1,5 @@
+#include <tactus/cli/commands.hpp>
 #include <tactus/cli/stability.hpp>
-#include <tactus/cli/verbs.hpp>
 
 #include <string>
 
@@ -8,7 +8,7 @@
 namespace tactus::cli {
 
 void add_stability(CLI::App& app, const std::string& command, int& status) {
-  CLI::App* verb = app.add_subcommand("stability", "How much force gain is safe, and what limits it");
+  CLI::App* verb = app.add_subcommand("stability", "Compute how much force gain is stable, and what limits it");
   verb->require_subcommand(1);
   const std::string name = app.get_name();
   add_stability_limit(*verb, name, command, status);

@@ -6,7 +6,7 @@ namespace CLI {  // NOLINT: the name is not ours
 class App;
 }
 
-/// What `tactus stability` can tell: each adds one subcommand to `stability`, in a file of its own
+/// What `tactus stability` can determine: each adds one subcommand to `stability`, in a file of its own
 /// (`stability_<what>.cpp`). When chosen, it does its work and leaves its exit status in `status`; messages begin with
 /// `name`, which is what the program calls itself; `command` is the whole command line, for the report.
 namespace tactus::cli {

@@ -1,12 +1,13 @@
 #include <tactus/cli/stability.hpp>
-#include <tactus/cli/stability_verb.hpp>
+#include <tactus/cli/stability_command.hpp>
 #include <tactus/stability/limit_report.hpp>
 
 namespace tactus::cli {
 
 void add_stability_limit(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
-  add_stability_verb(stability, "limit", "Gain limit: linear, of the linear rig in time, and of taps",
-                     stability::report_limit, name, command, status);
+  add_stability_command(stability, "limit",
+                        "Find the gain limit of the linear model, of the linear rig in time, and of taps",
+                        stability::report_limit, name, command, status);
 }
 
 }  // namespace tactus::cli

@@ -172,27 +172,27 @@ Check run(const MapOptions& options, const std::string& command) {
 
 void add_stability_map(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
   auto options = std::make_shared<MapOptions>();
-  CLI::App* verb =
-      stability.add_subcommand("map", "Draw over a grid where taps are stable, or up to which gain two arms are");
+  CLI::App* verb = stability.add_subcommand(
+      "map", "Draw a map of the parameters for which taps are stable, or of the gain limit of two arms");
   add_experiment_options(*verb, options->experiment);
-  verb->add_option(
-          "--vary", options->vary,
-          "An axis: key=from:to:count, key=from:to:count[log] or key=a,b,c; of two arms key=a,b,c, and without "
-          "any poses, directions and methods")
+  verb->add_option("--vary", options->vary,
+                   "Axis of the map: key=from:to:count, key=from:to:count[log] or key=a,b,c; for two arms key=a,b,c, "
+                   "and without "
+                   "any poses, directions and methods")
       ->type_name("AXIS")
       ->allow_extra_args(false);
-  verb->add_option("--hand", options->hands, "Two arms: another hand beside the file's, a file as for --with")
+  verb->add_option("--hand", options->hands, "Two arms: a further grip in addition to the file's, a file as for --with")
       ->type_name("FILE")
       ->allow_extra_args(false);
   verb->add_option("--friction-speed", options->friction_speed_rad_per_s,
-                   "Two arms: velocity amplitude of friction's describing function, in rad/s; 0 leaves friction out")
+                   "Two arms: velocity amplitude for the describing function of friction, in rad/s; 0: no friction")
       ->check(real_between(0.0, 1e6));
-  verb->add_option("--precision", options->precision, "double, or float with the boundary again in double")
+  verb->add_option("--precision", options->precision, "double, or float with the boundary repeated in double")
       ->check(CLI::IsMember({"double", "float"}));
   options->output.own_files = {"map.csv", "map.h5", "map.svg"};
   add_output_options(
       *verb, options->output, command,
-      "Folder for report.html, map.csv, map.h5, map.svg and results.json; a killed run goes on from there");
+      "Folder for report.html, map.csv, map.h5, map.svg and results.json; a killed run continues from there");
   verb->callback([options, name, &command, &status] {
     if (const auto error = run(*options, command)) {
       std::cerr << name << ": " << describe(*error) << "\n";

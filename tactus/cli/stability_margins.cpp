@@ -1,6 +1,6 @@
 #include <tactus/arm_stability/arm_margins_report.hpp>
 #include <tactus/cli/stability.hpp>
-#include <tactus/cli/stability_verb.hpp>
+#include <tactus/cli/stability_command.hpp>
 
 namespace tactus::cli {
 
@@ -9,9 +9,9 @@ void add_stability_margins(CLI::App& stability, const std::string& name, const s
     return experiments::is_of_arms(request.document) ? arm_stability::report_arm_margins(request, options)
                                                      : stability::report_margins(request, options);
   };
-  add_stability_verb(stability, "margins",
-                     "Margins, poles and gain limit of the linear loop in contact, of one axis or two arms", report,
-                     name, command, status);
+  add_stability_command(stability, "margins",
+                        "Compute margins, poles and gain limit of the linear loop in contact, of one axis or two arms",
+                        report, name, command, status);
 }
 
 }  // namespace tactus::cli

@@ -1,12 +1,12 @@
 #include <tactus/cli/stability.hpp>
-#include <tactus/cli/stability_verb.hpp>
+#include <tactus/cli/stability_command.hpp>
 #include <tactus/stability/scorecard_report.hpp>
 
 namespace tactus::cli {
 
 void add_stability_scorecard(CLI::App& stability, const std::string& name, const std::string& command, int& status) {
-  add_stability_verb(stability, "scorecard", "A master device judged by the induced motion that it allows",
-                     stability::report_scorecard, name, command, status);
+  add_stability_command(stability, "scorecard", "Rate a leader device by the induced motion that it allows",
+                        stability::report_scorecard, name, command, status);
 }
 
 }  // namespace tactus::cli

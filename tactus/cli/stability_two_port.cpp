@@ -1,5 +1,5 @@
 #include <tactus/cli/stability.hpp>
-#include <tactus/cli/stability_verb.hpp>
+#include <tactus/cli/stability_command.hpp>
 #include <tactus/stability/two_port_report.hpp>
 
 namespace tactus::cli {
@@ -8,8 +8,8 @@ void add_stability_two_port(CLI::App& stability, const std::string& name, const 
   const auto report = [](const auto& request, const auto& options, const auto&) {
     return stability::report_two_port(request, options);
   };
-  add_stability_verb(stability, "two-port", "What the hand feels over frequency, absolute stability and passivity",
-                     report, name, command, status);
+  add_stability_command(stability, "two-port", "Compute transparency over frequency, absolute stability and passivity",
+                        report, name, command, status);
 }
 
 }  // namespace tactus::cli

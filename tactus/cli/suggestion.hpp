@@ -12,7 +12,7 @@ namespace tactus::cli {
 const CLI::App* verb_below(const CLI::App& app, const std::string& name);
 
 /// `'rnu' is no command: did you mean run?`, without the question where none is near.
-std::string unknown_verb(const CLI::App& app, const std::string& word);
+std::string unknown_command(const CLI::App& app, const std::string& word);
 
 /// What a command line that could not be parsed asked for that is not there, where that is a verb or an option; else
 /// empty. `argv` is that of `main`.

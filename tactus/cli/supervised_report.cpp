@@ -134,7 +134,7 @@ void add_link(SitesTable& table, const LinkTotals& link) {
     table.add_shared(std::string("packets: ") + name, count(link.packets[verdict]));
   }
   table.add_shared("packets: repeated", count(link.link.inbound.repeated));
-  table.add_shared("lost on the way here", report::number(100.0 * loss_of(link), 3), "%");
+  table.add_shared("lost on the link to this site", report::number(100.0 * loss_of(link), 3), "%");
   table.add_shared("dropped by the kernel", count(link.dropped_by_kernel));
   table.add_shared("not authentic or malformed", count(link.link.secure.refused + link.link.malformed));
   table.add_shared("hand-shakes", count(link.link.secure.handshakes));
@@ -158,7 +158,7 @@ report::Table sites_table(const SupervisedRun& run) {
   table.add("armings", [](const SiteTotals& totals) { return count(totals.armings); });
   table.add_counts("holds: ", &SiteTotals::holds, control::SiteCause::none);
   table.add_counts("faults: ", &SiteTotals::faults, control::GateFault::none);
-  table.add_counts("ticks limited: ", &SiteTotals::ticks_limited, control::ActiveLimit::none);
+  table.add_counts("control cycles limited: ", &SiteTotals::ticks_limited, control::ActiveLimit::none);
   table.add(
       "longest silence before a hold",
       [](const SiteTotals& totals) { return milliseconds(totals.longest_silence_at_hold_s); }, "ms");
@@ -167,7 +167,7 @@ report::Table sites_table(const SupervisedRun& run) {
   table.add(
       "peak force", [](const SiteTotals& totals) { return report::number(totals.peak_force_N, 3); }, "N");
   table.add(
-      "largest force step in a tick",
+      "largest force step in a control cycle",
       [](const SiteTotals& totals) { return report::number(totals.largest_force_step_N, 3); }, "N");
   table.add(
       "the same, in the first second of being active",
@@ -259,14 +259,16 @@ report::Figure seconds_figure(const SupervisedRun& run) {
        .lines = of_each_site("active",
                              [](const SiteSecond& one) { return one.state == control::SiteState::active ? 1.0 : 0.0; }),
        .rules = {}});
-  return {.title = "Second by second",
-          .caption = std::string(run.link ? "What the packets of each second took, how many were lost on the way here, "
-                                            "and the largest force of the motor."
-                                          : "The largest force of each motor.") +
-                     " Where a site is not active it follows nobody.",
-          .columns = 1,
-          .panels = std::move(panels),
-          .share_x = report::Sharing::in_line};
+  return {
+      .title = "Second by second",
+      .caption =
+          std::string(run.link ? "What the packets of each second took, how many were lost on the link to this site, "
+                                 "and the largest force of the motor."
+                               : "The largest force of each motor.") +
+          " Where a site is not active it follows nobody.",
+      .columns = 1,
+      .panels = std::move(panels),
+      .share_x = report::Sharing::in_line};
 }
 
 nlohmann::ordered_json json_of(const SupervisedRun& run, const SiteSecond& second) {

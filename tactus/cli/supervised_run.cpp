@@ -1,7 +1,7 @@
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/line_writer.hpp>
+#include <tactus/cli/operator_input.hpp>
 #include <tactus/cli/outcome_files.hpp>
-#include <tactus/cli/person.hpp>
 #include <tactus/cli/rig_run.hpp>
 #include <tactus/cli/run_log.hpp>
 #include <tactus/cli/supervised_report.hpp>
@@ -158,7 +158,7 @@ struct Surroundings {
   runtime::ServoThreadParams servo;
   runtime::SiteExchange& exchange;
   const Interruption& interruption;
-  Onlookers& onlookers;
+  Observers& observers;
   LineWriter& output;
   LineWriter& errors;
 };
@@ -169,12 +169,12 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
   LineWriter& lines = folder.json() ? around.errors : around.output;
   std::optional<runtime::SiteLog> log;
   runtime::SiteStreams streams;
-  if (folder.wanted() || around.onlookers.any()) {
+  if (folder.wanted() || around.observers.any()) {
     streams = run.here.one ? runtime::SiteStreams::of_one(*run.here.one) : runtime::SiteStreams::of_both();
     loop.leave_in(streams);
-    around.onlookers.watch(streams);
+    around.observers.watch(streams);
   }
-  if (auto error = around.onlookers.begin([&lines](const std::string& line) { lines.say(line); })) return error;
+  if (auto error = around.observers.begin([&lines](const std::string& line) { lines.say(line); })) return error;
   if (folder.wanted()) {
     if (auto error = folder.begin()) return error;
     auto created = runtime::SiteLog::create(folder.log_folder(), streams, around.about, around.log_limit_bytes);
@@ -190,9 +190,9 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
       lines.say(second_line(run.here, second));
       run.seconds.push_back(second);
     }
-    runtime::SiteMisfit misfit;
-    while (around.exchange.misfits.try_pop(misfit)) {
-      around.errors.say("tactus: " + describe(misfit, *run.here.one) + "\n");
+    runtime::SiteMismatch mismatch;
+    while (around.exchange.mismatches.try_pop(mismatch)) {
+      around.errors.say("tactus: " + describe(mismatch, *run.here.one) + "\n");
     }
   };
   while (!(*servo)->ended()) {
@@ -202,7 +202,7 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
   run.servo = (*servo)->finish();
   (*servo)->step().finish();
   take_seconds();
-  if (const std::string seen = around.onlookers.end(); !seen.empty()) lines.say(seen);
+  if (const std::string seen = around.observers.end(); !seen.empty()) lines.say(seen);
   add_totals(run, (*servo)->step());
   run.ended_by = around.interruption.signal() != 0 ? around.interruption.name() : "its duration";
   run.lines_dropped = lines.dropped();
@@ -220,26 +220,30 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
 }  // namespace
 
 void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
-  constexpr const char* group = "Under supervision, in real time";
+  constexpr const char* group = "With supervision, in real time";
   const auto add = [&verb](const char* name, auto& value, const char* help, const char* type) {
     return verb.add_option(name, value, help)->type_name(type)->group(group);
   };
   add("--device", options.devices,
-      "Drive this device, which the program must bring, in place of the simulated one, at both sites or at one; or the "
-      "leader and follower of a rig file, or of a pair of it, of which --site drives one",
+      "Drive this device, which the program must provide, in place of the simulated one, at both sites or at one; or "
+      "the "
+      "leader and follower of a rig file or of one of its pairs (with --site, one of them)",
       "[SITE=]NAME|RIG.toml[:PAIR]")
       ->allow_extra_args(false);
-  add("--site", options.site, "Run only this site, the other being elsewhere", "SITE")
+  add("--site", options.site, "Run only this site; the other one runs elsewhere", "SITE")
       ->check(CLI::IsMember({"master", "slave"}));
-  add("--peer", options.peer, "Where the other site listens", "HOST:PORT");
-  add("--listen", options.listen, "Where to listen; without it at the peer's port on every own address", "[HOST:]PORT");
-  add("--key", options.key, "The key that both sites share, made by `tactus key`", "FILE");
-  verb.add_flag("--unencrypted", options.unencrypted, "Plain text, on this host's loopback only")->group(group);
-  verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as the slave is heard")->group(group);
-  add("--duration-s", options.duration_s, "How long to run; 0 is until interrupted", "S");
+  add("--peer", options.peer, "Address on which the other site listens", "HOST:PORT");
+  add("--listen", options.listen, "Address to listen on; by default the peer's port on every address of this host",
+      "[HOST:]PORT");
+  add("--key", options.key, "Key that both sites share, created by `tactus key`", "FILE");
+  verb.add_flag("--unencrypted", options.unencrypted, "Send plain text, on the loopback of this host only")
+      ->group(group);
+  verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as a packet of the slave is received")
+      ->group(group);
+  add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S");
 }
 
-Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& looking_on,
+Check run_supervised(const SupervisedOptions& options, const ObserverOptions& observer_options,
                      runtime::ServoThreadParams servo, const experiments::Request& request, OutputFolder& folder,
                      std::uint64_t log_limit_bytes) {
   const configuration::Document& document = request.document;
@@ -262,7 +266,7 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
     if (!stated) return stated.error();
     link = *std::move(stated);
   }
-  if (rig) return run_rig(options, looking_on, servo, request, folder, log_limit_bytes, link);
+  if (rig) return run_rig(options, observer_options, servo, request, folder, log_limit_bytes, link);
   const auto params = document.read<TappingParams>();
   if (!params) return params.error();
   const auto names = device_names(options, here);
@@ -273,10 +277,10 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
   const auto interruption = Interruption::start(exchange.end, Interrupted::site);
   if (!interruption) return interruption.error();
   LineWriter errors(STDERR_FILENO), output(STDOUT_FILENO);
-  const auto person = Person::listen_to(STDIN_FILENO, here.one.value_or(SiteRole::master), exchange, errors);
+  const auto person = OperatorInput::listen_to(STDIN_FILENO, here.one.value_or(SiteRole::master), exchange, errors);
   if (!person) return person.error();
-  auto onlookers = Onlookers::open(looking_on, request, here.one);
-  if (!onlookers) return onlookers.error();
+  auto observers = Observers::open(observer_options, request, here.one);
+  if (!observers) return observers.error();
   auto devices = open_devices(*names, here, *params);
   if (!devices) return document.locate(devices.error());
   servo.rate_Hz = params->servo.rate_Hz;
@@ -289,7 +293,7 @@ Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& lo
                             .servo = servo,
                             .exchange = exchange,
                             .interruption = **interruption,
-                            .onlookers = *onlookers,
+                            .observers = *observers,
                             .output = output,
                             .errors = errors};
   SupervisedRun run;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/cli/onlookers.hpp>
+#include <tactus/cli/observers.hpp>
 #include <tactus/cli/output_folder.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/experiments/experiment.hpp>
@@ -18,7 +18,7 @@ class App;
 
 namespace tactus::cli {
 
-/// What `tactus run EXPERIMENT` was asked for where a person arms it: `--site`, or `--realtime --device`.
+/// What `tactus run EXPERIMENT` was asked for where a user arms it: `--site`, or `--realtime --device`.
 struct SupervisedOptions {
   std::string site;  ///< master or slave; empty where both sites run in this program
   std::string peer;
@@ -34,14 +34,14 @@ struct SupervisedOptions {
   [[nodiscard]] bool wanted() const { return !site.empty() || !devices.empty(); }
 };
 
-/// Adds these options to the verb.
+/// Adds these options to the command.
 void add_supervised_options(CLI::App& verb, SupervisedOptions& options);
 
 /// Runs one site of the request's experiment, or both, in real time until it ends or is interrupted: a line a second,
 /// then tables. In the folder of `output`, if there is one, it leaves a report, and every tick in its log. With JSON
-/// the lines go to standard error and one document to standard output. What a person asks for is read from standard
+/// the lines go to standard error and one document to standard output. What a user asks for is read from standard
 /// input, a `SiteWord` a line; SIGUSR1 arms. Of `servo`, the rate is the experiment's.
-Check run_supervised(const SupervisedOptions& options, const OnlookerOptions& onlookers,
+Check run_supervised(const SupervisedOptions& options, const ObserverOptions& observers,
                      runtime::ServoThreadParams servo, const experiments::Request& request, OutputFolder& output,
                      std::uint64_t log_limit_bytes);
 

@@ -21,7 +21,7 @@ std::string cause_of(const control::SupportFinding& found) {
     return ", against gravity: the URDF overstates the weight (units, masses), or a joint counts the other way (sign) "
            "or is swapped with another";
   }
-  return ", as gravity pulls: the URDF understates the weight (a tool that it does not have), the arm was let go "
+  return ", as gravity pulls: the URDF understates the weight (a tool that it does not have), the arm was released "
          "before "
          "its motors carried it, or a joint counts the other way (sign) or is swapped with another";
 }

@@ -1,5 +1,6 @@
 #include <tactus/configuration/assign.hpp>
 #include <tactus/configuration/nearest.hpp>
+#include <tactus/configuration/renamed.hpp>
 #include <tactus/configuration/text.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/core/spelling.hpp>
@@ -149,8 +150,15 @@ Error unknown_key(const Entry& entry, std::span<const Binding> bindings) {
   const bool is_section = std::holds_alternative<Table>(entry.value);
   const std::string_view section = section_of(entry.path);
   std::string message = is_section ? "unknown section" : "unknown key";
+  const std::string_view renamed = new_name_of(key_of(entry.path));
+  const bool is_renamed =
+      !renamed.empty() && std::any_of(bindings.begin(), bindings.end(), [&](const Binding& binding) {
+        return section_of(binding.path) == section && key_of(binding.path) == renamed;
+      });
   const std::string_view meant = nearest_path(entry.path, is_section, bindings);
-  if (!meant.empty()) {
+  if (is_renamed) {
+    message = concat({"this key is now called ", renamed});
+  } else if (!meant.empty()) {
     const bool same_section = section_of(meant) == section;
     message += concat({": did you mean ", same_section ? key_of(meant) : meant, "?"});
   } else if (const std::string keys = keys_of(section, bindings); !keys.empty()) {

@@ -8,7 +8,7 @@
 
 namespace tactus::configuration {
 
-/// Stores what was written where `binding` points, or says why it does not fit; nothing to store for a section. The
+/// Stores what was written where `binding` points, or states why it does not fit; nothing to store for a section. The
 /// error has no place yet.
 Check assign(const Entry& entry, const Binding& binding);
 

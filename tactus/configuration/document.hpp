@@ -12,7 +12,7 @@
 
 namespace tactus::configuration {
 
-/// A configuration as a person wrote it: a TOML file, and values that override it.
+/// A configuration as a user wrote it: a TOML file, and values that override it.
 ///
 /// A copy is independent, so a sweep copies the document and overrides one value in each copy. Every error carries the
 /// place where the value was written: `tapping.toml:12:5`, or `--set control.force_gain=-1`. Cold: it allocates.
@@ -34,7 +34,7 @@ class Document {
 
   /// Overrides one value: `control.force_gain=3`. The last override of a key wins.
   ///
-  /// The right side is read as a TOML value and, where it is none, as a text, so `control.cancellation=off` needs no
+  /// The right side is read as a TOML value or, if it is not one, as a text, so `control.cancellation=off` needs no
   /// quotes. A text parameter takes what was typed, number or not.
   ///
   /// Errors: `syntax` for an assignment without `=` or with a malformed key, `wrong_type` for a section as value, a
@@ -42,7 +42,7 @@ class Document {
   Check set(std::string_view assignment);
 
   /// Takes over every key of `other`, where both have it in place of this document's: what a file that holds part of a
-  /// configuration, such as an identified model, says on top of an experiment. Errors found later name the file that
+  /// configuration, such as an identified model, states on top of an experiment. Errors found later name the file that
   /// a key came from.
   ///
   /// Errors: `wrong_type` where one has a section and the other a value.

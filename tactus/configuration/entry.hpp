@@ -23,7 +23,7 @@ struct Foreign {
 
 using Value = std::variant<Table, bool, std::int64_t, double, std::string, Foreign>;
 
-/// One key of a document with what was written for it. Parts of the path that are no bare TOML keys stand in quotes, so
+/// One key of a document with what was written for it. Parts of the path that are no bare TOML keys are in quotes, so
 /// that a quoted key with a dot in it is not mistaken for a key within a section.
 struct Entry {
   std::string path;

@@ -10,7 +10,7 @@ namespace tactus::configuration {
 
 /// Another page, whose keys a page need not say again.
 struct OtherPage {
-  std::string_view kind;  ///< it stands beside the page, as `kind`.md
+  std::string_view kind;  ///< it stands alongside the page, as `kind`.md
   std::span<const Binding> bindings;
 };
 

@@ -13,7 +13,7 @@
 namespace tactus::control {
 
 /// The parameters that both sites must have in common before they arm, each under the key of an experiment file. They
-/// are those with which both sites compute, and those on which a person at one site relies at the other: limits and
+/// are those with which both sites compute, and those on which an operator at one site relies at the other: limits and
 /// time-outs. The groups of all architectures count, so both sites must have the same ones registered. What is not here
 /// either concerns one site alone, as the master's model and filters and where the slave's force comes from, or the
 /// host that it runs on, as the longest stall.
@@ -37,7 +37,7 @@ struct AgreedParams {
     using P = AgreedParams;
     return List{
         field("control.architecture", &P::architecture, "Each site takes the other to be its half."),
-        field("servo.rate_Hz", &P::rate_Hz, units::hertz, positive, "Ticks count at both sites."),
+        field("servo.rate_Hz", &P::rate_Hz, units::hertz, positive, "Control cycles per second, equal at both sites."),
         field("control.position_scale", &P::position_scale, units::none, positive, "The master commands by it."),
         field("control.force_gain", &P::force_gain, units::none, non_negative, "The master displays by it."),
         field("control.force_limit_N", &P::force_limit_N, units::newton, positive, "What the hand gets at most."),
@@ -46,7 +46,7 @@ struct AgreedParams {
         field("control.handle_gate", &P::handle_gate, "What the actuator on the handle does at most."),
         field("control.slave_gate", &P::slave_gate, "What the slave's motor does at most."),
         field("control", &P::groups, "All that architectures have of their own."),
-        field("control.supervision.packets", &P::packets, "What a site believes of the other."),
+        field("control.supervision.packets", &P::packets, "What a site accepts of the other."),
         field("control.supervision.silence", &P::silence, "What a site does in silence."),
         field("control.supervision.watchdog", &P::watchdog, "When it holds."),
         field("control.supervision.answer_within_s", &P::answer_within_s, units::second, positive,
@@ -66,7 +66,7 @@ Agreement agreement_of(const ControlParams& params, Seconds dt);
 /// differs (`SiteRecord::differs`) is the number of the joint; `first_disagreement` is for one axis. Allocates.
 Agreement agreement_of(const JointParams auto& params, Seconds dt);
 
-/// One key with both values, as a person writes them.
+/// One key with both values, as an operator writes them.
 struct Disagreement {
   std::string key;
   std::string own;

@@ -9,7 +9,7 @@
 /// How two sites find out that they do not work by the same parameters, from a few bytes in each packet.
 namespace tactus::control {
 
-/// What a packet says of the sender's agreement: the digest of all of it, and one cell, another one in each packet.
+/// What a packet states of the sender's agreement: the digest of all of it, and one cell, another one in each packet.
 struct AgreementExcerpt {
   std::uint64_t digest = 0;
   std::uint64_t cell = 0;   ///< its number
@@ -45,7 +45,7 @@ class Agreement {
   [[nodiscard]] std::uint64_t digest() const noexcept { return digest_; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::uint64_t operator[](std::size_t cell) const noexcept { return cells_[cell]; }
-  /// What packet number `count` says.
+  /// What packet number `count` states.
   [[nodiscard]] AgreementExcerpt excerpt(std::int64_t count) const noexcept {
     if (size_ == 0) return {.digest = digest_};
     const std::size_t cell = static_cast<std::size_t>(count) % size_;
@@ -60,13 +60,13 @@ class Agreement {
   std::array<std::uint64_t, most_cells> cells_{};
 };
 
-/// What the other site says, beside the own agreement. The digest alone decides; the cells are for words. Real-time
-/// safe.
+/// What the other site states, alongside the own agreement. The digest alone decides; the cells are for words.
+/// Real-time safe.
 class AgreementCheck {
  public:
   explicit AgreementCheck(const Agreement& own = {}) : own_(own) {}
 
-  /// What a packet of the other site's `session` says.
+  /// What a packet of the other site's `session` states.
   void take(std::int64_t session, const AgreementExcerpt& said) noexcept {
     if (session != session_) {
       session_ = session;
@@ -82,15 +82,15 @@ class AgreementCheck {
     if (said.value != own_[said.cell] && (first_ == 0 || number < first_)) first_ = number;
   }
 
-  /// Whether the other site was heard and works by other parameters.
+  /// Whether the other site was received and works by other parameters.
   [[nodiscard]] bool disagrees() const noexcept { return session_ != 0 && digest_ != own_.digest(); }
-  /// Whether all that it can say of that was heard.
+  /// Whether all that it can say of that was received.
   [[nodiscard]] bool complete() const noexcept { return count_ == own_.size(); }
   /// Number of the first cell known to differ, from 1; 0 for none.
   [[nodiscard]] std::size_t first_difference() const noexcept { return first_; }
   [[nodiscard]] std::int64_t session() const noexcept { return session_; }
   [[nodiscard]] const Agreement& own() const noexcept { return own_; }
-  /// The other site's; 0 where it was not told.
+  /// The other site's; 0 where it was not reported.
   [[nodiscard]] std::uint64_t other(std::size_t cell) const noexcept { return told_[cell] ? other_[cell] : 0; }
 
  private:

@@ -204,7 +204,7 @@ Result<JointSites> make_sites(const JointParams auto& params, Seconds dt) {
   if (!master_gates) {
     return Error{.code = ErrorCode::out_of_bounds,
                  .parameter = "joints",
-                 .message = "there is none: a device has 1 to " + std::to_string(most_joints),
+                 .message = "does not exist: a device has 1 to " + std::to_string(most_joints),
                  .place = {}};
   }
   using Master = IndependentJoints<MasterInput, MasterOutput>;

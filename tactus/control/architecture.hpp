@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-/// Architectures: how two sites share the work of making a person feel what the slave touches.
+/// Architectures: how two sites share the work of making an operator feel what the slave touches.
 namespace tactus::control {
 
 /// The section `[control]` of a file: which architecture, what all of them have in common, and a group for each one
@@ -30,7 +30,7 @@ struct ControlParams : PositionForceMaster::Params {
   static constexpr auto fields() {
     return joined(
         List{field("architecture", &ControlParams::architecture,
-                   "How the sites work together; the architecture's page tells which of the keys below it uses.")},
+                   "How the sites work together; the architecture's page lists which of the keys below it uses.")},
         PositionForceMaster::Params::fields(),
         List{field("slave", &ControlParams::slave, "The slave's position controller."),
              field("slave_force", &ControlParams::slave_force, "Where the slave's tip force comes from."),
@@ -40,7 +40,7 @@ struct ControlParams : PositionForceMaster::Params {
              field("slave_gate", &ControlParams::slave_gate, "Last limits before the slave's motor."),
              field("", &ControlParams::groups, "The groups of the architectures."),
              field("supervision", &ControlParams::supervision,
-                   "States, watchdogs and what a site believes of the other; used where sites are supervised: by "
+                   "States, watchdogs and what a site accepts of the other; used by supervised sites: by "
                    "`tactus faults` and `tactus run --site`.")});
   }
 
@@ -55,7 +55,7 @@ struct ControlParams : PositionForceMaster::Params {
   }
 };
 
-/// The parameters of several joints. What takes them beside those of one axis is a template, so that `{}` stays one
+/// The parameters of several joints. What takes them alongside those of one axis is a template, so that `{}` stays one
 /// axis.
 template <class T>
 concept JointParams = std::same_as<T, Joints<ControlParams>>;
@@ -68,7 +68,7 @@ struct Controllers {
 
 /// How far the loop of an architecture is that of position-force, the one that margins and maps are made of.
 enum class Likeness {
-  unknown,     ///< not at all, or nobody has said so: refused there by name
+  unknown,     ///< not at all, or not declared: refused there by name
   about_rest,  ///< for motions and forces that are small enough: margins are its own, maps are refused
   equal,       ///< everywhere
 };
@@ -113,7 +113,7 @@ using JointSites = SitesOf<JointMasterSite, JointSlaveSite>;
 /// parameters.
 Result<Sites> make_sites(const ControlParams& params, Seconds dt);
 /// The same for devices of several joints, each of which is controlled by itself, as `params` of that joint describe.
-/// What couples joints is a controller of all of them: make a `JointMasterSite` around yours. Errors stand under the
+/// What couples joints is a controller of all of them: make a `JointMasterSite` around yours. Errors are under the
 /// joint, as `joint_2`.
 Result<JointSites> make_sites(const JointParams auto& params, Seconds dt);
 

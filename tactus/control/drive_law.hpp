@@ -5,7 +5,7 @@
 namespace tactus::control {
 
 /// The law that a drive runs by itself, much faster than its bus and without its delay ("MIT mode" of Damiao's and many
-/// others' motors), beside the force that it is told:
+/// others' motors), alongside the force that it is told:
 ///
 ///     stiffness·(position − its own) + damping·(velocity − its own)
 ///
@@ -47,7 +47,7 @@ struct HoldingLaw {
 };
 
 /// Makes a command of a force and a law, which together want `wanted_N` where the motor is, one that gives `passed_N`
-/// there. Force and gains keep one share, so none of them grows, and the drive goes on by the same law, weaker. Where
+/// there. Force and gains keep one share, so none of them grows, and the drive continues by the same law, weaker. Where
 /// what passes is no part of what is wanted, as when it falls no faster than a rate limit, it is a force alone.
 inline void keep_part(double& force_N, DriveLaw& law, double wanted_N, double passed_N) noexcept {
   const double share = passed_N / wanted_N;
@@ -60,10 +60,10 @@ inline void keep_part(double& force_N, DriveLaw& law, double wanted_N, double pa
   }
 }
 
-/// What a drive tells of its motor beside its position; zeros where it tells nothing.
-struct DriveTells {
+/// What a drive tells of its motor alongside its position; zeros where it reports nothing.
+struct DriveReport {
   double velocity_m_per_s = 0.0;
-  double force_N = 0.0;  ///< that the motor gives to the joint, as the drive believes, from its current
+  double force_N = 0.0;  ///< that the motor gives to the joint, as the drive assumes, from its current
 };
 /// Whether a drive can mean it: a number, and not beyond what any motor does, in m/s or rad/s and in N or N m. Of a
 /// single tick of 1e300 an observer would be lost for good.

@@ -28,7 +28,7 @@ constexpr auto enumerators(EncoderFault) {
 /// - a motor's force that is `frozen_force_N` or more away from what it was at the last count. A device that rests, or
 ///   presses with a steady force, is not frozen, so this shows only once the force works. It must stay away: a hand
 ///   that turns around holds a device still through the short pulses of a chattering contact;
-/// - where a sensor tells what resists the motor, a difference of `unbalanced_force_N` or more between the two. What
+/// - where a sensor reports what resists the motor, a difference of `unbalanced_force_N` or more between the two. What
 ///   friction cannot hold must move, however slowly the force changes.
 ///
 /// Without model or controller: it knows the readings and the force that the gate let through. Range: v_max · T should
@@ -86,7 +86,7 @@ class EncoderCheck {
     return still_s_ >= frozen_after_s_ ? EncoderFault::frozen : EncoderFault::none;
   }
 
-  /// The next reading is believed.
+  /// The next reading is assumed.
   void reset() noexcept {
     started_ = false;
     position_m_ = 0.0;

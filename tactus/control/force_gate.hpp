@@ -111,7 +111,7 @@ class ForceGate {
     passed_N_ = 0.0;
     rearm();
   }
-  /// No fault any more; the force goes on from where it is, so re-arming makes no step above the rate limit.
+  /// No fault any more; the force continues from where it is, so re-arming makes no step above the rate limit.
   void rearm() noexcept {
     fault_ = GateFault::none;
     limit_ = ActiveLimit::none;

@@ -18,8 +18,8 @@ namespace tactus::control {
 ///
 /// The residual of a sensor that dropped out is the force of contact, that of a bias the bias. Inertia adds m·Δv/τ for
 /// a change of velocity Δv within the time constant τ of the low-pass, and friction adds itself, so the limit must be
-/// above both. What is smaller passes unseen. After a gap the low-pass goes on as if the difference had been there all
-/// along, but no longer than a tenth of its time constant, about as long as an impact: one reading alone proves
+/// above both. What is smaller passes unseen. After a gap the low-pass continues as if the difference had been there
+/// all along, but no longer than a tenth of its time constant, about as long as an impact: one reading alone proves
 /// nothing. Like a momentum observer with its mass set to zero (A. De Luca and R. Mattone, Sensorless robot collision
 /// detection, ICRA 2005).
 class ForceSensorCheck {

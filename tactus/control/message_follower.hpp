@@ -14,7 +14,8 @@ namespace tactus::control {
 /// What a site takes the other to say, while messages fail and when they come again.
 ///
 /// - A message that is fresh every tick passes unchanged, bit for bit.
-/// - In silence a position goes on at its estimated velocity for `extrapolation_s`; then velocity, force and wave decay
+/// - In silence a position continues at its estimated velocity for `extrapolation_s`; then velocity, force and wave
+/// decay
 ///   with the time constant `decay_s`, so a position goes no farther than v·(extrapolation + decay).
 /// - Where the site does not follow, the position stays where it was and all else fades to zero at the rate below.
 /// - What then comes again differs from what stands. The difference is kept and closed at a bounded rate, so neither
@@ -31,13 +32,13 @@ class MessageFollower {
     double catch_up_N_per_s = 20.0;
     static constexpr auto fields() {
       return List{field("extrapolation_s", &Params::extrapolation_s, units::second, between(0.0, 0.1),
-                        "Silence during which the other site is taken to go on as it did."),
+                        "Silence during which the other site is assumed to continue as before."),
                   field("decay_s", &Params::decay_s, units::second, positive_up_to(1.0),
                         "Time constant with which velocity, force and wave decay after that."),
                   field("catch_up_m_per_s", &Params::catch_up_m_per_s, units::metre_per_second, positive_up_to(10.0),
-                        "How fast the told position may close a gap, on top of the motion that is told."),
+                        "How fast the followed position may close a gap, on top of the motion that is sent."),
                   field("catch_up_N_per_s", &Params::catch_up_N_per_s, units::newton_per_second, positive_up_to(1e5),
-                        "The same for a told force; for a velocity in m/s and a wave in square roots of watts too.")};
+                        "The same for a sent force; for a velocity in m/s and a wave in square roots of watts too.")};
     }
   };
   struct Input {

@@ -11,7 +11,7 @@
 
 namespace tactus::control {
 
-/// What is wrong with a measured position beside the velocity that its drive reports.
+/// What is wrong with a measured position alongside the velocity that its drive reports.
 enum class MotionFault { none, contradicted, repeated };
 
 /// Whether the position of a joint moves as its drive reports it to move. Two checks, both on new measurements alone:
@@ -23,7 +23,7 @@ enum class MotionFault { none, contradicted, repeated };
 /// v̄ being the mean of v over the gap Δt between two measurements (a CUSUM: E. S. Page, Biometrika 41, 1954). A
 /// position that is frozen, stuck, scaled, reversed or late lets one of them grow with the travel; it is contradicted
 /// above `disagreement_m`. The velocity may lag by the filter of its drive, so `lag_s` times the range of v since the
-/// sum was at its floor is allowed beside that.
+/// sum was at its floor is allowed alongside that.
 ///
 /// **Age.** An answer is stamped when it arrives, and was measured at any time since the one before. So the difference
 /// of one measurement is uncertain by |v| times the gap before it: that much is allowed, and is what the floor is below
@@ -59,7 +59,7 @@ class MotionCheck {
   };
   struct Input {
     double position_m = 0.0;
-    DriveTells tells;
+    DriveReport tells;
     double acted_N = 0.0;        ///< on the motor since the reading before
     double force_limit_N = 0.0;  ///< of the motor; of one that gives none, repetition is not judged
     double between_s = 0.0;      ///< since the measurement before
@@ -179,7 +179,7 @@ class MotionCheck {
   /// Over a longer gap the velocity may have been anything up to its larger end, and what it changed by after a late
   /// answer it may have done at once.
   static constexpr double longest_gap_s = 0.01;
-  /// Of the first answer, of which no gap says how late it is; a device is silent before that.
+  /// Of the first answer, of which no gap states how late it is; a device does not respond before that.
   static constexpr double longest_lateness_s = 0.05;
   /// Answers that are closer to one another waited in a buffer.
   static constexpr double burst_s = 0.0003;

@@ -16,7 +16,8 @@ namespace tactus::control {
 ///
 /// A single gap t brings it to 1 − exp(−t/τ) and no higher: 20 ms in 0.5 s are 0.04. A loop that misses the share m for
 /// ever passes the limit s₀ after −τ·ln(1 − s₀/m): every second tick after 0.51 τ where s₀ is 0.2. What a mean over a
-/// window says as well, but in one number. Like the success rate of commands in libfranka, over which its robot stops.
+/// window states as well, but in one number. Like the success rate of commands in libfranka, over which its robot
+/// stops.
 class OverloadCheck {
  public:
   struct Params {
@@ -24,7 +25,7 @@ class OverloadCheck {
     double window_s = 0.5;
     static constexpr auto fields() {
       return List{field("missed_share", &Params::missed_share, units::none, positive_up_to(0.9),
-                        "Share of missed ticks from which on the site holds."),
+                        "Share of missed control cycles above which the site holds."),
                   field("window_s", &Params::window_s, units::second, positive_up_to(10.0),
                         "Time constant with which the share forgets.")};
     }

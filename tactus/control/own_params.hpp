@@ -52,8 +52,8 @@ OwnKeys own_keys(const char* group, const char* doc) {
 /// The groups of all registered architectures, each once, in the order of their registration.
 std::vector<OwnKeys> registered_keys();
 
-/// What a file or a program says about the groups of all registered architectures. A value: a copy is independent. What
-/// nobody has set has its defaults. Cold.
+/// What a file or a program states about the groups of all registered architectures. A value: a copy is independent.
+/// What nobody has set has its defaults. Cold.
 class OwnParams {
  public:
   OwnParams() = default;

@@ -27,9 +27,10 @@ class PaceCheck {
     double tolerance_share = 0.25;
     static constexpr auto fields() {
       return List{field("slack_s", &Params::slack_s, units::second, positive_up_to(30.0),
-                        "Lag that says nothing: the oldest packet that counts and the longest silence together."),
+                        "Lag that proves nothing: the oldest packet that counts and the longest silence together."),
                   field("tolerance_share", &Params::tolerance_share, units::none, positive_up_to(0.9),
-                        "Difference of the rates that says nothing; above what the other site may miss of its ticks.")};
+                        "Difference of the rates that proves nothing; above the share of control cycles that the other "
+                        "site may miss.")};
     }
   };
   struct Input {

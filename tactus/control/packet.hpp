@@ -7,11 +7,11 @@
 #include <array>
 #include <cstdint>
 
-/// What one site tells the other besides the message of the architecture, and what becomes of it.
+/// What one site sends the other besides the message of the architecture, and what becomes of it.
 namespace tactus::control {
 
-/// What a site does. In `configure` its motor is free; in `align`, `armed` and `hold` a slave stands where it is and a
-/// master gives no force; in `active` it follows; in `fault` the safety gate has let go.
+/// What a site does. In `configure` its motor is free; in `align`, `armed` and `hold` a slave is where it is and a
+/// master gives no force; in `active` it follows; in `fault` the safety gate has released its force.
 enum class SiteState { configure, align, armed, active, hold, fault };
 constexpr auto enumerators(SiteState) {
   return std::array{Enumerator{SiteState::configure, "configure"}, Enumerator{SiteState::align, "align"},
@@ -56,7 +56,7 @@ class Sessions {
 
  private:
   std::int64_t current_ = 0;
-  std::array<std::int64_t, 16> left_{};  ///< 0 is none
+  std::array<std::int64_t, 16> left_{};  ///< 0: none
   std::size_t next_left_ = 0;
 };
 
@@ -79,9 +79,9 @@ struct PacketJudgeParams {
     return List{field("longest_age_s", &P::longest_age_s, units::second, positive_up_to(10.0),
                       "Age beyond which a message is not applied, however new."),
                 field("position_limit_m", &P::position_limit_m, units::metre, positive_up_to(1000.0),
-                      "A told position beyond it is refused."),
+                      "A received position beyond it is refused."),
                 field("force_limit_N", &P::force_limit_N, units::newton, positive_up_to(1e5),
-                      "A told force beyond it is refused.")};
+                      "A received force beyond it is refused.")};
   }
 };
 
@@ -100,7 +100,7 @@ class PacketJudgeOf {
   static constexpr double largest_other = 1e6;
   /// No gate lets a device move faster, so no more energy is sent in a tick than the force limit does at this speed.
   static constexpr double fastest_m_per_s = 100.0;
-  /// No person arms a master more often.
+  /// No operator arms a master more often.
   static constexpr std::int64_t most_armings = 1'000'000'000;
 
   static Result<PacketJudgeOf> make(const Params& params, Seconds dt) {
@@ -111,7 +111,7 @@ class PacketJudgeOf {
     return PacketJudgeOf(params, dt);
   }
 
-  /// Judges one packet; what it says counts only where this is `applied`. Real-time safe.
+  /// Judges one packet; what it states counts only where this is `applied`. Real-time safe.
   PacketVerdict step(const Input& packet) noexcept {
     if (sessions_.was_left(packet.session)) return PacketVerdict::left_session;
     if (packet.session == sessions_.current() && packet.sequence <= sequence_) return PacketVerdict::late;

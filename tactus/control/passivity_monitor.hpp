@@ -58,8 +58,8 @@ class PassivityMonitor {
     if (params.hold_above_J <= params.damp_above_J) {
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = "hold_above_J",
-                   .message = format_number(params.hold_above_J) + " J must be more than damp_above_J, " +
-                              format_number(params.damp_above_J) + " J: raise it or lower damp_above_J",
+                   .message = rounded_number(params.hold_above_J) + " J must be more than damp_above_J, " +
+                              rounded_number(params.damp_above_J) + " J: raise it or lower damp_above_J",
                    .place = {}};
     }
     return PassivityMonitor(params, dt);

@@ -1,6 +1,7 @@
 #include <tactus/control/protective_limits.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -25,7 +26,7 @@ void add_unchosen(const T& params, const T& defaults, const std::string& group, 
       add_unchosen(value, defaults.*f.member, key, found);
     } else if constexpr (std::is_same_v<Value, double>) {
       const bool time = std::string_view(f.unit.suffix) == units::second.suffix;
-      if (!time && value == defaults.*f.member) found.push_back({key, format_number(value) + " " + f.unit.symbol});
+      if (!time && value == defaults.*f.member) found.push_back({key, rounded_number(value) + " " + f.unit.symbol});
     }
   });
 }
@@ -50,25 +51,26 @@ Check refuse(std::vector<Unchosen> found) {
   for (std::size_t i = 1; i < found.size(); ++i) {
     message += (i == 1 ? "" : i + 1 < found.size() ? ", " : " and ") + found[i].key + " = " + found[i].value;
   }
-  message += ": set each to what the device, and whoever touches it, can stand";
+  message += ": set each to what the device, and whoever touches it, can bear";
   return Error{.code = ErrorCode::inconsistent, .parameter = found.front().key, .message = message, .place = {}};
 }
 
 /// A motor that gives less gives none.
 constexpr double gives_none_N = 1e-6;
 
-/// That `key` says `value`, more than the `most` that `reach` allows.
+/// The error of a `value` of `key` above the `most` that `reach` allows. The value that it recommends is rounded down.
 Error unreachable(const std::string& key, double value, const char* unit, double most, const std::string& reach) {
+  most = 1e-6 * std::floor(1e6 * most * (1.0 + 1e-12));
   return {.code = ErrorCode::inconsistent,
           .parameter = key,
-          .message = format_number(value) + " " + unit + " can never be reached: " + reach + "; write at most " +
-                     format_number(most) + " " + unit,
+          .message = rounded_number(value) + " " + unit + " can never be reached: " + reach + "; write at most " +
+                     rounded_number(most) + " " + unit,
           .place = {}};
 }
 
 /// The force limit of a gate, in words, and which part of it is a good threshold.
 std::string force_reach(const SafetyGate::Params& gate, const std::string& name) {
-  return "the motor gives at most " + format_number(gate.force_limit_N) + " N by " + name +
+  return "the motor gives at most " + rounded_number(gate.force_limit_N) + " N by " + name +
          ".force_limit_N or the limit of its device, whichever is lower";
 }
 
@@ -93,7 +95,7 @@ Check refuse_unreachable(const SafetyGate::Params& gate, const std::string& name
     if (gate.reversal.gained_m_per_s >= latched_m_per_s) {
       return unreachable(name + ".reversal.gained_m_per_s", gate.reversal.gained_m_per_s, "m/s",
                          gate.velocity_limit_m_per_s,
-                         "the gate latches a velocity of " + format_number(latched_m_per_s) + " m/s, 1.25 times " +
+                         "the gate latches a velocity of " + rounded_number(latched_m_per_s) + " m/s, 1.25 times " +
                              name + ".velocity_limit_m_per_s or the limit of its device, before");
     }
   }
@@ -101,11 +103,11 @@ Check refuse_unreachable(const SafetyGate::Params& gate, const std::string& name
   if (gate.energy.drain_W >= most_W) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = name + ".energy.hold_above_J",
-                 .message = format_number(gate.energy.hold_above_J) +
-                            " J can never be reached: the motor gives at most " + format_number(most_W) +
+                 .message = rounded_number(gate.energy.hold_above_J) +
+                            " J can never be reached: the motor gives at most " + rounded_number(most_W) +
                             " W, its force limit at 1.25 times its velocity limit, and " + name +
-                            ".energy.drain_W forgives " + format_number(gate.energy.drain_W) +
-                            " W; write a drain_W of at most " + format_number(0.5 * most_W) + " W",
+                            ".energy.drain_W forgives " + rounded_number(gate.energy.drain_W) +
+                            " W; write a drain_W of at most " + rounded_number(0.5 * most_W) + " W",
                  .place = {}};
   }
   return {};
@@ -159,8 +161,8 @@ Check refuse_default_limits(const ControlParams& params, SiteRole role, bool sen
   if (!sensed) forgive_sensors(found);
   const auto& supervision = params.supervision;
   if (sensed && supervision.force_sensor.residual_limit_N == defaults.supervision.force_sensor.residual_limit_N) {
-    found.push_back(
-        {"supervision.force_sensor.residual_limit_N", format_number(supervision.force_sensor.residual_limit_N) + " N"});
+    found.push_back({"supervision.force_sensor.residual_limit_N",
+                     rounded_number(supervision.force_sensor.residual_limit_N) + " N"});
   }
   if (supervision.probe.force_N == 0.0) found.push_back({"supervision.probe.force_N", "0 N"});
   return refuse(found);

@@ -31,7 +31,8 @@ class ReversalCheck {
     static constexpr auto fields() {
       return List{
           field("force_N", &Params::force_N, units::newton, positive_up_to(200.0),
-                "Least force, of the motor less what a sensor says resists it, against which no speed may be gained; "
+                "Least force, of the motor less the resistance that a sensor measures, against which no speed may be "
+                "gained; "
                 "above friction and the error of the sensor."),
           field("gained_m_per_s", &Params::gained_m_per_s, units::metre_per_second, positive_up_to(100.0),
                 "Speed gained against it that is a fault."),

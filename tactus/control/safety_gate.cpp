@@ -17,7 +17,7 @@ constexpr double least_ticks = 0.01;
 }  // namespace
 
 double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::optional<double> resisting_N,
-                           double age_s, const DriveTells& tells) noexcept {
+                           double age_s, const DriveReport& tells) noexcept {
   elapsed_ticks_ = elapsed_ticks = std::max<std::int64_t>(elapsed_ticks, 1);
   const double acted_N = force_.passed_N();
   allowed_N_ = thermal_.step({.acted_N = acted_N, .peak_N = force_limit_N_, .elapsed_ticks = elapsed_ticks});
@@ -66,10 +66,10 @@ double SafetyGate::pass(double command_N, bool stops) noexcept {
   const bool finite = std::isfinite(command_N);
   if (!finite) latch(GateFault::not_finite);
   limit_ = ActiveLimit::none;
-  double wanted_N = fault() == GateFault::none && !let_go_ ? command_N : 0.0;
+  double wanted_N = fault() == GateFault::none && !released_ ? command_N : 0.0;
   if (brakes_ && fault() == GateFault::none) wanted_N = brake_.step(velocity_m_per_s_);
   const bool damps =
-      !let_go_ && damping_N_s_per_m_ > 0.0 && (fault() == GateFault::none || fault() == GateFault::energy);
+      !released_ && damping_N_s_per_m_ > 0.0 && (fault() == GateFault::none || fault() == GateFault::energy);
   if (fault() == GateFault::none) {
     const double position_share = share_beyond(std::fabs(believed_m_), position_limit_m_);
     const double velocity_share = share_beyond(std::fabs(velocity_m_per_s_), velocity_limit_m_per_s_);
@@ -90,7 +90,7 @@ double SafetyGate::pass(double command_N, bool stops) noexcept {
     wanted_N = std::copysign(allowed_N_, wanted_N);
     if (limit_ == ActiveLimit::none) limit_ = ActiveLimit::thermal;
   }
-  const double passed_N = force_.step(wanted_N, stops || has_let_go(), elapsed_ticks_);
+  const double passed_N = force_.step(wanted_N, stops || has_released(), elapsed_ticks_);
   if (limit_ == ActiveLimit::none) limit_ = force_.limit();
   return passed_N;
 }
@@ -106,7 +106,7 @@ void SafetyGate::rearm() noexcept {
   believed_m_ = age_s_ = 0.0;
   velocity_m_per_s_ = 0.0;
   damping_N_s_per_m_ = 0.0;
-  let_go_ = brakes_ = false;
+  released_ = brakes_ = false;
   fault_ = GateFault::none;
   limit_ = ActiveLimit::none;
 }

@@ -17,10 +17,10 @@
 
 namespace tactus::control {
 
-/// All that stands between a controller and a motor. In this order:
+/// All that is between a controller and a motor. In this order:
 ///
 /// 1. **finite**: a reading or a command that is not a number latches a fault before any limiter sees it;
-/// 2. **encoder**: a reading that cannot be true latches a fault, and the one before stands in its place; so does a
+/// 2. **encoder**: a reading that cannot be true latches a fault, and the one before is in its place; so does a
 ///    position that contradicts the velocity that its drive reports, or a drive that repeats itself (`MotionCheck`);
 /// 3. **reversal**: speed gained against the force latches a fault;
 /// 4. **energy**: `PassivityMonitor` damps, then latches and damps alone;
@@ -101,15 +101,15 @@ class SafetyGate {
     return SafetyGate(params, *force, *encoder, *motion, *energy, *reversal, *brake, *thermal, *velocity, dt);
   }
 
-  /// Looks at a reading, before the controller does: the position in m to believe, which is the last good one where
+  /// Looks at a reading, before the controller does: the position in m to assume, which is the last good one where
   /// this is none. `elapsed_ticks` is more than 1 after a stall: all checks count the time that really passed.
-  /// `resisting_N` is what a sensor says that pushes back against the motor: at a slave what is at its tip, at a master
-  /// the hand. `age_s` is how old the position is at this tick, negative where it is younger. Speed and jump are judged
-  /// over the time between two measurements, which is not that between two ticks where a bus has a cycle of its own; a
-  /// position that was read before says nothing new of them.
-  /// `tells` is what the drive reports beside the position. Real-time safe.
+  /// `resisting_N` is what a sensor states that pushes back against the motor: at a slave what is at its tip, at a
+  /// master the hand. `age_s` is how old the position is at this tick, negative where it is younger. Speed and jump are
+  /// judged over the time between two measurements, which is not that between two ticks where a bus has a cycle of its
+  /// own; a position that was read before states nothing new of them. `tells` is what the drive reports alongside the
+  /// position. Real-time safe.
   double believe(double position_m, std::int64_t elapsed_ticks = 1, std::optional<double> resisting_N = std::nullopt,
-                 double age_s = 0.0, const DriveTells& tells = {}) noexcept;
+                 double age_s = 0.0, const DriveReport& tells = {}) noexcept;
   /// The force in N that may reach the motor instead of `command_N`. Always finite. Once a tick, after `believe`.
   /// `stops` where the site gives its force up: it then falls within `stop_time_s`, as after a fault. Real-time safe.
   double pass(double command_N, bool stops = false) noexcept;
@@ -126,24 +126,24 @@ class SafetyGate {
     thermal_.reset();
     allowed_N_ = force_limit_N_;
   }
-  /// No fault any more and an empty account of energy; the force goes on from where it is, and the motor is as warm.
+  /// No fault any more and an empty account of energy; the force continues from where it is, and the motor is as warm.
   void rearm() noexcept;
   /// Latches `not_finite`, for what is found elsewhere.
   void refuse() noexcept { latch(GateFault::not_finite); }
   /// No force from now on, damping neither, until the gate is re-armed; no fault.
-  void let_go() noexcept {
-    let_go_ = true;
+  void release() noexcept {
+    released_ = true;
     brakes_ = false;
   }
   /// No force from now on but that of `StoppingBrake`, with the damping of `energy`, and where a fault is latched not
   /// that either, until the gate is re-armed; no fault.
-  void brake() noexcept { let_go_ = brakes_ = true; }
+  void brake() noexcept { released_ = brakes_ = true; }
 
   [[nodiscard]] GateFault fault() const noexcept { return fault_ != GateFault::none ? fault_ : force_.fault(); }
-  /// Whether no command passes any more, for a fault or because it was told to let go.
-  [[nodiscard]] bool has_let_go() const noexcept { return let_go_ || fault() != GateFault::none; }
+  /// Whether no command passes any more, for a fault or because it was commanded to let go.
+  [[nodiscard]] bool has_released() const noexcept { return released_ || fault() != GateFault::none; }
   [[nodiscard]] ActiveLimit limit() const noexcept { return limit_; }
-  /// Of the reading that is believed, low-passed.
+  /// Of the reading that is assumed, low-passed.
   [[nodiscard]] double velocity_m_per_s() const noexcept { return velocity_m_per_s_; }
   /// What the motor gave, as `PassivityMonitor` counts it.
   [[nodiscard]] double given_J() const noexcept { return energy_.given_J(); }
@@ -195,7 +195,7 @@ class SafetyGate {
   double velocity_m_per_s_ = 0.0;
   double damping_N_s_per_m_ = 0.0;
   double allowed_N_ = force_limit_N_;  ///< by the warmth of the motor
-  bool let_go_ = false;
+  bool released_ = false;
   bool brakes_ = false;
   GateFault fault_ = GateFault::none;
   ActiveLimit limit_ = ActiveLimit::none;

@@ -65,8 +65,8 @@ class SignProbe {
     if (params.most_m <= params.least_m) {
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = "most_m",
-                   .message = format_number(params.most_m) + " m must be more than least_m, " +
-                              format_number(params.least_m) + " m: raise it or lower least_m",
+                   .message = rounded_number(params.most_m) + " m must be more than least_m, " +
+                              rounded_number(params.least_m) + " m: raise it or lower least_m",
                    .place = {}};
     }
     return SignProbe(params, dt);

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-/// What a controller of a site is, and what stands between it and a motor.
+/// What a controller of a site is, and what is between it and a motor.
 namespace tactus::control {
 
 /// A controller of one site: where a user plugs in. Once a tick `respond` and then `applied` are called; both must not
@@ -70,8 +70,8 @@ std::unique_ptr<SlaveController> slave_controller(const E& element) {
 }
 
 /// Passes a motor's command, the law of its drive included, whose force is that at what was read. What is let through
-/// is cut from the whole command (`keep_part`); a gate that has let go leaves the drive no law. `stops` as in
-/// `SafetyGate::pass`. Real-time safe.
+/// is cut from the whole command (`keep_part`); a gate that has released its force leaves the drive no law. `stops` as
+/// in `SafetyGate::pass`. Real-time safe.
 template <class Input, class Output>
 void pass_command(SafetyGate& gate, const Input& read, Output& output, bool stops) noexcept {
   if (!output.law.acts()) {
@@ -80,9 +80,9 @@ void pass_command(SafetyGate& gate, const Input& read, Output& output, bool stop
     return;
   }
   const double wanted_N =
-      output.motor_force_N + output.law.force_N(read.motor_position_m, read.motor_tells.velocity_m_per_s);
+      output.motor_force_N + output.law.force_N(read.motor_position_m, read.motor_report.velocity_m_per_s);
   const double passed_N = gate.pass(wanted_N, stops);
-  if (gate.has_let_go()) {
+  if (gate.has_released()) {
     output.law = {};
     output.motor_force_N = passed_N;
   } else if (passed_N != wanted_N) {
@@ -96,16 +96,16 @@ void pass_command(SafetyGate& gate, const Input& read, Output& output, bool stop
 class MasterGates {
  public:
   MasterGates(const SafetyGate& motor, const ForceGate& handle) : motor_(motor), handle_(handle) {}
-  /// The same force and rate for both. Implicit, because one gate says all where nobody asked for a second actuator.
+  /// The same force and rate for both. Implicit, because one gate states all where nobody asked for a second actuator.
   MasterGates(const SafetyGate& both) : MasterGates(both, both.force_gate()) {}
 
   /// The gate that reads the motor's position.
   [[nodiscard]] SafetyGate& motor() noexcept { return motor_; }
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
-  /// The position in m to believe, as `SafetyGate` says. Real-time safe.
+  /// The position in m to assume, as `SafetyGate` states. Real-time safe.
   double believe(const MasterInput& read, std::int64_t elapsed_ticks) noexcept {
     elapsed_ticks_ = elapsed_ticks;
-    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_tells);
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_report);
   }
   /// Puts what may reach the actuators in place of what was commanded; `stops` as in `SafetyGate::pass`. Real-time
   /// safe.
@@ -140,9 +140,9 @@ class SlaveGates {
 
   [[nodiscard]] SafetyGate& motor() noexcept { return motor_; }
   [[nodiscard]] const SafetyGate& motor() const noexcept { return motor_; }
-  /// The position in m to believe, as `SafetyGate` says. Real-time safe.
+  /// The position in m to assume, as `SafetyGate` states. Real-time safe.
   double believe(const SlaveInput& read, std::int64_t elapsed_ticks) noexcept {
-    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_tells);
+    return motor_.believe(read.motor_position_m, elapsed_ticks, resisting_N(read), read.motor_age_s, read.motor_report);
   }
   /// Puts what may reach the motor in place of what was commanded. Real-time safe.
   void pass(SlaveOutput& output, const SlaveInput& read, bool stops = false) noexcept {
@@ -162,18 +162,18 @@ class SlaveGates {
 struct Shares {
   double force = 1.0;
   double support = 1.0;
-  bool stops = false;  ///< the site gives its force up, as `SafetyGate::pass` says
+  bool stops = false;  ///< the site gives its force up, as `SafetyGate::pass` states
 };
 
-/// A controller behind its safety gates, one for each actuator. They stand outside of the controller, so none can leave
-/// them out. Of several joints each has gates of its own, and a fault of one lets all go. A copy is a fork: it owns a
+/// A controller behind its safety gates, one for each actuator. They are outside of the controller, so none can leave
+/// them out. Of several joints each has gates of its own, and a fault of one releases all. A copy is a fork: it owns a
 /// clone of the controller.
 template <class In, class Out, class JointGates>
 class Site {
  public:
   using Sensors = In;
   using Output = Out;
-  using Wish = double;  ///< what share of the controller's force is wanted
+  using Request = double;  ///< what share of the controller's force is wanted
   using Controller = SiteController<Sensors, Output>;
   using Gates = Each<In, JointGates>;
   using Forces = Each<In, double>;  ///< in N
@@ -212,8 +212,8 @@ class Site {
   /// The same with a law that `holds` the device.
   Output step(const Sensors& input, const Shares& shares, std::int64_t elapsed_ticks, const Forces& added_N,
               const Laws& holds) noexcept {
-    // A site that reads nonsense lets go until it is re-armed, even where the nonsense would not have reached a force,
-    // and its controller goes on with what was read last: no number that is none gets into its state.
+    // A site that reads nonsense releases its force until it is re-armed, even where the nonsense would not have
+    // reached a force, and its controller continues with what was read last: no invalid number gets into its state.
     for_each_joint(
         [elapsed_ticks](JointGates& gates, JointOf<In>& believed, const JointOf<In>& read) noexcept {
           if (!take_over(believed, read)) gates.motor().refuse();
@@ -244,7 +244,7 @@ class Site {
         },
         gates_, output, believed_, added_N, holds, weight_N_, passed);
     if constexpr (has_joints<In>) {
-      if (const GateFault found = fault(); found != GateFault::none && found != GateFault::energy) let_go();
+      if (const GateFault found = fault(); found != GateFault::none && found != GateFault::energy) release();
     }
     controller_->applied(passed);
     return output;
@@ -256,7 +256,7 @@ class Site {
     believed_ = nothing();
     pushes_ = carried_ = false;
   }
-  /// The controller as made and no fault any more; the forces go on from where they are, within the rate limit.
+  /// The controller as made and no fault any more; the forces continue from where they are, within the rate limit.
   void rearm() noexcept {
     controller_->reset();
     for_each_joint([](JointGates& gates) noexcept { gates.rearm(); }, gates_);
@@ -285,10 +285,10 @@ class Site {
   }
   /// The forces go to zero within `stop_time_s` and stay there until `rearm`, but for that of a second actuator, which
   /// follows its share. Real-time safe.
-  void let_go() noexcept {
-    for_each_joint([](JointGates& gates) noexcept { gates.motor().let_go(); }, gates_);
+  void release() noexcept {
+    for_each_joint([](JointGates& gates) noexcept { gates.motor().release(); }, gates_);
   }
-  /// The same, but the motor first brings the device to a stand where it can (`StoppingBrake`). Real-time safe.
+  /// The same, but the motor first brings the device to rest where it can (`StoppingBrake`). Real-time safe.
   void brake() noexcept {
     for_each_joint([](JointGates& gates) noexcept { gates.motor().brake(); }, gates_);
   }

@@ -8,12 +8,12 @@
 
 /// What the two sites of a teleoperator measure, command and tell one another, and what a controller of a site is. Of
 /// one axis each, or, as `Joints` of the same, of a device of several; positions and forces are positive toward the
-/// environment unless said otherwise.
+/// environment unless stated otherwise.
 namespace tactus::control {
 
 /// What one site tells the other at a tick. Each architecture fills the members that it uses; the rest stay zero.
 ///
-/// Its one description: what is checked, mended and sent over a network follows from it, in this order.
+/// Its one description: what is checked, corrected and sent over a network follows from it, in this order.
 struct Message {
   double position_m = 0.0;
   double velocity_m_per_s = 0.0;
@@ -34,7 +34,7 @@ struct Message {
   }
 };
 
-/// The newest message of the other site. A site gets one every tick; `fresh` tells whether it arrived since the last.
+/// The newest message of the other site. A site gets one every tick; `fresh` reports whether it arrived since the last.
 struct Arrival {
   Message message;
   bool fresh = false;
@@ -45,13 +45,13 @@ struct MasterInput {
   double motor_position_m = 0.0;
   double hand_force_N = 0.0;  ///< of the hand on the handle, positive when it pushes toward the environment
   Arrival arrival;
-  double grip = 1.0;         ///< how firmly the person holds, over nominal, where a sensor tells; 1 without one
+  double grip = 1.0;         ///< how firmly the operator holds, over nominal, where a sensor tells; 1 without one
   double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
-  DriveTells motor_tells = {};
+  DriveReport motor_report = {};
 };
 
-/// How firmly the person holds the handle and what else differs from the model that was identified, as the master's
-/// controller believes it. Where nothing is estimated, as identified and without deviation.
+/// How firmly the operator holds the handle and what else differs from the model that was identified, as the master's
+/// controller assumes it. Where nothing is estimated, as identified and without deviation.
 struct HandEstimate {
   double estimated_grip = 1.0;
   double estimated_grip_deviation = 0.0;
@@ -59,7 +59,7 @@ struct HandEstimate {
   static constexpr auto signals() {
     using R = HandEstimate;
     return List{observed("estimated_grip", &R::estimated_grip, units::none, "master", "hand", "",
-                         "How firmly the person holds, over identified."),
+                         "How firmly the operator holds, over identified."),
                 observed("estimated_grip_deviation", &R::estimated_grip_deviation, units::none, "master", "hand", "",
                          "Standard deviation of that; 0 where nothing is estimated."),
                 observed("linkage_excess", &R::linkage_excess, units::none, "master", "hand", "",
@@ -75,7 +75,7 @@ struct MasterOutput {
   double induced_position_m = 0.0;   ///< the estimate of what the displayed force did to the motor, at this instant
   double intended_position_m = 0.0;  ///< measured less induced
   HandEstimate hand = {};
-  DriveLaw law = {};       ///< what the motor's drive gives beside `motor_force_N`
+  DriveLaw law = {};       ///< what the motor's drive gives alongside `motor_force_N`
   double support_N = 0.0;  ///< of `motor_force_N`, what carries the device: it stays where the rest fades
 };
 
@@ -85,14 +85,14 @@ struct SlaveInput {
   double tip_force_N = 0.0;  ///< positive when the environment pushes the slave back
   Arrival arrival;
   double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
-  DriveTells motor_tells = {};
+  DriveReport motor_report = {};
 };
 
 /// What the slave commands and tells.
 struct SlaveOutput {
   double motor_force_N = 0.0;  ///< positive toward the environment
   Message message;
-  DriveLaw law = {};       ///< what the motor's drive gives beside `motor_force_N`
+  DriveLaw law = {};       ///< what the motor's drive gives alongside `motor_force_N`
   double support_N = 0.0;  ///< of `motor_force_N`, what carries the device: it stays where the rest fades
 };
 
@@ -109,12 +109,12 @@ bool is_finite(const Joints<T>& joints) noexcept {
   return finite;
 }
 
-/// What the force sensor says that pushes back against the motor, in N: the hand, or what is at the tip. Real-time
+/// What the force sensor states that pushes back against the motor, in N: the hand, or what is at the tip. Real-time
 /// safe.
 inline double resisting_N(const MasterInput& input) noexcept { return -input.hand_force_N; }
 inline double resisting_N(const SlaveInput& input) noexcept { return input.tip_force_N; }
 
-/// Takes over each number that is one, and of what a drive tells what is of motors; what was read last stays in the
+/// Takes over each number that is one, and of what a drive reports what is of motors; what was read last stays in the
 /// place of the others. Whether all were taken. One number after the other, for a copy of the whole would wait for them
 /// to be written. Real-time safe.
 inline bool take_over(double& last, double read) noexcept {
@@ -122,7 +122,7 @@ inline bool take_over(double& last, double read) noexcept {
   if (finite) last = read;
   return finite;
 }
-inline bool take_over(DriveTells& last, const DriveTells& read) noexcept {
+inline bool take_over(DriveReport& last, const DriveReport& read) noexcept {
   const bool velocity = can_be_told(read.velocity_m_per_s), force = can_be_told(read.force_N);
   if (velocity) last.velocity_m_per_s = read.velocity_m_per_s;
   if (force) last.force_N = read.force_N;
@@ -140,14 +140,14 @@ inline bool take_over(MasterInput& last, const MasterInput& read) noexcept {
   all = take_over(last.motor_age_s, read.motor_age_s) && all;
   all = take_over(last.hand_force_N, read.hand_force_N) && all;
   all = take_over(last.grip, read.grip) && all;
-  all = take_over(last.motor_tells, read.motor_tells) && all;
+  all = take_over(last.motor_report, read.motor_report) && all;
   return take_over(last.arrival, read.arrival) && all;
 }
 inline bool take_over(SlaveInput& last, const SlaveInput& read) noexcept {
   bool all = take_over(last.motor_position_m, read.motor_position_m);
   all = take_over(last.motor_age_s, read.motor_age_s) && all;
   all = take_over(last.tip_force_N, read.tip_force_N) && all;
-  all = take_over(last.motor_tells, read.motor_tells) && all;
+  all = take_over(last.motor_report, read.motor_report) && all;
   return take_over(last.arrival, read.arrival) && all;
 }
 

@@ -12,7 +12,7 @@ SiteCause SiteSupervisor::reason_to_hold(const Input& input) const noexcept {
   if (input.overloaded) return SiteCause::overloaded;
   if (input.device_silent) return SiteCause::device;
   if (input.out_of_pace) return SiteCause::pace;
-  if (input.silent) return SiteCause::silent;
+  if (input.silent) return SiteCause::timed_out;
   if (input.probe != SiteCause::none) return input.probe;
   if (input.unanswered) return SiteCause::unanswered;
   const bool stands = input.peer != SiteState::armed && input.peer != SiteState::active;

@@ -14,7 +14,7 @@ enum class SiteCause {
   none,
   started,
   dead_man,
-  silent,
+  timed_out,
   stalled,
   other_session,
   peer,
@@ -37,7 +37,7 @@ constexpr auto enumerators(SiteCause) {
   return std::array{Enumerator{SiteCause::none, "none"},
                     Enumerator{SiteCause::started, "started"},
                     Enumerator{SiteCause::dead_man, "dead-man"},
-                    Enumerator{SiteCause::silent, "silent"},
+                    Enumerator{SiteCause::timed_out, "timed-out"},
                     Enumerator{SiteCause::stalled, "stalled"},
                     Enumerator{SiteCause::other_session, "other-session"},
                     Enumerator{SiteCause::peer, "peer"},
@@ -62,7 +62,7 @@ constexpr auto enumerators(SiteRole) {
   return std::array{Enumerator{SiteRole::master, "master"}, Enumerator{SiteRole::slave, "slave"}};
 }
 
-/// What a person asks of a site. `align`, `arm` and `clear` are heard when they rise, so a button that is stuck arms
+/// What an operator asks of a site. `align`, `arm` and `clear` count when they rise, so a button that is stuck arms
 /// nothing. The dead-man switch must be pressed after arming and as long as the site shall follow.
 struct SiteRequests {
   bool align = false;           ///< leave `configure`
@@ -77,20 +77,20 @@ struct SiteRequests {
 /// The state of one site, and why.
 ///
 ///     configure –align→ align –arm→ armed –sign probe, dead-man, and the other site armed→ active
-///     active –dead-man let go→ armed
+///     active –dead-man released→ armed
 ///     armed, active –silence, stall, overload, device, other site, sensor, energy→ hold –arm→ armed
 ///     align, armed, active, hold –motion while its support comes in→ hold
 ///     armed –no answer, sign probe not passed→ hold
 ///     any –safety gate, emergency stop→ fault –clear→ align
 ///     any but fault –about to end→ configure
 ///
-/// Arming is a number that the master counts up and every packet carries; a restarted master goes on from the number
-/// that it hears the slave has followed. The slave is armed when it sees the number rise, repeats it, and the master
+/// Arming is a number that the master counts up and every packet carries; a restarted master continues from the number
+/// that it receives the slave has followed. The slave is armed when it sees the number rise, repeats it, and the master
 /// becomes active only once the slave does. Either site falls into hold when the other holds under the same number, or
 /// under any while this one is active, or was restarted; so one that was cut off alone does not come back with an
 /// arming that is over, and nothing but a new one leads out. An arming that the slave does not answer is given up. A
 /// site whose motor is tried on arming follows only after the sign probe.
-/// While the other site works by other parameters, nothing is armed; it must be started anew. Nor does a site leave
+/// While the other site works by other parameters, nothing is armed; it must be started again. Nor does a site leave
 /// `configure`, `hold` or `fault` whose device is heavier, by its model, than its motors may carry.
 class SiteSupervisor {
  public:
@@ -151,7 +151,7 @@ class SiteSupervisor {
                        .arm = true,
                        .clear = true,
                        .dead_man = true,
-                       .clutch = true};  ///< what is pressed at the start is not heard
+                       .clutch = true};  ///< what is pressed at the start does not count
   std::int64_t session_ = 0;
   std::int64_t armings_ = 0;
   std::int64_t over_ = 0;  ///< the peer's arming that a slave no longer follows

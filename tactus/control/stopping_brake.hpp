@@ -8,7 +8,7 @@
 
 namespace tactus::control {
 
-/// Brings a device that nobody holds to a stand by its motor, which may be what is wrong: F = −b·v until the device
+/// Brings a device that nobody holds to rest by its motor, which may be what is wrong: F = −b·v until the device
 /// stands, and no force from then on. Once it is faster by `gained_m_per_s` than when the brake began, this is none,
 /// and there is no force either, until `reset`. So a motor or an encoder that works the wrong way adds about as much to
 /// the speed and no more; one that gives nothing or sticks is left to whatever else stops it.

@@ -79,21 +79,21 @@ Result<Supervised<Gated>> supervise(Gated site, const Settings& settings, SiteRo
 
 /// What supervision judges the support of a device by.
 template <class Raise, class Gated, class Sensors>
-typename Raise::Sight sight_of(const Gated& site, const Sensors& sensors, std::int64_t elapsed_ticks) noexcept {
-  typename Raise::Sight sight{.position_m = member_of_each(sensors, &JointOf<Sensors>::motor_position_m),
-                              .velocity_m_per_s = same_for_each(sensors, 0.0),
-                              .weight_N = site.weight_N(),
-                              .carried = site.is_carried(),
-                              .seen = true,
-                              .elapsed_ticks = elapsed_ticks};
+typename Raise::Snapshot snapshot_of(const Gated& site, const Sensors& sensors, std::int64_t elapsed_ticks) noexcept {
+  typename Raise::Snapshot snapshot{.position_m = member_of_each(sensors, &JointOf<Sensors>::motor_position_m),
+                                    .velocity_m_per_s = same_for_each(sensors, 0.0),
+                                    .weight_N = site.weight_N(),
+                                    .carried = site.is_carried(),
+                                    .seen = true,
+                                    .elapsed_ticks = elapsed_ticks};
   for_each_joint(
-      [&sight](const JointOf<Sensors>& joint, double& velocity_m_per_s) noexcept {
-        const double told = joint.motor_tells.velocity_m_per_s;
+      [&snapshot](const JointOf<Sensors>& joint, double& velocity_m_per_s) noexcept {
+        const double told = joint.motor_report.velocity_m_per_s;
         if (can_be_told(told)) velocity_m_per_s = told;
-        sight.seen = sight.seen && std::isfinite(joint.motor_position_m);
+        snapshot.seen = snapshot.seen && std::isfinite(joint.motor_position_m);
       },
-      sensors, sight.velocity_m_per_s);
-  return sight;
+      sensors, snapshot.velocity_m_per_s);
+  return snapshot;
 }
 
 /// The law that holds each joint while its support comes in, by its share.
@@ -115,7 +115,7 @@ Each<Payload, HoldingLaw> holding_law(const SupportRaiseOf<Payload>& support, do
 
 template <class Gated>
 typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const Input& input) noexcept {
-  supervision_.look(sight_of<SupportRaiseOf<Payload>>(site_, input.sensors, input.elapsed_ticks));
+  supervision_.look(snapshot_of<SupportRaiseOf<Payload>>(site_, input.sensors, input.elapsed_ticks));
   const SiteState state = supervision_.decide(
       {.requests = input.requests,
        .elapsed_ticks = input.elapsed_ticks,
@@ -126,7 +126,7 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
     site_.rearm();
     for_each_joint([](ForceSensorCheck& check) noexcept { check.reset(); }, hand_sensor_);
   }
-  if (supervision_.lets_go()) site_.let_go();
+  if (supervision_.lets_go()) site_.release();
   const bool follows = state == SiteState::active && !input.requests.clutch;
 
   const Sensors sensors = with(input.sensors, supervision_.arrival(offset_m_));
@@ -160,7 +160,7 @@ typename SupervisedMasterOf<Gated>::Output SupervisedMasterOf<Gated>::step(const
 
 template <class Gated>
 typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const Input& input) noexcept {
-  supervision_.look(sight_of<SupportRaiseOf<Payload>>(site_, input.sensors, input.elapsed_ticks));
+  supervision_.look(snapshot_of<SupportRaiseOf<Payload>>(site_, input.sensors, input.elapsed_ticks));
   const SiteState state = supervision_.decide(
       {.requests = input.requests,
        .elapsed_ticks = input.elapsed_ticks,
@@ -179,7 +179,7 @@ typename SupervisedSlaveOf<Gated>::Output SupervisedSlaveOf<Gated>::step(const I
   if (supervision_.contradicted()) {
     site_.brake();
   } else if (supervision_.lets_go()) {
-    site_.let_go();
+    site_.release();
   }
   if (supervision_.probes()) supervision_.stand(here_m);
   const Sensors sensors = with(input.sensors, supervision_.arrival(same_for_each(here_m, 0.0)));

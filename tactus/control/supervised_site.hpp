@@ -5,20 +5,20 @@
 
 #include <cstdint>
 
-/// A site as it runs on a machine: the controller behind its gate, told what to believe of the other site, and brought
+/// A site as it runs on a machine: the controller behind its gate, told what to assume of the other site, and brought
 /// in and out without a bump.
 namespace tactus::control {
 
-/// The master. A person arms it and presses the dead-man switch; then it tells the slave where the hand means to be and
-/// displays what the slave tells. While the clutch is pressed, and in every state but `active`, it tells the position
-/// that it told last and gives no force: what the hand moved meanwhile becomes the workspace offset.
+/// The master. An operator arms it and presses the dead-man switch; then it tells the slave where the hand means to be
+/// and displays what the slave reports. While the clutch is pressed, and in every state but `active`, it reports the
+/// position that it told last and gives no force: what the hand moved meanwhile becomes the workspace offset.
 template <class Gated>
 class SupervisedMasterOf {
  public:
   using Sensors = typename Gated::Sensors;
   using Payload = Each<Sensors, Message>;
   using Packet = PacketOf<Payload>;
-  using Wish = SiteRequests;
+  using Request = SiteRequests;
   struct Input {
     Sensors sensors{};  ///< its arrival is not used: packets say what came
     SiteRequests requests{};
@@ -61,15 +61,15 @@ class SupervisedMasterOf {
   Each<Sensors, double> offset_m_;
 };
 
-/// The slave. Out of `configure` it stands where it is, by its own servo, until it follows. In `hold` it stands where
-/// it was told to be last while its force fades; armed again, it stands where it is then.
+/// The slave. Out of `configure` it is where it is, by its own servo, until it follows. In `hold` it is where
+/// it was commanded to be last while its force fades; armed again, it is where it is then.
 template <class Gated>
 class SupervisedSlaveOf {
  public:
   using Sensors = typename Gated::Sensors;
   using Payload = Each<Sensors, Message>;
   using Packet = PacketOf<Payload>;
-  using Wish = SiteRequests;
+  using Request = SiteRequests;
   struct Input {
     Sensors sensors{};  ///< its arrival is not used: packets say what came
     SiteRequests requests{};
@@ -115,12 +115,12 @@ using JointSupervisedSlave = SupervisedSlaveOf<JointSlaveSite>;
 /// used. Errors: those of `make_sites` and of `Supervision`, under `supervision`.
 Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt);
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt);
-/// The same for a site whose `params` are tighter than what it has in common with the other, which `agreement` says.
+/// The same for a site whose `params` are tighter than what it has in common with the other, which `agreement` states.
 Result<SupervisedMaster> make_supervised_master(const ControlParams& params, std::int64_t session, Seconds dt,
                                                 const Agreement& agreement);
 Result<SupervisedSlave> make_supervised_slave(const ControlParams& params, std::int64_t session, Seconds dt,
                                               const Agreement& agreement);
-/// The same of several joints. Errors of one of them stand under it, as `joint_2`.
+/// The same of several joints. Errors of one of them are under it, as `joint_2`.
 Result<JointSupervisedMaster> make_supervised_master(const JointParams auto& params, std::int64_t session, Seconds dt,
                                                      const Agreement& agreement);
 Result<JointSupervisedSlave> make_supervised_slave(const JointParams auto& params, std::int64_t session, Seconds dt,

@@ -97,9 +97,9 @@ Result<SupervisionOf<Payload>> SupervisionOf<Payload>::make(const Params& all, S
   if (tried_after_s > carried_after_s && params.answer_within_s <= tried_after_s) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "answer_within_s",
-                 .message = format_number(params.answer_within_s) + " s must be more than " +
+                 .message = rounded_number(params.answer_within_s) + " s must be more than " +
                             (carried_after_s > params.blend_s ? "support.raise_s" : "blend_s") +
-                            " and probe.duration_s together, " + format_number(tried_after_s) +
+                            " and probe.duration_s together, " + rounded_number(tried_after_s) +
                             " s: a slave answers once its motor was tried",
                  .place = {}};
   }
@@ -150,9 +150,9 @@ bool SupervisionOf<Payload>::unanswered() noexcept {
 }
 
 template <class Payload>
-SiteState SupervisionOf<Payload>::decide(const Sight& sight) noexcept {
+SiteState SupervisionOf<Payload>::decide(const Snapshot& snapshot) noexcept {
   before_ = supervisor_.state();
-  elapsed_ticks_ = std::max<std::int64_t>(sight.elapsed_ticks, 1);
+  elapsed_ticks_ = std::max<std::int64_t>(snapshot.elapsed_ticks, 1);
   fresh_ = arrived_;
   arrived_ = false;
   const bool guards = before_ == SiteState::armed || before_ == SiteState::active;
@@ -162,7 +162,7 @@ SiteState SupervisionOf<Payload>::decide(const Sight& sight) noexcept {
   const bool overloaded = overload_.step({.elapsed_ticks = elapsed_ticks_});
   proved_ = proved_ || probe_passed();
   supervisor_.step(
-      {.requests = sight.requests,
+      {.requests = snapshot.requests,
        .heard = newest_.session != 0,
        .session = newest_.session,
        .peer = newest_.state,
@@ -172,17 +172,18 @@ SiteState SupervisionOf<Payload>::decide(const Sight& sight) noexcept {
        .unanswered = unanswered(),
        .stalled = static_cast<double>(elapsed_ticks_) * dt_s_ > longest_stall_s_,
        .overloaded = overloaded,
-       .device_silent = sight.device_silent,
+       .device_silent = snapshot.device_silent,
        .out_of_pace = pace_.step(
            {.following = before_ == SiteState::active, .sequence = newest_.sequence, .elapsed_ticks = elapsed_ticks_}),
-       .force_sensor = sight.force_sensor,
+       .force_sensor = snapshot.force_sensor,
        .probe = probe_failed(),
        .proved = proved_,
        .support_moves = support_.failed(),
        .too_heavy = support_.too_heavy(),
-       .energy = sight.fault == GateFault::energy,
-       .fault = sight.fault != GateFault::none && sight.fault != GateFault::energy});
-  cannot_hold_ = state() == SiteState::hold && (cannot_hold_ || overloaded || sight.device_silent || support_.failed());
+       .energy = snapshot.fault == GateFault::energy,
+       .fault = snapshot.fault != GateFault::none && snapshot.fault != GateFault::energy});
+  cannot_hold_ =
+      state() == SiteState::hold && (cannot_hold_ || overloaded || snapshot.device_silent || support_.failed());
   if (arms_from_rest()) {
     proved_ = true;
     for_each_joint([this](bool tried) noexcept { proved_ = proved_ && !tried; }, tried_);

@@ -49,18 +49,18 @@ struct SupervisionParams {
   static constexpr auto fields() {
     return List{
         field("packets", &SupervisionParams::packets, "Which packets of the other site count."),
-        field("silence", &SupervisionParams::silence, "What stands in their place when none come."),
+        field("silence", &SupervisionParams::silence, "What replaces them when none arrive."),
         field("watchdog", &SupervisionParams::watchdog, "How long that may last before the site holds."),
         field("force_sensor", &SupervisionParams::force_sensor, "When the force sensor at the tip cannot be right."),
         field("hand_sensor", &SupervisionParams::hand_sensor,
               "When the master's motor and the force sensor at the hand contradict one another; for a master that has "
               "such a sensor, else out of reach."),
-        field("overload", &SupervisionParams::overload, "How many ticks a site may miss before it holds."),
+        field("overload", &SupervisionParams::overload, "How many control cycles a site may miss before it holds."),
         field("probe", &SupervisionParams::probe, "The force with which a site tries its motor when it is armed."),
         field("hold", &SupervisionParams::hold, "What becomes of a force when the site holds."),
         field("pace_share", &SupervisionParams::pace_share, units::none, positive_up_to(0.9),
               "Share by which the other site's clock may run slower or faster before the site holds; above what it may "
-              "miss of its ticks."),
+              "miss of its control cycles."),
         field("longest_stall_s", &SupervisionParams::longest_stall_s, units::second, positive_up_to(1.0),
               "Time without a step after which the site holds."),
         field(
@@ -137,11 +137,11 @@ struct SiteRecord {
         observed("enabled", &SiteRecord::enabled, units::none, "", "", "",
                  "The drive may have power: not in configure, and in fault, or in a hold that lets the motor go, only "
                  "until the force is zero."),
-        observed("fresh", &SiteRecord::fresh, units::none, "", "", "", "A packet was applied at this tick."),
+        observed("fresh", &SiteRecord::fresh, units::none, "", "", "", "A packet was applied in this control cycle."),
         observed("silence_s", &SiteRecord::silence_s, units::second, "", "", "", "Since a packet was applied."),
         observed("share", &SiteRecord::share, units::none, "", "", "", "Of the controller's force that is let in."),
         observed("offset_m", &SiteRecord::offset_m, units::metre, "", "slave", "toward the environment",
-                 "Workspace offset: the told position less the controller's."),
+                 "Workspace offset: the sent position less the controller's."),
         observed("gap_m", &SiteRecord::gap_m, units::metre, "", "", "toward the environment",
                  "What is still to be caught up of the other's position."),
         observed("given_J", &SiteRecord::given_J, units::joule, "", "", "the motor gave it",
@@ -169,7 +169,7 @@ class SupervisionOf {
                                     const Agreement& agreement = {});
 
   /// What the site itself saw, for `decide`.
-  struct Sight {
+  struct Snapshot {
     SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;
     bool device_silent = false;
@@ -180,13 +180,13 @@ class SupervisionOf {
   /// A packet that has come; any number of them before `decide`. Real-time safe.
   PacketVerdict take(const Packet& packet) noexcept;
   /// What was read of a device that something carries. Once, before `decide`.
-  void look(typename SupportRaiseOf<Payload>::Sight sight) noexcept {
-    sight.tried = probing_;
-    sight.proved = !tries() || proved_;
-    support_.look(sight);
+  void look(typename SupportRaiseOf<Payload>::Snapshot snapshot) noexcept {
+    snapshot.tried = probing_;
+    snapshot.proved = !tries() || proved_;
+    support_.look(snapshot);
   }
   /// The state for this tick. Real-time safe.
-  SiteState decide(const Sight& sight) noexcept;
+  SiteState decide(const Snapshot& snapshot) noexcept;
   /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
   Each<Payload, Arrival> arrival(const Lengths& offset_m) noexcept;
   /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone, none
@@ -211,7 +211,7 @@ class SupervisionOf {
   [[nodiscard]] bool is_held() const noexcept {
     return support_.holds() && (support_.rises() || (tries() && !proved_));
   }
-  /// The packet that says `message`. Once a tick.
+  /// The packet that states `message`. Once a tick.
   Packet packet(const Payload& message) noexcept;
   /// A slave's command is `position_m` until it follows.
   void stand(const Lengths& position_m) noexcept {
@@ -308,7 +308,7 @@ class SupervisionOf {
   std::int64_t answered_arming_ = 0;  ///< that packets tell: a slave's only once its motor was tried
   bool proved_ = false;               ///< the motor was tried since the site was armed, or need not be
   bool probing_ = false;              ///< the trial is under way
-  bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, its device was silent or moved
+  bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, its device did not respond or moved
   double share_ = 0.0;
   SiteState before_ = SiteState::configure;
 };

@@ -103,8 +103,8 @@ class SupportCheck {
   }
   /// Travel counts from here.
   void count_from(double position_m) noexcept { began_m_ = position_m; }
-  /// Motors are tried from now on: the spring gives what it gave, and is as soft as `trial_softness` says about here. A
-  /// damper alone brings a joint back after the trial's two lobes; a spring would return it between them, which looks
+  /// Motors are tried from now on: the spring gives what it gave, and is as soft as `trial_softness` states about here.
+  /// A damper alone brings a joint back after the trial's two lobes; a spring would return it between them, which looks
   /// as if it moved the wrong way.
   void begin_trial(double position_m) noexcept {
     bias_N_ = spring_N(position_m);

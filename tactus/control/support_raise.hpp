@@ -23,8 +23,8 @@ struct SupportFinding {
 };
 
 /// The support of a device as it comes in: its share, the holding law of each joint meanwhile (`SupportCheck`) and what
-/// the joints' motion says of it. Joints are judged until all of it has come in, `settles_s` have passed and the motors
-/// were tried. Then the law yields as friction does, until the coupling takes its place.
+/// the joints' motion states of it. Joints are judged until all of it has come in, `settles_s` have passed and the
+/// motors were tried. Then the law yields as friction does, until the coupling takes its place.
 template <class Payload>
 class SupportRaiseOf {
  public:
@@ -35,7 +35,7 @@ class SupportRaiseOf {
   static constexpr double settles_s = 1.0;
 
   /// What a site knows of its joints at a tick.
-  struct Sight {
+  struct Snapshot {
     Numbers position_m, velocity_m_per_s;
     Numbers weight_N;      ///< of the tick before, all of it
     bool carried = false;  ///< by something
@@ -53,22 +53,22 @@ class SupportRaiseOf {
   }
 
   /// Judges what was read, before the state is decided. Real-time safe, as all below.
-  void look(const Sight& sight) noexcept {
-    judged_ = judges_ && sight.carried;
+  void look(const Snapshot& snapshot) noexcept {
+    judged_ = judges_ && snapshot.carried;
     too_heavy_ = failed_ = false;
-    if (!judged_ || !sight.seen) return;
-    const bool counts = share_ < 1.0 || full_s_ < settles_s || sight.tried || !sight.proved;
-    const bool begins = holding_ && sight.tried && !tried_, ends = holding_ && !sight.tried && tried_;
+    if (!judged_ || !snapshot.seen) return;
+    const bool counts = share_ < 1.0 || full_s_ < settles_s || snapshot.tried || !snapshot.proved;
+    const bool begins = holding_ && snapshot.tried && !tried_, ends = holding_ && !snapshot.tried && tried_;
     for_each_joint(
         [&](SupportCheck& check, double at_m) noexcept {
           if (begins) check.begin_trial(at_m);
           if (ends) check.end_trial(at_m);
           if (counts && !counts_) check.count_from(at_m);
         },
-        checks_, sight.position_m);
-    tried_ = sight.tried;
+        checks_, snapshot.position_m);
+    tried_ = snapshot.tried;
     counts_ = counts;
-    if (share_ == 1.0) full_s_ += dt_s_ * static_cast<double>(std::max<std::int64_t>(sight.elapsed_ticks, 1));
+    if (share_ == 1.0) full_s_ += dt_s_ * static_cast<double>(std::max<std::int64_t>(snapshot.elapsed_ticks, 1));
     std::size_t joint = 0;
     for_each_joint(
         [&](SupportCheck& check, double position_m, double velocity_m_per_s, double weight_N) noexcept {
@@ -84,13 +84,13 @@ class SupportRaiseOf {
                                                  .share = share_,
                                                  .rises = share_ < 1.0,
                                                  .judged = counts,
-                                                 .tried = sight.tried,
-                                                 .elapsed_ticks = sight.elapsed_ticks});
+                                                 .tried = snapshot.tried,
+                                                 .elapsed_ticks = snapshot.elapsed_ticks});
           if (fault == SupportFault::none || failed_) return;
           failed_ = true;
           found_ = finding(check, fault, at, weight_N);
         },
-        checks_, sight.position_m, sight.velocity_m_per_s, sight.weight_N);
+        checks_, snapshot.position_m, snapshot.velocity_m_per_s, snapshot.weight_N);
   }
   /// Whether a joint moved as no right support moves it, at the latest reading.
   [[nodiscard]] bool failed() const noexcept { return failed_; }

@@ -8,7 +8,7 @@
 
 namespace tactus::control {
 
-/// Barks when nothing was heard for a time, and does not stop when something is: a bark is latched until `reset`. It
+/// Barks when nothing was received for a time, and does not stop when something is: a bark is latched until `reset`. It
 /// counts the ticks that it is told have passed, so a stall counts in full. No time-out switches it off: zero, infinity
 /// and all above the bound are refused.
 class Watchdog {

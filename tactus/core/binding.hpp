@@ -47,7 +47,7 @@ std::string_view section_of(std::string_view path);
 std::string_view key_of(std::string_view path);
 
 /// A member of a parameter struct whose keys only a running program knows, such as those of what was plugged in. With
-/// an empty name its field puts them beside those of the other fields.
+/// an empty name its field puts them alongside those of the other fields.
 template <class T>
 concept OpenGroup = CheckedGroup<T> && requires(T& group, std::string_view section, std::vector<Binding>& bindings) {
   group.append_to(bindings, section);

@@ -15,7 +15,7 @@
 /// Devices of several joints: whatever one joint has, `Joints` holds for up to eight. What is written with `Each` and
 /// `for_each_joint` is written once for one axis, which stays a plain value, and for all of a device's joints.
 ///
-/// A joint's numbers are in its own unit: where a name says m and N, one that turns has rad and N m.
+/// A joint's numbers are in its own unit: where a name states m and N, one that turns has rad and N m.
 namespace tactus {
 
 /// The largest number of joints that a device may have.

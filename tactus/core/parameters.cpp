@@ -1,6 +1,9 @@
 #include <tactus/core/parameters.hpp>
 
+#include <algorithm>
 #include <charconv>
+#include <string>
+#include <string_view>
 
 namespace tactus {
 
@@ -10,9 +13,19 @@ std::string format_number(double value) {
   return std::string(buffer, end);
 }
 
+std::string rounded_number(double value) {
+  std::string exact = format_number(value);
+  const std::string_view digits = std::string_view(exact).substr(0, exact.find('e'));
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (std::count_if(digits.begin(), digits.end(), is_digit) <= 9) return exact;
+  char buffer[32];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 6).ptr;
+  return std::string(buffer, end);
+}
+
 namespace {
 std::string with_unit(double value, const Unit& unit) {
-  std::string text = format_number(value);
+  std::string text = rounded_number(value);
   if (unit.symbol[0] != '\0') text += std::string(" ") + unit.symbol;
   return text;
 }
@@ -31,9 +44,15 @@ std::string describe_bounds(const Bounds& bounds, const Unit& unit) {
 }
 
 Error out_of_bounds(std::string_view parameter, double value, const Bounds& bounds, const Unit& unit) {
+  // A value that is outside by less than the rounding is shown exactly.
+  const std::string text = format_number(value), rounded = rounded_number(value);
+  double shown = 0.0;
+  std::from_chars(rounded.data(), rounded.data() + rounded.size(), shown);
+  const std::string unit_text = unit.symbol[0] == '\0' ? "" : std::string(" ") + unit.symbol;
   return {.code = ErrorCode::out_of_bounds,
           .parameter = std::string(parameter),
-          .message = with_unit(value, unit) + " is out of bounds: it " + describe_bounds(bounds, unit),
+          .message = (bounds.contain(shown) ? text : rounded) + unit_text + " is out of bounds: it " +
+                     describe_bounds(bounds, unit),
           .place = {}};
 }
 

@@ -96,7 +96,7 @@ struct Enumerator {
 template <class Enum>
 Enumerator(Enum, const char*) -> Enumerator<Enum>;
 
-/// An enum that a file can name: a function `enumerators(Enum)` beside it lists its words.
+/// An enum that a file can name: a function `enumerators(Enum)` alongside it lists its words.
 template <class E>
 concept NamedEnum = std::is_enum_v<E> && requires(E e) {
   enumerators(e);
@@ -121,8 +121,12 @@ constexpr void for_each_field(Visit&& visit) {
   fields_of<T>.for_each(visit);
 }
 
-/// A number as a person writes it: the shortest text that reads back equal.
+/// A number as a user writes it: the shortest text that reads back equal.
 std::string format_number(double value);
+
+/// A number in a message: as `format_number`, but with 6 significant digits if that would take more than 9, as a
+/// computed one usually does (-6.1 for -6.1000000000000005).
+std::string rounded_number(double value);
 
 /// `must be greater than 0 kg`, `must lie between 1 and 20 kHz`, ...
 std::string describe_bounds(const Bounds& bounds, const Unit& unit);

@@ -20,7 +20,7 @@ enum class ErrorCode {
   failed,         ///< the job itself went wrong
 };
 
-/// One failure, as a person needs it. Made off the servo path only: it owns strings.
+/// One failure, as a user needs it. Made off the servo path only: it owns strings.
 struct Error {
   ErrorCode code = ErrorCode::failed;
   /// The parameter concerned as a dotted path (`slave.friction.force_N`), or empty.
@@ -45,7 +45,7 @@ int exit_status(const Error& error);
 /// Nothing when all is well. Shape of every check that yields no value.
 using Check = std::optional<Error>;
 
-/// A value or the error that explains why there is none.
+/// A value, or the error that explains its absence.
 ///
 /// A valid object is made by a function that returns a `Result`, so an invalid one cannot exist. Reading the value of
 /// a failed result is a programming error and ends the program through `std::get`.

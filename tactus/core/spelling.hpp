@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-/// What a person probably meant: for errors that name the nearest word there is.
+/// What a user probably meant: for errors that name the nearest word there is.
 namespace tactus {
 
 /// How many slips of the fingers lie between two words: letters missing, added, replaced, or swapped with their

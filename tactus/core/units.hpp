@@ -44,7 +44,7 @@ inline constexpr Unit cubic_metre{"m^3", "_m3"};
 inline constexpr Unit cubic_metre_per_second{"m^3/s", "_m3_per_s"};
 inline constexpr Unit cubic_metre_per_second_per_pascal{"m^3/(s Pa)", "_m3_per_s_per_Pa"};
 
-/// Every unit that the end of a name can tell, those of recordings among them.
+/// Every unit that the end of a name can determine, those of recordings among them.
 inline constexpr std::array known{second,
                                   hertz,
                                   cycles,
@@ -86,7 +86,7 @@ inline constexpr std::array known{second,
                                   Unit{"bar", "_bar"}};
 }  // namespace units
 
-/// The unit that the end of `name` tells, the longest of those that fit (`torque_N_m` is in N m, not in m); none where
+/// The unit that the end of `name` states, the longest of those that fit (`torque_N_m` is in N m, not in m); none where
 /// there is no such end or nothing before it.
 constexpr Unit unit_at_end_of(std::string_view name) {
   Unit found = units::none;

@@ -23,7 +23,7 @@ class BusThread final : public MotorLink {
     double silence_s = 0.05;
     static constexpr auto fields() {
       return List{field("silence_s", &Params::silence_s, units::second, between(0.001, 10.0),
-                        "The longest silence of the servo tick before the motors lose their power.")};
+                        "Timeout of the servo thread, after which the motors lose their power.")};
     }
   };
 

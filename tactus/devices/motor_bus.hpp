@@ -13,10 +13,10 @@
 /// Motors and handles that people own: what is said to them, and what their answers mean.
 namespace tactus::devices {
 
-/// What stands between a motor and a force.
+/// What is between a motor and a force.
 enum class MotorFault : std::int64_t {
   none,
-  silent,          ///< it did not answer for longer than the bus allows
+  not_responding,  ///< it did not answer for longer than the bus allows
   voltage,         ///< too high or too low
   current,         ///< too high
   hot,             ///< the drive or the winding
@@ -25,11 +25,11 @@ enum class MotorFault : std::int64_t {
   encoder,         ///< it does not know where it is
   refused,         ///< it refused what was asked of it
   unknown_status,  ///< it reports a status that this driver does not know, and counts as one with power
-  stays_on         ///< it was told to switch off and has not reported in time that it is off
+  stays_on         ///< it was commanded to switch off and has not reported in time that it is off
 };
 constexpr auto enumerators(MotorFault) {
   return std::array{
-      Enumerator{MotorFault::none, "none"},         Enumerator{MotorFault::silent, "silent"},
+      Enumerator{MotorFault::none, "none"},         Enumerator{MotorFault::not_responding, "not-responding"},
       Enumerator{MotorFault::voltage, "voltage"},   Enumerator{MotorFault::current, "current"},
       Enumerator{MotorFault::hot, "hot"},           Enumerator{MotorFault::lost_master, "lost-master"},
       Enumerator{MotorFault::overload, "overload"}, Enumerator{MotorFault::encoder, "encoder"},
@@ -40,29 +40,29 @@ constexpr auto enumerators(MotorFault) {
 /// The status of a motor that has not reported one.
 inline constexpr std::int64_t no_status = -1;
 
-/// What a motor said last, in its own sense of turning, at the output of its gear. Positions go on where the wire's
+/// What a motor said last, in its own sense of turning, at the output of its gear. Positions continue where the wire's
 /// number wraps. Trivially copyable: it crosses from the bus thread to the tick.
 struct MotorReading {
   double position_rad = 0.0;
   double velocity_rad_per_s = 0.0;
   double torque_Nm = 0.0;  ///< from the current; not of a sensor
   double temperature_C =
-      std::numeric_limits<double>::quiet_NaN();  ///< the hotter of those that it tells; NaN: not told
+      std::numeric_limits<double>::quiet_NaN();  ///< the hotter of those that it tells; NaN: not reported
   MotorFault fault = MotorFault::none;
   std::int64_t enabled = 0;         ///< 1 where the drive has power, or a status that is not known
   std::int64_t off = 0;             ///< 1 once it has reported that it has no power, since it was last to have any
   std::int64_t status = no_status;  ///< as its protocol has it, see `status_text`
-  std::int64_t heard_ns = -1;       ///< when its last good answer arrived; negative: never
+  std::int64_t received_ns = -1;    ///< when its last good answer arrived; negative: never
   std::int64_t answers = 0;         ///< good ones, since the start
 };
 
-/// The law that a motor runs by itself beside the torque that it is told, at the rate of its current loop and without
-/// the bus's delay, in its own sense of turning, at the output of its gear:
+/// The law that a motor runs by itself alongside the torque that it is told, at the rate of its current loop and
+/// without the bus's delay, in its own sense of turning, at the output of its gear:
 ///
 ///     stiffness·(position − its own) + damping·(velocity − its own)
 ///
-/// Positions as those of `MotorReading`: they go on where the wire's number wraps. It goes on by its last law until the
-/// next command, or until it loses its power.
+/// Positions as those of `MotorReading`: they continue where the wire's number wraps. It continues by its last law
+/// until the next command, or until it loses its power.
 struct MotorLaw {
   double position_rad = 0.0;
   double velocity_rad_per_s = 0.0;
@@ -79,7 +79,7 @@ struct MotorCommand {
   MotorLaw law = {};         ///< comes to the torque
 };
 
-/// What a motor said of itself when it was asked, for a person. Empty: not told.
+/// What a motor said of itself when it was asked, for a user. Empty: not reported.
 struct MotorSheet {
   std::string model;             ///< what it must be by what it told, where that is not what was stated
   std::string scales;            ///< of its numbers
@@ -90,7 +90,7 @@ struct MotorSheet {
 
 /// How far a bus is with its motors.
 enum class BusState : std::int64_t {
-  asking,  ///< who is there, and whether they are what the file says; no motor has power
+  asking,  ///< who is there, and whether they are what the file reports; no motor has power
   ready,   ///< one cycle after another; power where a command enables it
   refused  ///< something is wrong, see `MotorBus::problem`; no motor has power
 };
@@ -101,7 +101,7 @@ constexpr auto enumerators(BusState) {
 
 /// The driver of all motors behind one wire. As soon as it is driven, it asks who is there and checks what they say,
 /// then it runs cycles: commands to all motors at once, answers collected until all are there or a deadline passed, and
-/// the next. A motor that is silent costs no other its data.
+/// the next. A motor that does not respond costs no other its data.
 ///
 /// A motor that is to have no power is told so in every cycle until it has reported that it has none (`OffWatch`):
 /// before it is asked anything, without a command that enables it, with a fault, and while the thread ends.
@@ -118,9 +118,9 @@ class MotorBus : public wire::WireEnd {
   [[nodiscard]] virtual MotorSheet sheet(std::size_t motor) const = 0;
   /// Of a motor below `motors()`.
   [[nodiscard]] virtual const MotorReading& reading(std::size_t motor) const noexcept = 0;
-  /// From the next cycle on. A torque that is no number, or beyond what the motor takes, is never sent: it counts as no
-  /// power, respectively as the limit. So do the numbers of a law; beyond a limit torque and gains keep one share, so
-  /// nothing grows. A motor that runs no law has no power while it is asked for one.
+  /// From the next cycle on. A torque that is not a number, or beyond what the motor takes, is never sent: it counts as
+  /// no power, respectively as the limit. So do the numbers of a law; beyond a limit torque and gains keep one share,
+  /// so nothing grows. A motor that runs no law has no power while it is asked for one.
   virtual void command(std::size_t motor, const MotorCommand& wanted) noexcept = 0;
   /// Cycles that ended, whether or not all motors answered.
   [[nodiscard]] virtual std::int64_t cycles() const noexcept = 0;

@@ -53,12 +53,12 @@ Joints<station::DeviceReading> MotorBusDevice::read(const station::Tick& tick) n
       turns_rad_[joint] = own.first_position_rad(motor.position_rad) - told_rad;
     }
     reading_[joint].position_m = told_rad + turns_rad_[joint];
-    reading_[joint].motor_tells = {.velocity_m_per_s = own.velocity_rad_per_s(motor.velocity_rad_per_s),
-                                   .force_N = own.torque_Nm(motor.torque_Nm)};
-    reading_[joint].age_s = 1e-9 * static_cast<double>(tick.deadline_ns - motor.heard_ns);
+    reading_[joint].motor_report = {.velocity_m_per_s = own.velocity_rad_per_s(motor.velocity_rad_per_s),
+                                    .force_N = own.torque_Nm(motor.torque_Nm)};
+    reading_[joint].age_s = 1e-9 * static_cast<double>(tick.deadline_ns - motor.received_ns);
   }
   const DeviceTrouble now = found();
-  if (health_ < DeviceHealth::silent || now.what >= trouble_.what) judge(now);
+  if (health_ < DeviceHealth::not_responding || now.what >= trouble_.what) judge(now);
   return reading_;
 }
 
@@ -66,8 +66,8 @@ DeviceTrouble MotorBusDevice::found() noexcept {
   DeviceTrouble found;
   std::int64_t oldest_ns = now_ns_;
   for (std::size_t joint = 0; joint < reading_.size(); ++joint) {
-    if (last_.motors[joint].heard_ns >= oldest_ns) continue;
-    oldest_ns = last_.motors[joint].heard_ns;
+    if (last_.motors[joint].received_ns >= oldest_ns) continue;
+    oldest_ns = last_.motors[joint].received_ns;
     found.joint = joint;
   }
   found.age_s = 1e-9 * static_cast<double>(now_ns_ - oldest_ns);
@@ -97,9 +97,9 @@ DeviceTrouble MotorBusDevice::found() noexcept {
     const bool faulty = motor.fault != MotorFault::none && (had_power_[joint] || powerless);
     Trouble what = Trouble::none;
     const bool unheard = (faulty && motor.fault == MotorFault::lost_master) || (powerless && last_.unheard != 0);
-    if (unheard || (faulty && motor.fault == MotorFault::silent)) {
+    if (unheard || (faulty && motor.fault == MotorFault::not_responding)) {
       if (!std::exchange(silent, true)) found.joint = joint;
-      found.fault = unheard ? MotorFault::lost_master : MotorFault::silent;
+      found.fault = unheard ? MotorFault::lost_master : MotorFault::not_responding;
     } else if (faulty) {
       what = Trouble::motor_fault;
     } else if (!own.contains(reading_[joint].position_m)) {
@@ -117,7 +117,7 @@ DeviceTrouble MotorBusDevice::found() noexcept {
     found.status = motor.status;
     return with(what);
   }
-  if (silent) return with(Trouble::silent);
+  if (silent) return with(Trouble::not_responding);
   return with(found.age_s > params_.late_s ? Trouble::late : Trouble::none);
 }
 
@@ -130,8 +130,8 @@ void MotorBusDevice::judge(const DeviceTrouble& trouble) noexcept {
     case Trouble::late:
       health_ = DeviceHealth::degraded;
       return;
-    case Trouble::silent:
-      health_ = DeviceHealth::silent;
+    case Trouble::not_responding:
+      health_ = DeviceHealth::not_responding;
       return;
     default:
       health_ = DeviceHealth::lost;
@@ -152,7 +152,7 @@ void MotorBusDevice::write(const Joints<station::DeviceCommand>& command) noexce
     motor.enabled = wanted ? 1 : 0;
     any = any || wanted;
   }
-  if (!any && health_ >= DeviceHealth::silent) judge(found());
+  if (!any && health_ >= DeviceHealth::not_responding) judge(found());
   commands_.time_ns = now_ns_;
   bus_->command(commands_);
 }

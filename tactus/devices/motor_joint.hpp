@@ -39,9 +39,9 @@ struct MotorJoint {
   double stiffness_limit_Nm_per_rad = 0.0;  ///< of the law that its motor runs; both 0: none
   double damping_limit_Nms_per_rad = 0.0;
   double temperature_limit_C = 70.0;
-  bool gives_force = true;               ///< false: it tells where it is and takes no command
+  bool gives_force = true;               ///< false: it reports where it is and takes no command
   double velocity_step_rad_per_s = 0.0;  ///< of the velocity that its motor reports, at the motor; 0: it reports none
-  double turn_rad = 0.0;  ///< of the motor, after which its number begins anew at each start; 0: it does not
+  double turn_rad = 0.0;  ///< of the motor, after which its number restarts at each start; 0: it does not
 
   static constexpr auto fields() {
     using namespace joint_units;
@@ -75,7 +75,7 @@ struct MotorJoint {
   [[nodiscard]] double position_rad(double of_motor_rad) const noexcept {
     return static_cast<double>(sign) * of_motor_rad / gear + offset_rad;
   }
-  /// The same of what a motor tells first: a number that begins anew after each turn stands for all turns, and the one
+  /// The same of what a motor reports first: a number that restarts after each turn stands for all turns, and the one
   /// that is nearest to the middle of the joint's range is meant.
   [[nodiscard]] double first_position_rad(double of_motor_rad) const noexcept {
     const double told_rad = position_rad(of_motor_rad);
@@ -86,7 +86,7 @@ struct MotorJoint {
   [[nodiscard]] double velocity_rad_per_s(double of_motor_rad_per_s) const noexcept {
     return static_cast<double>(sign) * of_motor_rad_per_s / gear;
   }
-  /// Within the joint's limit; what is no number stays none.
+  /// Within the joint's limit; what is not a number stays none.
   [[nodiscard]] double motor_torque_Nm(double of_joint_Nm) const noexcept {
     const double held_Nm =
         std::isnan(of_joint_Nm) ? of_joint_Nm : std::clamp(of_joint_Nm, -torque_limit_Nm, torque_limit_Nm);
@@ -104,14 +104,14 @@ struct MotorJoint {
             .stiffness_Nm_per_rad = of_joint.stiffness_N_per_m / (gear * gear),
             .damping_Nms_per_rad = of_joint.damping_N_s_per_m / (gear * gear)};
   }
-  /// What its motor is told so that the joint gets that force and law, at this reading within the torque limit. It says
-  /// nothing of power. Real-time safe.
+  /// What its motor is told so that the joint gets that force and law, at this reading within the torque limit. It
+  /// reports nothing of power. Real-time safe.
   [[nodiscard]] MotorCommand motor_command(const station::DeviceCommand& of_joint, const station::DeviceReading& at,
                                            double turns_rad) const noexcept {
     if (!of_joint.law.acts()) return {.torque_Nm = motor_torque_Nm(of_joint.force_N)};
     double force_N = of_joint.force_N;
     control::DriveLaw law = of_joint.law;
-    const double whole_N = force_N + law.force_N(at.position_m, at.motor_tells.velocity_m_per_s);
+    const double whole_N = force_N + law.force_N(at.position_m, at.motor_report.velocity_m_per_s);
     if (std::fabs(whole_N) > torque_limit_Nm) {
       control::keep_part(force_N, law, whole_N, std::copysign(torque_limit_Nm, whole_N));
     }

@@ -36,7 +36,7 @@ struct BusCommands {
   std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, of the tick
 };
 
-/// A motor that did not switch off as it was told to when its link ended.
+/// A motor that did not switch off as it was commanded to when its link ended.
 struct PoweredMotor {
   std::size_t motor = 0;
   std::int64_t status = no_status;  ///< that it reported last
@@ -47,15 +47,17 @@ constexpr std::optional<PoweredMotor> powered(std::size_t motor, const MotorRead
   if (last.off != 0 && last.fault != MotorFault::stays_on) return std::nullopt;
   return PoweredMotor{.motor = motor, .status = last.status, .off = last.off != 0};
 }
-/// So long a link tells its motors at its end to switch off, where they do not report before that they are off.
+/// For this long a link commands its motors at its end to switch off, where they do not report before that they are
+/// off.
 inline constexpr std::int64_t farewell_ns = 500'000'000;
 
 /// Motors that are driven by a thread of their own, with which a servo tick exchanges newest values and never waits:
 /// behind a port, or behind a service.
 ///
 /// Commands that are older than the silence allowed take the power from all motors; it does not come back by itself:
-/// commands that enable nothing must come first. When it is destroyed, or told to stop, the motors lose their power
-/// before it ends: each is told to switch off until it has reported that it is off, for `farewell_ns` at most.
+/// commands that enable nothing must come first. When it is destroyed, or commanded to stop, the motors lose their
+/// power before it ends: each is commanded to switch off until it has reported that it is off, for `farewell_ns` at
+/// most.
 class MotorLink {
  public:
   virtual ~MotorLink() = default;
@@ -64,7 +66,7 @@ class MotorLink {
   virtual void command(const BusCommands& commands) noexcept = 0;
   /// None before it began. Any thread. Wait-free.
   [[nodiscard]] virtual std::optional<BusReadings> newest() const noexcept = 0;
-  /// False once it ended, by itself or because it was told to. Any thread. Wait-free.
+  /// False once it ended, by itself or because it was commanded to. Any thread. Wait-free.
   [[nodiscard]] virtual bool running() const noexcept = 0;
 
   /// Ends it; the motors lose their power first. Not real-time safe, as all that follows.
@@ -74,8 +76,8 @@ class MotorLink {
   virtual Check wait_until_asked(Seconds longest) = 0;
   /// Once it is not running.
   [[nodiscard]] virtual MotorSheet sheet(std::size_t motor) const = 0;
-  /// Once it was told to stop: the motors that may still have power, or that did not switch off when they were told to.
-  /// Empty where the motors were never found to be what was stated: then none was given power.
+  /// Once it was commanded to stop: the motors that may still have power, or that did not switch off when they were
+  /// commanded to. Empty where the motors were never found to be what was stated: then none was given power.
   [[nodiscard]] virtual std::vector<PoweredMotor> powered_motors() const = 0;
   /// Once it is not running: why it ended by itself.
   [[nodiscard]] virtual Check problem() const { return std::nullopt; }

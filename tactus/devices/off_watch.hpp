@@ -18,7 +18,7 @@ class OffWatch {
 
   /// The motor is to have power: whatever it reported before is void.
   void start_over() noexcept { *this = OffWatch(enough_reports_); }
-  /// The motor was told to switch off.
+  /// The motor was commanded to switch off.
   void told(std::int64_t now_ns) noexcept {
     if (told_ == 0) first_told_ns_ = now_ns;
     ++told_;
@@ -44,7 +44,7 @@ class OffWatch {
 
  private:
   static constexpr int enough_to_blame = 3, enough_times = 5;
-  /// Once is not enough: where this program stood still, it was not the motor that took so long.
+  /// Once is not enough: where this program was stopped, it was not the motor that took so long.
   [[nodiscard]] bool late(std::int64_t now_ns) const noexcept {
     return !confirmed() && told_ >= enough_times && now_ns - first_told_ns_ > off_within_ns;
   }

@@ -225,7 +225,7 @@ Check check_signal(const SignalRoles& roles, const BagSignal& signal) {
       return wrong_bag(ErrorCode::inconsistent, roles,
                        where + " comes " + recording::rounded_number(t[i] - t[i - 1]) +
                            " s after the one before, where the mean step is " + recording::rounded_number(step_s) +
-                           " s: cut the bag there, or record anew");
+                           " s: cut the bag there, or record again");
     }
   }
   return std::nullopt;

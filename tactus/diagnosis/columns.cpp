@@ -38,7 +38,7 @@ const Recognised& recognised(Role role) {
       {{"displayed_force", "displayed_torque", "feedback_force", "reflected_force", "master_force", "leader_effort"},
        {{"displayed", "feedback", "reflected", "master", "leader"}, forces},
        {"hand", "operator", "handle", "position", "tip", "contact", "env"}},
-      {{"tip_force", "told_force", "contact_force", "environment_force", "f_e", "fe", "tip_torque"},
+      {{"tip_force", "sent_force", "told_force", "contact_force", "environment_force", "f_e", "fe", "tip_torque"},
        {{"tip", "contact", "env", "external", "interaction", "wrench"}, forces},
        {"hand", "operator", "peak", "master", "leader"}},
       {{"hand_force", "operator_force", "human_force", "f_h", "fh", "hand_torque"},
@@ -47,7 +47,7 @@ const Recognised& recognised(Role role) {
       {{"slave_force", "slave_motor_force", "slave_torque", "follower_effort", "slave_drive"},
        {of_position(Role::slave_position),
         {"force", "torque", "effort", "tau", "drive", "motor", "actuator", "current"}},
-       {"position", "contact", "env", "tip", "external", "measured", "told"}},
+       {"position", "contact", "env", "tip", "external", "measured", "told", "sent"}},
   }};
   return all[index_of(role)];
 }
@@ -116,7 +116,9 @@ std::vector<std::string> notes_on_columns(const SignalRoles& roles, const std::v
     const auto plays = [&](const std::string& name) {
       return name == entry.name || recording::split_unit(name).name == entry.name;
     };
-    const auto is_velocity = [&](const std::optional<ToldVelocity>& told) { return told && told->name == entry.name; };
+    const auto is_velocity = [&](const std::optional<ReportedVelocity>& told) {
+      return told && told->name == entry.name;
+    };
     const bool used = std::any_of(roles.names.begin(), roles.names.end(), plays) || plays(roles.time) ||
                       is_velocity(signals.master_velocity) || is_velocity(signals.slave_velocity);
     if (used && entry.columns > 1 &&

@@ -164,7 +164,7 @@ std::vector<std::string> sentences(const Signals& signals, const Oscillation& os
   if (evidence.master_part) {
     told.push_back("the master moves " + text(*evidence.master_part) + " times as far as the slave (scaled): " +
                    (*evidence.master_part < 0.2   ? "the slave shakes by itself"
-                    : *evidence.master_part < 0.3 ? "hard to say whether it takes part"
+                    : *evidence.master_part < 0.3 ? "unclear whether it takes part"
                                                   : "it takes part"));
   }
   if (evidence.actuator_gives) {
@@ -192,7 +192,7 @@ std::vector<std::string> sentences(const Signals& signals, const Oscillation& os
   if (evidence.slave_steps) {
     told.push_back(
         "the slave moves " + text(*evidence.slave_steps) + " counts peak to peak" +
-        (evidence.standstill ? " and stands still " + text(100.0 * *evidence.standstill) + " % of the time" : ""));
+        (evidence.standstill ? " and is at rest " + text(100.0 * *evidence.standstill) + " % of the time" : ""));
   }
   if (evidence.master_steps && *evidence.master_steps < 6.0) {
     told.push_back("the master moves " + text(*evidence.master_steps) + " counts peak to peak");
@@ -221,7 +221,7 @@ std::string_view words_of(Mechanism mechanism) {
                                                   "quantisation",
                                                   "stick and slip",
                                                   "the hand's tremor",
-                                                  "cannot be told from these signals"};
+                                                  "cannot be determined from these signals"};
   return words[static_cast<std::size_t>(mechanism)];
 }
 

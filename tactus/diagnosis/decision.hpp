@@ -20,7 +20,7 @@ enum class Mechanism {
   quantisation,    ///< to and fro between neighbouring counts
   stick_slip,      ///< friction that holds and lets go
   tremor,          ///< the hand's own
-  unknown,         ///< these signals do not tell
+  unknown,         ///< these signals do not determine
 };
 constexpr auto enumerators(Mechanism) {
   return std::array{Enumerator{Mechanism::induced_motion, "induced-motion"},

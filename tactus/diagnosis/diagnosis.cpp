@@ -46,7 +46,7 @@ std::string wrong_velocities(const Signals& signals) {
   std::string text;
   for (const auto* told : {&signals.master_velocity, &signals.slave_velocity}) {
     if (!*told || !(*told)->wrong()) continue;
-    text += "The velocity " + (*told)->name + " is told " + report::number((*told)->scale, 2) +
+    text += "The velocity " + (*told)->name + " is reported as " + report::number((*told)->scale, 2) +
             " times as large as its position moves: correct the range of velocity in the host's table or in the drive "
             "(VMAX) before anything else; where it is asked of another drive, or of this one, it drives the motion "
             "that it should damp. ";
@@ -107,7 +107,7 @@ std::string_view tells(Role role) {
     case Role::hand_force:
       return "whether the hand gives energy or takes it";
     case Role::slave_force:
-      return "the delay on the way to the slave, and whether its motor is at its limit";
+      return "the delay of the link to the slave, and whether its motor is at its limit";
   }
   return {};
 }
@@ -120,7 +120,7 @@ std::vector<std::string> record_next_of(const Signals& signals, const std::vecto
       return std::find(missing.begin(), missing.end(), role) != missing.end();
     });
     if (!asked) continue;
-    next.push_back("the " + std::string(words_of(role)) + ", which tells " + std::string(tells(role)) +
+    next.push_back("the " + std::string(words_of(role)) + ", which shows " + std::string(tells(role)) +
                    " (if the file has it, name its column with " + option_of(role) + ")");
   }
   const double rate_Hz = 1.0 / signals.sample_time.value;

@@ -23,7 +23,7 @@ struct Finding {
 
 struct Diagnosis {
   std::vector<Finding> findings;  ///< the strongest first
-  std::string verdict;            ///< one or two sentences that a person can act on
+  std::string verdict;            ///< one or two sentences that a user can act on
   std::vector<std::string> record_next;
 };
 

@@ -128,9 +128,11 @@ std::string to_json(const Signals& signals, const Diagnosis& diagnosis, const st
     read[key] = channel == nullptr ? Json(nullptr) : Json(channel->name);
   }
   document["signals"] = read;
-  const auto scale = [](const std::optional<ToldVelocity>& told) { return told ? Json(told->scale) : Json(nullptr); };
-  document["told_velocity_scale"] = {{"master", scale(signals.master_velocity)},
-                                     {"slave", scale(signals.slave_velocity)}};
+  const auto scale = [](const std::optional<ReportedVelocity>& told) {
+    return told ? Json(told->scale) : Json(nullptr);
+  };
+  document["reported_velocity_scale"] = {{"master", scale(signals.master_velocity)},
+                                         {"slave", scale(signals.slave_velocity)}};
   document["notes"] = signals.notes;
   return report::json_text(document);
 }

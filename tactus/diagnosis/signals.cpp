@@ -178,10 +178,10 @@ Result<Found> read_columns(SignalRoles roles) {
     if (const auto factor = recording::step_is_too_long_by(position->values, velocity->values, *found.sample_time_s)) {
       return recording::contradicted_by_velocity(name, *factor, *found.sample_time_s);
     }
-    const auto scale = told_scale(position->values, velocity->values, Seconds{*found.sample_time_s});
+    const auto scale = reported_scale(position->values, velocity->values, Seconds{*found.sample_time_s});
     if (!scale) continue;
     auto& told = role == Role::master_position ? found.signals.master_velocity : found.signals.slave_velocity;
-    told = ToldVelocity{.name = name, .scale = *scale};
+    told = ReportedVelocity{.name = name, .scale = *scale};
   }
   found.signals.notes = notes_on_columns(roles, *entries, found.signals);
   return found;
@@ -211,9 +211,9 @@ Result<Found> read_bag(const SignalRoles& roles) {
   found.jitter_s = bag->jitter_s;
   for (BagChannel& channel : bag->channels) {
     if (!channel.velocity.empty()) {
-      const auto scale = told_scale(channel.values, channel.velocity, Seconds{bag->sample_time_s});
+      const auto scale = reported_scale(channel.values, channel.velocity, Seconds{bag->sample_time_s});
       auto& told = channel.role == Role::master_position ? found.signals.master_velocity : found.signals.slave_velocity;
-      if (scale) told = ToldVelocity{.name = channel.velocity_name, .scale = *scale};
+      if (scale) told = ReportedVelocity{.name = channel.velocity_name, .scale = *scale};
     }
     // ROS leaves open whether a joint turns or slides: a force in N shows that it slides.
     const std::string unit = channel.unit == "N" ? "N" : "";
@@ -316,7 +316,7 @@ Check doubt_sign(const SignalRoles& roles, const Signals& signals) {
   constexpr double surely_turned = -0.7;
   if (!(correlation < surely_turned)) return std::nullopt;
   return refuse(ErrorCode::inconsistent, roles,
-                "displayed force and tip force go against one another (correlation " + format_number(correlation) +
+                "displayed force and tip force go against one another (correlation " + rounded_number(correlation) +
                     "): both are positive when they push back; turn one round with --displayed-force-sign -1 or "
                     "--tip-force-sign -1");
 }
@@ -378,8 +378,8 @@ Result<Signals> read_signals(const SignalRoles& roles) {
   if (signals.samples < fewest_samples || signals.duration_s() < shortest_recording_s) {
     return refuse(ErrorCode::inconsistent, roles,
                   "the recording has " + std::to_string(signals.samples) + " samples in " +
-                      format_number(signals.duration_s()) +
-                      " s, too few to tell anything: record at least 200 samples and half a second, better 5 s");
+                      rounded_number(signals.duration_s()) +
+                      " s, too few to judge: record at least 200 samples and half a second, better 5 s");
   }
   const bool changes = std::any_of(all_roles.begin(), all_roles.end(), [&](Role role) {
     return is_position(role) && signals.find(role) != nullptr && !signals.find(role)->constant();

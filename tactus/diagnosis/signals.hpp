@@ -2,7 +2,7 @@
 
 #include <tactus/core/result.hpp>
 #include <tactus/core/units.hpp>
-#include <tactus/diagnosis/told_velocity.hpp>
+#include <tactus/diagnosis/reported_velocity.hpp>
 
 #include <array>
 #include <cstddef>
@@ -44,7 +44,7 @@ struct SignalRoles {
   std::array<double, role_count> signs = {1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  ///< 1 or -1
   std::string joint = {};  ///< of a ROS 2 bag; empty: the one that moves most roughly
   std::string time = {};
-  std::string time_unit = {};  ///< s, ms, us or ns, instead of what the file says; empty: as the file says
+  std::string time_unit = {};  ///< s, ms, us or ns, instead of what the file states; empty: as the file states
   std::optional<double> sample_time_s = {};
 };
 
@@ -65,7 +65,7 @@ struct Signals {
   std::size_t samples = 0;
   bool rotary = false;  ///< rad and N m instead of m and N
   /// Of master and slave, where a table has a column of it that goes with the position.
-  std::optional<ToldVelocity> master_velocity = {}, slave_velocity = {};
+  std::optional<ReportedVelocity> master_velocity = {}, slave_velocity = {};
   /// What a reader of the diagnosis should know of the recording: jitter of its times, columns that were not used.
   std::vector<std::string> notes = {};
 
@@ -86,8 +86,8 @@ struct Signals {
 /// MCAP: the joint states of leader and follower, found by topic, and what is named as `TOPIC/JOINT.position`.
 ///
 /// Errors: those of reading; `missing` for no position at all (the message lists the columns and the options), for no
-/// sample time; `inconsistent` for columns of different length, a unit that is none of the role, a recording of fewer
-/// than 200 samples or less than half a second, or in which nothing changes. Not real-time safe.
+/// sample time; `inconsistent` for columns of different length, a unit that is not one of the role, a recording of
+/// fewer than 200 samples or less than half a second, or in which nothing changes. Not real-time safe.
 Result<Signals> read_signals(const SignalRoles& roles);
 
 /// The distance between neighbouring values that occur, 0 for a constant: of all distances the tenth percentile, for in

@@ -17,7 +17,7 @@ namespace tactus::emulation {
 /// MuJoCo (`arm_plants::ArmPlant`), which is other code than the controller's model of an arm. Without torque it falls.
 ///
 /// It begins at rest where it hangs; or where a hand holds it, which lets go, once and for good, when the motors carry
-/// the arm: when no joint would move by more than its friction allows. A hand that waits for ever says that whoever
+/// the arm: when no joint would move by more than its friction allows. A hand that waits for ever reports that whoever
 /// drives the motors believes in another arm.
 ///
 /// It may then be led: a hand that pulls each joint like a spring, with a damper, to a path of two sines about where

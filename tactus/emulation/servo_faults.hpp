@@ -12,19 +12,19 @@ namespace tactus::emulation {
 /// What may be wrong with an emulated servo.
 enum class ServoFault : std::int64_t {
   none,
-  silent,          ///< it hears and does not answer
-  power_cycle,     ///< it is off for 0.3 s, and begins anew
+  silence,         ///< it receives and does not reply
+  power_cycle,     ///< it is off for 0.3 s, and restarts
   hot,             ///< it tells so, and takes its own torque away
-  wrong_model,     ///< it is another one than its owner believes
+  wrong_model,     ///< it is another one than its owner assumes
   low_limit,       ///< it was set to a tenth of its current
   twin,            ///< another servo has its id and answers behind it
   clash,           ///< another servo has its id and answers at the same time, so that no answer is whole
-  error,           ///< its answers have an error byte that is not its own, and it goes on
+  error,           ///< its answers have an error byte that is not its own, and it continues
   ignores_disable  ///< it answers to what switches its torque off, and keeps it
 };
 constexpr auto enumerators(ServoFault) {
   return std::array{Enumerator{ServoFault::none, "none"},
-                    Enumerator{ServoFault::silent, "silent"},
+                    Enumerator{ServoFault::silence, "silence"},
                     Enumerator{ServoFault::power_cycle, "power-cycle"},
                     Enumerator{ServoFault::hot, "hot"},
                     Enumerator{ServoFault::wrong_model, "wrong-model"},
@@ -38,16 +38,16 @@ constexpr auto enumerators(ServoFault) {
 /// What may be wrong with the line of emulated servos. Shares are those of all answers, drawn from a seed.
 struct LineFaults {
   double corrupt = 0.0;   ///< a bit of the answer is wrong
-  double garbage = 0.0;   ///< bytes that nobody sent stand before it
+  double garbage = 0.0;   ///< bytes that nobody sent are before it
   double split = 0.0;     ///< it comes in two pieces, 0.3 ms apart
   std::int64_t echo = 0;  ///< 1: what is sent comes back, as some adapters do
 };
 
-/// A fault as a person writes it.
+/// A fault as a user writes it.
 struct WrittenFault {
   ServoFault servo = ServoFault::none;
   std::int64_t id = -1;      ///< of the servo; negative: of all
-  std::int64_t from_ns = 0;  ///< after the first byte that the peer hears
+  std::int64_t from_ns = 0;  ///< after the first byte that the peer receives
   std::uint8_t error = 0;    ///< that `ServoFault::error` reports
   LineFaults line;           ///< where it is one of the line
 };

@@ -21,7 +21,7 @@ class ServoLine {
     std::array<std::uint8_t, 512> bytes{};
     if (packet.empty() || packet.size() > bytes.size()) return;
     if (fault == ServoFault::clash) {
-      // Two talk at once, one a little later: whoever pulls the line low is heard, which are bits of 0.
+      // Two talk at once, one a little later: whoever pulls the line low is received, which are bits of 0.
       for (std::size_t i = 0; i < packet.size(); ++i) {
         const std::uint8_t later = i == 0 ? std::uint8_t{0xff} : packet[i - 1];
         bytes[i] = static_cast<std::uint8_t>(packet[i] & later);

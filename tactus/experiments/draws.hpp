@@ -8,8 +8,8 @@
 
 namespace tactus::experiments {
 
-/// Brings every number that stands directly in `params` to the nearest end of its closed bounds. For values drawn
-/// around what a person wrote: a tremor of 29 Hz is allowed, and so must be every draw around it.
+/// Brings every number that is directly in `params` to the nearest end of its closed bounds. For values drawn
+/// around what an operator wrote: a tremor of 29 Hz is allowed, and so must be every draw around it.
 template <Described T>
 void limit_to_bounds(T& params) {
   for_each_field<T>([&](const auto& f) {
@@ -25,7 +25,7 @@ inline Check check_range(double lower, double upper, const char* lower_name, con
   if (lower <= upper) return std::nullopt;
   return Error{.code = ErrorCode::inconsistent,
                .parameter = std::string("task.") + upper_name,
-               .message = format_number(upper) + " is less than " + lower_name + ", " + format_number(lower) +
+               .message = rounded_number(upper) + " is less than " + lower_name + ", " + rounded_number(lower) +
                           ": raise one or lower the other",
                .place = {}};
 }

@@ -84,7 +84,7 @@ void register_experiment(std::unique_ptr<const Experiment> experiment);
 /// The kind that a document asks for. Errors: `missing` without `task.kind`, `out_of_bounds` for an unknown kind.
 Result<const Experiment*> choose_experiment(const configuration::Document& document);
 
-/// `inconsistent` for a request that varies keys, of a kind that has no use for that: `message` says what to do
+/// `inconsistent` for a request that varies keys, of a kind that has no use for that: `message` states what to do
 /// instead.
 Check refuse_variations(const Request& request, std::string message);
 
@@ -102,8 +102,8 @@ struct Cases {
   std::string first_configuration;
 };
 
-/// The error with the option that a person wrote as its place: a varied value is tried as an override, and the document
-/// calls every override `--set`.
+/// The error with the option that an operator wrote as its place: a varied value is tried as an override, and the
+/// document calls every override `--set`.
 Error blame_variation(Error error, const Settings& settings);
 
 /// The error of a combination's run with the place where what it names was written.

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-/// What every kind of experiment has in common, so that a kind says its parameters, what one run finds, and how that is
-/// shown.
+/// What every kind of experiment has in common, so that a kind states its parameters, what one run finds, and how that
+/// is shown.
 namespace tactus::experiments {
 
 /// Described parameters whose member `task` has a member `kind`: an enum of one word, by which files choose the kind.

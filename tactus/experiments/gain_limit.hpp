@@ -12,7 +12,7 @@ struct GainLimit {
   [[nodiscard]] bool censored() const { return beyond_search || gain == 0.0; }
 };
 
-/// Ratio of the bracket's ends at which a search ends that is not told another.
+/// Ratio of the bracket's ends at which a search ends that is not reported another.
 inline constexpr double gain_resolution = 1.02;
 
 /// Searches from `lowest` to `highest`, 0 < `lowest` < `highest`. It begins at 1, or at the nearer end, and goes in

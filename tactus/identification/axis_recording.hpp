@@ -28,7 +28,7 @@ struct AxisRoles {
   std::string external = {};  ///< another force that drives the axis, such as a hand's; none unless named
   std::string measured = {};  ///< of the environment, to compare with
   std::string time = {};
-  std::string time_unit = {};  ///< s, ms, us or ns, instead of what the file says; empty: as the file says
+  std::string time_unit = {};  ///< s, ms, us or ns, instead of what the file states; empty: as the file states
   std::optional<double> sample_time_s = {};
   std::optional<double> position_sign = {};  ///< 1 or -1
   std::optional<double> force_sign = {};     ///< 1 or -1
@@ -57,8 +57,8 @@ bool is_teleoperator_scope(const std::vector<recording::Entry>& entries);
 
 /// Reads one axis. Errors: those of `recording::read`; `missing` when a role is neither named nor found, or found more
 /// than once: the message lists the columns and the option to name one with; no sample time; columns of different
-/// length; a unit that is none of the above. `needs_measured`: the measured force is looked for too, but may be absent.
-/// Not real-time safe.
+/// length; a unit that is not one of the above. `needs_measured`: the measured force is looked for too, but may be
+/// absent. Not real-time safe.
 Result<AxisRecording> read_axis(const AxisRoles& roles, bool needs_measured = false);
 
 }  // namespace tactus::identification

@@ -13,7 +13,7 @@ namespace {
 Check check_signal(const std::vector<double>& values, const char* role) {
   for (const double value : values) {
     if (!std::isfinite(value)) {
-      return Error{ErrorCode::out_of_bounds, role, "a sample is not a finite number: mend or cut the recording", {}};
+      return Error{ErrorCode::out_of_bounds, role, "a sample is not a finite number: correct or cut the recording", {}};
     }
   }
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -61,7 +61,7 @@ Check check_axis(const AxisSignals& signals) {
                  {}};
   }
   if (count < 200 || static_cast<double>(count) * dt < 0.5) {
-    return inconsistent("the recording is too short to tell: " + std::to_string(count) + " samples, " +
+    return inconsistent("the recording is too short to judge: " + std::to_string(count) + " samples, " +
                         report::number(static_cast<double>(count) * dt, 3) +
                         " s; it takes 200 samples and 0.5 s, better several seconds");
   }

@@ -12,7 +12,7 @@ namespace tactus::identification {
 /// One axis, sample by sample, in N and m or, for a rotary axis, in N m and rad.
 struct AxisSignals {
   std::vector<double> position = {};
-  std::vector<double> force = {};  ///< toward +position; whose it is the fit says
+  std::vector<double> force = {};  ///< toward +position; whose it is the fit states
   Seconds sample_time{0.0};
 };
 

@@ -40,7 +40,7 @@ inline constexpr std::size_t bench_variables = 20;
 /// Half of an `interval_95` in standard deviations.
 inline constexpr double normal_95 = 1.96;
 
-/// A parameter as a person reads it.
+/// A parameter as an operator reads it.
 struct FoundParameter {
   std::string name;  ///< dotted, with the suffix of its unit: `motor.mass_kg`
   std::string unit;
@@ -102,7 +102,7 @@ class BenchKnowledge {
                      const MeasurementWeights& weights);
 
   /// What this knowledge leaves of the measured positions of an experiment, in m, a constant force fitted and the slow
-  /// part left out where the experiment says so.
+  /// part left out where the experiment states it.
   [[nodiscard]] std::vector<double> left_m(const BenchExperiment& experiment) const;
 
   /// What is not known reaches from 0 to the largest number there is.

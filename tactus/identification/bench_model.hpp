@@ -5,10 +5,10 @@
 
 #include <vector>
 
-/// What a run on the bench would have shown, were the master as a model says.
+/// What a run on the bench would have shown, were the master as a model states.
 namespace tactus::identification {
 
-/// Everything that shapes a run: amplifier, the controller's model of master and hand, and the person's slow
+/// Everything that shapes a run: amplifier, the controller's model of master and hand, and the operator's slow
 /// correction. Forces and positions are translated to the hand.
 struct BenchParams {
   double amplifier_gain = 1.0;
@@ -19,8 +19,8 @@ struct BenchParams {
   /// low for it counts as 1/(2π lag).
   double amplifier_lag_s = 1e-4;
   control::MasterModel master = bare();
-  /// The person shifts the aim of the grip at −gain times what is seen of the handle's position, which is low-passed at
-  /// the sight's bandwidth and late by what is left of the reaction time, 1/(2π bandwidth) less; a bandwidth too low
+  /// The operator shifts the aim of the grip at −gain times what is seen of the handle's position, which is low-passed
+  /// at the sight's bandwidth and late by what is left of the reaction time, 1/(2π bandwidth) less; a bandwidth too low
   /// for it counts as 1/(2π reaction time).
   double correction_gain_per_s = 4.0;
   double reaction_time_s = 0.13;

@@ -9,8 +9,8 @@
 namespace tactus::identification {
 
 /// The model made fit for cancellation (paper A, Sec. VI and VIII-A): a quintic spring k₅ = F/δ⁵ holds its slow
-/// deflection to `full_deflection_m` at `full_force_N`, about a tenth of the hand's own, because the person takes slow
-/// deflections out and an overestimate would be positive feedback.
+/// deflection to `full_deflection_m` at `full_force_N`, about a tenth of the hand's own, because the operator takes
+/// slow deflections out and an overestimate would be positive feedback.
 ///
 /// The controller knows the force that it commands, not the one that the amplifier applies: masses, stiffnesses,
 /// damping and friction are divided by the amplifier's gain, so that the model moves under a commanded newton as the

@@ -16,18 +16,19 @@ constexpr double most_samples = 1e8;
 
 Check check_limit(const char* parameter, double force_N, double limit_N) {
   if (force_N <= limit_N) return std::nullopt;
-  return inconsistent(parameter, format_number(force_N) + " N exceeds force_limit_N, " + format_number(limit_N) + " N");
+  return inconsistent(parameter,
+                      rounded_number(force_N) + " N exceeds force_limit_N, " + rounded_number(limit_N) + " N");
 }
 
 Check check_length(double duration_s, Seconds tick) {
   if (duration_s / tick.value <= most_samples) return std::nullopt;
-  return inconsistent("duration_s", "the signal of " + format_number(duration_s) + " s has more than 1e8 samples");
+  return inconsistent("duration_s", "the signal of " + rounded_number(duration_s) + " s has more than 1e8 samples");
 }
 
 Check check_fade(double fade_s, double duration_s) {
   if (2.0 * fade_s <= duration_s) return std::nullopt;
-  return inconsistent("envelope.fade_s", format_number(fade_s) + " s is more than half of the signal's " +
-                                             format_number(duration_s) + " s");
+  return inconsistent("envelope.fade_s", rounded_number(fade_s) + " s is more than half of the signal's " +
+                                             rounded_number(duration_s) + " s");
 }
 
 std::size_t samples_in(double duration_s, Seconds tick) {
@@ -151,15 +152,15 @@ Result<std::vector<double>> crossing_m(const CrossingParams& params, Seconds tic
   if (Check error = signal::check(params, tick)) return *std::move(error);
   for (const auto& [name, position_m] : {std::pair{"from_m", params.from_m}, std::pair{"to_m", params.to_m}}) {
     if (position_m < params.workspace_lower_m || position_m > params.workspace_upper_m) {
-      return inconsistent(name, format_number(position_m) + " m lies outside the workspace from " +
-                                    format_number(params.workspace_lower_m) + " to " +
-                                    format_number(params.workspace_upper_m) + " m");
+      return inconsistent(name, rounded_number(position_m) + " m lies outside the workspace from " +
+                                    rounded_number(params.workspace_lower_m) + " to " +
+                                    rounded_number(params.workspace_upper_m) + " m");
     }
   }
   const double distance_m = std::abs(params.to_m - params.from_m);
   const double cruise_s = distance_m / params.speed_m_per_s - params.fade_s;
   if (cruise_s <= 0.0) {
-    return inconsistent("fade_s", "the way of " + format_number(distance_m) +
+    return inconsistent("fade_s", "the way of " + rounded_number(distance_m) +
                                       " m ends before the speed is reached; shorten the fade or lower the speed");
   }
   const double way_s = cruise_s + 2.0 * params.fade_s;

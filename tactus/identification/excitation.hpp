@@ -72,7 +72,7 @@ struct MultisineParams {
         field("lowest_Hz", &MultisineParams::lowest_Hz, units::hertz, positive, "No line lies below."),
         field("highest_Hz", &MultisineParams::highest_Hz, units::hertz, positive, "No line lies above."),
         field("period_s", &MultisineParams::period_s, units::second, excitation_duration_s,
-              "Length of a period, rounded to whole samples; lines stand its reciprocal apart."),
+              "Length of a period, rounded to whole samples; the distance of its lines is the reciprocal."),
         field("periods", &MultisineParams::periods, between(1, 1e6), "Exact periods, besides those of the fades."),
         field("peak_N", &MultisineParams::peak_N, units::newton, positive, "Largest force of a period."),
         field("envelope", &MultisineParams::envelope, "Limit and fade."),
@@ -81,7 +81,7 @@ struct MultisineParams {
 };
 Result<std::vector<double>> multisine_N(const MultisineParams& params, Seconds tick);
 
-/// Plus or minus the amplitude, drawn anew at the end of each hold; the same for the same seed.
+/// Plus or minus the amplitude, drawn again at the end of each hold; the same for the same seed.
 struct RandomBinaryParams {
   double amplitude_N = 1.0;
   double hold_s = 1e-3;

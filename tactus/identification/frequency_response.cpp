@@ -55,7 +55,7 @@ Check check_runs(std::span<const InputOutput> runs) {
     output_changes = output_changes || changes(run.output);
   }
   if (!input_changes) return inconsistent("the input never changes, so it excites nothing; name another column");
-  if (!output_changes) return inconsistent("the output never changes, so it tells nothing; name another column");
+  if (!output_changes) return inconsistent("the output never changes, so it shows nothing; name another column");
   return std::nullopt;
 }
 
@@ -298,7 +298,8 @@ Result<Linearity> judge_linearity(std::span<const FrequencyResponse> responses, 
   const std::vector<double>& frequency_Hz = responses.front().frequency_Hz;
   for (const FrequencyResponse& response : responses) {
     if (response.frequency_Hz != frequency_Hz) {
-      return inconsistent("the responses stand on different lines; use the same sample time and segments for all");
+      return inconsistent(
+          "the responses have different frequency lines; use the same sample time and segments for all");
     }
   }
   Linearity found;

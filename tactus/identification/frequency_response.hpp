@@ -33,7 +33,7 @@ struct SegmentParams {
   static constexpr auto fields() {
     return List{
         field("samples", &SegmentParams::samples, between(8, 1 << 24),
-              "Samples of a segment, a power of two: lines stand 1 / (samples * sample time) apart."),
+              "Samples of a segment, a power of two: the distance of the lines is 1 / (samples * sample time)."),
         field("overlap", &SegmentParams::overlap, units::none, between(0.0, 0.95),
               "Part of a segment that the next one repeats. A Hann window wants 0.5."),
         field("window", &SegmentParams::window, "Weight of the samples in a segment."),
@@ -58,7 +58,7 @@ struct FrequencyResponse {
   std::vector<double> frequency_Hz;
   std::vector<std::complex<double>> response;
   /// Radius of the circle around `response` in the complex plane that holds the true one with a probability of 95 %;
-  /// infinite where the data cannot tell (a single run without smoothing).
+  /// infinite where the data cannot determine (a single run without smoothing).
   std::vector<double> radius_95;
   /// 0 to 1; 0 where a signal has no power. Empty for the ETFE.
   std::vector<double> coherence;

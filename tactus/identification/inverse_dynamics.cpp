@@ -187,7 +187,7 @@ Check check_plausible(const InverseDynamics& model, const Problem& problem, cons
                         "): the force lags or leads the position, has the wrong sign, or another force moves the axis");
   }
   if (model.inertia.lower <= 0.0) {
-    return inconsistent("the data cannot tell the inertia (95 % interval " + text(model.inertia.lower) + " to " +
+    return inconsistent("the data do not determine the inertia (95 % interval " + text(model.inertia.lower) + " to " +
                         text(model.inertia.upper) + "): record faster motion or a longer time");
   }
   return std::nullopt;
@@ -205,7 +205,7 @@ Check check_motion(const Problem& problem) {
   if (turns >= 2) return std::nullopt;
   return inconsistent(
       "the axis turns round " + std::to_string(turns) +
-      " times in the recording: friction, offset and inertia cannot be told apart; record motion to and fro");
+      " times in the recording: friction, offset and inertia cannot be distinguished; record motion to and fro");
 }
 
 /// Instrumental variables with intervals from the scatter of the score over blocks.

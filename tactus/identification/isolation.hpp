@@ -37,8 +37,8 @@ struct Isolation {
 /// Told of each step of work: what is being done, and the share that is done already, from 0 to 1.
 using IsolationProgress = std::function<void(const std::string& what, double done)>;
 
-/// Runs the whole recipe. Errors: those of the rig, and `inconsistent` where a stage's data do not tell its parameters.
-/// Not real-time safe.
+/// Runs the whole recipe. Errors: those of the rig, and `inconsistent` where a stage's data do not determine its
+/// parameters. Not real-time safe.
 Result<Isolation> isolate(Rig& rig, const IsolationParams& params, const IsolationProgress& progress);
 
 }  // namespace tactus::identification

@@ -25,7 +25,7 @@ Result<LinearFit> fit_linear(std::span<const double> regressors, std::size_t col
                         std::to_string(regressors.size()));
   }
   if (rows <= columns) {
-    return inconsistent(std::to_string(rows) + " observations cannot tell " + std::to_string(columns) +
+    return inconsistent(std::to_string(rows) + " observations cannot determine " + std::to_string(columns) +
                         " parameters and their uncertainty; record more samples");
   }
   const Eigen::Map<const Matrix> a(regressors.data(), static_cast<Eigen::Index>(rows),
@@ -42,7 +42,7 @@ Result<LinearFit> fit_linear(std::span<const double> regressors, std::size_t col
   const Eigen::MatrixXd scaled = a * lengths.cwiseInverse().asDiagonal();
   const signal::Regression found = signal::regress(scaled, b, smallest_pivot);
   if (found.idle) {
-    return inconsistent("the data cannot tell the parameters apart: column " + std::to_string(*found.idle) +
+    return inconsistent("the data cannot distinguish the parameters: column " + std::to_string(*found.idle) +
                         " of the regressors adds nothing to the others; excite the device more richly");
   }
 

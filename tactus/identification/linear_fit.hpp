@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-/// Models from measured data: frequency responses, fits and what the data cannot tell.
+/// Models from measured data: frequency responses, fits and what the data cannot determine.
 namespace tactus::identification {
 
 /// What a linear fit found.
@@ -25,9 +25,9 @@ struct LinearFit {
 /// `regressors` is A row by row, `columns` values for each of the observations b.
 ///
 /// Errors: `inconsistent` when the sizes do not fit one another, when there are not more observations than parameters,
-/// or when the columns are linearly dependent (to 1e-10 of their length), so that the data cannot tell the parameters
-/// apart; the message names the column, from 0, that adds nothing. `out_of_bounds` for a value that is not finite. Not
-/// real-time safe.
+/// or when the columns are linearly dependent (to 1e-10 of their length), so that the data cannot determine the
+/// parameters apart; the message names the column, from 0, that adds nothing. `out_of_bounds` for a value that is not
+/// finite. Not real-time safe.
 Result<LinearFit> fit_linear(std::span<const double> regressors, std::size_t columns,
                              std::span<const double> observations);
 

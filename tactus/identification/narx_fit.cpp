@@ -100,8 +100,8 @@ Result<NarxFit> fit_narx(std::span<const SlaveMotionSample> motion, const NarxSt
   if (rows < rows_for_each_candidate * candidates.size()) {
     return too_poor("", std::to_string(rows) + " rows, one every lag, are too few to choose among " +
                             std::to_string(candidates.size()) + " terms: record " +
-                            format_number(std::ceil(static_cast<double>(rows_for_each_candidate * candidates.size()) *
-                                                    static_cast<double>(every) * dt.value)) +
+                            rounded_number(std::ceil(static_cast<double>(rows_for_each_candidate * candidates.size()) *
+                                                     static_cast<double>(every) * dt.value)) +
                             " s or more, or lower the degree or the number of lags");
   }
   const auto finite = [](const SlaveMotionSample& s) { return std::isfinite(s.command) && std::isfinite(s.position); };
@@ -155,8 +155,8 @@ Result<NarxFit> fit_narx(std::span<const SlaveMotionSample> motion, const NarxSt
   result.simulated_rms_N = signal::root_mean_square(std::span(left_N).subspan(from));
   if (!(result.simulated_rms_N < result.command_rms_N)) {
     return too_poor("output_lags", "run freely over its own data the model leaves " +
-                                       format_number(result.simulated_rms_N) + " N of " +
-                                       format_number(result.command_rms_N) +
+                                       rounded_number(result.simulated_rms_N) + " N of " +
+                                       rounded_number(result.command_rms_N) +
                                        " N: its recursion diverges or only repeats the outputs before; write 0, or "
                                        "record a motion that excites the slave more");
   }

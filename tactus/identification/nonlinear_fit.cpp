@@ -108,7 +108,7 @@ Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem) {
   const std::vector<double> first = problem.residuals(problem.start);
   const auto rows = static_cast<Index>(first.size());
   if (free <= 0 || rows <= free) {
-    return inconsistent(std::to_string(rows) + " residuals cannot tell " + std::to_string(free) + " variables");
+    return inconsistent(std::to_string(rows) + " residuals cannot determine " + std::to_string(free) + " variables");
   }
   Functor functor(problem, free, rows);
   VectorXd x = Eigen::Map<const VectorXd>(problem.start.data(), free);
@@ -133,7 +133,7 @@ Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem) {
   if (qr.rank() < free) {
     return Error{ErrorCode::inconsistent,
                  std::to_string(qr.colsPermutation().indices()[qr.rank()]),
-                 "the data do not tell it from the others: excite the device more richly",
+                 "the data do not distinguish it from the others: excite the device more richly",
                  {}};
   }
   const MatrixXd inverse = signal::inverse(jacobian.transpose() * jacobian);

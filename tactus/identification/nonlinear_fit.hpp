@@ -39,12 +39,12 @@ struct NonlinearFit {
 /// clusters: (JᵀJ)⁻¹ Σ_b (J_bᵀ r_b)(J_bᵀ r_b)ᵀ (JᵀJ)⁻¹ over twenty blocks b of neighbouring residuals, times n_b/(n_b −
 /// p). To it comes what the given variables do not know: S C Sᵀ with S = −(JᵀJ)⁻¹ Jᵀ J_given. With a prior of precision
 /// P the fit minimises ‖r‖² + (x − m)ᵀ P (x − m); JᵀJ + P stands for JᵀJ, and P is added to the clusters' sum, so that
-/// a variable of which the data tell nothing stays as uncertain as it was.
+/// a variable of which the data determine nothing stays as uncertain as it was.
 ///
-/// Errors: `inconsistent` for residuals that are not finite at the start, or that do not tell the variables apart, with
-/// the index of one that cannot be told as the parameter. Not real-time safe.
-/// Sources: J. Moré, The Levenberg–Marquardt algorithm, 1978; K.-Y. Liang and S. Zeger, Longitudinal data analysis
-/// using generalized linear models, 1986.
+/// Errors: `inconsistent` for residuals that are not finite at the start, or that do not determine the variables apart,
+/// with the index of one that cannot be told as the parameter. Not real-time safe. Sources: J. Moré, The
+/// Levenberg–Marquardt algorithm, 1978; K.-Y. Liang and S. Zeger, Longitudinal data analysis using generalized linear
+/// models, 1986.
 Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem);
 
 }  // namespace tactus::identification

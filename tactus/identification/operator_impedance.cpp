@@ -169,7 +169,7 @@ ImpedanceVerdict judge(const Problem& problem, const Sums& sums, const OperatorI
   if (below_zero(found.stiffness) || below_zero(found.damping) || below_zero(found.mass)) {
     return ImpedanceVerdict::contradicted;
   }
-  return ImpedanceVerdict::told;
+  return ImpedanceVerdict::determined;
 }
 
 OperatorImpedance fit(const Problem& problem, std::size_t first, std::size_t count) {
@@ -234,11 +234,11 @@ bool look_swapped(const AxisSignals& signals, Band band, double window_s) {
   const double of_position = quickness(swapped.position, band, swapped.sample_time);
   if (of_force < quicker * of_position) return false;
   const auto problem = prepare(swapped, band, window_s);
-  return problem && fit(*problem, 0, problem->blocks.size()).verdict == ImpedanceVerdict::told;
+  return problem && fit(*problem, 0, problem->blocks.size()).verdict == ImpedanceVerdict::determined;
 }
 
 Check check_plausible(const AxisSignals& signals, const OperatorImpedances& found, bool doubt_sign) {
-  if (found.whole.verdict != ImpedanceVerdict::told &&
+  if (found.whole.verdict != ImpedanceVerdict::determined &&
       look_swapped(signals, {found.lower_Hz, found.upper_Hz}, found.window_s)) {
     return inconsistent(
         "position and force look swapped: the other way round they show a passive hand; exchange --position and "
@@ -247,12 +247,12 @@ Check check_plausible(const AxisSignals& signals, const OperatorImpedances& foun
   const double slow_Hz = slow_share * found.lower_Hz;
   const double work = slow_work(signals, slow_Hz);
   if (work > taken_slowly || !(doubt_sign || found.whole.verdict == ImpedanceVerdict::hand_drives)) return std::nullopt;
-  return inconsistent("below " + report::number(slow_Hz, 2) +
-                      " Hz the hand takes energy from the device (correlation of force and velocity " +
-                      report::number(work, 2) +
-                      "), but a person who moves a device gives it: the force of the hand on the device counts toward "
-                      "+position, so turn it with --force-sign -1, or exchange --position and --force if they are "
-                      "swapped; if the device really moved a resting hand, say --force-sign 1");
+  return inconsistent(
+      "below " + report::number(slow_Hz, 2) +
+      " Hz the hand takes energy from the device (correlation of force and velocity " + report::number(work, 2) +
+      "), but an operator who moves a device gives it: the force of the hand on the device counts toward "
+      "+position, so turn it with --force-sign -1, or exchange --position and --force if they are "
+      "swapped; if the device really moved a resting hand, write --force-sign 1");
 }
 
 Result<Band> band_of(const AxisSignals& signals, const OperatorImpedanceOptions& options) {
@@ -261,7 +261,7 @@ Result<Band> band_of(const AxisSignals& signals, const OperatorImpedanceOptions&
   const Band band{options.lower_Hz, options.upper_Hz.value_or(std::min(default_upper_Hz, 0.1 * rate_Hz))};
   if (!(band.lower_Hz >= 1.0 && band.lower_Hz <= 50.0)) {
     return out_of_bounds("lower_Hz", "the lower edge of the band is " + report::number(band.lower_Hz, 3) +
-                                         " Hz: it must be from 1 to 50 Hz, and above what the person intends");
+                                         " Hz: it must be from 1 to 50 Hz, and above intended motion");
   }
   if (!(band.upper_Hz >= 3.0 * band.lower_Hz && band.upper_Hz <= most_Hz)) {
     return out_of_bounds("upper_Hz", "the upper edge of the band is " + report::number(band.upper_Hz, 3) +
@@ -275,7 +275,7 @@ Result<Band> band_of(const AxisSignals& signals, const OperatorImpedanceOptions&
 }  // namespace
 
 bool OperatorImpedance::determined(const Estimate& parameter) const {
-  return verdict == ImpedanceVerdict::told && parameter.lower > 0.0;
+  return verdict == ImpedanceVerdict::determined && parameter.lower > 0.0;
 }
 
 Result<OperatorImpedances> estimate_operator_impedance(const AxisSignals& signals,
@@ -292,7 +292,7 @@ Result<OperatorImpedances> estimate_operator_impedance(const AxisSignals& signal
   const auto problem = prepare(signals, *band, options.window_s);
   if (!problem) return problem.error();
   if (problem->blocks.size() < blocks_of_window) {
-    return inconsistent("the recording is too short to tell: " +
+    return inconsistent("the recording is too short to judge: " +
                         report::number(static_cast<double>(signals.position.size()) * signals.sample_time.value, 3) +
                         " s; it takes a window of " + report::number(options.window_s, 3) +
                         " s and a period of the band's lower edge at both ends");

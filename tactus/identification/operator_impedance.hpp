@@ -10,7 +10,7 @@ namespace tactus::identification {
 
 /// What the data say of the hand in a stretch of time.
 enum class ImpedanceVerdict {
-  told,          ///< motion explains the hand's force; each parameter as far as its interval says
+  determined,    ///< motion explains the hand's force; each parameter as far as its interval states
   still,         ///< the device hardly moves in the band: less than a step of its encoder
   hand_drives,   ///< the hand gives energy in the band: what answers is the device, not the hand
   unexplained,   ///< the motion explains less than half of the hand's force in the band
@@ -18,7 +18,7 @@ enum class ImpedanceVerdict {
 };
 
 /// The operator's impedance in a stretch of time: force of the hand on the device = −(mass·a + damping·v +
-/// stiffness·x) + what the person intends. Units: kg, N s/m, N/m; of a rotary axis kg m², N m s/rad, N m/rad.
+/// stiffness·x) + what the operator intends. Units: kg, N s/m, N/m; of a rotary axis kg m², N m s/rad, N m/rad.
 struct OperatorImpedance {
   double from_s = 0;  ///< since the first sample
   double to_s = 0;
@@ -26,7 +26,7 @@ struct OperatorImpedance {
   double explained = 0;  ///< share of the force's variance in the band, 1 at best
   ImpedanceVerdict verdict = ImpedanceVerdict::still;
 
-  /// Does the data tell this parameter? The verdict is `told` and its interval is above zero.
+  /// Do the data determine this parameter? The verdict is `determined` and its interval is above zero.
   [[nodiscard]] bool determined(const Estimate& parameter) const;
 };
 
@@ -51,10 +51,10 @@ struct OperatorImpedances {
 
 /// The operator's impedance over time, from the motion of a master and the force of the hand on it.
 ///
-/// The person also intends motion, and a recording cannot tell that from stiffness and damping at the frequencies at
-/// which people move. So the hand is judged above them, where it is passive and answers what the device does. Intention
-/// that reaches into the band (tremor, a jerk) biases the result, and where the hand drives the device the ratio of
-/// force and motion is the device's: the verdict says where the data show that.
+/// The operator also intends motion, and a recording cannot determine that from stiffness and damping at the
+/// frequencies at which people move. So the hand is judged above them, where it is passive and answers what the device
+/// does. Intention that reaches into the band (tremor, a jerk) biases the result, and where the hand drives the device
+/// the ratio of force and motion is the device's: the verdict states where the data show that.
 ///
 /// Each window is a least-squares fit of the band-passed force on acceleration, velocity and position, by instrumental
 /// variables: regressors from even samples, instruments from odd ones, so an encoder's steps do not pull the mass down.

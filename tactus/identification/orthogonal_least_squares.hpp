@@ -21,7 +21,7 @@ struct RankedRegressor {
 /// nothing is left to explain. A column of which less than 1e-8 of its length is new is never taken.
 ///
 /// `regressors` is A row by row. Errors: `inconsistent` when the sizes do not fit one another, and when all
-/// observations are 0; `out_of_bounds` for a value that is not finite. An empty result says that no column explains
+/// observations are 0; `out_of_bounds` for a value that is not finite. An empty result states that no column explains
 /// anything. Not real-time safe.
 /// Sources: S. Chen, S. A. Billings, W. Luo, Int. J. Control 50(5), 1989, with modified Gram-Schmidt (section 3.2);
 /// G. Schwarz, Estimating the dimension of a model, Annals of Statistics 6(2), 1978.

@@ -100,7 +100,7 @@ Result<PredictionFromData> prediction_time_from_data(const FreeMotion& motion, I
   if (best == 0 || best == points) {
     return inconsistent("prediction.block.time_constant_s",
                         "the free-motion error is least at an end of the search, from one sample time to 0.1 s: the "
-                        "data does not tell it, or the model is wrong");
+                        "data does not determine it, or the model is wrong");
   }
   double low = lowest + (best - 1) * spacing, high = lowest + (best + 1) * spacing;
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);

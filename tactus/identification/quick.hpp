@@ -17,9 +17,9 @@ struct QuickParams {
 ///
 /// Many values of a chain explain one motion of its end nearly as well: friction of motor and drum act as one, the
 /// mass of the handle hides behind the hand. So each value is drawn to its data sheet as much as that is trusted
-/// (maximum a posteriori), and one that the minute leaves nearly as unknown as it was says so. The faster runs count
-/// above 15 Hz only, where neither tremor nor the person's corrections are; how much each run counts follows from what
-/// the first fit leaves of it and how long that stays correlated. Errors: those of the rig and of the fit. Not
+/// (maximum a posteriori), and one that the minute leaves nearly as unknown as it was states it. The faster runs count
+/// above 15 Hz only, where neither tremor nor the operator's corrections are; how much each run counts follows from
+/// what the first fit leaves of it and how long that stays correlated. Errors: those of the rig and of the fit. Not
 /// real-time safe.
 Result<Isolation> identify_quickly(Rig& rig, const QuickParams& params, const IsolationProgress& progress);
 

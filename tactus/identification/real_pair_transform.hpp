@@ -12,9 +12,9 @@ namespace tactus::identification {
 /// machine's vectors.
 ///
 /// Even and odd samples of a signal are real and imaginary part of one complex signal of half the length, which a
-/// Stockham transform of radix 4 takes; the two signals never mix, so a small one beside a large one keeps its digits.
-/// Eigen's transform (kissfft) does the same, for any length, in about four times the time.
-/// Not real-time safe. Source: Van Loan, Computational Frameworks for the Fast Fourier Transform, sections 1.7 and 4.3.
+/// Stockham transform of radix 4 takes; the two signals never mix, so a small one alongside a large one keeps its
+/// digits. Eigen's transform (kissfft) does the same, for any length, in about four times the time. Not real-time safe.
+/// Source: Van Loan, Computational Frameworks for the Fast Fourier Transform, sections 1.7 and 4.3.
 class RealPairTransform {
  public:
   /// One value of each signal.

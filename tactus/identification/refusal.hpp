@@ -7,7 +7,7 @@
 
 namespace tactus::identification {
 
-/// The data do not fit what is asked of them: says why, and what to do.
+/// The data do not fit what is asked of them: states why, and what to do.
 inline Error inconsistent(std::string message) { return {ErrorCode::inconsistent, {}, std::move(message), {}}; }
 inline Error inconsistent(std::string parameter, std::string message) {
   return {ErrorCode::inconsistent, std::move(parameter), std::move(message), {}};

@@ -65,7 +65,7 @@ std::string instruction(Assembly assembly) {
     case Assembly::linkage:
       return "Put the linkage on and lock the handle.";
     case Assembly::handle:
-      return "Unlock the handle and let go of it.";
+      return "Unlock the handle and release it.";
     case Assembly::held:
       break;
   }

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-/// A master device on the bench: what identification asks of it, whether it is simulated or stands on a table.
+/// A master device on the bench: what identification asks of it, whether it is simulated or is on a table.
 ///
 /// All positions and forces are translated to the operator's hand, in m and N, positive toward the environment.
 namespace tactus::identification {
@@ -32,7 +32,7 @@ constexpr auto enumerators(Assembly) {
                     Enumerator{Assembly::handle, "handle"}, Enumerator{Assembly::held, "held"}};
 }
 
-/// What a person has to do to bring a master into this state, as one sentence.
+/// What an operator has to do to bring a master into this state, as one sentence.
 std::string instruction(Assembly assembly);
 
 /// What the motor may do. A program that would leave them is refused; a run that leaves them all the same is stopped.
@@ -42,10 +42,10 @@ struct RigLimits {
   double upper_position_m = 0.05;
 };
 
-/// What the motor is told to do, one entry a tick: force = force_N + k (reference_m − x) + b · d/dt(reference_m − x),
-/// the derivative by `signal::FilteredDerivative`. With a stiffness and no reference it is the virtual spring of paper
-/// A, Sec. VII-B; with a reference, position control. `force_N` and `reference_m` have the same length, or one of them
-/// is empty and counts as 0.
+/// What the motor is commanded to do, one entry a tick: force = force_N + k (reference_m − x) + b · d/dt(reference_m −
+/// x), the derivative by `signal::FilteredDerivative`. With a stiffness and no reference it is the virtual spring of
+/// paper A, Sec. VII-B; with a reference, position control. `force_N` and `reference_m` have the same length, or one of
+/// them is empty and counts as 0.
 struct MotorProgram {
   std::vector<double> force_N;
   std::vector<double> reference_m;
@@ -93,15 +93,15 @@ struct RigRun {
   std::vector<double> current_force_N;    ///< of the motor's measured current at this tick; empty without a monitor
 };
 
-/// A bench with one master on it. Not real-time safe: a call returns when the run, or the person, is done.
+/// A bench with one master on it. Not real-time safe: a call returns when the run, or the operator, is done.
 class Rig {
  public:
   virtual ~Rig() = default;
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual double tick_s() const = 0;
   [[nodiscard]] virtual RigLimits limits() const = 0;
-  /// Has the master put into this state, where need be by a person who is asked for one step. Errors: `failed` when it
-  /// was not done.
+  /// Has the master put into this state, where need be by an operator who is asked for one step. Errors: `failed` when
+  /// it was not done.
   virtual Check assemble(Assembly assembly) = 0;
   /// Runs a program from rest near 0 and comes back to rest. Errors: `out_of_bounds` for a program that leaves the
   /// limits by itself, `failed` for a run that was stopped, with the time and the limit.

@@ -11,11 +11,11 @@
 namespace tactus::identification {
 
 /// A rig whose every run is kept in a folder, and taken from there when it is asked for again: identification can be
-/// stopped at any time, also between two mechanical steps, and goes on where it was when it is started anew.
+/// stopped at any time, also between two mechanical steps, and continues where it was when it is started again.
 ///
 /// Run n is `run-00n.csv`: columns `time_s`, `commanded_N`, `position_m` and, where the rig monitors it, `current_N`,
-/// as `recording::read` takes them. Its first line says what was run on which rig. A mechanical step is asked for only
-/// once a run that needs it is missing, and not again while the master is still in that state.
+/// as `recording::read` takes them. Its first line states what was run on which rig. A mechanical step is asked for
+/// only once a run that needs it is missing, and not again while the master is still in that state.
 class SessionRig final : public Rig {
  public:
   /// Over `rig`, which must outlive it. Errors: `unwritable`.

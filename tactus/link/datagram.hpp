@@ -19,9 +19,9 @@ template <class Payload>
 struct DatagramOf {
   SiteRole site = SiteRole::master;   ///< which sends
   control::PacketOf<Payload> packet;  ///< its age does not travel
-  std::int64_t peer_session = 0;      ///< the session that the sender hears, 0 before it has heard any
+  std::int64_t peer_session = 0;      ///< the session that the sender receives, 0 before it has received any
   std::int64_t sent_ns = 0;           ///< when this was sent, sender's clock
-  std::int64_t echo_sent_ns = 0;      ///< `sent_ns` of the newest that the sender has heard, 0 for none
+  std::int64_t echo_sent_ns = 0;      ///< `sent_ns` of the newest that the sender has received, 0 for none
   std::int64_t echo_hold_ns = 0;      ///< how long ago that arrived
 };
 using Datagram = DatagramOf<control::Message>;

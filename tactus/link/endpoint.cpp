@@ -70,13 +70,13 @@ std::span<const control::PacketOf<Payload>> EndpointOf<Payload>::receive(std::in
 
 template <class Payload>
 void EndpointOf<Payload>::send(const Packet& packet, std::int64_t now_ns) noexcept {
-  const bool echoes = inbound_.echo_heard_ns() != 0;
+  const bool echoes = inbound_.echo_received_ns() != 0;
   const auto encoded = encode(DatagramOf<Payload>{.site = site_,
                                                   .packet = packet,
                                                   .peer_session = inbound_.answered_session(),
                                                   .sent_ns = now_ns,
                                                   .echo_sent_ns = inbound_.echo_sent_ns(),
-                                                  .echo_hold_ns = echoes ? now_ns - inbound_.echo_heard_ns() : 0});
+                                                  .echo_hold_ns = echoes ? now_ns - inbound_.echo_received_ns() : 0});
   const auto bytes = bytes_of(encoded);
   ++((secure_ ? secure_->send(bytes) : socket_->send(bytes)) ? sent_ : unsent_);
 }
@@ -84,9 +84,9 @@ void EndpointOf<Payload>::send(const Packet& packet, std::int64_t now_ns) noexce
 template <class Payload>
 LinkCondition EndpointOf<Payload>::condition(std::int64_t now_ns) const noexcept {
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
-  const bool heard = inbound_.heard_ns() != 0;
+  const bool heard = inbound_.received_ns() != 0;
   return {.heard = heard,
-          .silence_s = heard ? seconds(now_ns - inbound_.heard_ns()) : 0.0,
+          .silence_s = heard ? seconds(now_ns - inbound_.received_ns()) : 0.0,
           .round_trip_s = seconds(inbound_.clock().round_trip_ns()),
           .clock_offset_s = seconds(inbound_.clock().offset_ns())};
 }

@@ -26,7 +26,7 @@ struct EndpointSettings {
   std::optional<Key> key;
 };
 
-/// What the link knows of the other site, apart from what it says.
+/// What the link knows of the other site, apart from what it states.
 struct LinkCondition {
   bool heard = false;           ///< a packet of it has come, ever
   double silence_s = 0.0;       ///< since the last arrived; 0 before the first
@@ -49,7 +49,8 @@ struct LinkCounters {
 
 /// One site's end of the link, for a servo step: each tick one `receive` and one `send`, neither of which waits,
 /// allocates or locks. It turns datagrams into the packets that a supervised site judges, and back. Of one axis
-/// (`Endpoint`) or of several joints (`JointEndpoint`); two ends with other numbers of joints never hear each other.
+/// (`Endpoint`) or of several joints (`JointEndpoint`); two ends with other numbers of joints never receive packets of
+/// each other.
 template <class Payload>
 class EndpointOf {
  public:

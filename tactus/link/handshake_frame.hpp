@@ -32,7 +32,7 @@ inline constexpr std::size_t shortest_frame_bytes = frame_head_bytes + frame_tag
 inline constexpr std::size_t longest_frame_bytes = shortest_frame_bytes + most_record_bytes;
 using FrameBytes = std::array<std::byte, longest_frame_bytes>;
 
-/// The first bytes of every frame: magic, version and who sends stand there in every version of the format.
+/// The first bytes of every frame: magic, version and who sends are there in every version of the format.
 inline constexpr std::uint32_t frame_magic = 0x48544354;  // "TCTH" in the order of the bytes
 inline constexpr std::size_t frame_site_at = 6;
 
@@ -51,7 +51,7 @@ class FrameTags {
   ~FrameTags();
 
   /// The bytes of a frame of this site, with its number of joints and at most `most_record_bytes` of records, which
-  /// stand in `bytes`. Real-time safe.
+  /// are in `bytes`. Real-time safe.
   std::span<const std::byte> write(const HandshakeFrame& frame, FrameBytes& bytes) noexcept;
 
   enum class Verdict : std::uint8_t {

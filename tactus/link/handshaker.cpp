@@ -10,7 +10,7 @@ namespace tactus::link {
 namespace {
 
 /// A hand-shake that takes longer is given up, and its memory with it.
-constexpr std::int64_t patience_ns = 2'000'000'000;
+constexpr std::int64_t timeout_ns = 2'000'000'000;
 constexpr std::int64_t greeting_every_ns = 50'000'000;
 
 }  // namespace
@@ -43,7 +43,7 @@ std::unique_ptr<Connection> Handshaker::work(bool wanted, std::int64_t now_ns) {
     newest_ = std::max(newest_, letter.number);
     if (letter.size > 0) advance(letter.records());
   }
-  if (busy() && now_ns - begun_ns_ > patience_ns) give_up();
+  if (busy() && now_ns - begun_ns_ > timeout_ns) give_up();
   if (!server_ && wanted && !busy()) begin(now_ns);
   if (pending_ && !shaken_) advance({});
   if (!server_ && busy() && !pending_ && now_ns - greeted_ns_ >= greeting_every_ns) {

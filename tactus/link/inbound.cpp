@@ -25,20 +25,20 @@ Inbound::Verdict Inbound::judge(DatagramOf<Payload>& datagram, std::int64_t now_
     if (packet.session == sessions_.current()) return Verdict::greeting;
     answered_session_ = packet.session;
     echo_sent_ns_ = datagram.sent_ns;
-    echo_heard_ns_ = now_ns;
+    echo_received_ns_ = now_ns;
     return Verdict::greeting;
   }
   if (packet.session != sessions_.current()) take_up(packet.session, packet.sequence);
   const auto seen = window_.judge(static_cast<std::uint64_t>(packet.sequence));
   if (seen == ReplayWindow::Verdict::repeated) return Verdict::repeated;
   ++arrived_;
-  heard_ns_ = now_ns;
+  received_ns_ = now_ns;
   if (datagram.echo_sent_ns != 0) {
     clock_.observe(datagram.echo_sent_ns, datagram.echo_hold_ns, datagram.sent_ns, now_ns);
   }
   if (seen == ReplayWindow::Verdict::newest) {
     echo_sent_ns_ = datagram.sent_ns;
-    echo_heard_ns_ = now_ns;
+    echo_received_ns_ = now_ns;
   }
   packet.age_s = clock_.known() ? static_cast<double>(clock_.age_ns(datagram.sent_ns, now_ns)) * 1e-9
                                 : std::numeric_limits<double>::infinity();

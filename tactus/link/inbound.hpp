@@ -39,12 +39,12 @@ class Inbound {
   Verdict take(DatagramOf<Payload>& datagram, std::int64_t now_ns) noexcept;
 
   /// When a datagram was counted last, own clock; 0 before the first.
-  [[nodiscard]] std::int64_t heard_ns() const noexcept { return heard_ns_; }
+  [[nodiscard]] std::int64_t received_ns() const noexcept { return received_ns_; }
   /// The session to answer: of the newest greeting, or the one that is taken up; 0 before either.
   [[nodiscard]] std::int64_t answered_session() const noexcept { return answered_session_; }
   /// When the datagram that is to be echoed was sent, other's clock, and arrived, own clock; 0 before the first.
   [[nodiscard]] std::int64_t echo_sent_ns() const noexcept { return echo_sent_ns_; }
-  [[nodiscard]] std::int64_t echo_heard_ns() const noexcept { return echo_heard_ns_; }
+  [[nodiscard]] std::int64_t echo_received_ns() const noexcept { return echo_received_ns_; }
   [[nodiscard]] const PeerClock& clock() const noexcept { return clock_; }
   [[nodiscard]] const Counters& counters() const noexcept { return counters_; }
   /// Datagrams of the session so far: how many were sent up to the newest since it was taken up, and how many of them
@@ -64,10 +64,10 @@ class Inbound {
   control::Sessions sessions_;
   ReplayWindow window_;
   PeerClock clock_;
-  std::int64_t heard_ns_ = 0;
+  std::int64_t received_ns_ = 0;
   std::int64_t answered_session_ = 0;
   std::int64_t echo_sent_ns_ = 0;
-  std::int64_t echo_heard_ns_ = 0;
+  std::int64_t echo_received_ns_ = 0;
   std::uint64_t first_sequence_ = 1;
   std::uint64_t arrived_ = 0;
   Counters counters_;

@@ -96,7 +96,7 @@ class SecureChannel::Implementation {
   std::atomic<Connection*> ready_{nullptr};    ///< with new keys, for the servo to pick up
   std::atomic<Connection*> retired_{nullptr};  ///< with old keys, for the other thread to free
   std::atomic<bool> wants_proof_{false};       ///< an open hand-shake may be what a message is sealed for
-  std::atomic<std::int64_t> heard_ns_{0};      ///< when the last authentic message came
+  std::atomic<std::int64_t> received_ns_{0};   ///< when the last authentic message came
   std::atomic<std::uint64_t> newest_{0};       ///< number of an authentic record of the current connection
   std::atomic<bool> stranger_{false};          ///< somebody without the key has sent something
   std::atomic<bool> stop_{false};
@@ -126,7 +126,7 @@ bool SecureChannel::Implementation::open_message(const Received& packet, std::sp
   if (current_ != nullptr && number + window > newest && current_->open(packet.bytes(), message) == message_bytes_) {
     ++counters_.opened;
     newest_.store(std::max(newest, number), std::memory_order_relaxed);
-    heard_ns_.store(monotonic_ns(), std::memory_order_relaxed);
+    received_ns_.store(monotonic_ns(), std::memory_order_relaxed);
     return true;
   }
   if (wants_proof_.load(std::memory_order_relaxed)) {
@@ -186,7 +186,7 @@ void SecureChannel::Implementation::shake_hands() {
     delete retired_.exchange(nullptr, std::memory_order_acq_rel);
     const std::int64_t now_ns = monotonic_ns();
     const bool silent =
-        static_cast<double>(now_ns - heard_ns_.load(std::memory_order_relaxed)) > silence_before_handshake_s * 1e9;
+        static_cast<double>(now_ns - received_ns_.load(std::memory_order_relaxed)) > silence_before_handshake_s * 1e9;
     publish(handshaker_.work(silent && ready_.load(std::memory_order_relaxed) == nullptr, now_ns));
     while (proofs_.try_pop(proof)) publish(handshaker_.prove({proof.data.data(), proof.size}));
     wants_proof_.store(handshaker_.wants_proof(), std::memory_order_relaxed);
@@ -203,7 +203,7 @@ void SecureChannel::Implementation::shake_hands() {
 
 void SecureChannel::Implementation::publish(std::unique_ptr<Connection> connection) {
   if (!connection) return;
-  heard_ns_.store(monotonic_ns(), std::memory_order_relaxed);
+  received_ns_.store(monotonic_ns(), std::memory_order_relaxed);
   delete ready_.exchange(connection.release(), std::memory_order_acq_rel);
 }
 

@@ -14,12 +14,12 @@ namespace tactus::link {
 
 /// Encryption and mutual authentication over a socket: DTLS 1.2 (RFC 6347) with a pre-shared key, cipher suite
 /// TLS_ECDHE_PSK_WITH_CHACHA20_POLY1305_SHA256 (RFC 7905) over X25519, so that a key that leaks later does not open
-/// what was recorded before. By OpenSSL; nothing of it shows here.
+/// what was recorded before. By OpenSSL; no part of it shows here.
 ///
 /// Hand-shakes run in a thread of their own, which starts with the channel. `open` and `send` belong to one thread, the
 /// servo's, and never wait for that: they pass hand-shake packets on through queues of fixed size and pick finished
 /// keys up. The master begins a hand-shake whenever nothing authentic has come for `silence_before_handshake_s`; the
-/// slave answers one at any time, but goes on with the old keys until the new ones have proved themselves. So either
+/// slave answers one at any time, but continues with the old keys until the new ones have proved themselves. So either
 /// side may be killed and started again, and a forged packet ends nothing.
 ///
 /// Every packet of a hand-shake bears a tag (`FrameTags`), which is checked before anything else is done for it. So a

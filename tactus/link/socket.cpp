@@ -54,7 +54,7 @@ Result<Address> Address::parse(std::string_view text) {
   if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
     host = host.substr(1, host.size() - 2);
   } else if (host.find(':') != std::string_view::npos) {
-    return bad_address(text, ErrorCode::syntax, "an IPv6 host stands in brackets");
+    return bad_address(text, ErrorCode::syntax, "an IPv6 host is written in brackets");
   }
   if (host.empty()) return bad_address(text, ErrorCode::syntax, "the address has no host");
   unsigned port = 0;

@@ -34,7 +34,7 @@ struct Parameter {
 
 enum class StatusLevel { info = 0, warning = 1, error = 2 };
 
-/// Something that a person at a client should read.
+/// Something that an operator at a client should read.
 struct Status {
   StatusLevel level = StatusLevel::info;
   std::string message;
@@ -49,7 +49,7 @@ using Payload = std::shared_ptr<const std::string>;
 /// Takes what an application has to show, in the order of time for each topic.
 using Publish = std::function<void(std::size_t topic, std::uint64_t time_ns, const Payload& payload)>;
 
-/// What stands behind a `Server`. The server's thread is the only one that calls it, after `Server::start`; nothing in
+/// What is behind a `Server`. The server's thread is the only one that calls it, after `Server::start`; nothing in
 /// it may wait.
 class Application {
  public:
@@ -64,7 +64,7 @@ class Application {
   [[nodiscard]] virtual std::map<std::string, std::string> metadata() const = 0;
   /// All parameters as they are now.
   [[nodiscard]] virtual std::vector<Parameter> parameters() const = 0;
-  /// Changes parameters, in this order. What is refused keeps its value; the answer says why.
+  /// Changes parameters, in this order. What is refused keeps its value; the answer states why.
   virtual std::vector<Status> set_parameters(const std::vector<Parameter>& wanted) = 0;
   /// A message that a client published: what it said about topic and encoding, and the bytes. All of it may be
   /// nonsense.
@@ -74,8 +74,8 @@ class Application {
   virtual void leave(ClientId client) = 0;
   /// The last client is gone.
   virtual void stand_alone() = 0;
-  /// Called every few milliseconds: hands over what is new, a bounded number of messages at once whatever goes on
-  /// meanwhile, for nobody is answered until it returns. `is_wanted(topic)` tells whether anyone would get it.
+  /// Called every few milliseconds: hands over what is new, a bounded number of messages at once whatever continues
+  /// meanwhile, for nobody is answered until it returns. `is_wanted(topic)` reports whether anyone would get it.
   virtual void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) = 0;
 };
 

@@ -70,9 +70,9 @@ ArmLoop::ArmLoop(experiments::ArmPair pair, const arm::Matrix3& directions, cons
     : pair_(std::move(pair)), directions_(directions), parts_(parts) {}
 
 Result<std::unique_ptr<Loop>> ArmLoop::make(const Setup& setup, const Parts& parts) {
-  experiments::ArmBeliefs beliefs = setup.exact;
-  beliefs.hand = setup.params.control.model.hand;
-  auto pair = experiments::ArmPair::make(setup, beliefs, -loop_wall_m * setup.tool_scale);
+  experiments::ArmModelParams model_params = setup.exact;
+  model_params.hand = setup.params.control.model.hand;
+  auto pair = experiments::ArmPair::make(setup, model_params, -loop_wall_m * setup.tool_scale);
   if (!pair) return pair.error();
   return std::unique_ptr<Loop>(new ArmLoop(*std::move(pair), hand_directions(setup), parts));
 }
@@ -102,32 +102,32 @@ void ArmLoop::step(const HandPoint& path, const HandPoint& path_at_next_tick, do
   const arm::Vector3 wanted_m = path_m(path, time_s);
   const arm::Vector3 wanted_next_m = path_m(path_at_next_tick, time_s + pair_.tick_s());
   const experiments::ArmRecord did = pair_.step(scale * wanted_m, scale * wanted_next_m, share);
-  const experiments::ArmSight sight = pair_.sight();
+  const experiments::ArmSnapshot snapshot = pair_.snapshot();
   const arm::Vector3 toward = directions_.col(0);
   tick.record = {.time_s = time_s,
                  .master_position_m = -did.leader_m,
-                 .induced_position_m = sight.induced_m.dot(toward),
-                 .command_m = (sight.command_m - pair_.follower_began_m()).dot(toward) / scale,
+                 .induced_position_m = snapshot.induced_m.dot(toward),
+                 .command_m = (snapshot.command_m - pair_.follower_began_m()).dot(toward) / scale,
                  .slave_position_m = -did.follower_m / scale,
                  .tip_position_m = -did.follower_m / scale,
-                 .displayed_force_N = -sight.displayed_N.dot(toward),
+                 .displayed_force_N = -snapshot.displayed_N.dot(toward),
                  .handle_force_N = 0.0,
                  .hand_force_N = did.hand_N,
-                 .told_force_N = -sight.told_N.dot(toward),
+                 .sent_force_N = -snapshot.sent_N.dot(toward),
                  .contact_force_N = did.contact_N,
                  .peak_contact_force_N = did.contact_N,
                  .touched = did.contact_N > 0.0,
                  .touched_at_s = did.contact_N > 0.0 ? time_s : 0.0};
-  tick.arms.joints = static_cast<std::uint64_t>(sight.leader_rad.size());
-  put(tick.arms.leader_rad, sight.leader_rad);
-  put(tick.arms.follower_rad, sight.follower_rad);
+  tick.arms.joints = static_cast<std::uint64_t>(snapshot.leader_rad.size());
+  put(tick.arms.leader_rad, snapshot.leader_rad);
+  put(tick.arms.follower_rad, snapshot.follower_rad);
   tick.arms.hand_m = floats(pair_.leader_began_m() + wanted_m);
-  tick.arms.displayed_force_N = floats(sight.displayed_N);
+  tick.arms.displayed_force_N = floats(snapshot.displayed_N);
   tick.arms.contact_force_N = floats(-did.contact_N * toward);
-  tick.arms.induced_m = floats(sight.induced_m);
+  tick.arms.induced_m = floats(snapshot.induced_m);
   // Written so that a NaN counts as outside.
-  inside_ = (sight.leader_m - pair_.leader_began_m()).norm() < tool_reach_m &&
-            (sight.follower_m - pair_.follower_began_m()).norm() < std::max(1.0, scale) * tool_reach_m;
+  inside_ = (snapshot.leader_m - pair_.leader_began_m()).norm() < tool_reach_m &&
+            (snapshot.follower_m - pair_.follower_began_m()).norm() < std::max(1.0, scale) * tool_reach_m;
 }
 
 void ArmLoop::exchange(Loop& made) noexcept {

@@ -11,15 +11,15 @@ namespace tactus::live {
 
 /// Two arms, the leader in the visitor's hand, in virtual time. The record is along the wall's normal, from where the
 /// tools began: positions are the tools', the follower's over the pair's `tool_scale`; the displayed force is what the
-/// leader's motors beside its support come to at its tool; the peak of the contact is its mean over a tick.
+/// leader's motors alongside its support come to at its tool; the peak of the contact is its mean over a tick.
 class ArmLoop final : public Loop {
  public:
   using Setup = experiments::ArmPairSetup;
   using Parts = experiments::ArmPair::Parts;
 
-  /// Gives `parts` where another goes on with it. Errors: those of `ArmPair::make`.
+  /// Gives `parts` where another continues with it. Errors: those of `ArmPair::make`.
   static Result<std::unique_ptr<Loop>> make(const Setup& setup, const Parts& parts = {});
-  /// As `change_loop`; of setups that differ in their `params` alone. It always goes on.
+  /// As `change_loop`; of setups that differ in their `params` alone. It always continues.
   static Result<LoopChange> change(const Setup& before, const Setup& after);
 
   void step(const HandPoint& path, const HandPoint& path_at_next_tick, double share, LoopTick& tick) noexcept override;
@@ -30,7 +30,7 @@ class ArmLoop final : public Loop {
 
  private:
   ArmLoop(experiments::ArmPair pair, const arm::Matrix3& directions, const Parts& parts);
-  /// Where the person is, of a hand that is there at this time since the loop began.
+  /// Where the operator is, of a hand that is there at this time since the loop began.
   [[nodiscard]] arm::Vector3 path_m(const HandPoint& hand, double time_s) const;
 
   experiments::ArmPair pair_;

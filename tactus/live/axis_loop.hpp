@@ -9,7 +9,7 @@ class AxisLoop final : public Loop {
  public:
   using Teleoperator = simulation::Teleoperator;
 
-  /// At rest at `start_m`; gives `parts` where another goes on with it. Errors: those of `Teleoperator::make`.
+  /// At rest at `start_m`; gives `parts` where another continues with it. Errors: those of `Teleoperator::make`.
   static Result<std::unique_ptr<Loop>> make(const Teleoperator::Params& params, double start_m,
                                             const Teleoperator::Parts& parts = {});
   /// As `change_loop`. Another architecture starts over.

@@ -18,7 +18,7 @@ enum class LiveVerdict { free, contact, settled, rings };
 /// A contact begins with a touch, and ends when nothing was touched for 0.25 s, or 0.1 s once it has settled; then the
 /// verdict is `free`. `settled` once the force has been that small for 50 ms, on the wall, and fell there within 100 ms
 /// of the touch, the limit of the experiment; `rings` where it did not. What rings and has been calm for half a second
-/// is settled again; what is settled and becomes loud again is judged anew from there. A contact too gentle to feel,
+/// is settled again; what is settled and becomes loud again is judged again from there. A contact too gentle to feel,
 /// below 10 mN, counts as calm; once it has settled, 30 mN, for the
 /// hand that presses on moves too.
 class ContactJudge {
@@ -28,14 +28,14 @@ class ContactJudge {
   /// One tick: the mean contact force in N, and whether the tip met the wall in it.
   void step(double contact_force_N, bool touched);
   void reset();
-  /// The loop is another from now on: what goes on at the wall is a new contact.
+  /// The loop is another from now on: what continues at the wall is a new contact.
   void judge_anew() { anew_ = verdict_ != LiveVerdict::free; }
 
   [[nodiscard]] LiveVerdict verdict() const { return verdict_; }
   [[nodiscard]] bool in_contact() const { return in_contact_; }
   /// True in the first tick of a contact.
   [[nodiscard]] bool has_begun() const { return has_begun_; }
-  /// From the touch, or from what began anew, to the last time that the force was loud.
+  /// From the touch, or from what began again, to the last time that the force was loud.
   [[nodiscard]] double settling_time_s() const { return static_cast<double>(loud_until_ - onset_) * dt_s_; }
   /// Why, in one sentence; empty while there is nothing to say.
   [[nodiscard]] std::string cause() const;

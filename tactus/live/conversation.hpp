@@ -33,7 +33,7 @@ struct ConversationLimits {
 /// Every input is survived: what makes no sense is answered with a status, and nothing grows beyond the limits.
 class Conversation {
  public:
-  /// What a frame costs beside its bytes: about the time in which as many are copied.
+  /// What a frame costs alongside its bytes: about the time in which as many are copied.
   static constexpr std::size_t frame_cost = 64;
 
   /// Greets the client: server information and topics.
@@ -52,7 +52,7 @@ class Conversation {
   [[nodiscard]] bool wants_anything() const { return !subscriptions_.empty(); }
   /// Sends the parameters whose changes the client asked for.
   void tell_parameters(const std::vector<Parameter>& all);
-  /// Where frames were lost since it was last called: says so, once for all of them.
+  /// Where frames were lost since it was last called: states it, once for all of them.
   void tell_losses();
 
   [[nodiscard]] Outbox& outbox() { return outbox_; }

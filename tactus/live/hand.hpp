@@ -10,7 +10,7 @@
 
 namespace tactus::live {
 
-/// A tap that is the same every time: rest before the wall, reach through it as the median person of the tapping
+/// A tap that is the same every time: rest before the wall, reach through it as the median operator of the tapping
 /// experiment does, press, and go home.
 struct ScriptedTap {
   static constexpr double depth_m = 0.007;       ///< before and beyond the wall

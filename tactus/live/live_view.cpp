@@ -220,7 +220,7 @@ std::optional<Status> LiveView::move_hand(ClientId client, std::string_view byte
                                                             : R"({"position_m": [0.005, 0.0, 0.0], "engaged": true})");
   }
   if (holder_ && *holder_ != client) {
-    return Status{StatusLevel::warning, "another client holds the handle; it is free when that lets go"};
+    return Status{StatusLevel::warning, "another client holds the handle; it is free when that client releases it"};
   }
   if (!engaged->get<bool>()) {
     if (holder_) leave(client);
@@ -320,7 +320,8 @@ std::string LiveView::advice(std::size_t loop) const {
   const LiveVerdict verdict = watched_[loop].judge.verdict();
   if (verdict != LiveVerdict::settled && verdict != LiveVerdict::rings) return {};
   const std::optional<double>& speed_m_per_s = watched_[loop].touch_speed_m_per_s;
-  if (!speed_m_per_s) return "It touched the wall before the change: let go and tap to try the loop as it is now.";
+  if (!speed_m_per_s)
+    return "It touched the wall, then the loop changed: release it and tap to try the loop as it is now.";
   const auto in_mm_per_s = [](double value) { return format_number(std::round(1e3 * value)) + " mm/s"; };
   const std::string touched = "You touched at " + in_mm_per_s(*speed_m_per_s);
   if (verdict == LiveVerdict::rings) return touched + ".";

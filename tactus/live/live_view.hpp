@@ -38,7 +38,7 @@ class LiveView final : public Application {
   [[nodiscard]] Engine& engine() { return *engine_; }
   /// What visitors tried so far. On the view's thread, or after its end.
   [[nodiscard]] const SessionHistory& history() const { return history_; }
-  /// Ticks that were lost on the way here. Any thread.
+  /// Ticks that were lost on the link to this site. Any thread.
   [[nodiscard]] std::uint64_t lost_ticks() const { return lost_ticks_.load(std::memory_order_relaxed); }
 
   [[nodiscard]] const std::vector<Topic>& topics() const override { return topics_; }
@@ -48,7 +48,7 @@ class LiveView final : public Application {
   std::optional<Status> receive(ClientId client, std::string_view topic, std::string_view encoding,
                                 std::string_view bytes) override;
   void leave(ClientId client) override;
-  /// Who comes next finds what the experiment says.
+  /// Who comes next finds what the experiment states.
   void stand_alone() override;
   /// Shows what the loops did since it was first called.
   void collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) override;
@@ -82,7 +82,7 @@ class LiveView final : public Application {
   std::optional<Status> start_over(const std::optional<ScriptedTap>& tap);
   Check apply(const Settings& settings);
   void watch(std::size_t loop, const LoopTick& tick);
-  /// What the verdict says of the loop, and what to try.
+  /// What the verdict means for the loop, and what to try.
   [[nodiscard]] std::string advice(std::size_t loop) const;
   void show(std::size_t loop, const LoopTick& tick, bool every_tick, const Publish& publish);
 

@@ -19,7 +19,7 @@ std::string line(const std::string& type, const std::string& name, const std::st
 }  // namespace
 
 std::string live_block_definition() {
-  std::string text = line("float64", "start_s", "Virtual time of the first tick.") +
+  std::string text = line("float64", "start_s", "Virtual time of the first control cycle.") +
                      line("float64", "column_s", "Duration of a column.");
   for (const BlockSignal& signal : block_signals) {
     const std::string name = telemetry::ros_name(signal.name);
@@ -31,13 +31,14 @@ std::string live_block_definition() {
 }
 
 std::string hand_force_definition() {
-  return line("float64", "start_s", "Virtual time of the first tick.") +
-         line("float64", "period_s", "From tick to tick.") +
-         line("float32[]", "force_N", "Measured force of the hand on the handle at each tick, toward the environment.");
+  return line("float64", "start_s", "Virtual time of the first control cycle.") +
+         line("float64", "period_s", "From control cycle to control cycle.") +
+         line("float32[]", "force_N",
+              "Measured force of the hand on the handle in each control cycle, toward the environment.");
 }
 
 std::string live_state_definition() {
-  return line("float64", "time_s", "Virtual time of the tick.") +
+  return line("float64", "time_s", "Virtual time of the control cycle.") +
          line("float64", "hand_position_m", "Where the visitor, or the script, wants the hand.") +
          line("float64", "master_position_m", "Measured, at the master's motor.") +
          line("float64", "slave_position_m", "Measured, at the slave's motor.") +
@@ -49,21 +50,21 @@ std::string live_state_definition() {
          line("bool", "in_contact", "The slave touches the wall.") +
          line("string", "verdict", "free, contact, settled, rings or stopped.") +
          line("string", "cause", "Why, in one sentence; may be empty.") +
-         line("string", "advice", "What the verdict says of the loop, and what to try; may be empty.") +
+         line("string", "advice", "What the verdict means for the loop, and what to try; may be empty.") +
          line("float64", "force_limit_N", "The most that is displayed at the master's motor.") +
          line("float64", "real_time_ratio", "Virtual time over real time, over the last second.") +
-         line("uint64", "dropped", "Ticks of this loop that were lost on the way to the view, since the start.") +
+         line("uint64", "dropped", "Control cycles of this loop that the view has lost, since the start.") +
          line("float64", "estimated_grip", "How firmly the hand holds, over the controller's model of it.") +
          line("float64", "estimated_grip_deviation", "Standard deviation of that; 0 where nothing is estimated.");
 }
 
 std::string live_arms_definition() {
-  return line("float64", "time_s", "Virtual time of the tick.") +
+  return line("float64", "time_s", "Virtual time of the control cycle.") +
          line("float32[]", "leader_rad", "Of each joint's link, from the base on; metres where it slides.") +
          line("float32[]", "follower_rad", "The same of the follower.") +
-         line("float32[]", "hand_m", "Where the person means the leader's tool to be, along the axes of the base.") +
+         line("float32[]", "hand_m", "Where the operator aims the leader's tool, along the axes of the base.") +
          line("float32[]", "displayed_force_N",
-              "Of the leader's motors beside what carries it, at its tool, along the axes of the base.") +
+              "Of the leader's motors without gravity compensation, at its tool, along the axes of the base.") +
          line("float32[]", "contact_force_N", "Of the wall on the follower's tool, along the axes of the base.") +
          line("float32[]", "induced_m", "Motion of the leader's tool that its site takes from the command.");
 }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// The messages of the live view beside the full-rate records.
+/// The messages of the live view alongside the full-rate records.
 namespace tactus::live {
 
 /// What a loop of two arms is about in a tick, of links and tools; vectors along the axes of the base.
@@ -18,8 +18,8 @@ struct ArmsTick {
   std::uint64_t joints = 0;  ///< of each arm; none where the loop has no arms
   std::array<float, most_joints> leader_rad{};
   std::array<float, most_joints> follower_rad{};
-  std::array<float, 3> hand_m{};             ///< where the person means the leader's tool to be
-  std::array<float, 3> displayed_force_N{};  ///< of the leader's motors beside its support, at its tool
+  std::array<float, 3> hand_m{};             ///< where the operator means the leader's tool to be
+  std::array<float, 3> displayed_force_N{};  ///< of the leader's motors alongside its support, at its tool
   std::array<float, 3> contact_force_N{};    ///< of the wall on the follower's tool
   std::array<float, 3> induced_m{};          ///< motion of the leader's tool that its site takes from the command
 };

@@ -12,12 +12,12 @@ constexpr std::size_t most_records_a_call = 512;
 }  // namespace
 
 std::vector<Status> RunView::set_parameters(const std::vector<Parameter>&) {
-  return {{StatusLevel::error, "a run has no parameters to set: it is looked at, and goes on as it was started"}};
+  return {{StatusLevel::error, "a run has no parameters to set: it is observed, and continues as it was started"}};
 }
 
 std::optional<Status> RunView::receive(ClientId, std::string_view topic, std::string_view, std::string_view) {
   return Status{StatusLevel::error, std::string(topic.substr(0, 80)) +
-                                        ": nobody listens: a run is looked at, and commanded by who stands beside it"};
+                                        ": nobody listens: a run is observed, and commanded by its own operator"};
 }
 
 void RunView::collect(const std::function<bool(std::size_t topic)>& is_wanted, const Publish& publish) {

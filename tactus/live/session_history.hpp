@@ -56,7 +56,7 @@ class SessionHistory {
  private:
   std::vector<std::vector<Parameter>> settings_;
   std::vector<Contact> contacts_;
-  std::array<std::optional<std::size_t>, loops> open_;  ///< place of the contact that goes on, or has just ended
+  std::array<std::optional<std::size_t>, loops> open_;  ///< place of the contact that continues, or has just ended
   std::uint64_t forgotten_ = 0;
 };
 

@@ -18,7 +18,7 @@ class VibrationEnergy {
 
   /// One tick: the position that was measured in it, and the force that is displayed from then on. Real-time safe.
   void step(double displayed_force_N, double position_m) noexcept;
-  /// Counts from zero again; the vibration goes on.
+  /// Counts from zero again; the vibration continues.
   void begin() noexcept { energy_J_ = 0.0; }
   /// As new, at rest in a position.
   void reset(double position_m) noexcept;

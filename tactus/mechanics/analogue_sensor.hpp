@@ -52,7 +52,7 @@ class AnalogueSensor {
     noise_ = signal::Random(static_cast<std::uint64_t>(settings_.seed));
   }
 
-  /// The analogue part as it stands, for sweeps.
+  /// The analogue part as it is, for sweeps.
   [[nodiscard]] const signal::SecondOrderSection<double>& section() const noexcept { return filter_.section(); }
 
  private:

@@ -48,7 +48,7 @@ struct BoucWenMotion {
 /// solution (first elastic down to z = 0, then exponential toward ±d), so the spring is exactly rate-independent and
 /// any step size is exact; β = γ also keeps it passive. The textbook's Euler step of ż is neither.
 ///
-/// The parameters are those of the elasto-slip spring, so either can stand in the other's place; only the slip
+/// The parameters are those of the elasto-slip spring, so either can be in the other's place; only the slip
 /// deflection differs in meaning, because an exponential has no last slip.
 ///
 /// `stiffness_N_per_m` is the tip-to-tip slope K of a closed loop of amplitude A = `reference_deflection_m`, in which z
@@ -74,7 +74,7 @@ class BoucWenSpring {
                 "Average stiffness: tip-to-tip slope of a closed loop of the reference deflection (the master's "
                 "linkage: 3950, paper A, Table I)."),
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
-                "Viscous damping beside the spring (the master's linkage: 0.02)."),
+                "Viscous damping in parallel with the spring (the master's linkage: 0.02)."),
           field("hysteretic_fraction", &Params::hysteretic_fraction, units::none, between(0.0, 0.99),
                 "Share of the small-deflection stiffness that is lost at large deflection; 0 is a linear spring."),
           field("slip_deflection_m", &Params::slip_deflection_m, units::metre, positive,

@@ -60,8 +60,8 @@ Check CableChain::check_step(const Params& params, double tip_stiffness_N_per_m,
       [](const Connector& a, const Connector& b) { return a.squared_frequency < b.squared_frequency; });
   return Error{.code = ErrorCode::inconsistent,
                .parameter = std::string(stiffest.parameter),
-               .message = "makes the mechanism as stiff as " + format_number(std::round(stiffest.stiffness_N_per_m)) +
-                          " N/m here, which steps of " + format_number(dt.value * 1e6) +
+               .message = "makes the mechanism as stiff as " + rounded_number(std::round(stiffest.stiffness_N_per_m)) +
+                          " N/m here, which steps of " + rounded_number(dt.value * 1e6) +
                           " us cannot follow: step finer, or less stiffness or damping, or more mass",
                .place = {}};
 }

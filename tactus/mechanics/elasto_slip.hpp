@@ -37,7 +37,7 @@ struct ElastoSlipElements {
   }
 };
 
-/// Spring with rate-independent hysteresis: a spring that never slips beside four elasto-slip elements (Iwan,
+/// Spring with rate-independent hysteresis: a spring that never slips alongside four elasto-slip elements (Iwan,
 /// Maxwell-slip), and a viscous damper:  F = K∞ δ + Σ kᵢ (δ − zᵢ) + b δ̇.
 ///
 /// Physical parameters. From rest the stiffness is K₀; a share h (`hysteretic_fraction`) of it slips away in four equal
@@ -68,7 +68,7 @@ class ElastoSlipSpring {
                 "Average stiffness: tip-to-tip slope of a closed loop of the reference deflection (the master's "
                 "linkage: 3950, paper A, Table I)."),
           field("damping_N_s_per_m", &Params::damping_N_s_per_m, units::newton_second_per_metre, non_negative,
-                "Viscous damping beside the spring (the master's linkage: 0.02)."),
+                "Viscous damping in parallel with the spring (the master's linkage: 0.02)."),
           field("hysteretic_fraction", &Params::hysteretic_fraction, units::none, between(0.0, 0.99),
                 "Share of the small-deflection stiffness that is lost once everything slips; 0 is a linear spring."),
           field("slip_deflection_m", &Params::slip_deflection_m, units::metre, positive,
@@ -112,7 +112,7 @@ class ElastoSlipSpring {
   [[nodiscard]] double initial_stiffness_N_per_m() const noexcept { return initial_stiffness_N_per_m_; }
   /// K∞: the slope once every element slips, in N/m.
   [[nodiscard]] double sustained_stiffness_N_per_m() const noexcept { return sustained_stiffness_N_per_m_; }
-  /// The elements as they stand: stiffnesses, slips and sliders.
+  /// The elements as they are: stiffnesses, slips and sliders.
   [[nodiscard]] const ElastoSlipElements<double>& elements() const noexcept { return elements_; }
 
  private:

@@ -68,8 +68,8 @@ class ElectricSlave {
     return {.motor_position_m = encoder_.step(mechanism_.motor_position_m()), .tip_force_N = force_sensor_.sample()};
   }
 
-  /// Puts another wall before the tip, from the next substep on. It must have been accepted by `make` of a slave like
-  /// this one. Real-time safe.
+  /// Puts another wall in front of the tip, from the next substep on. It must have been accepted by `make` of a slave
+  /// like this one. Real-time safe.
   void face(const Environment& environment) noexcept { environment_ = environment; }
 
   void reset() noexcept { reset(0.0); }

@@ -55,7 +55,7 @@ class ForceSensor {
   /// No force so far, and the noise from its beginning.
   void reset() noexcept { sensor_.reset(0.0); }
 
-  /// The analogue part as it stands, for sweeps.
+  /// The analogue part as it is, for sweeps.
   [[nodiscard]] const signal::SecondOrderSection<double>& analogue() const noexcept { return sensor_.section(); }
 
  private:

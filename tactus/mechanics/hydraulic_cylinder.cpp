@@ -18,15 +18,15 @@ Result<HydraulicCylinder> HydraulicCylinder::make(const Params& params, const Se
   if (params.tank_Pa >= params.supply_Pa) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "tank_Pa",
-                 .message = format_number(params.tank_Pa) + " Pa is not below the supply's " +
-                            format_number(params.supply_Pa) + " Pa",
+                 .message = rounded_number(params.tank_Pa) + " Pa is not below the supply's " +
+                            rounded_number(params.supply_Pa) + " Pa",
                  .place = {}};
   }
   if (params.friction.static_N < params.friction.coulomb_N) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "friction.static_N",
-                 .message = format_number(params.friction.static_N) + " N is below the Coulomb friction of " +
-                            format_number(params.friction.coulomb_N) + " N; give at least that",
+                 .message = rounded_number(params.friction.static_N) + " N is below the Coulomb friction of " +
+                            rounded_number(params.friction.coulomb_N) + " N; give at least that",
                  .place = {}};
   }
   const double oil = params.bulk_modulus_Pa / (least_volume_share * params.dead_volume_m3);
@@ -43,8 +43,8 @@ Result<HydraulicCylinder> HydraulicCylinder::make(const Params& params, const Se
                  .parameter = flow_is_faster ? "dead_volume_m3" : "mass_kg",
                  .message = std::string(flow_is_faster ? "the pressure of so little oil changes too fast"
                                                        : "oil and end stops are too stiff for so little mass") +
-                            " for a step of " + format_number(dt.value) + " s; steps of at most " +
-                            format_number(longest_s) + " s would do",
+                            " for a step of " + rounded_number(dt.value) + " s; steps of at most " +
+                            rounded_number(longest_s) + " s would do",
                  .place = {}};
   }
   const auto end_stop = KelvinVoigtContact::make(params.end_stop, dt);

@@ -10,7 +10,7 @@
 namespace tactus::mechanics {
 
 /// Friction that falls from its static to its Coulomb value as the piston gets going: f(v) = F_c + (F_s − F_c)·exp(−(v
-/// / v_s)²), beside the viscous part. Source: B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7),
+/// / v_s)²), alongside the viscous part. Source: B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30(7),
 /// 1994.
 struct StribeckFriction {
   double coulomb_N = 150.0;
@@ -67,7 +67,7 @@ class HydraulicCylinder {
           field("second_area_m2", &Params::second_area_m2, units::square_metre, positive, "And of the other."),
           field("stroke_m", &Params::stroke_m, units::metre, positive, "From end stop to end stop."),
           field("dead_volume_m3", &Params::dead_volume_m3, units::cubic_metre, positive,
-                "Oil left in a chamber, hose and valve when the piston stands at its end."),
+                "Oil left in a chamber, hose and valve when the piston is at its end."),
           field("bulk_modulus_Pa", &Params::bulk_modulus_Pa, units::pascal, positive, "Of the oil, effective."),
           field("leakage_m3_per_s_per_Pa", &Params::leakage_m3_per_s_per_Pa, units::cubic_metre_per_second_per_pascal,
                 non_negative, "Laminar leakage from chamber to chamber."),

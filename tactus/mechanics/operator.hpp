@@ -31,7 +31,7 @@ struct OperatorMotion {
   Scalar correction_m{};
   signal::FirstOrderSection<Scalar> low_pass;
 
-  /// The error that the person will feel a reaction time later.
+  /// The error that the operator will feel a reaction time later.
   Scalar felt(const Scalar& handle_position_m, const Scalar& path_m) noexcept {
     return low_pass.step(handle_position_m - path_m);
   }
@@ -50,12 +50,12 @@ struct OperatorMotion {
   }
 };
 
-/// The person at the master, as a plant. Three things at once:
+/// The operator at the master, as a plant. Three things at once:
 ///
 /// - a passive impedance, the grip: a linear spring and damper from the handle to where the hand wants to be
 ///   (paper A, Table I). The chain of the master carries it; here it is only a parameter.
 /// - the intended path with physiological tremor on it (8 to 12 Hz; Elble and Koller, *Tremor*, 1990).
-/// - slow correction: the person sees or feels the handle off the path and shifts the aim, as an integrator on the
+/// - slow correction: the operator sees or feels the handle off the path and shifts the aim, as an integrator on the
 ///   error, low-passed near 5 Hz and a reaction time late (paper A, Sec. VI: active compensation up to about 5 Hz,
 ///   reaction about 100 ms).
 ///
@@ -70,7 +70,7 @@ class Operator {
     static constexpr auto fields() {
       return List{
           field("gain_per_s", &Correction::gain_per_s, units::per_second, between(0.0, 8.0),
-                "Speed of the correction per metre of error; 0 switches it off, above 8 a person would oscillate."),
+                "Speed of the correction per metre of error; 0 switches it off, above 8 an operator would oscillate."),
           field("bandwidth_Hz", &Correction::bandwidth_Hz, units::hertz, between(0.1, 20.0),
                 "Corner of the first-order low-pass on the error that is corrected."),
           field("reaction_time_s", &Correction::reaction_time_s, units::second, between(0.0, 0.4),

@@ -26,7 +26,7 @@ class PositionTransducer {
                   field("noise_rms_m", &Params::noise_rms_m, units::metre, non_negative,
                         "Standard deviation of the white noise on every sample."),
                   field("resolution_m", &Params::resolution_m, units::metre, non_negative,
-                        "Step of the converter; 0 has none."),
+                        "Step of the converter; 0: no quantisation."),
                   field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
     }
   };

@@ -27,7 +27,7 @@ class PressureSensor {
                   field("noise_rms_Pa", &Params::noise_rms_Pa, units::pascal, non_negative,
                         "Standard deviation of the white noise on every sample."),
                   field("resolution_Pa", &Params::resolution_Pa, units::pascal, non_negative,
-                        "Step of the converter; 0 has none."),
+                        "Step of the converter; 0: no quantisation."),
                   field("limit_Pa", &Params::limit_Pa, units::pascal, positive, "Full scale."),
                   field("seed", &Params::seed, non_negative, "Seed of the noise: the same seed, the same noise.")};
     }

@@ -5,7 +5,7 @@
 
 namespace tactus::recording {
 
-/// The samples of one column with what the file says about them.
+/// The samples of one column with what the file states about them.
 struct Column {
   std::vector<double> values;
   std::string name;

@@ -21,7 +21,7 @@ std::string_view next_line(std::string_view text, std::size_t& offset);
 /// stands for any number of blanks and tabs.
 std::optional<std::size_t> split_fields(std::string_view line, char separator, std::vector<CsvField>& fields);
 
-/// What a text says as a number, or the reason why it says none.
+/// What a text states as a number, or the reason why it states none.
 struct CsvNumber {
   double value = 0.0;
   const char* fault = nullptr;

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// What reading a recording may take, whatever a file says of itself: less than 1 GB of memory and 20 s.
+/// What reading a recording may take, whatever a file states of itself: less than 1 GB of memory and 20 s.
 namespace tactus::recording {
 
 /// Of either sign. No instrument measures more, in any unit, and its powers that are summed up stay finite.

@@ -21,8 +21,8 @@ struct NameAndUnit {
 };
 NameAndUnit split_unit(std::string_view head);
 
-/// The same of all columns of a table. Where its names tell master and slave by `_m` and `_s`, as in `x_m` and `x_s`,
-/// neither is a unit.
+/// The same of all columns of a table. Where its names distinguish master and slave by `_m` and `_s`, as in `x_m` and
+/// `x_s`, neither is a unit.
 std::vector<NameAndUnit> split_units(std::span<const std::string> heads);
 
 /// `text` in single quotes.

@@ -180,7 +180,7 @@ std::string jitter_note(std::optional<double> jitter_s, double sample_time_s) {
          rounded_number(100.0 * *jitter_s / sample_time_s, 2) +
          " % of a step, so the samples were interpolated to equal steps of " + rounded_number(1e3 * sample_time_s) +
          " ms: above " + rounded_number(limit_Hz, 2) +
-         " Hz amplitudes are uncertain by more than 10 %, and delays shorter than the jitter cannot be told";
+         " Hz amplitudes are uncertain by more than 10 %, and delays shorter than the jitter cannot be determined";
 }
 
 Result<Signal> read(const Source& source) {

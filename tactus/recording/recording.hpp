@@ -14,14 +14,14 @@
 /// Measured signals from files, for playing them to a simulated hand and for identification.
 namespace tactus::recording {
 
-/// Where a signal stands in a file.
+/// Where a signal is in a file.
 ///
-/// The ending of the file's name tells the format: `.csv`, `.tsv` or `.txt` for a table, `.mat` for a MATLAB file.
+/// The ending of the file's name determines the format: `.csv`, `.tsv` or `.txt` for a table, `.mat` for a MATLAB file.
 ///
 /// A table is UTF-8 text, its fields separated by commas, semicolons, tabs or blanks (found from header and first
 /// sample) and quoted where needed. Numbers have a decimal point in any locale, or throughout a decimal comma where
 /// commas do not separate. The first line that is neither empty nor begins with `#` or `%` is the header: a name and a
-/// unit for each column, as `force [N]`, `force (Newton)` or `force_N` (`split_unit` tells the rules). Where that line
+/// unit for each column, as `force [N]`, `force (Newton)` or `force_N` (`split_unit` has the rules). Where that line
 /// holds numbers, the last comment before it with as many words is the header. Every line after it is a sample.
 ///
 /// A MATLAB file is of version 5 (what `save` writes with `-v7` or `-v6`), compressed or not. The signal is a real,
@@ -41,13 +41,13 @@ struct Source {
 
   /// The time of each sample, named like `variable` (its first column). In a table in the unit of its header (s, ms, us
   /// or ns), as ISO 8601 dates and times, or as two columns of seconds and parts of them (`sec,nanosec`). Without a
-  /// unit and in a MATLAB file: seconds, but times since 1970 in s, ms, us or ns, which their size tells apart. Empty:
-  /// the column `time`, `t`, `timestamp` or the like, or such a pair, or the variable `time` that
-  /// stands nearest (for `scope.signals(2).values`: `scope.signals(2).time`, `scope.time`, `time`) and has as many
-  /// samples, `time_s` where there is no `time`; no time if there is none.
+  /// unit and in a MATLAB file: seconds, but times since 1970 in s, ms, us or ns, which are distinguished by their
+  /// size. Empty: the column `time`, `t`, `timestamp` or the like, or such a pair, or the variable `time` that is
+  /// nearest (for `scope.signals(2).values`: `scope.signals(2).time`, `scope.time`, `time`) and has as many samples,
+  /// `time_s` where there is no `time`; no time if both are missing.
   std::string time = {};
 
-  /// The unit of the times (s, ms, us or ns) instead of what the file says of it; empty: as the file says.
+  /// The unit of the times (s, ms, us or ns) instead of what the file states of it; empty: as the file states.
   std::string time_unit = {};
 
   /// What the sample time is known to be, in seconds, greater than 0. Where the file has times too, they must agree
@@ -71,7 +71,7 @@ struct Signal {
   bool time_unit_stated = false;
 };
 
-/// What jitter of the times means for a signal, in a sentence; empty where there is none.
+/// What jitter of the times means for a signal, in a sentence; empty without jitter.
 std::string jitter_note(std::optional<double> jitter_s, double sample_time_s);
 
 /// Reads one signal.
@@ -89,7 +89,7 @@ Result<Signal> read(const Source& source);
 ///
 /// A choice is one or more of these, with commas between them: in a table the name of a column, its number from 1 where
 /// no column is called so, or a range as `2:7` or `q1:q6`, both ends included; in a MATLAB file a variable, of which
-/// all columns are meant, `NAME:2` or `NAME:2:7`. Unlike for `read`, a table may lack a header; then blanks may stand
+/// all columns are meant, `NAME:2` or `NAME:2:7`. Unlike for `read`, a table may lack a header; then blanks may be
 /// between its numbers, and columns have their numbers for names.
 ///
 /// Errors: as for `read`, without those of times. A sample that is not finite is refused with its place. Not real-time
@@ -97,13 +97,13 @@ Result<Signal> read(const Source& source);
 Result<std::vector<std::vector<Column>>> read_columns(const std::filesystem::path& file,
                                                       std::span<const std::string> choices);
 
-/// Reads the times that `Source::time` and `Source::time_unit` name, as `Source` says. Errors: as for `read`, without
+/// Reads the times that `Source::time` and `Source::time_unit` name, as `Source` states. Errors: as for `read`, without
 /// those of steps. Not real-time safe.
 Result<Times> read_times(const std::filesystem::path& file, const std::string& choice, std::string_view unit = {});
 
 /// One variable or column of a file.
 struct Entry {
-  std::string name = {};  ///< what `Source::variable` has to say
+  std::string name = {};  ///< the value for `Source::variable`
   std::string unit = {};  ///< as in the header, or empty
   std::string kind =
       {};  ///< `column` in a table; in a MATLAB file the class, as `double`, `complex single`, `char`, `cell`

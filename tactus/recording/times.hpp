@@ -32,7 +32,7 @@ bool sounds_like_time(std::string_view name);
 /// Times in seconds, from the first sample on.
 struct Times {
   std::vector<double> since_first_s = {};
-  double first_s = 0.0;  ///< what the file says of the first sample
+  double first_s = 0.0;  ///< what the file states of the first sample
   /// Whether the file or the caller states the unit. Times since 1970 state it by their size.
   bool unit_stated = false;
 };

@@ -14,7 +14,7 @@ struct Axis {
   std::optional<double> lower = {};  ///< in `unit`
   std::optional<double> upper = {};  ///< in `unit`
   Scale scale = Scale::linear;
-  /// Only for y: names instead of numbers, from the top. Category i stands at the value i, and the limits, set or from
+  /// Only for y: names instead of numbers, from the top. Category i is at the value i, and the limits, set or from
   /// data, do not count.
   std::vector<std::string> categories = {};
 };
@@ -23,7 +23,7 @@ enum class Dash { solid, dashed, dotted, dash_dotted };
 
 /// A line through points. A point that is not finite (or not positive on a logarithmic axis) breaks it.
 struct Line {
-  std::string name;       ///< entry of the legend; a line without a name has none
+  std::string name;       ///< entry of the legend; none for a line without a name
   std::vector<double> x;  ///< in the unit of the panel's x axis; what exceeds the length of `y` is not drawn
   std::vector<double> y;  ///< in the unit of the panel's y axis; what exceeds the length of `x` is not drawn
   int colour = 0;         ///< slot 0 to 7 of the palette, taken modulo 8
@@ -34,7 +34,7 @@ struct Line {
 /// Horizontal bars over the categories of the y axis, from 0, on a logarithmic axis from its lower limit; several
 /// series share the height of a category, the first on top.
 struct Bars {
-  std::string name;                      ///< entry of the legend; bars without a name have none
+  std::string name;                      ///< entry of the legend; none for bars without a name
   std::vector<double> lengths;           ///< one for each category, in the unit of the x axis; not finite: no bar
   std::vector<std::string> labels = {};  ///< written behind the bar of the same index
   int colour = 0;                        ///< slot 0 to 7 of the palette, taken modulo 8
@@ -48,7 +48,7 @@ struct Rule {
   std::string label = {};  ///< entry of the legend, where equal labels share one
 };
 
-/// One pair of axes with what is drawn on them. A panel without anything to draw says `no data`.
+/// One pair of axes with what is drawn on them. A panel without anything to draw states `no data`.
 struct Panel {
   std::string title;
   Axis x;

@@ -5,7 +5,7 @@
 
 namespace tactus::report {
 
-// Results as JSON. `Json` is nlohmann::ordered_json, for which alone these stand in the library: whoever instantiates
+// Results as JSON. `Json` is nlohmann::ordered_json, for which alone these are in the library: whoever instantiates
 // its writer and reader takes a second longer to compile, and whoever includes this header does not need that library.
 
 /// A document as a file or a terminal gets it: two blanks a level, and a line break at the end. Names in it may come
@@ -17,7 +17,7 @@ std::string json_text(const Json& document);
 template <class Json>
 std::string json_line(const Json& value);
 
-/// What `text` says, discarded (`is_discarded()`) where it is no JSON. Does not throw.
+/// What `text` states, discarded (`is_discarded()`) where it is no JSON. Does not throw.
 template <class Json>
 Json parse_json(std::string_view text);
 

@@ -32,7 +32,7 @@ struct PlacedAxis {
   Ticks ticks;
   bool logarithmic;
   double begin, end;  ///< coordinates of the lower and the upper limit
-  bool labelled;      ///< whether tick labels and the name stand at this panel
+  bool labelled;      ///< whether tick labels and the name are at this panel
   std::string name;   ///< with the unit, and the power of ten taken out of the tick labels
 
   /// The coordinate of a value. NaN where a logarithmic axis has none.

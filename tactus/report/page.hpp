@@ -11,9 +11,9 @@
 
 namespace tactus::report {
 
-/// A report as one HTML file that needs nothing beside itself: no network, no other file, and a content security policy
-/// that forbids both. Parts appear in the order in which they are added. It follows the light or dark scheme of the
-/// reader, fits a phone (wide figures and tables scroll in place, and say so) and prints; a script lets a click or
+/// A report as one HTML file that needs nothing alongside itself: no network, no other file, and a content security
+/// policy that forbids both. Parts appear in the order in which they are added. It follows the light or dark scheme of
+/// the reader, fits a phone (wide figures and tables scroll in place, and show it) and prints; a script lets a click or
 /// Enter enlarge a figure, and without the script all else works. Every text given is shown literally, never read as
 /// markup.
 class Page {
@@ -28,7 +28,7 @@ class Page {
   void figure(const Figure& figure);
   /// The map, numbered among the figures, with its title and this caption below.
   void figure(const HeatMap& map, std::string_view caption);
-  /// A command or a file, line by line as it is; `label` says what it is.
+  /// A command or a file, line by line as it is; `label` states what it is.
   void code(std::string_view text, std::string_view label = {});
   /// The same, folded: a reader who wants it opens it.
   void folded(std::string_view text, std::string_view label);

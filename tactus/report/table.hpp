@@ -6,7 +6,7 @@
 
 namespace tactus::report {
 
-/// A column of a table: what stands in it, in which unit, and how its cells line up (numbers: right).
+/// A column of a table: what is in it, in which unit, and how its cells line up (numbers: right).
 struct Column {
   enum class Align { left, right };
   std::string title;
@@ -14,7 +14,7 @@ struct Column {
   Align align = Align::right;
 };
 
-/// A table for a person: text for a terminal, or HTML for a page. Cells are text; `number` makes it from numbers.
+/// A table for a user: text for a terminal, or HTML for a page. Cells are text; `number` makes it from numbers.
 /// Whatever a caption, title or cell holds stays inert: no escape sequence reaches the terminal, no tag the page.
 class Table {
  public:
@@ -28,8 +28,8 @@ class Table {
 
   /// Lines of UTF-8 for a terminal, each ended by a line feed and free of trailing blanks: the caption (if any),
   /// titles, a line of units (if any column has one), the rows between rules. No line is wider than `text_width()`,
-  /// and no column is left out: titles and texts are broken into lines, and where that is not enough the rows stand
-  /// beside one another, in several tables if need be. Only a number or a word that is wider itself stands out.
+  /// and no column is left out: titles and texts are broken into lines, and where that is not enough the rows are
+  /// alongside one another, in several tables if need be. Only a number or a word that is wider itself sticks out.
   [[nodiscard]] std::string to_text() const;
 
   /// A `<table>` with caption and scopes; the first column heads its rows.

@@ -4,12 +4,12 @@
 #include <string>
 #include <string_view>
 
-/// Text as a person sees it: numbers, widths and escaping. Allocates; never for the servo path.
+/// Text as a user sees it: numbers, widths and escaping. Allocates; never for the servo path.
 namespace tactus::report {
 
 /// A number for a table. Fixed notation with `significant_digits` (clamped to 1 to 17) for magnitudes from 1e-4 up to
 /// 1e6, where digits before the decimal point are never rounded away (1234.5 with three digits is `1235`), and
-/// `1.00×10⁻⁷` beyond. Trailing zeros stay, since they say how much is known. An exact zero is `0`, never `-0`; NaN is
+/// `1.00×10⁻⁷` beyond. Trailing zeros stay, since they show how much is known. An exact zero is `0`, never `-0`; NaN is
 /// `–`, infinities are `∞` and `-∞`. The decimal sign is a point in every locale.
 std::string number(double value, int significant_digits);
 
@@ -27,7 +27,7 @@ std::string with_unit(std::string_view name, std::string_view unit);
 /// and emoji two. Expects text as `printable` leaves it.
 std::size_t display_width(std::string_view text);
 
-/// Columns of the terminal that text is written for: 80 until `set_text_width` has said otherwise.
+/// Columns of the terminal that text is written for: 80 until `set_text_width` changes it.
 std::size_t text_width();
 /// To be called before any text is made, from one thread; less than 40 is taken as 40.
 void set_text_width(std::size_t columns);

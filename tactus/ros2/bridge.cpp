@@ -104,7 +104,7 @@ Result<Endpoints> open(const Bridge::Params& params) {
   auto state = participant->writer<Text>(dds_topic(params.name_space, state_name));
   if (!state) return state.error();
   std::optional<Reader<JointState>> servo_jp;
-  if (params.takes_wishes) {
+  if (params.takes_requests) {
     auto opened = participant->reader<JointState>(dds_topic(params.name_space, "operator/servo_jp"));
     if (!opened) return opened.error();
     servo_jp = *std::move(opened);
@@ -122,13 +122,13 @@ struct Bridge::State {
   std::int64_t due_ns = 0;
   std::int64_t state_due_ns = 0;
   OperatingState told_state = OperatingState::enabled;
-  std::atomic<double> wished_m{nothing_m};  ///< the newest that was not taken
+  std::atomic<double> requested_m{nothing_m};  ///< the newest that was not taken
 
   alignas(64) Endpoints dds;
   telemetry::Ring<Told, 1024> snapshots;
   std::atomic<std::uint64_t> published{0};
   std::atomic<std::uint64_t> lost{0};
-  std::atomic<std::uint64_t> wishes{0};
+  std::atomic<std::uint64_t> requests{0};
   std::atomic<std::uint64_t> refused{0};
   std::atomic<bool> stop{false};
   std::thread thread;
@@ -216,8 +216,8 @@ struct Bridge::State {
     if (!dds.servo_jp) return;
     for (const JointState& command : dds.servo_jp->take()) {
       if (command.position.size() == 1 && std::isfinite(command.position.front())) {
-        wishes.fetch_add(1, std::memory_order_relaxed);
-        wished_m.store(command.position.front(), std::memory_order_relaxed);
+        requests.fetch_add(1, std::memory_order_relaxed);
+        requested_m.store(command.position.front(), std::memory_order_relaxed);
       } else {
         refused.fetch_add(1, std::memory_order_relaxed);
       }
@@ -283,10 +283,10 @@ Result<Bridge> Bridge::create(const Params& params) {
 
 void Bridge::publish(const Snapshot& snapshot) noexcept { state_->publish(snapshot); }
 
-std::optional<double> Bridge::take_wish() noexcept {
+std::optional<double> Bridge::take_request() noexcept {
   // Looked at before it is exchanged, for that takes the cache line from the other thread.
-  if (std::isnan(state_->wished_m.load(std::memory_order_relaxed))) return std::nullopt;
-  return state_->wished_m.exchange(nothing_m, std::memory_order_relaxed);
+  if (std::isnan(state_->requested_m.load(std::memory_order_relaxed))) return std::nullopt;
+  return state_->requested_m.exchange(nothing_m, std::memory_order_relaxed);
 }
 
 void Bridge::close() {
@@ -299,7 +299,7 @@ Bridge::Counts Bridge::counts() const {
   return {.published = state_->published.load(std::memory_order_relaxed),
           .lost = state_->lost.load(std::memory_order_relaxed),
           .dropped = state_->snapshots.dropped(),
-          .wishes = state_->wishes.load(std::memory_order_relaxed),
+          .requests = state_->requests.load(std::memory_order_relaxed),
           .refused = state_->refused.load(std::memory_order_relaxed)};
 }
 

@@ -21,8 +21,8 @@ constexpr auto enumerators(OperatingState) {
                     Enumerator{OperatingState::paused, "PAUSED"}, Enumerator{OperatingState::fault, "FAULT"}};
 }
 
-/// One axis of both devices, or one joint of several, in its own unit: where a name says m and N, one that turns has
-/// rad and N m. Positions and forces are positive toward the environment, unless said otherwise.
+/// One axis of both devices, or one joint of several, in its own unit: where a name reports m and N, one that turns has
+/// rad and N m. Positions and forces are positive toward the environment, unless stated otherwise.
 struct JointSnapshot {
   double master_position_m = 0.0;         ///< measured, at the motor
   double master_force_N = 0.0;            ///< commanded to the motor, behind the safety gate
@@ -30,7 +30,7 @@ struct JointSnapshot {
   double slave_position_m = 0.0;          ///< measured, at the motor
   double slave_command_m = 0.0;           ///< position command as it left the master
   double environment_force_N = 0.0;       ///< as the slave told it, positive when the environment pushes it back
-  double estimated_grip = 1.0;            ///< how firmly the person holds, over identified
+  double estimated_grip = 1.0;            ///< how firmly the operator holds, over identified
   double estimated_grip_deviation = 0.0;  ///< standard deviation of that; 0 where nothing is estimated
 };
 
@@ -47,8 +47,8 @@ struct Snapshot {
 /// `master/state` or `slave/state`. Of devices with several joints `measured_js` has the force at each joint as its
 /// effort, and there is no `measured_cf`.
 ///
-/// The thread that steps the teleoperator calls `publish` and `take_wish`, which touch a wait-free ring, the newest
-/// wish and nothing else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and
+/// The thread that steps the teleoperator calls `publish` and `take_request`, which touch a wait-free ring, the newest
+/// request and nothing else. A thread of the bridge does all DDS. When it does not keep up, snapshots are dropped and
 /// counted.
 class Bridge {
  public:
@@ -60,13 +60,13 @@ class Bridge {
     double rate_Hz = 500.0;  ///< of the measured signals, at most; positive, up to 10 kHz
     bool master = true;      ///< whether the topics of that device are published
     bool slave = true;
-    bool takes_wishes = true;  ///< whether `operator/servo_jp` is subscribed to
+    bool takes_requests = true;  ///< whether `operator/servo_jp` is subscribed to
   };
   struct Counts {
     std::uint64_t published = 0;  ///< snapshots, each a message on every topic of a device
     std::uint64_t lost = 0;       ///< messages that DDS did not take
     std::uint64_t dropped = 0;    ///< snapshots that were due and found the ring full
-    std::uint64_t wishes = 0;     ///< that could be used
+    std::uint64_t requests = 0;   ///< that could be used
     std::uint64_t refused = 0;    ///< commands that could not: not exactly one finite position
   };
 
@@ -81,11 +81,11 @@ class Bridge {
   /// changed. One thread only.
   /// Real-time safe: wait-free, no allocation, no system call.
   void publish(const Snapshot& snapshot) noexcept;
-  /// The newest position in m that another program wished since the last call, always finite and not bounded otherwise.
-  /// The same thread. Real-time safe.
-  std::optional<double> take_wish() noexcept;
+  /// The newest position in m that another program requested since the last call, always finite and not bounded
+  /// otherwise. The same thread. Real-time safe.
+  std::optional<double> take_request() noexcept;
 
-  /// Publishes what is waiting, says that the teleoperator is disabled, ends the thread and leaves DDS.
+  /// Publishes what is waiting, reports that the teleoperator is disabled, ends the thread and leaves DDS.
   void close();
 
   /// Any thread.

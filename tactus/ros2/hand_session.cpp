@@ -82,7 +82,8 @@ bool HandSession::operator()(const station::Tick& tick) noexcept {
 void HandSession::advance(std::int64_t stamp_ns, double share) noexcept {
   const auto since_start_ns = static_cast<std::uint64_t>(std::llround(1e9 * time_s()));
   ++done_;
-  const double next_m = path_.step({.scripted_m = script_.position_m(time_s()), .wished_m = bridge_->take_wish()});
+  const double next_m =
+      path_.step({.scripted_m = script_.position_m(time_s()), .requested_m = bridge_->take_request()});
   const simulation::Teleoperator::Record record = teleoperator_.step(path_m_, next_m, share);
   path_m_ = next_m;
   const bool healthy = teleoperator_.healthy();

@@ -113,7 +113,7 @@ void tell_of(JointSnapshot& of, const Record& record, SiteRole role) {
     of.hand_force_N = axis.read_force_N;
     of.estimated_grip = axis.estimated_grip;
     of.estimated_grip_deviation = axis.estimated_grip_deviation;
-    of.slave_command_m = record.Record::Told::position_m;
+    of.slave_command_m = record.Record::Sent::position_m;
   } else {
     of.slave_position_m = axis.position_m;
     of.environment_force_N = axis.read_force_N;
@@ -172,7 +172,7 @@ Snapshot snapshot_of(const simulation::Teleoperator::Record& record, std::int64_
                         .hand_force_N = record.hand_force_N,
                         .slave_position_m = record.slave_position_m,
                         .slave_command_m = record.command_m,
-                        .environment_force_N = record.told_force_N,
+                        .environment_force_N = record.sent_force_N,
                         .estimated_grip = record.estimated_grip,
                         .estimated_grip_deviation = record.estimated_grip_deviation};
   return snapshot;
@@ -199,7 +199,7 @@ std::int64_t to_time_of_day_ns() {
 }
 
 Result<std::unique_ptr<Observer>> Observer::create(Bridge::Params params) {
-  params.takes_wishes = false;
+  params.takes_requests = false;
   auto bridge = Bridge::create(params);
   if (!bridge) return bridge.error();
   return std::unique_ptr<Observer>(new Observer(*std::move(bridge)));

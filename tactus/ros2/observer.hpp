@@ -30,7 +30,7 @@ std::int64_t to_time_of_day_ns();
 /// thread of its own, every millisecond, so the servo thread knows nothing of it.
 class Observer {
  public:
-  /// Opens everything for the devices and the namespace of `params`; wishes are not taken. Errors: those of
+  /// Opens everything for the devices and the namespace of `params`; requests are not taken. Errors: those of
   /// `Bridge::create`.
   static Result<std::unique_ptr<Observer>> create(Bridge::Params params);
   Observer(const Observer&) = delete;

@@ -17,7 +17,7 @@ namespace {
 constexpr std::int64_t second_ns = 1'000'000'000;
 constexpr std::int32_t kept = 10;
 /// How long a writer waits for a reliable reader that does not take in what it is sent.
-constexpr std::int64_t patience_ns = 10'000'000;
+constexpr std::int64_t timeout_ns = 10'000'000;
 /// No message of ours has a thousandth of it, and a stranger must not make this process allocate what he likes.
 constexpr const char* size_limit = "<CycloneDDS><Domain><Internal><MaxSampleSize>64kB</></></></>";
 /// Loopback has no multicast here: everyone is asked at the ports of the first participants of the domain.
@@ -39,7 +39,7 @@ void on_log(void*, const dds_log_data_t* line) {
     collected->append(line->message, line->size);
   } else if (const int before = lines.fetch_add(1); before < most_lines) {
     std::cerr << "DDS: " << std::string_view(line->message, line->size) << "\n"
-              << (before == most_lines - 1 ? "DDS: what else it has to say is not shown\n" : "");
+              << (before == most_lines - 1 ? "DDS: further messages are not shown\n" : "");
   }
 }
 
@@ -74,7 +74,7 @@ void announce(dds_qos_t* qos, const std::string& text) { dds_qset_userdata(qos, 
 /// What ROS 2 uses where nobody asks for something else, and the type's hash, which it compares from Iron on.
 Qos endpoint_qos(dds_reliability_kind_t reliability, const char* type_hash) {
   Qos qos(dds_create_qos());
-  dds_qset_reliability(qos.get(), reliability, patience_ns);
+  dds_qset_reliability(qos.get(), reliability, timeout_ns);
   dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kept);
   announce(qos.get(), std::string("typehash=") + type_hash + ";");

@@ -17,7 +17,7 @@ namespace tactus::ros2 {
 template <class Message>
 class Writer {
  public:
-  /// Errors: `failed` where the message could not be handed over, as when a reliable reader stands still. A text in it
+  /// Errors: `failed` where the message could not be handed over, as when a reliable reader is at rest. A text in it
   /// ends at its first zero byte.
   Check write(const Message& message);
   /// Readers that are matched at the moment.

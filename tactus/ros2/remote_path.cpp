@@ -11,20 +11,20 @@ Result<RemotePath> RemotePath::make(const Params& params, Seconds dt) {
   if (params.lowest_m > params.highest_m) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "lowest_m",
-                 .message = format_number(params.lowest_m) + " m is above highest_m, " +
-                            format_number(params.highest_m) + " m: raise one or lower the other",
+                 .message = rounded_number(params.lowest_m) + " m is above highest_m, " +
+                            rounded_number(params.highest_m) + " m: raise one or lower the other",
                  .place = {}};
   }
   return RemotePath(params, params.fastest_m_per_s * dt.value, std::llround(params.timeout_s / dt.value));
 }
 
 double RemotePath::step(const Input& input) noexcept {
-  if (input.wished_m && std::isfinite(*input.wished_m)) {
+  if (input.requested_m && std::isfinite(*input.requested_m)) {
     driven_ = true;
-    ticks_since_wish_ = 0;
-    aim_m_ = std::clamp(*input.wished_m, lowest_m_, highest_m_);
-  } else if (driven_ && ++ticks_since_wish_ > patience_ticks_) {
-    ticks_since_wish_ = patience_ticks_;
+    ticks_since_request_ = 0;
+    aim_m_ = std::clamp(*input.requested_m, lowest_m_, highest_m_);
+  } else if (driven_ && ++ticks_since_request_ > timeout_ticks_) {
+    ticks_since_request_ = timeout_ticks_;
     aim_m_ = position_m_;
   }
   if (!driven_) return position_m_ = input.scripted_m;
@@ -34,7 +34,7 @@ double RemotePath::step(const Input& input) noexcept {
 void RemotePath::reset() noexcept {
   position_m_ = 0.0;
   aim_m_ = 0.0;
-  ticks_since_wish_ = 0;
+  ticks_since_request_ = 0;
   driven_ = false;
 }
 

@@ -9,11 +9,11 @@
 namespace tactus::ros2 {
 
 /// Where another program means the hand to be, made into a path that a hand could take: x ← x + clamp(aim − x, ±v·dt),
-/// the aim clamped to the reach. Until the first wish the path is the scripted one. When no wish has come for a while,
-/// the hand stays where it is: a program that has died must not go on pushing.
+/// the aim clamped to the reach. Until the first request the path is the scripted one. When no request has come for a
+/// while, the hand stays where it is: a program that has died must not continue pushing.
 ///
-/// It stands before the person, so all that follows from it passes cancellation, limits and safety gates as the
-/// person's own motion does. An element.
+/// It is before the operator, so all that follows from it passes cancellation, limits and safety gates as the
+/// operator's own motion does. An element.
 class RemotePath {
  public:
   struct Params {
@@ -29,12 +29,12 @@ class RemotePath {
           field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(2.0),
                 "Fastest that the hand follows."),
           field("timeout_s", &Params::timeout_s, units::second, between(0.001, 10.0),
-                "Without a wish for this long the hand stays where it is.")};
+                "Without a request for this time the hand stays at its position.")};
     }
   };
   struct Input {
-    double scripted_m = 0.0;  ///< where the hand would be without a wish
-    std::optional<double> wished_m =
+    double scripted_m = 0.0;  ///< where the hand would be without a request
+    std::optional<double> requested_m =
         {};  ///< that has arrived since the last tick; one that is not finite counts as none
   };
   using Output = double;
@@ -46,23 +46,23 @@ class RemotePath {
   double step(const Input& input) noexcept;
   void reset() noexcept;
 
-  /// Whether a wish has ever come.
+  /// Whether a request has ever come.
   [[nodiscard]] bool driven() const noexcept { return driven_; }
 
  private:
-  RemotePath(const Params& params, double longest_step_m, std::int64_t patience_ticks)
+  RemotePath(const Params& params, double longest_step_m, std::int64_t timeout_ticks)
       : lowest_m_(params.lowest_m),
         highest_m_(params.highest_m),
         longest_step_m_(longest_step_m),
-        patience_ticks_(patience_ticks) {}
+        timeout_ticks_(timeout_ticks) {}
 
   double lowest_m_;
   double highest_m_;
   double longest_step_m_;
-  std::int64_t patience_ticks_;
+  std::int64_t timeout_ticks_;
   double position_m_ = 0.0;
   double aim_m_ = 0.0;
-  std::int64_t ticks_since_wish_ = 0;
+  std::int64_t ticks_since_request_ = 0;
   bool driven_ = false;
 };
 

@@ -43,7 +43,7 @@ Check replay_arm_taps(const LogContent& content, const experiments::ArmTappingPa
           if (number >= taps->size()) {
             return refuse_replay(ErrorCode::inconsistent, "the log has a tap that its configuration has not");
           }
-          auto made = experiments::bare_arm_sites(taps->setup(), taps->tap(number).beliefs);
+          auto made = experiments::bare_arm_sites(taps->setup(), taps->tap(number).model_params);
           if (!made) return made.error();
           sites.emplace(*std::move(made));
         }
@@ -67,7 +67,7 @@ Result<bool> replay_arms(const LogContent& content, const experiments::ArmTappin
   if (words == content.summary.metadata.end()) {
     return refuse_replay(ErrorCode::missing,
                          "the log does not have the URDF of its arms (urdf): it is of an earlier version, which did "
-                         "not leave it, so it is not replayed; record it anew");
+                         "not leave it, so it is not replayed; record it again");
   }
   const experiments::Urdfs urdfs = urdfs_in(words->second);
   Check failed;

@@ -12,7 +12,7 @@ constexpr double micro = 1e-3;  ///< from ns to us
 
 Finding unknown(std::string name, std::string means) {
   return {.name = std::move(name),
-          .found = "not told",
+          .found = "not reported",
           .verdict = Fitness::unknown,
           .means = std::move(means),
           .remedy = {}};
@@ -25,7 +25,7 @@ Finding scheduler(const MachineFacts& facts) {
     return {"scheduler",
             right.what + " granted" + limit,
             Fitness::good,
-            "no program of ordinary priority can hold a tick up",
+            "no program of ordinary priority can delay a control cycle",
             {}};
   }
   return {"scheduler", right.what + " refused: " + right.why + limit, Fitness::bad, right.means, right.remedy};
@@ -90,11 +90,11 @@ Finding sessions(const MachineFacts& facts) {
   if (facts.autogroup.value_or(0) == 0) {
     return {name, "no share of their own", Fitness::good, "no session keeps the kernel's own threads waiting", {}};
   }
-  return {
-      name, "each has its share of a core (autogroup)", Fitness::poor,
-      "beside a session that fills the cores, Linux 6.18 let threads of its own wait for up to 3 s; some of them carry "
-      "the bytes of serial ports, so motors may seem silent",
-      "sudo sysctl kernel.sched_autogroup_enabled=0"};
+  return {name, "each has its share of a core (autogroup)", Fitness::poor,
+          "alongside a session that fills the cores, Linux 6.18 let threads of its own wait for up to 3 s; some of "
+          "them carry "
+          "the bytes of serial ports, so motors may seem not to respond",
+          "sudo sysctl kernel.sched_autogroup_enabled=0"};
 }
 
 Finding governor(const MachineFacts& facts) {
@@ -104,8 +104,9 @@ Finding governor(const MachineFacts& facts) {
   }
   std::string all;
   for (const std::string& one : facts.governors) all += (all.empty() ? "" : ", ") + one;
-  if (all == "performance") return {name, all, Fitness::good, "the processor does not slow down between ticks", {}};
-  return {name, all, Fitness::poor, "the processor slows down between ticks and takes its time to speed up",
+  if (all == "performance")
+    return {name, all, Fitness::good, "the processor does not slow down between control cycles", {}};
+  return {name, all, Fitness::poor, "the processor slows down between control cycles and takes its time to speed up",
           "sudo cpupower frequency-set --governor performance"};
 }
 
@@ -143,11 +144,12 @@ Finding cores(const MachineFacts& facts) {
     return {name,
             found,
             Fitness::good,
-            facts.isolated.empty() ? "the log has a core beside the servo thread's; isolating one keeps others off it"
-                                   : "choose an isolated core with --core",
+            facts.isolated.empty()
+                ? "the log has a core other than the servo thread's; isolating one keeps others off it"
+                : "choose an isolated core with --core",
             {}};
   }
-  return {name, found, Fitness::poor, "log, person and servo thread share one core", "taskset -c 0-1 tactus ..."};
+  return {name, found, Fitness::poor, "log, console and servo thread share one core", "taskset -c 0-1 tactus ..."};
 }
 
 Finding hypervisor(const MachineFacts& facts, const Measurement& measurement) {
@@ -168,23 +170,24 @@ Finding lateness(const Measurement& measurement) {
   const ServoReport& report = measurement.report;
   const double period_us = micro * static_cast<double>(report.period_ns);
   const auto quantile_us = [&](double q) { return micro * report.lateness.quantile_ns(q); };
-  Finding finding{.name = "lateness",
-                  .found = "p50 " + report::number(quantile_us(0.5), 3) + ", p99 " +
-                           report::number(quantile_us(0.99), 3) + ", p99.9 " + report::number(quantile_us(0.999), 3) +
-                           ", worst " + report::number(quantile_us(1.0), 3) + " us; " + std::to_string(report.missed) +
-                           " of " + std::to_string(report.ticks + report.missed) + " ticks missed",
-                  .verdict = Fitness::good,
-                  .means = "a tick begins this long after it is due, of " + report::number(period_us, 3) + " us",
-                  .remedy = {}};
+  Finding finding{
+      .name = "lateness",
+      .found = "p50 " + report::number(quantile_us(0.5), 3) + ", p99 " + report::number(quantile_us(0.99), 3) +
+               ", p99.9 " + report::number(quantile_us(0.999), 3) + ", worst " + report::number(quantile_us(1.0), 3) +
+               " us; " + std::to_string(report.missed) + " of " + std::to_string(report.ticks + report.missed) +
+               " control cycles missed",
+      .verdict = Fitness::good,
+      .means = "a control cycle starts this long after it is due, of " + report::number(period_us, 3) + " us",
+      .remedy = {}};
   const double missed =
       static_cast<double>(report.missed) / static_cast<double>(std::max<std::int64_t>(report.ticks, 1));
   constexpr double tolerable = 1e-3;
   if (missed > tolerable) {
     finding.verdict = Fitness::bad;
-    finding.remedy = "mend what stands above, or lower servo.rate_Hz";
+    finding.remedy = "fix what is listed above, or lower servo.rate_Hz";
   } else if (report.missed > 0 || quantile_us(0.999) > 0.25 * period_us) {
     finding.verdict = Fitness::poor;
-    finding.remedy = "mend what stands above";
+    finding.remedy = "fix what is listed above";
   }
   return finding;
 }

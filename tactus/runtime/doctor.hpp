@@ -27,7 +27,7 @@ struct Finding {
   std::string found;  ///< `SCHED_FIFO priority 80 granted`
   Fitness verdict = Fitness::unknown;
   std::string means;   ///< one sentence
-  std::string remedy;  ///< command that mends it; empty where nothing is to be mended
+  std::string remedy;  ///< command that fixes it; empty where nothing is to be corrected
 };
 
 /// How well a servo thread with an empty step kept time, and what was taken away meanwhile.

@@ -11,7 +11,7 @@ inline constexpr double longest_ramp_s = 0.5;
 /// How somebody outside asks what runs in real time to end. Any thread. Real-time safe.
 class EndRequest {
  public:
-  /// To come to its end: its forces fall to zero at the rate limits of their gates, and it tells how it went.
+  /// To come to its end: its forces fall to zero at the rate limits of their gates, and it reports how it went.
   void ask() noexcept { asked_.store(true, std::memory_order_relaxed); }
   /// To give no force from the next tick on.
   void insist() noexcept {

@@ -33,21 +33,21 @@ class LocalLoop {
   void finish() noexcept;
   /// By role, after the last tick.
   [[nodiscard]] const SiteTotals& totals(control::SiteRole role) const noexcept {
-    return books_[static_cast<std::size_t>(role)].totals();
+    return counters_[static_cast<std::size_t>(role)].totals();
   }
 
  private:
-  LocalLoop(const SiteConsole& console, const std::array<SiteBooks, 2>& books, SiteDevice master, SiteDevice slave,
-            station::LocalTeleoperator pair)
+  LocalLoop(const SiteConsole& console, const std::array<SiteCounters, 2>& counters, SiteDevice master,
+            SiteDevice slave, station::LocalTeleoperator pair)
       : console_(console),
-        books_(books),
+        counters_(counters),
         master_(std::move(master)),
         slave_(std::move(slave)),
         pair_(std::move(pair)) {}
   void end_second() noexcept;
 
   SiteConsole console_;
-  std::array<SiteBooks, 2> books_;  ///< by role
+  std::array<SiteCounters, 2> counters_;  ///< by role
   SiteStreams streams_;
   SiteDevice master_;
   SiteDevice slave_;

@@ -229,7 +229,7 @@ Result<PlantSegment> PlantSegment::attach(const std::string& name) {
   if (!fits) {
     return segment_error(ErrorCode::inconsistent, option,
                          "the plant '" + name +
-                             "' is none of this version of tactus, or has not come up yet: run both with the same "
+                             "' is not of this version of tactus, or has not come up yet: run both with the same "
                              "version");
   }
   if (!take(file.descriptor, controller_place)) {

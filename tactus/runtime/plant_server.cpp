@@ -99,7 +99,7 @@ void PlantServer::step(const station::Tick& tick) noexcept {
   master_.publish(tick, plant.ticks(), master_reading_);
   slave_.publish(tick, plant.ticks(), slave_reading_);
   if (!gave_up && (master_.gave_up() || slave_.gave_up())) {
-    let_go_.fetch_add(1, std::memory_order_relaxed);
+    released_.fetch_add(1, std::memory_order_relaxed);
     cause_.store(master_.gave_up() ? master_.guard().cause() : slave_.guard().cause(), std::memory_order_relaxed);
   }
   missed_.fetch_add(tick.missed, std::memory_order_relaxed);
@@ -111,7 +111,7 @@ PlantStatus PlantServer::status() const {
           .commands = segment_->master.commands.published(),
           .missed = missed_.load(std::memory_order_relaxed),
           .taps = taps_.load(std::memory_order_relaxed),
-          .let_go = let_go_.load(std::memory_order_relaxed),
+          .released = released_.load(std::memory_order_relaxed),
           .cause = cause_.load(std::memory_order_relaxed),
           .held_back = held_back_.load(std::memory_order_relaxed),
           .cut = segment_.is_cut(),

@@ -18,13 +18,13 @@ namespace tactus::runtime {
 
 /// How a plant went so far.
 struct PlantStatus {
-  std::uint64_t readings = 0;                   ///< told
-  std::uint64_t commands = 0;                   ///< that controllers told
-  std::int64_t missed = 0;                      ///< ticks
-  std::int64_t taps = 0;                        ///< begun
-  std::int64_t let_go = 0;                      ///< taps in which a device let go of its controller
-  station::LetGo cause = station::LetGo::none;  ///< of the last of them
-  std::int64_t held_back = 0;                   ///< commands that were beyond what a device may
+  std::uint64_t readings = 0;                                 ///< told
+  std::uint64_t commands = 0;                                 ///< that controllers told
+  std::int64_t missed = 0;                                    ///< ticks
+  std::int64_t taps = 0;                                      ///< begun
+  std::int64_t released = 0;                                  ///< taps in which a device let go of its controller
+  station::ReleaseCause cause = station::ReleaseCause::none;  ///< of the last of them
+  std::int64_t held_back = 0;                                 ///< commands that were beyond what a device may
   bool cut = false;  ///< another process has cut the shared memory: nobody can drive any more
   std::optional<std::int64_t> controller;
 };
@@ -70,8 +70,8 @@ class PlantServer {
   std::uint64_t session_ = 0;
   bool running_ = false;
   std::int64_t start_tick_ = 0;
-  std::atomic<std::int64_t> missed_{0}, taps_{0}, let_go_{0}, held_back_{0};
-  std::atomic<station::LetGo> cause_{station::LetGo::none};
+  std::atomic<std::int64_t> missed_{0}, taps_{0}, released_{0}, held_back_{0};
+  std::atomic<station::ReleaseCause> cause_{station::ReleaseCause::none};
 };
 
 }  // namespace tactus::runtime

@@ -129,7 +129,7 @@ Result<RealTimeOutcome> run_arms_in_real_time(const experiments::Request& reques
   const std::string verdict = experiments::arm_verdict(runs);
   report::Page page = experiments::arm_page(request, verdict, table, figures);
   page.paragraph(
-      "The taps at gain 0, with which a runaway is compared, and the reach that tells the lag were run in virtual "
+      "The taps at gain 0, with which a runaway is compared, and the reach that shows the lag were run in virtual "
       "time.");
   return real_time_outcome(request, cases->first_configuration, options.plant,
                            {.verdict = verdict,

@@ -59,7 +59,7 @@ RealTimeOutcome real_time_outcome(const experiments::Request& request, const std
   page.heading("How time was kept");
   page.paragraph(
       std::string("The sites ran on a servo thread at deadlines of the real clock, the devices were simulated ") +
-      (plant ? "in the process of the plant '" + plant->name + "'." : "beside them."));
+      (plant ? "in the process of the plant '" + plant->name + "'." : "in the same thread."));
   page.table(timing);
   page.table(late);
   page.table(rights_table(kept.all));

@@ -69,7 +69,7 @@ bool RealTimeTap::step(const station::Tick& tick) noexcept {
     record_.time_s = static_cast<double>(plant_ticks_) * clock_.tick_s;
     record_.tip_position_m = truth->tip_position_m;
   }
-  if (over_) return let_go(own);
+  if (over_) return step_to_rest(own);
   const station::BarePair::Output output = loop_.step(own, 1.0);
   record_ = Teleoperator::recorded(static_cast<double>(plant_ticks_) * clock_.tick_s, output);
   record_.tip_position_m = plant_->tip_position_m();
@@ -79,8 +79,8 @@ bool RealTimeTap::step(const station::Tick& tick) noexcept {
   return !(plant_->lost() && loop_.at_rest());
 }
 
-bool RealTimeTap::let_go(const station::Tick& own) noexcept {
-  loop_.let_go(own);
+bool RealTimeTap::step_to_rest(const station::Tick& own) noexcept {
+  loop_.step_to_rest(own);
   letting_go_s_ += static_cast<double>(own.missed + 1) * clock_.tick_s;
   if (!loop_.at_rest() && letting_go_s_ < longest_ramp_s) return true;
   loop_.release();

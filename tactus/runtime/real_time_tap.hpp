@@ -71,7 +71,7 @@ class RealTimeTap {
   /// Ends the open record with what the plant did, and hands it on; false once the tap is over.
   bool complete(const SimulatedTruth& truth) noexcept;
   /// One tick on the way to no force; false at its end.
-  bool let_go(const station::Tick& own) noexcept;
+  bool step_to_rest(const station::Tick& own) noexcept;
 
   simulation::Clock clock_;
   std::unique_ptr<SimulatedPlant> own_;

@@ -70,7 +70,7 @@ Check replay_run(const LogTable& table, const TappingParams& params, Replay& rep
     }
     if (recorded_step.tick != next + recorded_step.missed) {
       return refuse_replay(ErrorCode::inconsistent, "topic " + table.topic + ", tap " + std::to_string(number) +
-                                                        ": tick " + std::to_string(next) + " is missing");
+                                                        ": control cycle " + std::to_string(next) + " is missing");
     }
     next = recorded_step.tick + 1;
     tap->master.reading = {.position_m = recorded_step.master_position_m,

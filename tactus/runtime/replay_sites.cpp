@@ -33,7 +33,7 @@ Joints<DeviceReading> reading_of(const JointsRow& row) {
       [](DeviceReading& to, const JointLogRecord& from) {
         to = reading_of_axis(from);
         to.age_s = from.position_age_s;
-        to.motor_tells = {.velocity_m_per_s = from.drive_velocity_m_per_s, .force_N = from.drive_force_N};
+        to.motor_report = {.velocity_m_per_s = from.drive_velocity_m_per_s, .force_N = from.drive_force_N};
       },
       reading, row.joints);
   return reading;
@@ -82,8 +82,8 @@ std::optional<SiteRole> only_site(const LogContent& content) {
 Result<control::Agreement> agreement_in(const LogContent& content) {
   if (const auto agreement = agreement_from(about(content, "tactus", "agreement"))) return *agreement;
   return refuse_replay(ErrorCode::missing,
-                       "the log does not say what its site had in common with the other (agreement): it is of an "
-                       "earlier version, which did not leave it, so it is not replayed; record it anew");
+                       "the log does not state what its site had in common with the other (agreement): it is of an "
+                       "earlier version, which did not leave it, so it is not replayed; record it again");
 }
 
 Result<DeviceLimits> limits_of(const LogContent& content, SiteRole role, const DeviceLimits&) {
@@ -96,9 +96,9 @@ Result<Joints<DeviceLimits>> limits_of(const LogContent& content, SiteRole role,
   const Words* const words = words_of_device(content, role);
   if (words == nullptr) {
     return refuse_replay(ErrorCode::missing,
-                         "the log does not say the limits of the joints (" + name +
+                         "the log does not state the limits of the joints (" + name +
                              "): it is of an earlier version, which did not leave them, so it is not replayed; "
-                             "record it anew");
+                             "record it again");
   }
   auto limits = limits_in(*words, like.size());
   if (!limits) return under(name, limits.error());
@@ -118,7 +118,7 @@ Result<std::size_t> common_rows(const std::vector<const LogTable*>& tables, bool
 
 Error tick_is_missing(const LogTable& table, std::int64_t tick) {
   return refuse_replay(ErrorCode::inconsistent,
-                       "topic " + table.topic + ": tick " + std::to_string(tick) + " is missing");
+                       "topic " + table.topic + ": control cycle " + std::to_string(tick) + " is missing");
 }
 
 }  // namespace tactus::runtime

@@ -42,7 +42,7 @@ Right set_real_time(int priority) {
   if (error == 0) return granted(what);
   // With the right to do it, a refusal can only come from the budget of the control group.
   const bool budget = geteuid() == 0;
-  return refused(what, error, "any other program can hold a tick up for milliseconds",
+  return refused(what, error, "any other program can delay a control cycle for milliseconds",
                  budget ? "echo 950000 > /sys/fs/cgroup/cpu/<group>/cpu.rt_runtime_us"
                         : "echo '@users - rtprio 99' | sudo tee /etc/security/limits.d/tactus.conf, then log in again; "
                           "or sudo setcap cap_sys_nice,cap_ipc_lock=ep $(command -v tactus)");

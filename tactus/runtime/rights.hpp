@@ -13,7 +13,7 @@ struct Right {
   bool held = false;   ///< granted
   std::string why;     ///< where it is not: what the system answered
   std::string means;   ///< where it is not: what is lost
-  std::string remedy;  ///< where it is not: the command that mends it
+  std::string remedy;  ///< where it is not: the command that fixes it
 };
 
 /// While it lives, the calling thread takes denormal numbers for zero, as a servo thread does.

@@ -79,7 +79,7 @@ report::Line counts_line(const DurationHistogram& histogram, std::string name, i
 report::Table timing_table(const ServoReport& report) {
   std::vector<report::Column> columns{{"real time", "", Align::left}, {"ticks"}};
   for (const Share& share : shares) columns.push_back({std::string(share.title), "us"});
-  report::Table table(columns, "Time kept: a tick every " +
+  report::Table table(columns, "Timing: a control cycle every " +
                                    report::number(us_per_ns * static_cast<double>(report.period_ns), 4) + " us");
   const auto add = [&](const char* name, const DurationHistogram& histogram) {
     std::vector<std::string> row{name, std::to_string(histogram.count())};
@@ -92,7 +92,8 @@ report::Table timing_table(const ServoReport& report) {
 }
 
 report::Table late_ticks_table(const ServoReport& report) {
-  report::Table table({{"late ticks", "", Align::left}, {"whose", "", Align::left}, {"count"}, {"", "", Align::left}});
+  report::Table table(
+      {{"late control cycles", "", Align::left}, {"whose", "", Align::left}, {"count"}, {"", "", Align::left}});
   for (const station::LateCause cause : station::late_causes) {
     table.add_row({name_of(cause), station::is_ours(cause) ? "ours" : "the machine's",
                    std::to_string(report.late_for(cause)), std::string(explain(cause))});
@@ -120,14 +121,14 @@ report::Figure timing_figure(const ServoReport& report) {
   return {
       .title = "How time was kept",
       .caption =
-          "How many ticks began how long after their deadline, and how many steps took how long, over "
-          "quarters of a doubling. A tick that is late by a whole period has missed a deadline.",
+          "How many control cycles started how long after their deadline, and how many steps took how long, over "
+          "quarters of a doubling. A control cycle that is late by a whole period has missed a deadline.",
       .columns = 1,
       .panels = {{.title = {},
                   .x = {.label = "time", .unit = "us", .scale = Scale::logarithmic},
                   .y = {.label = "ticks", .lower = 0.5, .scale = Scale::logarithmic},
                   .lines = {counts_line(report.lateness, "lateness", 0), counts_line(report.duration, "duration", 1)},
-                  .rules = {{.direction = report::Rule::Direction::vertical, .at = period_us, .label = "one tick"}}}}};
+                  .rules = {{.direction = report::Rule::Direction::vertical, .at = period_us, .label = "one cycle"}}}}};
 }
 
 void add_timing(report::Page& page, const ServoReport& report, const report::Figure& figure) {

@@ -61,7 +61,8 @@ Check check_servo_thread(const ServoThreadParams& params) {
   if (params.spin_s <= half_s) return std::nullopt;
   return Error{.code = ErrorCode::inconsistent,
                .parameter = "spin_s",
-               .message = format_number(params.spin_s) + " s is more than half a tick, " + format_number(half_s) +
+               .message = rounded_number(params.spin_s) + " s is more than half a control cycle, " +
+                          rounded_number(half_s) +
                           " s: shorten it, or the thread would hold its core until the kernel takes it away",
                .place = {}};
 }

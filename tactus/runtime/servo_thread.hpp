@@ -25,15 +25,16 @@ struct ServoThreadParams {
   std::int64_t core = -1;
   double spin_s = 0.0;
   static constexpr auto fields() {
-    return List{
-        field("rate_Hz", &ServoThreadParams::rate_Hz, units::hertz, between(1.0, 20000.0), "Ticks per second."),
-        field("priority", &ServoThreadParams::priority, between(1, 99),
-              "Priority of the thread under SCHED_FIFO; threads of the kernel that serve interrupts stand at 50."),
-        field("core", &ServoThreadParams::core, between(-1, 1023),
-              "The one core to run on; -1 leaves the choice open."),
-        field("spin_s", &ServoThreadParams::spin_s, units::second, between(0.0, 0.0005),
-              "The last part of each wait, spent asking the clock instead of asleep; at most half a tick, so that the "
-              "core is never held for whole ticks.")};
+    return List{field("rate_Hz", &ServoThreadParams::rate_Hz, units::hertz, between(1.0, 20000.0),
+                      "Control cycles per second."),
+                field("priority", &ServoThreadParams::priority, between(1, 99),
+                      "Priority of the thread under SCHED_FIFO; threads of the kernel that serve interrupts have 50."),
+                field("core", &ServoThreadParams::core, between(-1, 1023),
+                      "The one core to run on; -1 leaves the choice open."),
+                field("spin_s", &ServoThreadParams::spin_s, units::second, between(0.0, 0.0005),
+                      "The last part of each wait, spent polling the clock instead of sleeping; at most half a control "
+                      "cycle, so that the "
+                      "core is never held for whole cycles.")};
   }
 };
 
@@ -50,7 +51,7 @@ struct TickEvidence {
 /// Why a tick was late that had one period to begin and end its step; `none` where it was not. Where the wait for the
 /// processor was longer than the step, the machine woke the thread late. Else the step was too long: because of us
 /// where at least half of it was our own processor time, where it waited, or where memory came from disk; else because
-/// of the machine. Where a hypervisor does not tell the time that it steals, stolen time counts as our own.
+/// of the machine. Where a hypervisor does not report the time that it steals, stolen time counts as our own.
 station::LateCause classify(const TickEvidence& tick, std::int64_t period_ns) noexcept;
 
 /// How a servo thread kept time.
@@ -75,7 +76,7 @@ struct ServoReport {
   void add(const ServoReport& other);
 };
 
-/// The clock side of a servo thread: waits for deadlines, keeps the books. Of the thread that made it only.
+/// The clock side of a servo thread: waits for deadlines, keeps the counters. Of the thread that made it only.
 ///
 /// The deadline of tick k is start + k · period. A tick that ends after the next deadline is late; deadlines that have
 /// passed by then are missed, and the next one in the future is waited for: there is no burst of steps to catch up.

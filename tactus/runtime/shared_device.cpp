@@ -74,7 +74,7 @@ station::DeviceCommand DeviceServer::command(const station::Tick& tick) noexcept
     command_ = *newest;
   }
   if (!obeyed()) return guard_.pass({.enabled = false}, tick);
-  if (too_old(alive_ns_, tick.began_ns, silence_ns_)) guard_.let_go(station::LetGo::silent);
+  if (too_old(alive_ns_, tick.began_ns, silence_ns_)) guard_.release(station::ReleaseCause::timed_out);
   return guard_.pass(
       {.force_N = command_.force_N, .handle_force_N = command_.handle_force_N, .enabled = command_.enabled != 0}, tick);
 }

@@ -12,10 +12,10 @@ namespace tactus::runtime {
 /// Owner to controller.
 struct SharedReading {
   station::DeviceReading reading;
-  std::int64_t tick = 0;                        ///< of the owner
-  std::int64_t time_ns = 0;                     ///< of CLOCK_MONOTONIC, when the owner's tick began
-  std::uint64_t gave_up_on = 0;                 ///< session whose commands the owner obeys no more; 0: none
-  station::LetGo cause = station::LetGo::none;  ///< why
+  std::int64_t tick = 0;         ///< of the owner
+  std::int64_t time_ns = 0;      ///< of CLOCK_MONOTONIC, when the owner's tick began
+  std::uint64_t gave_up_on = 0;  ///< session whose commands the owner obeys no more; 0: none
+  station::ReleaseCause cause = station::ReleaseCause::none;  ///< why
 };
 
 /// Controller to owner.
@@ -37,8 +37,8 @@ struct DeviceSlots {
 /// The controller's side: the device as a servo thread sees it.
 ///
 /// `good` with a reading that is newer than the last, `degraded` with none, and `lost` for the rest of the session once
-/// the owner was silent for too long (or has another clock), told a number that is not finite, or obeys no more. Then
-/// the reading stays the last good one. All but `limits` is wait-free and calls no system.
+/// the owner did not respond for too long (or has another clock), told a number that is not finite, or obeys no more.
+/// Then the reading stays the last good one. All but `limits` is wait-free and calls no system.
 class SharedDevice final : public station::Device {
  public:
   /// On slots that outlive it. `silence` is how old a reading may be, by its time against that of the tick.
@@ -58,7 +58,7 @@ class SharedDevice final : public station::Device {
   /// Whether the owner was the one that gave up.
   [[nodiscard]] bool given_up_by_owner() const noexcept;
   /// Why it did.
-  [[nodiscard]] station::LetGo owners_cause() const noexcept { return last_.cause; }
+  [[nodiscard]] station::ReleaseCause owners_cause() const noexcept { return last_.cause; }
 
  private:
   DeviceSlots* slots_;
@@ -75,9 +75,10 @@ class SharedDevice final : public station::Device {
 /// `command` to the motor, `publish` what the sensors read. Both are wait-free and call no system.
 ///
 /// Commands are obeyed that belong to the session begun last, as far as the device's limits go. Once they have been
-/// silent for too long, or the guard has let go, the motor's force ends for the rest of the session, and the controller
-/// is told: a force that comes back by itself would surprise both the person and the controller. A command whose tick
-/// does not grow is silence, whatever its time: so is one that something repeats which does not control any more.
+/// silent for too long, or the guard has released its force, the motor's force ends for the rest of the session, and
+/// the controller is told: a force that comes back by itself would surprise both the operator and the controller. A
+/// command whose tick does not grow is silence, whatever its time: so is one that something repeats which does not
+/// control any more.
 class DeviceServer {
  public:
   /// On slots that outlive it. `silence` is how old a command may be, by its time against that of the tick.
@@ -94,7 +95,7 @@ class DeviceServer {
   /// Commands of this session have come.
   [[nodiscard]] bool obeyed() const noexcept { return command_.session == session_ && session_ != 0; }
   /// The session lost its force.
-  [[nodiscard]] bool gave_up() const noexcept { return guard_.cause() != station::LetGo::none; }
+  [[nodiscard]] bool gave_up() const noexcept { return guard_.cause() != station::ReleaseCause::none; }
   [[nodiscard]] const station::DeviceGuard& guard() const noexcept { return guard_; }
 
  private:

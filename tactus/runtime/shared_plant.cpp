@@ -118,36 +118,40 @@ bool SharedPlant::lost() const noexcept {
 
 Error SharedPlant::why_lost() const {
   const std::string plant = "the plant '" + segment_.name() + "' ";
-  const std::string bound = format_number(silence_.value) + " s";
+  const std::string bound = rounded_number(silence_.value) + " s";
   if (segment_.is_cut()) {
-    return plant_error(ErrorCode::failed,
-                       plant +
-                           "is cut off: another process has shortened its shared memory; both sides let go; start "
-                           "it again, and find out what writes to /dev/shm");
+    return plant_error(
+        ErrorCode::failed,
+        plant +
+            "is cut off: another process has shortened its shared memory; both sides release their force; start "
+            "it again, and find out what writes to /dev/shm");
   }
   if (!segment_.living_owner()) {
-    return plant_error(ErrorCode::failed, plant + "died in the run: both sites let go; start it again");
+    return plant_error(ErrorCode::failed, plant + "died in the run: both sites release their force; start it again");
   }
   for (const SharedDevice* device : {&master_, &slave_}) {
     if (!device->given_up_by_owner()) continue;
-    const std::string whose = device == &master_ ? "let go at the master: " : "let go at the slave: ";
-    if (device->owners_cause() != station::LetGo::silent) {
-      return plant_error(ErrorCode::failed, plant + whose + station::in_words(device->owners_cause()) +
-                                                ": both sites let go; compare the gates of this run with the limits "
-                                                "of the device");
+    const std::string whose = device == &master_ ? "released at the master: " : "released at the slave: ";
+    if (device->owners_cause() != station::ReleaseCause::timed_out) {
+      return plant_error(ErrorCode::failed,
+                         plant + whose + station::in_words(device->owners_cause()) +
+                             ": both sites release their force; compare the gates of this run with the limits "
+                             "of the device");
     }
     return plant_error(ErrorCode::failed, plant + whose +
                                               "the commands of this run came too late for it: see `tactus doctor`, "
                                               "or start it with a longer --silence-s");
   }
   if (fell_behind_) {
-    return plant_error(ErrorCode::failed, plant + "went on for more than " + std::to_string(PlantLayout::truth_ticks) +
-                                              " ticks while this run stood still: see `tactus doctor`");
+    return plant_error(ErrorCode::failed, plant + "continued for more than " +
+                                              std::to_string(PlantLayout::truth_ticks) +
+                                              " control cycles while this run was stopped: see `tactus doctor`");
   }
-  return plant_error(ErrorCode::failed,
-                     plant + "was silent for more than " + bound +
-                         ", or told what is no number: both sites let go; see `tactus doctor`, or write a longer "
-                         "--plant-silence-s");
+  return plant_error(
+      ErrorCode::failed,
+      plant + "did not respond for more than " + bound +
+          ", or sent what is not a number: both sites release their force; see `tactus doctor`, or write a longer "
+          "--plant-silence-s");
 }
 
 }  // namespace tactus::runtime

@@ -13,10 +13,10 @@
 
 namespace tactus::runtime {
 
-/// The controller's side of a plant that another process owns: both devices, and the simulated truth beside them.
+/// The controller's side of a plant that another process owns: both devices, and the simulated truth alongside them.
 class SharedPlant final : public TapPlant {
  public:
-  /// Takes the controller's place. `silence` is the longest that the owner may be silent. Errors: those of
+  /// Takes the controller's place. `silence` is the longest that the owner may not respond. Errors: those of
   /// `PlantSegment::attach`; `out_of_bounds` for `silence`.
   static Result<std::unique_ptr<SharedPlant>> attach(const std::string& name, Seconds silence);
   SharedPlant(const SharedPlant&) = delete;
@@ -28,7 +28,7 @@ class SharedPlant final : public TapPlant {
   /// key that differs.
   [[nodiscard]] Check check(const experiments::TappingParams& params) const;
 
-  /// Asks for the start of a tap and waits for the answer. The plant stands there until the first command. Not while a
+  /// Asks for the start of a tap and waits for the answer. The plant is there until the first command. Not while a
   /// servo thread reads. Errors: `failed` where none comes.
   Check begin(std::size_t tap);
   /// The tap is over: the owner applies no force, and is not to take silence for a fault.

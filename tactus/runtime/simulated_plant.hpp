@@ -22,11 +22,11 @@ class TapPlant {
   virtual std::optional<SimulatedTruth> next(const station::Tick& tick) noexcept = 0;
   /// Of the slave, true, after the ticks that were given. Real-time safe.
   [[nodiscard]] virtual double tip_position_m() const noexcept = 0;
-  /// The plant cannot be gone on with. Real-time safe.
+  /// The plant cannot be continued. Real-time safe.
   [[nodiscard]] virtual bool lost() const noexcept = 0;
 };
 
-/// Both simulated devices of a tap: master and person, slave and wall. A value.
+/// Both simulated devices of a tap: master and operator, slave and wall. A value.
 class SimulatedPlant final : public TapPlant {
  public:
   /// At rest at the start of the tap. Errors: those of clock and plants.

@@ -24,9 +24,9 @@ class RepeatedTaps {
 };
 
 /// Who taps on and on, and waits where the hand is while the site does not follow it.
-class PatientPerson {
+class PatientOperator {
  public:
-  PatientPerson(const RepeatedTaps& path, double tick_s) : path_(path), tick_s_(tick_s) {}
+  PatientOperator(const RepeatedTaps& path, double tick_s) : path_(path), tick_s_(tick_s) {}
   /// Once a tick. Real-time safe.
   Intent step() noexcept {
     const double now_s = path_s_;
@@ -46,7 +46,7 @@ class PatientPerson {
 /// What a site drives.
 struct SiteDevice {
   std::unique_ptr<station::Device> device;
-  PatientPerson* person = nullptr;  ///< who holds a simulated master; part of the device
+  PatientOperator* person = nullptr;  ///< who holds a simulated master; part of the device
 };
 
 /// The device of a site as an experiment describes it, at rest where the taps begin. Errors: those of clock and plant.

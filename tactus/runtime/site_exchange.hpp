@@ -1,9 +1,9 @@
 #pragma once
 
 #include <tactus/runtime/end_request.hpp>
-#include <tactus/runtime/site_books.hpp>
 #include <tactus/runtime/site_buttons.hpp>
-#include <tactus/runtime/site_misfit.hpp>
+#include <tactus/runtime/site_counters.hpp>
+#include <tactus/runtime/site_mismatch.hpp>
 #include <tactus/telemetry/ring.hpp>
 
 #include <atomic>
@@ -12,11 +12,11 @@ namespace tactus::runtime {
 
 /// What running sites and the rest of their program tell one another. No locks.
 struct SiteExchange {
-  telemetry::Ring<SiteWord, 16> words;   ///< of the person
+  telemetry::Ring<SiteWord, 16> words;   ///< of the operator
   std::atomic<bool> person_lost{false};  ///< nobody holds the dead-man switch any more
   EndRequest end;
   telemetry::Ring<SiteSecond, 64> seconds;
-  telemetry::Ring<SiteMisfit, 2> misfits;  ///< each once
+  telemetry::Ring<SiteMismatch, 2> mismatches;  ///< each once
 };
 
 }  // namespace tactus::runtime

@@ -49,7 +49,7 @@ KeyTrouble SiteLinkOf<Payload>::key_trouble(const link::LinkCounters& now) noexc
 }
 
 template <class Payload>
-void SiteLinkOf<Payload>::tell_misfit(const control::AgreementCheck& agreement, SiteExchange& exchange) noexcept {
+void SiteLinkOf<Payload>::report_mismatch(const control::AgreementCheck& agreement, SiteExchange& exchange) noexcept {
   const auto counters = endpoint_.counters();
   const std::int64_t session = agreement.session();
   // Until all cells have come, or those that did have shown a difference, or no more are to be waited for.
@@ -60,16 +60,16 @@ void SiteLinkOf<Payload>::tell_misfit(const control::AgreementCheck& agreement, 
   const KeyTrouble keys = key_trouble(counters);
   if (keys != KeyTrouble::none && keys != told_keys_) {
     told_keys_ = keys;
-    exchange.misfits.try_push({.keys = keys});
+    exchange.mismatches.try_push({.keys = keys});
   } else if (counters.other_version != told_version_) {
     told_version_ = counters.other_version;
-    exchange.misfits.try_push({.other_version = told_version_});
+    exchange.mismatches.try_push({.other_version = told_version_});
   } else if (counters.other_joints != told_joints_) {
     told_joints_ = counters.other_joints;
-    exchange.misfits.try_push({.other_joints = told_joints_});
+    exchange.mismatches.try_push({.other_joints = told_joints_});
   } else if (agreement.disagrees() && known && session != told_session_) {
     told_session_ = session;
-    exchange.misfits.try_push({.agreement = agreement});
+    exchange.mismatches.try_push({.agreement = agreement});
   }
   listened_session_ = session;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tactus/link/endpoint.hpp>
-#include <tactus/runtime/site_books.hpp>
+#include <tactus/runtime/site_counters.hpp>
 #include <tactus/runtime/site_exchange.hpp>
 #include <tactus/station/tick.hpp>
 
@@ -30,7 +30,7 @@ struct LinkSecond {
   double loss_fraction = 0.0;  ///< of the other site's datagrams
 };
 
-/// The way of one site over a network, with the books of what came on it: of one axis or of several joints. What
+/// The way of one site over a network, with the counters of what came on it: of one axis or of several joints. What
 /// `station::step` asks of a way. Real-time safe but for `totals`.
 template <class Payload>
 class SiteLinkOf {
@@ -66,8 +66,8 @@ class SiteLinkOf {
 
   /// What came since the second before. Once a second.
   LinkSecond end_second() noexcept;
-  /// Tells once why the sites that hear each other cannot work together. Once a second.
-  void tell_misfit(const control::AgreementCheck& agreement, SiteExchange& exchange) noexcept;
+  /// Tells once why the sites that receive packets of each other cannot work together. Once a second.
+  void report_mismatch(const control::AgreementCheck& agreement, SiteExchange& exchange) noexcept;
   /// After the last tick.
   [[nodiscard]] LinkTotals totals() const;
 
@@ -94,8 +94,8 @@ class SiteLinkOf {
   // Of the running second.
   Arrivals second_;
   std::uint64_t second_expected_ = 0, second_arrived_ = 0;
-  // Of the misfits.
-  std::int64_t listened_session_ = 0;  ///< that was heard when the second before ended
+  // Of the mismatches.
+  std::int64_t listened_session_ = 0;  ///< that was received when the second before ended
   int listened_s_ = 0;                 ///< for how many seconds
   std::int64_t told_session_ = 0;
   std::uint16_t told_version_ = 0;

@@ -1,6 +1,6 @@
 #include <tactus/runtime/site_loop.hpp>
+#include <tactus/station/make_device_guard.hpp>
 #include <tactus/station/step.hpp>
-#include <tactus/station/wall.hpp>
 
 #include <utility>
 
@@ -10,8 +10,8 @@ Result<SiteLoop> SiteLoop::make(const experiments::TappingParams& params, const 
                                 SiteExchange& exchange, SiteDevice device) {
   if (auto error = validate(params)) return *std::move(error);
   const control::SiteRole role = settings.link.site;
-  auto wall = station::wall_before(*device.device, params.control, role);
-  if (!wall) return wall.error();
+  auto guard = station::make_device_guard(*device.device, params.control, role);
+  if (!guard) return guard.error();
   auto endpoint = link::Endpoint::make(settings.link);
   if (!endpoint) return endpoint.error();
   const station::DeviceLimits limits = device.device->limits();
@@ -24,28 +24,28 @@ Result<SiteLoop> SiteLoop::make(const experiments::TappingParams& params, const 
                              .listen_before_arming_s = supervision.watchdog.timeout_s,
                              .tick_s = tick_s},
                             exchange);
-  return SiteLoop(console, SiteBooks(role, tick_s, force_step_limit_N(params, role, limits)), role,
+  return SiteLoop(console, SiteCounters(role, tick_s, force_step_limit_N(params, role, limits)), role,
                   SiteLink(*std::move(endpoint), supervision.packets.longest_age_s), *std::move(site),
-                  std::move(device), *std::move(wall));
+                  std::move(device), *std::move(guard));
 }
 
-SiteLoop::SiteLoop(const SiteConsole& console, const SiteBooks& books, control::SiteRole role, SiteLink link,
-                   SupervisedSite site, SiteDevice device, std::unique_ptr<station::GuardedDevice> wall)
+SiteLoop::SiteLoop(const SiteConsole& console, const SiteCounters& counters, control::SiteRole role, SiteLink link,
+                   SupervisedSite site, SiteDevice device, std::unique_ptr<station::GuardedDevice> guard)
     : console_(console),
-      books_(books),
+      counters_(counters),
       role_(role),
       link_(std::move(link)),
       site_(std::move(site)),
       device_(std::move(device)),
-      wall_(std::move(wall)),
-      driven_(wall_ ? wall_.get() : device_.device.get()) {}
+      guard_(std::move(guard)),
+      driven_(guard_ ? guard_.get() : device_.device.get()) {}
 
 bool SiteLoop::operator()(const station::Tick& tick) noexcept {
   if (console_.insisted()) {
     driven_->write({.enabled = false});
     return false;
   }
-  const control::SiteRequests pressed = console_.step(tick, books_.state(), link_.heard());
+  const control::SiteRequests pressed = console_.step(tick, counters_.state(), link_.heard());
   SiteLogRecord record = std::visit(
       [&](auto& site) noexcept {
         SeenLink way{link_, [this](const station::Tick& now, const control::Packet& packet) noexcept {
@@ -60,8 +60,8 @@ bool SiteLoop::operator()(const station::Tick& tick) noexcept {
       site_);
   record.round_trip_s = link_.condition().round_trip_s;
   record.link_silence_s = link_.condition().silence_s;
-  books_.step(record, console_.time_s());
-  const control::SiteState state = books_.state();
+  counters_.step(record, console_.time_s());
+  const control::SiteState state = counters_.state();
   if (device_.person != nullptr) device_.person->follow(state == control::SiteState::active);
   if (SiteStreams::Site* const stream = streams_.of(role_)) {
     stream->push(streams_.time_ns(tick.deadline_ns), record);
@@ -74,18 +74,18 @@ bool SiteLoop::operator()(const station::Tick& tick) noexcept {
 
 void SiteLoop::end_second() noexcept {
   const LinkSecond on_the_way = link_.end_second();
-  SiteSecond second = books_.end_second();
+  SiteSecond second = counters_.end_second();
   second.round_trip_s = on_the_way.round_trip_s;
   second.age_s = on_the_way.age_s;
   second.loss_fraction = on_the_way.loss_fraction;
   console_.exchange().seconds.try_push(second);
   const auto& agreement =
       std::visit([](const auto& site) -> const control::AgreementCheck& { return site.agreement(); }, site_);
-  link_.tell_misfit(agreement, console_.exchange());
+  link_.report_mismatch(agreement, console_.exchange());
 }
 
 void SiteLoop::finish() noexcept {
-  if (books_.in_a_second()) end_second();
+  if (counters_.in_a_second()) end_second();
 }
 
 }  // namespace tactus::runtime

@@ -21,7 +21,7 @@ class SiteLoop {
     bool arm_at_once = false;  ///< the master, as soon as it hears the slave for the first time
   };
 
-  /// `exchange` must outlive the loop. A device that is not simulated stands behind a wall, and needs limits that
+  /// `exchange` must outlive the loop. A device that is not simulated stands behind a guard, and needs limits that
   /// somebody chose. Errors: what is wrong with the parameters, the device or the link.
   static Result<SiteLoop> make(const experiments::TappingParams& params, const Settings& settings,
                                SiteExchange& exchange, SiteDevice device);
@@ -35,23 +35,23 @@ class SiteLoop {
   /// Hands on the second that has begun. After the last tick, once.
   void finish() noexcept;
   /// After the last tick, as the next.
-  [[nodiscard]] const SiteTotals& totals() const noexcept { return books_.totals(); }
+  [[nodiscard]] const SiteTotals& totals() const noexcept { return counters_.totals(); }
   [[nodiscard]] LinkTotals link_totals() const { return link_.totals(); }
 
  private:
-  SiteLoop(const SiteConsole& console, const SiteBooks& books, control::SiteRole role, SiteLink link,
-           SupervisedSite site, SiteDevice device, std::unique_ptr<station::GuardedDevice> wall);
+  SiteLoop(const SiteConsole& console, const SiteCounters& counters, control::SiteRole role, SiteLink link,
+           SupervisedSite site, SiteDevice device, std::unique_ptr<station::GuardedDevice> guard);
   void end_second() noexcept;
 
   SiteConsole console_;
-  SiteBooks books_;
+  SiteCounters counters_;
   SiteStreams streams_;
   control::SiteRole role_;
   SiteLink link_;
   SupervisedSite site_;
   SiteDevice device_;
-  std::unique_ptr<station::GuardedDevice> wall_;  ///< before a device that is not simulated
-  station::Device* driven_;                       ///< the wall, or the device itself
+  std::unique_ptr<station::GuardedDevice> guard_;  ///< before a device that is not simulated
+  station::Device* driven_;                        ///< the guard, or the device itself
 };
 
 }  // namespace tactus::runtime

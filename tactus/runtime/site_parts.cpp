@@ -1,7 +1,7 @@
 #include <tactus/control/agreed_parameters.hpp>
 #include <tactus/experiments/model_mismatch.hpp>
 #include <tactus/runtime/site_parts.hpp>
-#include <tactus/station/wall.hpp>
+#include <tactus/station/make_device_guard.hpp>
 
 #include <charconv>
 #include <span>
@@ -122,7 +122,7 @@ Result<Joints<DeviceLimits>> limits_in(const Words& words, std::size_t joints) {
     for (const auto& [name, member] : limit_names) {
       const std::string key = joint_key(joint, name);
       if (take_number(words, key, limits[joint].*member)) continue;
-      return Error{.code = ErrorCode::missing, .parameter = key, .message = "is no number there", .place = {}};
+      return Error{.code = ErrorCode::missing, .parameter = key, .message = "is not a number there", .place = {}};
     }
   }
   return limits;

@@ -41,7 +41,7 @@ SiteTickRecord of_site(const station::Tick& tick, const control::SiteRequests& p
   record.health = static_cast<std::int64_t>(done.health);
   record.age_s = site.heard().age_s;
   record.pressed = number_of(pressed);
-  record.told_sequence = done.output.packet.sequence;
+  record.sent_sequence = done.output.packet.sequence;
   return record;
 }
 
@@ -59,8 +59,8 @@ void fill(Record& record, const station::DeviceReading& reading, const Output& o
     record.intended_position_m = output.intended_position_m;
     static_cast<control::HandEstimate&>(record) = output.hand;
   }
-  static_cast<control::Message&>(static_cast<typename Record::Heard&>(record)) = heard;
-  static_cast<control::Message&>(static_cast<typename Record::Told&>(record)) = told;
+  static_cast<control::Message&>(static_cast<typename Record::Received&>(record)) = heard;
+  static_cast<control::Message&>(static_cast<typename Record::Sent&>(record)) = told;
 }
 
 template <class Supervised>
@@ -82,8 +82,8 @@ JointLogRecord of_joint(const station::Tick& tick, const control::SafetyGate& ga
   record.fault = static_cast<std::int64_t>(gate.fault());
   record.given_J = gate.given_J();
   record.position_age_s = reading.age_s;
-  record.drive_velocity_m_per_s = reading.motor_tells.velocity_m_per_s;
-  record.drive_force_N = reading.motor_tells.force_N;
+  record.drive_velocity_m_per_s = reading.motor_report.velocity_m_per_s;
+  record.drive_force_N = reading.motor_report.force_N;
   record.drive_stiffness_N_per_m = output.law.stiffness_N_per_m;
   record.drive_damping_N_s_per_m = output.law.damping_N_s_per_m;
   record.law_position_m = output.law.position_m;

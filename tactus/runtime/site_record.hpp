@@ -22,7 +22,7 @@ struct SiteTickRecord : control::SiteRecord {
   double link_silence_s = 0.0;
   std::int64_t pressed = 0;
   std::int64_t arrivals = 0;
-  std::int64_t told_sequence = 0;
+  std::int64_t sent_sequence = 0;
   static constexpr auto signals() {
     using R = SiteTickRecord;
     return joined(
@@ -36,11 +36,11 @@ struct SiteTickRecord : control::SiteRecord {
             observed("link_silence_s", &R::link_silence_s, units::second, "", "", "",
                      "Since any packet of the other site arrived, applied or not; 0 before the first."),
             observed("pressed", &R::pressed, units::none, "", "", "",
-                     "By the person, added up: 1 align, 2 arm, 4 clear, 8 dead-man switch, 16 clutch, 32 emergency "
+                     "By the operator, added up: 1 align, 2 arm, 4 clear, 8 dead-man switch, 16 clutch, 32 emergency "
                      "stop, 64 leave."),
             observed("arrivals", &R::arrivals, units::none, "", "", "",
-                     "Packets that came over the link at this tick, each a record of the topic /packets."),
-            observed("told_sequence", &R::told_sequence, units::none, "", "", "", "Of the packet that was sent.")});
+                     "Packets that arrived over the link in this control cycle, each a record of the topic /packets."),
+            observed("sent_sequence", &R::sent_sequence, units::none, "", "", "", "Of the packet that was sent.")});
   }
 };
 
@@ -63,7 +63,7 @@ struct AxisRecord : control::HandEstimate {
                  "read_force_N", &R::read_force_N, units::newton, "", "", "",
                  "Master: read on the handle, toward the environment. Slave: read at the tip, which is pushed back."),
              observed("grip", &R::grip, units::none, "master", "", "",
-                      "Read: how firmly the person holds, over nominal."),
+                      "Read: how firmly the operator holds, over nominal."),
              observed("motor_force_N", &R::motor_force_N, units::newton, "", "", "toward the environment",
                       "Commanded to the motor."),
              observed("handle_force_N", &R::handle_force_N, units::newton, "master", "hand", "toward the environment",
@@ -77,20 +77,23 @@ struct AxisRecord : control::HandEstimate {
 };
 
 /// One tick of a site of one axis.
-struct SiteLogRecord : SiteTickRecord, AxisRecord, Part<control::Message, "heard_">, Part<control::Message, "told_"> {
-  using Heard = Part<control::Message, "heard_">;  ///< the message that was applied last
-  using Told = Part<control::Message, "told_">;    ///< to the other site
+struct SiteLogRecord : SiteTickRecord,
+                       AxisRecord,
+                       Part<control::Message, "received_">,
+                       Part<control::Message, "sent_"> {
+  using Received = Part<control::Message, "received_">;  ///< the message that was applied last
+  using Sent = Part<control::Message, "sent_">;          ///< to the other site
   using AxisRecord::position_m;
   static constexpr auto signals() {
-    return joined(SiteTickRecord::signals(), AxisRecord::signals(), Heard::signals(), Told::signals());
+    return joined(SiteTickRecord::signals(), AxisRecord::signals(), Received::signals(), Sent::signals());
   }
 };
 
 /// One tick of one joint of a site of several, in the joint's unit: where a name says m and N, one that turns has rad
 /// and N m. What all joints share is in the `SiteTickRecord` of the tick.
-struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<control::Message, "told_"> {
-  using Heard = Part<control::Message, "heard_">;
-  using Told = Part<control::Message, "told_">;
+struct JointLogRecord : AxisRecord, Part<control::Message, "received_">, Part<control::Message, "sent_"> {
+  using Received = Part<control::Message, "received_">;
+  using Sent = Part<control::Message, "sent_">;
   using AxisRecord::position_m;
   std::int64_t tick = 0;
   std::int64_t limit = 0;
@@ -114,9 +117,9 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
              observed("position_age_s", &R::position_age_s, units::second, "", "", "",
                       "Of the position at the deadline; negative where it was measured after that."),
              observed("drive_velocity_m_per_s", &R::drive_velocity_m_per_s, units::metre_per_second, "", "",
-                      "toward the environment", "As the drive tells it, measured with the position."),
+                      "toward the environment", "As the drive reports it, measured with the position."),
              observed("drive_force_N", &R::drive_force_N, units::newton, "", "", "toward the environment",
-                      "Of the motor, as the drive tells it, measured with the position; 0 of one that tells none."),
+                      "Of the motor, as the drive reports it, measured with the position; 0 if it reports none."),
              observed("drive_stiffness_N_per_m", &R::drive_stiffness_N_per_m, units::newton_per_metre, "", "", "",
                       "Commanded: of the law that the drive runs by itself."),
              observed("drive_damping_N_s_per_m", &R::drive_damping_N_s_per_m, units::newton_second_per_metre, "", "",
@@ -125,7 +128,7 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "heard_">, Part<contr
                       "Commanded: to which that law pulls."),
              observed("law_velocity_m_per_s", &R::law_velocity_m_per_s, units::metre_per_second, "", "",
                       "toward the environment", "Commanded: the same.")},
-        AxisRecord::signals(), Heard::signals(), Told::signals());
+        AxisRecord::signals(), Received::signals(), Sent::signals());
   }
 };
 
@@ -154,7 +157,7 @@ struct PacketHeadRecord {
                 observed("digest_high", &R::digest_high, units::none, "", "", "",
                          "Upper 32 bits of the digest of what both sites must have in common."),
                 observed("digest_low", &R::digest_low, units::none, "", "", "", "Its lower 32 bits."),
-                observed("cell", &R::cell, units::none, "", "", "", "Number of the cell of it that is told."),
+                observed("cell", &R::cell, units::none, "", "", "", "Number of the cell of it that is sent."),
                 observed("value_high", &R::value_high, units::none, "", "", "", "Upper 32 bits of that cell."),
                 observed("value_low", &R::value_low, units::none, "", "", "", "Its lower 32 bits.")};
   }

@@ -12,8 +12,8 @@ Check check_below_nyquist(std::string_view parameter, double frequency_Hz, Secon
   if (frequency_Hz < nyquist_Hz) return {};
   return Error{.code = ErrorCode::inconsistent,
                .parameter = std::string(parameter),
-               .message = format_number(frequency_Hz) + " Hz must lie below half the sample rate, " +
-                          format_number(nyquist_Hz) + " Hz at a sample time of " + format_number(dt.value) +
+               .message = rounded_number(frequency_Hz) + " Hz must lie below half the sample rate, " +
+                          rounded_number(nyquist_Hz) + " Hz at a sample time of " + rounded_number(dt.value) +
                           " s: lower the frequency or sample faster",
                .place = {}};
 }

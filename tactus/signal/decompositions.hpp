@@ -14,7 +14,7 @@ Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& a, const Eigen::Vecto
 /// The shortest of the x of least |a·x − b|, for each column of `b`, by a complete orthogonal decomposition.
 Eigen::MatrixXd solve_shortest(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
-/// What least squares tell, by QR with pivoted columns.
+/// Results of least squares, by QR with pivoted columns.
 struct Regression {
   std::optional<Eigen::Index> idle;  ///< a column that the others explain: then there is no more
   Eigen::VectorXd x;

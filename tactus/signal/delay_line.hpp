@@ -15,7 +15,7 @@ namespace tactus::signal {
 /// the first input arrives. With a delay of zero the output is the input.
 ///
 /// The ring is as long as the delay plus one: write, advance, read. That order needs no branch for a delay of zero. The
-/// delay is rounded to the nearest tick (`delay_ticks` tells which): a fractional delay would have to interpolate, and
+/// delay is rounded to the nearest tick (`delay_ticks` shows which): a fractional delay would have to interpolate, and
 /// an interpolator is a filter that nobody asked for.
 template <class T, std::size_t Capacity>
 class DelayLine {
@@ -26,7 +26,7 @@ class DelayLine {
     double delay_s = 0.0;
     static constexpr auto fields() {
       return List{field("delay_s", &Params::delay_s, units::second, non_negative,
-                        "Delay, rounded to the nearest whole number of ticks.")};
+                        "Delay, rounded to the nearest whole number of control cycles.")};
     }
   };
   using Input = T;
@@ -38,10 +38,10 @@ class DelayLine {
     if (!(ticks <= static_cast<double>(Capacity))) {
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = "delay_s",
-                   .message = format_number(params.delay_s) + " s is " + format_number(ticks) +
-                              " ticks, and this delay line holds at most " + std::to_string(Capacity) + " (" +
-                              format_number(static_cast<double>(Capacity) * dt.value) +
-                              " s): shorten the delay or lengthen the tick",
+                   .message = rounded_number(params.delay_s) + " s is " + rounded_number(ticks) +
+                              " control cycles, and this delay line holds at most " + std::to_string(Capacity) + " (" +
+                              rounded_number(static_cast<double>(Capacity) * dt.value) +
+                              " s): shorten the delay or lengthen the control cycle",
                    .place = {}};
     }
     DelayLine line;

@@ -60,7 +60,7 @@ class FilteredDerivative {
     if (params.cutoff_Hz >= highest_Hz) {
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = "cutoff_Hz",
-                   .message = format_number(params.cutoff_Hz) + " Hz must lie below " + format_number(highest_Hz) +
+                   .message = rounded_number(params.cutoff_Hz) + " Hz must lie below " + rounded_number(highest_Hz) +
                               " Hz, 0.44 of the sample rate: lower the cutoff or sample faster",
                    .place = {}};
     }

@@ -31,8 +31,8 @@ Result<KalmanPredictor> KalmanPredictor::make(const Params& params, Seconds dt) 
   if (!stable) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "process_noise",
-                 .message = "no stable gain can be computed for " + format_number(params.process_noise) +
-                            " with a measurement noise of " + format_number(params.measurement_noise) +
+                 .message = "no stable gain can be computed for " + rounded_number(params.process_noise) +
+                            " with a measurement noise of " + rounded_number(params.measurement_noise) +
                             ": bring them nearer together",
                  .place = {}};
   }

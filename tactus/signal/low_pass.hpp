@@ -59,7 +59,7 @@ class LowPass {
   /// without a transient. Real-time safe.
   void settle(double value) noexcept { section_.state = (1.0 - section_.b0) * value; }
 
-  /// Coefficients and state as they stand.
+  /// Coefficients and state as they are.
   [[nodiscard]] const FirstOrderSection<double>& section() const noexcept { return section_; }
 
  private:

@@ -12,7 +12,7 @@ Result<PolynomialPredictor> PolynomialPredictor::make(const Params& params, Seco
   if (params.samples <= params.degree) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "samples",
-                 .message = std::to_string(params.samples) + " samples do not tell a polynomial of degree " +
+                 .message = std::to_string(params.samples) + " samples do not determine a polynomial of degree " +
                             std::to_string(params.degree) + ": write " + std::to_string(params.degree + 1) +
                             " or more, or a lower degree",
                  .place = {}};

@@ -81,7 +81,7 @@ Result<RationalFilter> RationalFilter::make(const Params& params, Seconds dt) {
   if (!finite) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "denominator_" + std::to_string(order),
-                 .message = "is too small beside the other coefficients",
+                 .message = "is too small compared with the other coefficients",
                  .place = {}};
   }
   filter.loop_ = 1.0 / loop;

@@ -91,7 +91,7 @@ class SecondOrderFilter {
     section_.state_2 = section_.b2 * value - section_.a2 * output;
   }
 
-  /// Coefficients and state as they stand.
+  /// Coefficients and state as they are.
   [[nodiscard]] const SecondOrderSection<double>& section() const noexcept { return section_; }
 
  private:

@@ -13,9 +13,9 @@ Result<Clock> Clock::make(const ServoParams& servo, const PlantClockParams& plan
   if (late_substeps >= substeps) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "servo.computation_delay_s",
-                 .message = format_number(servo.computation_delay_s) + " s, rounded to plant steps of " +
-                            format_number(substep_s) + " s, must be less than a tick, " + format_number(tick_s) +
-                            " s: shorten the delay or lower the rate",
+                 .message = rounded_number(servo.computation_delay_s) + " s, rounded to plant steps of " +
+                            rounded_number(substep_s) + " s, must be less than a control cycle, " +
+                            rounded_number(tick_s) + " s: shorten the delay or lower the rate",
                  .place = {}};
   }
   return Clock{.tick_s = tick_s,

@@ -10,10 +10,10 @@ struct ServoParams {
   double computation_delay_s = 20e-6;
   static constexpr auto fields() {
     return List{field("rate_Hz", &ServoParams::rate_Hz, units::hertz, between(500.0, 20000.0),
-                      "Ticks per second (paper A: 5000)."),
+                      "Control cycles per second (paper A: 5000)."),
                 field("computation_delay_s", &ServoParams::computation_delay_s, units::second, between(0.0, 0.002),
                       "From a sample to the change of the command that follows from it, rounded to whole plant "
-                      "steps, less than a tick.")};
+                      "steps, less than a control cycle.")};
   }
 };
 
@@ -22,7 +22,7 @@ struct PlantClockParams {
   double longest_step_s = 10e-6;
   static constexpr auto fields() {
     return List{field("longest_step_s", &PlantClockParams::longest_step_s, units::second, between(1e-7, 1e-4),
-                      "Longest step of the plants; a tick is cut into equal steps no longer than this.")};
+                      "Longest step of the plants; a control cycle is cut into equal steps no longer than this.")};
   }
 };
 

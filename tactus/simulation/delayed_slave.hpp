@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-/// A slave with delays in free motion (paper B, Figs. 4 and 5): the plant beside which force estimators are judged.
+/// A slave with delays in free motion (paper B, Figs. 4 and 5): the plant alongside which force estimators are judged.
 namespace tactus::simulation {
 
 /// P controller, actuator, body and sensor of paper B. Actuator and sensor: gain·exp(−s·delay)/(lag·s + 1).
@@ -37,7 +37,7 @@ struct DelayedSlaveParams {
         field("sensor_lag_s", &P::sensor_lag_s, units::second, between(1e-4, 1.0), "T2s: first-order lag.")};
   }
   [[nodiscard]] double delay_s() const { return actuator_delay_s + sensor_delay_s; }
-  /// All that lies between command and measured position beside the body: what prediction must make up for.
+  /// All that lies between command and measured position alongside the body: what prediction must make up for.
   [[nodiscard]] double delays_and_lags_s() const { return delay_s() + actuator_lag_s + sensor_lag_s; }
 };
 

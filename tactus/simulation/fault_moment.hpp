@@ -7,7 +7,7 @@
 
 namespace tactus::simulation {
 
-/// Where a run stands at a tick, as a fault sees it.
+/// Where a run is at a tick, as a fault sees it.
 struct FaultMoment {
   std::int64_t tick = 0;
   double now_s = 0.0;

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 /// Faults on purpose: what fails, when, for how long. The same described values serve the simulated channel and sensors
-/// and whatever stands between two real sites.
+/// and whatever is between two real sites.
 namespace tactus::simulation {
 
 enum class FaultKind {
@@ -16,7 +16,7 @@ enum class FaultKind {
   disorder,               ///< delay, jitter that reorders, duplicates, both ways
   cut,                    ///< no packet either way
   restart,                ///< a site's process is killed and started again
-  bad_number,             ///< one input is no number, or a huge one, for one tick
+  bad_number,             ///< one input is not a number, or a huge one, for one tick
   encoder_spike,          ///< one reading far off
   encoder_freeze,         ///< the reading stays
   encoder_wrap,           ///< the counter loses its highest bit
@@ -48,19 +48,19 @@ enum class FaultKind {
   configurations_differ,  ///< the sites were given different parameters
   delay_asymmetric,       ///< one way takes longer than the other
   delay_creeping,         ///< the delay grows
-  peer_repeats,           ///< the other site says the same again and again
-  peer_wrong,             ///< it says what could be and is not
+  peer_repeats,           ///< the other site states the same again and again
+  peer_wrong,             ///< it states what could be and is not
   both_restarted,         ///< both processes are killed at once
   dead_man_stuck,         ///< the dead-man switch stays pressed
-  console_lost,           ///< the person's console is gone
+  console_lost,           ///< the operator's console is gone
   hand_lets_go,           ///< nobody holds the handle
   handle_clamped,         ///< the handle is held fast
   two_faults,             ///< two faults at once
   fault_while_arming,     ///< a fault between arming and following
-  stale_commands,         ///< a live controller goes on with an old command
-  emergency_stop,         ///< the person presses the emergency stop
+  stale_commands,         ///< a live controller continues with an old command
+  emergency_stop,         ///< the operator presses the emergency stop
   power_lost,             ///< a motor's supply fails and comes back
-  dead_man_released,      ///< the person lets the dead-man switch go and holds on
+  dead_man_released,      ///< the operator lets the dead-man switch go and holds on
 };
 constexpr auto enumerators(FaultKind) {
   return std::array{Enumerator{FaultKind::none, "none"},
@@ -191,10 +191,10 @@ struct FaultPlan {
         field("length_s", &FaultPlan::length_s, units::second, non_negative, "How long it lasts."),
         field("size", &FaultPlan::size, units::none, any_finite,
               "How far an encoder spikes or wraps in m, how much a force sensor is off in N; of another fault what its "
-              "row says."),
+              "row states."),
         field("choice", &FaultPlan::choice, non_negative,
               "The plan's number: which input, value and state a bad number takes."),
-        field("seed", &FaultPlan::seed, non_negative, "Of the packets' fates and the person's path."),
+        field("seed", &FaultPlan::seed, non_negative, "Of the packets' fates and the operator's path."),
         field("impairment", &FaultPlan::impairment, "How the network treats packets while the fault lasts.")};
   }
 };

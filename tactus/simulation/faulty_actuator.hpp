@@ -7,7 +7,7 @@
 
 namespace tactus::simulation {
 
-/// What stands between a site's gate and the current of a motor: a drive that may fail, with an enable line. Of a plan
+/// What is between a site's gate and the current of a motor: a drive that may fail, with an enable line. Of a plan
 /// that is for another part or site it is a sound one.
 ///
 /// One that is cooled poorly has a winding whose warmth follows the square of the force with the time constant below,
@@ -24,7 +24,7 @@ class FaultyActuator {
   /// a tick. Real-time safe.
   double step(double commanded_N, bool enabled, const FaultMoment& moment) noexcept {
     if (!moment.during) last_N_ = commanded_N;
-    // An old command says that the drive is enabled, too.
+    // An old command states that the drive is enabled, too.
     if (here_ && plan_.kind == FaultKind::stale_commands && moment.during) return obey_old(commanded_N, moment);
     if (!enabled) return 0.0;
     if (!here_ || !moment.during) return commanded_N;
@@ -55,7 +55,7 @@ class FaultyActuator {
   [[nodiscard]] double warmth() const noexcept { return warmth_; }
 
  private:
-  /// A drive whose commands stay the same. It lets go of them once they are `size` s old.
+  /// A drive whose commands stay the same. It releases them once they are `size` s old.
   double obey_old(double commanded_N, const FaultMoment& moment) noexcept {
     if (moment.begins) last_N_ = commanded_N;
     return moment.since_s < plan_.size ? last_N_ : 0.0;

@@ -6,8 +6,8 @@
 
 namespace tactus::simulation {
 
-/// What a site that is alive says when it goes wrong: it repeats itself, or tells what could be and is not. Of a plan
-/// that is for another part or site it says what it means.
+/// What a site that is alive states when it goes wrong: it repeats itself, or reports what could be and is not. Of a
+/// plan that is for another part or site it states what it means.
 class FaultyPeer {
  public:
   /// How a site that is wrong is wrong, by the plan's choice.

@@ -98,8 +98,8 @@ Result<FittedInverseModel> fit_inverse_model(const ValveCurrentModelParams& para
   if (!(c[0] > 0.0 && c[1] > 0.0)) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "model",
-                 .message = "no damping that grows with velocity follows from this run (" + format_number(c[0]) +
-                            " mA at the step, " + format_number(c[1]) + " mA s/m): move farther or faster",
+                 .message = "no damping that grows with velocity follows from this run (" + rounded_number(c[0]) +
+                            " mA at the step, " + rounded_number(c[1]) + " mA s/m): move farther or faster",
                  .place = {}};
   }
   FittedInverseModel fitted{

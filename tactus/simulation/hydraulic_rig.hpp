@@ -59,7 +59,7 @@ class HydraulicRig {
     double end_stop_force_N = 0.0;  ///< true, on the piston
   };
   [[nodiscard]] Sample sample() noexcept;
-  /// Advances to the next tick with the slave told to be at `wanted_m`, `measured` the sample of this tick.
+  /// Advances to the next tick with the slave commanded to be at `wanted_m`, `measured` the sample of this tick.
   void advance(const Sample& measured, double wanted_m) noexcept;
 
   [[nodiscard]] double tick_s() const noexcept { return clock_.tick_s; }

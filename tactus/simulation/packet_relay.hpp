@@ -17,8 +17,8 @@ namespace tactus::simulation {
 template <class Packet>
 class PacketRelayOf {
  public:
-  /// A relay whose packets pass one link after another, each of which impairs them while `send` is told to. `tick_s` is
-  /// the duration of a tick.
+  /// A relay whose packets pass one link after another, each of which impairs them while `send` is commanded to.
+  /// `tick_s` is the duration of a tick.
   PacketRelayOf(const std::vector<ImpairedLink>& links, double longest_way_s, double tick_s)
       : links_(links), tick_s_(tick_s), slots_(static_cast<std::size_t>(std::ceil(longest_way_s / tick_s)) + 2) {}
 

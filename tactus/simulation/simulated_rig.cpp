@@ -74,9 +74,9 @@ class Wander {
 Error stopped(double time_s, const char* what, double value, double lower, double upper, const Unit& unit) {
   return {ErrorCode::failed,
           {},
-          "the run was stopped after " + format_number(time_s) + " s: the " + what + ", " + format_number(value) + " " +
-              unit.symbol + ", left " + format_number(lower) + " to " + format_number(upper) + " " + unit.symbol +
-              "; excite less, or with a stiffer or better damped virtual spring",
+          "the run was stopped after " + rounded_number(time_s) + " s: the " + what + ", " + rounded_number(value) +
+              " " + unit.symbol + ", left " + rounded_number(lower) + " to " + rounded_number(upper) + " " +
+              unit.symbol + "; excite less, or with a stiffer or better damped virtual spring",
           {}};
 }
 

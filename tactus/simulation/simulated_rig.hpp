@@ -13,9 +13,9 @@
 /// A master on a simulated bench, its parameters hidden from whoever identifies it.
 namespace tactus::simulation {
 
-/// The device and the person of a bench as an experiment's file states them: what `tactus run --with` loads.
+/// The device and the operator of a bench as an experiment's file states them: what `tactus run --with` loads.
 struct BenchedMaster {
-  /// What a bench can tell of the device.
+  /// What a bench can determine of the device.
   struct Device {
     mechanics::CableChain::Params mechanism;
     mechanics::CurrentAmplifier::Params amplifier;
@@ -24,20 +24,20 @@ struct BenchedMaster {
                   field("amplifier", &Device::amplifier, "Current amplifier of the motor.")};
     }
   };
-  /// What it can tell of the person.
-  struct Person {
+  /// What it can determine of the operator.
+  struct Operator {
     mechanics::LinearSpring::Params grip{.stiffness_N_per_m = 40.0, .damping_N_s_per_m = 23.0};
     mechanics::Operator::Correction correction;
     static constexpr auto fields() {
-      return List{field("grip", &Person::grip, "Passive impedance of hand and arm."),
-                  field("correction", &Person::correction, "Slow correction of the handle's position.")};
+      return List{field("grip", &Operator::grip, "Passive impedance of hand and arm."),
+                  field("correction", &Operator::correction, "Slow correction of the handle's position.")};
     }
   };
   Device master;
-  Person person;
+  Operator person;
   static constexpr auto fields() {
     return List{field("master", &BenchedMaster::master, "The master device."),
-                field("operator", &BenchedMaster::person, "The person at the master.")};
+                field("operator", &BenchedMaster::person, "The operator at the master.")};
   }
 };
 

@@ -10,24 +10,24 @@
 #include <cstdint>
 #include <utility>
 
-/// What stands at each site of a simulated teleoperator. A tick of a plant: `read`, then `write` the command that
+/// What is at each site of a simulated teleoperator. A tick of a plant: `read`, then `write` the command that
 /// follows, then `begin_tick` and its substeps in order. A command acts after the computation delay; until then the one
 /// before it does. All of it is real-time safe but `make`.
 namespace tactus::simulation {
 
-/// The master device and the person who holds it.
+/// The master device and the operator who holds it.
 class MasterPlant {
  public:
   /// At rest with every mass at `start_m`. Errors name `master` and `operator`.
   static Result<MasterPlant> make(const mechanics::CableDrivenMaster::Params& device,
                                   const mechanics::Operator::Params& person, const Clock& clock, double start_m);
 
-  /// What the sensors read at this tick. The person changes the grip here.
+  /// What the sensors read at this tick. The operator changes the grip here.
   station::DeviceReading read(const station::Tick&) noexcept;
   void write(const station::DeviceCommand& command) noexcept {
     next_ = {.motor_N = command.force_N, .handle_N = command.handle_force_N};
   }
-  /// The person intends to be at `path_m` now and at `path_at_next_tick_m` then.
+  /// The operator intends to be at `path_m` now and at `path_at_next_tick_m` then.
   void begin_tick(double path_m, double path_at_next_tick_m) noexcept {
     begin_tick(person_.step({.path_m = path_m,
                              .path_at_next_tick_m = path_at_next_tick_m,
@@ -38,17 +38,17 @@ class MasterPlant {
     aim_ = aim;
     ++ticks_;
   }
-  /// The person holds the handle as that of `other` is held, from the next substep on, and the other way round.
+  /// The operator holds the handle as that of `other` is held, from the next substep on, and the other way round.
   void exchange_grip(MasterPlant& other) noexcept {
     std::swap(grip_, other.grip_);
     device_.hold(mechanics::scaled(grip_, grip_factor_));
   }
-  /// The person holds the handle with `grip` from the next substep on, which must be one that `make` takes.
+  /// The operator holds the handle with `grip` from the next substep on, which must be one that `make` takes.
   void hold(const mechanics::LinearSpring::Params& grip) noexcept {
     grip_ = grip;
     device_.hold(mechanics::scaled(grip_, grip_factor_));
   }
-  /// The same after nobody held it, or something else did: what the person corrected before is forgotten.
+  /// The same after nobody held it, or something else did: what the operator corrected before is forgotten.
   void take_again(const mechanics::LinearSpring::Params& grip) noexcept {
     person_.reset();
     hold(grip);

@@ -9,10 +9,10 @@ namespace tactus::simulation {
 namespace {
 
 /// An arming that takes longer than this comes to nothing.
-constexpr double patience_s = 5.0;
+constexpr double arming_timeout_s = 5.0;
 
 template <class Pair>
-constexpr bool supervised = std::is_same_v<typename Pair::Wish, control::SiteRequests>;
+constexpr bool supervised = std::is_same_v<typename Pair::Request, control::SiteRequests>;
 
 /// What a site's controller and gate put out, and what it tells the other site.
 template <class Output>
@@ -64,7 +64,7 @@ Result<TeleoperatorOf<Pair>> TeleoperatorOf<Pair>::make(const Params& params, do
 template <class Pair>
 Check TeleoperatorOf<Pair>::arm(double start_m, double blend_s) {
   const auto whole_force_ticks = static_cast<std::int64_t>(blend_s / clock_.tick_s) + 1;
-  const auto last = static_cast<std::int64_t>(patience_s / clock_.tick_s);
+  const auto last = static_cast<std::int64_t>(arming_timeout_s / clock_.tick_s);
   std::int64_t to_follow = whole_force_ticks;
   while (to_follow > 0 && ticks_ < last) {
     advance(start_m, start_m, buttons(sites_.master().state(), ticks_));
@@ -72,7 +72,7 @@ Check TeleoperatorOf<Pair>::arm(double start_m, double blend_s) {
   }
   ticks_ = 0;
   if (to_follow == 0) return std::nullopt;
-  std::string why = "the sites do not follow " + format_number(patience_s) + " s after they were armed";
+  std::string why = "the sites do not follow " + rounded_number(arming_timeout_s) + " s after they were armed";
   if (const auto stop = stopped()) {
     why = "the sites cannot be armed: the " + std::string(name_of(stop->site)) + " stops for the cause \"" +
           std::string(name_of(stop->cause)) + "\"";
@@ -112,8 +112,8 @@ auto TeleoperatorOf<Pair>::step(double path_m, double path_at_next_tick_m, doubl
 /// Flat: a substep takes as long as some calls, and two kinds of pair share what they call, so it would be called.
 template <class Pair>
 [[gnu::flatten]] auto TeleoperatorOf<Pair>::advance(double path_m, double path_at_next_tick_m,
-                                                    const typename Pair::Wish& wish) noexcept -> Record {
-  const typename Pair::Output output = sites_.step(master_, slave_, {.number = ticks_}, wish);
+                                                    const typename Pair::Request& request) noexcept -> Record {
+  const typename Pair::Output output = sites_.step(master_, slave_, {.number = ticks_}, request);
   Record record = recorded(static_cast<double>(ticks_) * clock_.tick_s, output);
   record.tip_position_m = slave_.tip_position_m();
 
@@ -141,7 +141,7 @@ auto TeleoperatorOf<Pair>::recorded(double time_s, const typename Pair::Output& 
   record.displayed_force_N = -master.motor_force_N;
   record.handle_force_N = master.handle_force_N;
   record.hand_force_N = output.master.reading.force_N;
-  record.told_force_N = told(output.slave.output).force_N;
+  record.sent_force_N = told(output.slave.output).force_N;
   record.estimated_grip = master.hand.estimated_grip;
   record.estimated_grip_deviation = master.hand.estimated_grip_deviation;
   return record;

@@ -26,8 +26,8 @@ struct TeleoperatorParams {
   static constexpr auto fields() {
     return List{field("master", &TeleoperatorParams::master, "The master device."),
                 field("slave", &TeleoperatorParams::slave, "The slave device."),
-                field("environment", &TeleoperatorParams::environment, "The wall before the slave."),
-                field("operator", &TeleoperatorParams::person, "The person at the master."),
+                field("environment", &TeleoperatorParams::environment, "The wall in front of the slave."),
+                field("operator", &TeleoperatorParams::person, "The operator at the master."),
                 field("channel", &TeleoperatorParams::channel, "The link between the sites."),
                 field("servo", &TeleoperatorParams::servo, "The servo clock."),
                 field("plant", &TeleoperatorParams::plant, "The clock of the simulated plants."),
@@ -46,19 +46,20 @@ struct TeleoperatorRecord {
   double displayed_force_N = 0.0;         ///< at the motor, positive when it pushes the hand back
   double handle_force_N = 0.0;            ///< to the handle's actuator, positive toward the environment
   double hand_force_N = 0.0;              ///< measured, positive when the hand pushes toward the environment
-  double told_force_N = 0.0;              ///< tip force that the slave sent, positive when the slave is pushed back
+  double sent_force_N = 0.0;              ///< tip force that the slave sent, positive when the slave is pushed back
   double contact_force_N = 0.0;           ///< true, mean until the next tick
   double peak_contact_force_N = 0.0;      ///< true, largest substep until the next tick
-  bool touched = false;                   ///< the tip met the wall before the next tick
+  bool touched = false;                   ///< the tip met the wall by the next tick
   double touched_at_s = 0.0;              ///< when, if so
-  double estimated_grip = 1.0;            ///< of the hand, over identified, as the master's controller believes
+  double estimated_grip = 1.0;            ///< of the hand, over identified, as the master's controller assumes
   double estimated_grip_deviation = 0.0;  ///< standard deviation of that; 0 where nothing is estimated
   /// For logs and exports. All is translated to the operator's hand.
   static constexpr auto signals() {
     constexpr const char* onward = "toward the environment";
     constexpr const char* back = "pushes the hand back";
     return List{
-        observed("time_s", &TeleoperatorRecord::time_s, units::second, "", "", "", "Virtual time of the tick."),
+        observed("time_s", &TeleoperatorRecord::time_s, units::second, "", "", "",
+                 "Virtual time of the control cycle."),
         observed("master_position_m", &TeleoperatorRecord::master_position_m, units::metre, "master", "hand", onward,
                  "Measured, at the motor."),
         observed("induced_position_m", &TeleoperatorRecord::induced_position_m, units::metre, "master", "hand", onward,
@@ -75,18 +76,18 @@ struct TeleoperatorRecord {
                  "Force of the actuator on the handle."),
         observed("hand_force_N", &TeleoperatorRecord::hand_force_N, units::newton, "master", "hand", onward,
                  "Measured force of the hand on the handle."),
-        observed("told_force_N", &TeleoperatorRecord::told_force_N, units::newton, "slave", "slave",
+        observed("sent_force_N", &TeleoperatorRecord::sent_force_N, units::newton, "slave", "slave",
                  "the slave is pushed back", "Tip force that the slave sent to the master, measured or estimated."),
         observed("contact_force_N", &TeleoperatorRecord::contact_force_N, units::newton, "environment", "slave",
-                 "the wall is pressed", "True, mean until the next tick."),
+                 "the wall is pressed", "True, mean until the next control cycle."),
         observed("peak_contact_force_N", &TeleoperatorRecord::peak_contact_force_N, units::newton, "environment",
-                 "slave", "the wall is pressed", "True, largest substep until the next tick."),
+                 "slave", "the wall is pressed", "True, largest substep until the next control cycle."),
         observed("touched", &TeleoperatorRecord::touched, units::none, "environment", "", "",
-                 "The tip met the wall before the next tick."),
+                 "The tip met the wall by the next control cycle."),
         observed("touched_at_s", &TeleoperatorRecord::touched_at_s, units::second, "environment", "", "",
                  "When the tip met the wall, where it did; else 0."),
         observed("estimated_grip", &TeleoperatorRecord::estimated_grip, units::none, "master", "hand", "",
-                 "How firmly the person holds, over identified, as the master's controller believes."),
+                 "How firmly the operator holds, over identified, as the master's controller assumes."),
         observed("estimated_grip_deviation", &TeleoperatorRecord::estimated_grip_deviation, units::none, "master",
                  "hand", "", "Standard deviation of that; 0 where nothing is estimated.")};
   }
@@ -99,7 +100,7 @@ struct StoppedSite {
   bool operator==(const StoppedSite&) const = default;
 };
 
-/// A one-axis teleoperator in virtual time: person, master, two sites, channel, slave and wall.
+/// A one-axis teleoperator in virtual time: operator, master, two sites, channel, slave and wall.
 ///
 /// The sites step once a tick, the plants in substeps between ticks. Within a tick everything is sampled first, then
 /// the master steps, then the slave. A message to the slave with no channel delay arrives in the same tick, one to the
@@ -113,26 +114,27 @@ class TeleoperatorOf {
   using Record = TeleoperatorRecord;
 
   /// At rest with both devices at `start_m` of the master; the slave at `start_m` times the position scale. One that is
-  /// supervised has been armed by a person who rests there: time 0 is when both sites follow with their whole force.
+  /// supervised has been armed by an operator who rests there: time 0 is when both sites follow with their whole force.
   /// Errors: those of its parts, and `inconsistent` where it could not be armed, which name site and cause.
   static Result<TeleoperatorOf> make(const Params& params, double start_m);
 
-  /// Advances by one tick while the person intends to be at `path_m` now and at `path_at_next_tick_m` then. `share` is
-  /// that of the controllers' forces; 0 lets go, under supervision with the dead-man switch.
+  /// Advances by one tick while the operator intends to be at `path_m` now and at `path_at_next_tick_m` then. `share`
+  /// is that of the controllers' forces; 0 releases them, under supervision with the dead-man switch.
   Record step(double path_m, double path_at_next_tick_m, double share = 1.0) noexcept;
 
   /// What `exchange` takes over.
   struct Parts {
-    bool grip = false;         ///< how the person holds the handle
+    bool grip = false;         ///< how the operator holds the handle
     bool environment = false;  ///< the wall
     bool channel = false;      ///< both ways; what was on its way is lost
     bool controllers = false;  ///< of both sites; the gates stay
     bool operator==(const Parts&) const = default;
   };
-  /// Goes on with these parts of `made`, a teleoperator of the same clock and devices that has not been stepped; `made`
-  /// keeps what was in their place. Devices and person stay where they are. Controllers are first brought to rest at
-  /// this very instant (`Site::exchange_controller`), those of another architecture cannot be: what is in the channel
-  /// means nothing to them. Between ticks; does not allocate, but takes about as long as 1000 ticks of the sites.
+  /// Continues with these parts of `made`, a teleoperator of the same clock and devices that has not been stepped;
+  /// `made` keeps what was in their place. Devices and operator stay where they are. Controllers are first brought to
+  /// rest at this very instant (`Site::exchange_controller`), those of another architecture cannot be: what is in the
+  /// channel means nothing to them. Between ticks; does not allocate, but takes about as long as 1000 ticks of the
+  /// sites.
   void exchange(TeleoperatorOf& made, const Parts& parts) noexcept requires std::same_as<Pair, station::BarePair> {
     if (parts.grip) master_.exchange_grip(made.master_);
     if (parts.environment) slave_.exchange_wall(made.slave_);
@@ -140,7 +142,7 @@ class TeleoperatorOf {
     if (parts.controllers) sites_.exchange_controllers(made.sites_);
   }
 
-  /// The record of a tick as far as it is known before the plants go on; `add_contact` adds what they do,
+  /// The record of a tick as far as it is known before the plants continue; `add_contact` adds what they do,
   /// `tip_position_m` is the caller's to fill in.
   static Record recorded(double time_s, const typename Pair::Output& output) noexcept;
   static void add_contact(Record& record, const SlavePlant::Contact& contact, const Clock& clock) noexcept;
@@ -158,7 +160,7 @@ class TeleoperatorOf {
   TeleoperatorOf(const MasterPlant& master, const SlavePlant& slave, Pair sites, const Clock& clock)
       : master_(master), slave_(slave), sites_(std::move(sites)), clock_(clock) {}
   Check arm(double start_m, double blend_s);
-  Record advance(double path_m, double path_at_next_tick_m, const typename Pair::Wish& wish) noexcept;
+  Record advance(double path_m, double path_at_next_tick_m, const typename Pair::Request& request) noexcept;
 
   MasterPlant master_;
   SlavePlant slave_;

@@ -7,11 +7,11 @@
 namespace tactus::stability {
 
 /// The same rig without anything that is not linear: friction off, linkages straight at their average stiffness,
-/// quintic hand off, sensors without steps, noise and offset, a still person, the wall as a bond with the linearised
+/// quintic hand off, sensors without steps, noise and offset, a still operator, the wall as a bond with the linearised
 /// stiffness and damping at `preload_N`, a channel without jitter and loss.
 simulation::Teleoperator::Params linear_version(simulation::Teleoperator::Params params, double preload_N = 1.0);
 
-/// Whether a touch of a micrometre by the hand dies away, in the rig as it stands, tip at the wall. The judge is the
+/// Whether a touch of a micrometre by the hand dies away, in the rig as it is, tip at the wall. The judge is the
 /// second difference of the contact force from tick to tick, which slow motion of the hand hardly enters: its power in
 /// the last of ten parts of the run over that in the third. For rigs that `linear_version` made. `params` must be those
 /// of a teleoperator that can be made.

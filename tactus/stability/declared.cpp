@@ -34,7 +34,7 @@ Error detail::undeclared(Analysis analysis, const std::string& key) {
   const char* what = analysis == Analysis::linear ? "is linear" : "runs on lanes";
   return inconsistent(std::move(key),
                       std::string("has not declared whether it ") + what +
-                          ": declare it in its class as tactus/control/stages/stage.hpp says, or use `tactus "
+                          ": declare it in its class as tactus/control/stages/stage.hpp describes, or use `tactus "
                           "run`");
 }
 

@@ -84,7 +84,7 @@ struct Lane {
   [[nodiscard]] Real get(std::size_t lane) const noexcept { return v[lane]; }
   void set(std::size_t lane, double value) noexcept { v[lane] = static_cast<Real>(value); }
 
-  /// For magnitudes below 2⁵¹ (2²² in float): rounds by adding a number so large that no fraction fits beside it.
+  /// For magnitudes below 2⁵¹ (2²² in float): rounds by adding a number so large that no fraction fits alongside it.
   friend Lane floor(Lane a) noexcept {
     constexpr Real large = sizeof(Real) == 8 ? Real(6755399441055744.0) : Real(12582912.0f);
     const Lane nearest = Lane(Vector((a.v + large) - large));
@@ -101,8 +101,8 @@ struct Lane {
   static constexpr Whole sign_bit = std::numeric_limits<Whole>::min();
 };
 
-/// Two lane types beside each other, as one of twice as many numbers. A loop is one long chain of operations, each of
-/// which waits for the last; the two halves do not wait for each other, so the processor works on both.
+/// Two lane types alongside each other, as one of twice as many numbers. A loop is one long chain of operations, each
+/// of which waits for the last; the two halves do not wait for each other, so the processor works on both.
 template <class Half>
 struct LanePair {
   using Real = typename Half::Real;

@@ -137,7 +137,7 @@ void run(const LanePoint* const* points, const LanePlan& plan, double* lines_roo
   }
 
   Scalar peak_N = 0.0;
-  Scalar still = 1.0;  // 1 in the lanes whose run goes on
+  Scalar still = 1.0;  // 1 in the lanes whose run continues
   std::size_t last = plan.approach_ticks;
   std::size_t next_end = last;  // when the next lane is done
   for (std::size_t tick = 0; tick < last; ++tick) {

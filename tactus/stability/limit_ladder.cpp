@@ -70,7 +70,7 @@ void copy_noise(TappingParams& to, const TappingParams& from) {
 
 constexpr Stage stages[] = {
     {"force_limits", "limits of force", copy_force_limits},
-    {"person", "the person's slow correction and tremor", copy_person},
+    {"operator", "the operator's slow correction and tremor", copy_person},
     {"friction", "friction", copy_friction},
     {"hysteresis", "hysteresis of the linkages", copy_hysteresis},
     {"quintic_hand", "the quintic hand of the model", copy_quintic},

@@ -35,11 +35,11 @@ struct LimitRung {
 ///   the linear loop with the worst of 27 models wrong by that; the linear loop, with that model, whose modes above 15
 ///   Hz fall to a tenth in the time that the judge of taps allows (left out beyond 400 states);
 /// - taps on the wall of the file with everything else linear and no force limited, then with one thing after the other
-///   as the file has it: limits of force, the person, friction, hysteresis, the model's quintic hand, encoders, and
+///   as the file has it: limits of force, the operator, friction, hysteresis, the model's quintic hand, encoders, and
 ///   last whatever is left (noise and offset of sensors, jitter and loss of the channel). What does not differ from the
 ///   linear rig is left out.
 ///
-/// A ratio between two rungs depends on the order; `without` does not, and tells what a thing does among all others.
+/// A ratio between two rungs depends on the order; `without` does not, and reports what a thing does among all others.
 /// Errors: those of `make_loop` and of `TappingEnsemble::make`. Not real-time safe; some ten seconds, on all cores.
 Result<std::vector<LimitRung>> limit_ladder(const experiments::TappingParams& params,
                                             const Linearisation& linearisation, const experiments::Progress& progress);

@@ -6,8 +6,8 @@
 namespace tactus::stability {
 
 /// The gain limit from the linear loop to the taps of the file, one thing after the other: `limit_ladder` as tables and
-/// a picture, beside the linear limit with friction as a describing function over its velocity amplitude. Errors: those
-/// of `report_margins` and of `limit_ladder`.
+/// a picture, alongside the linear limit with friction as a describing function over its velocity amplitude. Errors:
+/// those of `report_margins` and of `limit_ladder`.
 Result<experiments::Outcome> report_limit(const experiments::Request& request, const ReportOptions& options,
                                           const experiments::Progress& progress);
 

@@ -150,8 +150,8 @@ Result<StateSpace> probe_model(control::InducedMotionModel::Params params, Secon
   const Eigen::MatrixXd scaled_before = scale.cwiseInverse().asDiagonal() * before;
   const Eigen::MatrixXd scaled_after = scale.head(states).cwiseInverse().asDiagonal() * after;
   const Eigen::MatrixXd fit = signal::solve_shortest(scaled_before.transpose(), scaled_after.transpose()).transpose();
-  const double misfit = (fit * scaled_before - scaled_after).cwiseAbs().maxCoeff();
-  if (!(misfit <= tolerance)) return not_linear("the model of cancellation");
+  const double mismatch = (fit * scaled_before - scaled_after).cwiseAbs().maxCoeff();
+  if (!(mismatch <= tolerance)) return not_linear("the model of cancellation");
 
   const Eigen::MatrixXd step = scale.head(states).asDiagonal() * fit * scale.cwiseInverse().asDiagonal();
   StateSpace system{.a = step.leftCols(states),

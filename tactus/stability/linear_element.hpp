@@ -24,7 +24,7 @@ Result<StateSpace> probe(int order, const std::function<double(double)>& step);
 /// at its start. Its six states are those that the model shows; A and B are fitted to what it does under a random
 /// force, and the fit must hold to 1e-9.
 ///
-/// The quintic spring is left out. Friction and the linkage are as `linearisation` says, as those of the devices are:
+/// The quintic spring is left out. Friction and the linkage are as `linearisation` states, as those of the devices are:
 /// friction, in the one model that has it, becomes dampers in the continuous form that the model's exact step over a
 /// part of the tick has; the linkage has the chord that its law goes through when it is cycled.
 /// Errors: those of `InducedMotionModel::make`; `failed` as in `probe`.

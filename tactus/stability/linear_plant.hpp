@@ -17,7 +17,7 @@ TipLoad wall_load(const mechanics::Environment::Params& wall, double preload_N);
 /// Inputs of a device: the amplifier's command, then a force on the tip from outside, both in N and positive toward
 /// the environment.
 enum DeviceInput : Eigen::Index { command_in, tip_force_in, device_inputs };
-/// Outputs of a device: positions of motor and tip in m, velocity of the tip in m/s, and what its force sensor says
+/// Outputs of a device: positions of motor and tip in m, velocity of the tip in m/s, and what its force sensor states
 /// about the force in N on the tip: of a slave that with which load and outside push the tip back, of a master that
 /// with which the hand pushes it forward, which is the same with the other sign. Here: pushes back.
 enum DeviceOutput : Eigen::Index { motor_out, tip_out, tip_velocity_out, sensor_out, device_outputs };

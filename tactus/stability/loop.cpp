@@ -67,7 +67,7 @@ struct Linear<control::GripCancellation> {
   [[nodiscard]] double induced_position_m() const { return cancels ? part.output(0.0) : 0.0; }
   [[nodiscard]] double intended(double measured_m, double) const { return measured_m - induced_position_m(); }
   [[nodiscard]] static control::HandEstimate hand() { return {}; }
-  [[nodiscard]] double bearable_N(double wanted_N, double) const { return wanted_N; }
+  [[nodiscard]] double admissible_N(double wanted_N, double) const { return wanted_N; }
   void advance(double motor_N) const {
     if (cancels) part.advance(motor_N);
   }

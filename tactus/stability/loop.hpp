@@ -18,7 +18,8 @@ namespace tactus::stability {
 /// model of it (zero with cancellation off), G_se the servoed slave on the wall from command to tip force. Sampled
 /// exactly: plants behind hold and computation delay by matrix exponentials, elements of the sites by stepping them,
 /// delays as whole ticks (never Padé). Left out: quantisation, noise, saturation, gates, jitter and loss of the
-/// channel, the person's slow correction. What the actuator on the handle does, with a crossover, moves the motor too.
+/// channel, the operator's slow correction. What the actuator on the handle does, with a crossover, moves the motor
+/// too.
 struct Loop {
   double tick_s = 0.0;
   double force_gain = 1.0;       ///< μ
@@ -27,7 +28,7 @@ struct Loop {
   StateSpace master;             ///< from the arriving force times μ, in N, to the command times λ, in m
   StateSpace slave;              ///< from the command, in m, to the sampled tip force, in N
   StateSpace induced;            ///< G_i: from the displayed force, in N, to how far the motor gives way, in m
-  StateSpace modelled;           ///< Ĝ_i, the same as the controller believes it
+  StateSpace modelled;           ///< Ĝ_i, the same as the controller assumes it
 
   /// L at the angular frequency `frequency_rad_per_s`, up to π / tick, for the gain `force_gain`.
   [[nodiscard]] std::complex<double> at(double frequency_rad_per_s) const;

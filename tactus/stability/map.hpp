@@ -16,7 +16,7 @@ namespace tactus::stability {
 
 enum class MapPrecision {
   lanes_of_double,  ///< every point in double
-  lanes_of_float,   ///< in float, and again in double until no verdict in float stands beside another one
+  lanes_of_float,   ///< in float, and again in double until no verdict in float stands alongside another one
 };
 
 /// A share of the work: process `rank` of `ranks`, which all write to one folder.
@@ -28,7 +28,7 @@ struct MapRequest {
   MapParams base;
   std::vector<MapAxis> axes;  ///< the first slowest
   MapPrecision precision = MapPrecision::lanes_of_double;
-  std::filesystem::path folder;  ///< for partial results, from where a killed run goes on; empty: none
+  std::filesystem::path folder;  ///< for partial results, from where a killed run continues; empty: none
   MapShare share;
   std::size_t threads = 0;  ///< 0: as many as the machine has cores
 };

@@ -49,7 +49,7 @@ Result<std::vector<double>> read_range(std::string_view text, std::string_view v
   const auto parts = split(values, ':');
   if (parts.size() != 3) return bad_axis(text, "a range has three parts");
   const auto from = to_number(parts[0]), to = to_number(parts[1]), count = to_number(parts[2]);
-  if (!from || !to || !count) return bad_axis(text, "a part of the range is no number");
+  if (!from || !to || !count) return bad_axis(text, "a part of the range is not a number");
   if (!(*count >= 2.0 && *count <= static_cast<double>(most_values)) || *count != std::floor(*count)) {
     return bad_axis(text, "the count must be a whole number from 2 to 1000000");
   }
@@ -103,7 +103,7 @@ Result<MapAxis> parse_axis(std::string_view text) {
     return axis;
   }
   if (!std::holds_alternative<double*>(binding->target)) {
-    return Error{ErrorCode::wrong_type, axis.key, "is no number and no choice: vary another key", option(text)};
+    return Error{ErrorCode::wrong_type, axis.key, "is neither a number nor a choice: vary another key", option(text)};
   }
   axis.unit = binding->unit.symbol;
   if (constexpr std::string_view log = "[log]"; values.ends_with(log)) {
@@ -117,7 +117,7 @@ Result<MapAxis> parse_axis(std::string_view text) {
   } else {
     for (const std::string_view part : split(values, ',')) {
       const auto value = to_number(part);
-      if (!value) return bad_axis(text, "'" + std::string(part) + "' is no number");
+      if (!value) return bad_axis(text, "'" + std::string(part) + "' is not a number");
       if (!axis.values.empty() && *value <= axis.values.back()) return bad_axis(text, "the values must ascend");
       axis.values.push_back(*value);
     }

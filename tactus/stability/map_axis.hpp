@@ -23,8 +23,8 @@ struct MapAxis {
 /// Reads `key=from:to:count`, `key=from:to:count[log]`, `key=a,b,c` for a number, or `key=word,word` for a choice.
 ///
 /// Errors, each with the option as its place: `syntax`; `unknown_key` for a key that a map has not; `wrong_type` for
-/// one that is no number and no choice; `inconsistent` for a key that all points must share (clocks, the task's times)
-/// and for more than a million values; `out_of_bounds` for an end beyond the key's bounds.
+/// one that is not a number and no choice; `inconsistent` for a key that all points must share (clocks, the task's
+/// times) and for more than a million values; `out_of_bounds` for an end beyond the key's bounds.
 Result<MapAxis> parse_axis(std::string_view text);
 
 /// Parameters at the points of a grid, one after the other without reading keys again.

@@ -12,7 +12,7 @@ namespace tactus::stability {
 namespace {
 
 /// A slave that has not met the wall this long after the reach has ended never will.
-constexpr double patience_s = 0.2;
+constexpr double touch_timeout_s = 0.2;
 /// As in `control::GripCancellation`, which is not made here because its bank of models is not needed.
 constexpr control::Cancellation::Params cancellation_defaults{};
 
@@ -71,11 +71,11 @@ simulation::Teleoperator::Params teleoperator_params(const MapParams& params) {
 Result<LanePlan> make_plan(const MapParams& params) {
   const auto clock = simulation::Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
-  const double longest_s = reach_s(params.task) + patience_s;
+  const double longest_s = reach_s(params.task) + touch_timeout_s;
   if (longest_s > 60.0) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "task.speed_m_per_s",
-                 .message = "the reach would take " + format_number(longest_s) + " s, over a minute: go faster",
+                 .message = "the reach would take " + rounded_number(longest_s) + " s, over a minute: go faster",
                  .place = {}};
   }
   return LanePlan{

@@ -24,16 +24,17 @@ struct MapTask {
   double grip = 1.0;
   experiments::ModelMismatch mismatch;
   static constexpr auto fields() {
-    return List{field("kind", &MapTask::kind, "What this file is for."),
-                field("speed_m_per_s", &MapTask::speed_m_per_s, units::metre_per_second, between(0.001, 2.0),
-                      "Intended speed at the wall."),
-                field("depth_m", &MapTask::depth_m, units::metre, between(1e-4, 0.1),
-                      "How far beyond the wall the person means to go."),
-                field("observation_s", &MapTask::observation_s, units::second, between(0.15, 10.0),
-                      "How long the contact is observed from first touch, while the person keeps pressing."),
-                field("grip", &MapTask::grip, units::none, between(0.05, 20.0),
-                      "Stiffness and damping of the person's grip over [operator.grip]; the controller does not know."),
-                field("mismatch", &MapTask::mismatch, "Errors of the controller's model.")};
+    return List{
+        field("kind", &MapTask::kind, "What this file is for."),
+        field("speed_m_per_s", &MapTask::speed_m_per_s, units::metre_per_second, between(0.001, 2.0),
+              "Intended speed at the wall."),
+        field("depth_m", &MapTask::depth_m, units::metre, between(1e-4, 0.1),
+              "How far beyond the wall the operator aims."),
+        field("observation_s", &MapTask::observation_s, units::second, between(0.15, 10.0),
+              "How long the contact is observed from first touch, while the operator keeps pressing."),
+        field("grip", &MapTask::grip, units::none, between(0.05, 20.0),
+              "Stiffness and damping of the operator's grip over [operator.grip]; the controller does not know."),
+        field("mismatch", &MapTask::mismatch, "Errors of the controller's model.")};
   }
 };
 

@@ -106,7 +106,7 @@ std::string json_of(const MapResult& map, const std::vector<MapPlane>& planes, c
 
 std::string effort_of(const MapResult& map, double elapsed_s) {
   std::string text = std::to_string(map.points.size()) + " runs in " + report::number(elapsed_s, 3) + " s, " +
-                     report::number(map.ticks / elapsed_s / 1e6, 3) + " million loop ticks a second (" +
+                     report::number(map.ticks / elapsed_s / 1e6, 3) + " million control cycles a second (" +
                      map.instruction_set + ")";
   if (map.resumed > 0) text += "; " + std::to_string(map.resumed) + " from an earlier run";
   if (map.redone > 0) text += "; " + std::to_string(map.redone) + " again in double";
@@ -139,7 +139,7 @@ MapReport report_map(const MapResult& map, const MapParams& base, double elapsed
   if (picture) page.figure(picture->map, picture->caption);
   page.table(table);
   page.paragraph(
-      "One tap near the boundary is decided by accident, so a boundary has speckle. Beside this page: map.csv "
+      "One tap near the boundary is decided by accident, so a boundary has speckle. Next to this page: map.csv "
       "with one line a run, map.h5 with the same as arrays over the axes.");
   experiments::add_provenance(page, request, configuration::to_toml(base));
   return {.text = verdict + "\n" + effort + "\n\n" + table.to_text(),

@@ -8,7 +8,7 @@
 
 namespace tactus::stability {
 
-/// What `tactus stability map` prints and writes beside CSV and HDF5.
+/// What `tactus stability map` prints and writes alongside CSV and HDF5.
 struct MapReport {
   std::string text;                ///< for a terminal
   std::string json;                ///< one document: axes with units, shares of the verdicts, limits

@@ -179,7 +179,7 @@ std::vector<report::Figure> figures_of(const Analysis& analysis) {
        {{report::Rule::Direction::vertical, -1.0, ""}, {report::Rule::Direction::horizontal, 0.0, ""}}});
   report::Figure nichols{
       .title = "Nichols",
-      .caption = "Gain over phase; the critical points stand at 0 dB and odd multiples of 180 degrees.",
+      .caption = "Gain over phase; the critical points are at 0 dB and odd multiples of 180 degrees.",
       .columns = 1,
       .panels = {}};
   nichols.panels.push_back({"", angle, level, {{"", phase_degrees, decibel}}, {unity}});

@@ -3,10 +3,10 @@
 #include <tactus/experiments/experiment.hpp>
 #include <tactus/stability/linearisation.hpp>
 
-/// What the verbs of `tactus stability` print, from an experiment file of the kind `tapping`.
+/// What the commands of `tactus stability` print, from an experiment file of the kind `tapping`.
 namespace tactus::stability {
 
-/// What a person may choose beside the file.
+/// What an operator may choose alongside the file.
 struct ReportOptions {
   Linearisation linearisation;
   double uncertainty = 0.2;  ///< share by which the controller's model may be wrong, for the small-gain bound

@@ -21,8 +21,8 @@ struct Scorecard {
   GainLimit limit;          ///< as the file has it
   GainLimit uncancelled;    ///< the same without cancellation: the device by itself
   double mass_ratio = 0.0;  ///< Daniel and McAree's bound on λ μ
-  /// Where the force on the hand has fallen by 3 dB from what the motor does at 1 Hz, held as the file says; none where
-  /// that lies beyond half the servo rate.
+  /// Where the force on the hand has fallen by 3 dB from what the motor does at 1 Hz, held as the file states; none
+  /// where that lies beyond half the servo rate.
   std::optional<double> force_bandwidth_Hz;
   double force_peak = 0.0;     ///< largest hand force over motor force up to half the servo rate, over that at 1 Hz
   double force_peak_Hz = 0.0;  ///< where
@@ -34,7 +34,7 @@ struct Scorecard {
   std::vector<Sensitivity> sensitivities;
 };
 
-/// Errors: those of `make_loop`. Not real-time safe; some seconds, and `progress` tells how far.
+/// Errors: those of `make_loop`. Not real-time safe; some seconds, and `progress` reports how far.
 Result<Scorecard> score(const simulation::Teleoperator::Params& params, const Linearisation& linearisation,
                         const experiments::Progress& progress);
 

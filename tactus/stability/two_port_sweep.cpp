@@ -52,7 +52,7 @@ report::Figure two_port_figure(const TwoPortSweep& sweep) {
   report::Figure figure{
       .title = "Two-port",
       .caption =
-          "What the hand feels in free motion and on the wall, beside the wall itself; transparent is "
+          "What the hand feels in free motion and on the wall, compared with the wall itself; transparent is "
           "where what it feels is lambda mu times the wall, 0 dB and 0 degrees. Stable between all "
           "passive ends where Llewellyn's index is at least 1, passive where the scattering norm is at "
           "most 1.",

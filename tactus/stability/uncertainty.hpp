@@ -7,7 +7,7 @@
 namespace tactus::stability {
 
 /// The controller's model with its masses, its linkage's stiffness and its hand's damping each at 1 − share, 1 and
-/// 1 + share of what the file says: 27 models. Between them nothing is tried.
+/// 1 + share of what the file states: 27 models. Between them nothing is tried.
 struct UncertainLimit {
   /// Below it L stays within the unit circle for all models, 1 / max |L / μ|: no phase is trusted (small gain).
   double small_gain = 0.0;

@@ -26,10 +26,9 @@ constexpr double quantised_stiffness_N_per_m(double damping_N_s_per_m, double ti
   return resolution_m > 0.0 ? std::min(sampled, 2.0 * friction_N / resolution_m) : sampled;
 }
 
-/// Stable, and not more, with a wall that answers a delay t_d late: K < (b + B) / (T/2 + t_d), for delays small beside
-/// m / (b + B).
-/// Source: Gil, Sánchez, Hulin, Preusche, Hirzinger, Stability boundary for haptic rendering: influence of damping and
-/// delay, J. Computing and Information Science in Engineering 9(1), 2009.
+/// Stable, and not more, with a wall that answers a delay t_d late: K < (b + B) / (T/2 + t_d), for delays small
+/// alongside m / (b + B). Source: Gil, Sánchez, Hulin, Preusche, Hirzinger, Stability boundary for haptic rendering:
+/// influence of damping and delay, J. Computing and Information Science in Engineering 9(1), 2009.
 constexpr double stable_stiffness_N_per_m(double damping_N_s_per_m, double virtual_damping_N_s_per_m, double tick_s,
                                           double delay_s) {
   return (damping_N_s_per_m + virtual_damping_N_s_per_m) / (0.5 * tick_s + delay_s);
@@ -55,7 +54,7 @@ enum class WallBehaviour {
 ///
 /// The four regions are those that Diolaiti, Niemeyer, Barbagli, Salisbury, Stability of haptic rendering:
 /// discretization, quantization, time delay, and Coulomb effects, IEEE Trans. Robotics 22(2), 2006, find from energy;
-/// the equations above were derived anew.
+/// the equations above were derived again.
 struct SampledWall {
   double stiffness_N_per_m = 0.0;  ///< K, above 0
   double damping_N_s_per_m = 0.0;  ///< b

@@ -18,7 +18,7 @@ struct ChannelParams {
   std::int64_t seed = 1;
   static constexpr auto fields() {
     return List{field("delay_s", &ChannelParams::delay_s, units::second, between(0.0, 1.0),
-                      "Shortest delay, rounded to whole ticks."),
+                      "Shortest delay, rounded to whole control cycles."),
                 field("jitter_s", &ChannelParams::jitter_s, units::second, between(0.0, 1.0),
                       "Longest delay on top of it, drawn evenly for every message."),
                 field("loss_fraction", &ChannelParams::loss_fraction, units::none, between(0.0, 1.0),
@@ -32,9 +32,9 @@ struct LinkParams {
   ChannelParams to_slave{.seed = 1};
   ChannelParams to_master{.seed = 2};
   static constexpr auto fields() {
-    return List{field("to_slave", &LinkParams::to_slave, "The way from master to slave."),
+    return List{field("to_slave", &LinkParams::to_slave, "The link from master to slave."),
                 field("to_master", &LinkParams::to_master,
-                      "The way from slave to master; a message arrives at the next tick at the earliest.")};
+                      "The link from slave to master; a message arrives in the next control cycle at the earliest.")};
   }
 };
 
@@ -43,7 +43,7 @@ struct LinkParams {
 ///
 /// Each message takes the delay plus an evenly drawn share of the jitter, in whole ticks. Of the messages that arrive
 /// in a tick the newest counts, and one that is older than what came before is dropped: an old state is never applied.
-/// A tick in which nothing new arrives keeps the last message and says that it is not fresh.
+/// A tick in which nothing new arrives keeps the last message and states that it is not fresh.
 template <class Payload>
 class ChannelOf {
  public:
@@ -62,11 +62,11 @@ class ChannelOf {
   /// not allocate.
   Delivery step(const Payload& message) noexcept;
 
-  /// Lets a channel on which nothing was sent yet go on from what `before` delivered last. Does not allocate.
+  /// Lets a channel on which nothing was sent yet continue from what `before` delivered last. Does not allocate.
   void continue_from(const ChannelOf& before) noexcept { newest_.message = before.newest_.message; }
 
  private:
-  /// What arrives in one tick; messages are numbered from 1, and 0 is none.
+  /// What arrives in one tick; messages are numbered from 1, and 0: none.
   struct Slot {
     std::int64_t number = 0;
     Payload message{};

@@ -11,15 +11,15 @@ namespace tactus::station {
 
 /// What a device can do, and what is never asked of it: `DeviceGuard` keeps it to that, whoever commands. 0: not
 /// stated. Positions and forces as in `tactus/control/site.hpp`: positive toward the environment, translated to the
-/// point where the person, or the environment, touches it.
+/// point where the operator, or the environment, touches it.
 struct DeviceLimits {
   double force_N = 0.0;           ///< largest force of the motor, either way
-  double handle_force_N = 0.0;    ///< of a second actuator on the handle; 0 where there is none
+  double handle_force_N = 0.0;    ///< of a second actuator on the handle; 0 without one
   double rate_N_per_s = 0.0;      ///< fastest change of either force
   double velocity_m_per_s = 0.0;  ///< fastest that the device may be
   double position_m = 0.0;        ///< farthest that it may be from zero
   /// Of the law that its drive runs by itself, largest gains; one that takes none leaves both 0. One that takes a law
-  /// tells velocity and force of its motor.
+  /// reports velocity and force of its motor.
   double stiffness_N_per_m = 0.0;
   double damping_N_s_per_m = 0.0;
   /// Step of the velocity that it reports. 0: it reports none of its own, or one that its driver derives from the
@@ -30,22 +30,22 @@ struct DeviceLimits {
 /// Whether a device can be trusted with the next tick.
 enum class DeviceHealth {
   good,
-  degraded,  ///< the reading is an old one
-  silent,    ///< it is too old to act on; a newer one may come
-  lost       ///< nothing it says or does can be relied on
+  degraded,        ///< the reading is an old one
+  not_responding,  ///< it is too old to act on; a newer one may come
+  lost             ///< nothing it states or does can be relied on
 };
 constexpr auto enumerators(DeviceHealth) {
   return std::array{Enumerator{DeviceHealth::good, "good"}, Enumerator{DeviceHealth::degraded, "degraded"},
-                    Enumerator{DeviceHealth::silent, "silent"}, Enumerator{DeviceHealth::lost, "lost"}};
+                    Enumerator{DeviceHealth::not_responding, "not-responding"}, Enumerator{DeviceHealth::lost, "lost"}};
 }
 
 struct DeviceReading {
   double position_m = 0.0;  ///< at the motor
   double force_N = 0.0;     ///< master: hand on the handle, positive toward the environment; slave: environment on the
                             ///< tip, positive when it pushes the slave back
-  double grip = 1.0;        ///< master: how firmly the person holds, over nominal, where a sensor tells
+  double grip = 1.0;        ///< master: how firmly the operator holds, over nominal, if a sensor measures it
   double age_s = 0.0;       ///< of the position at the tick's deadline; negative where it was measured after that
-  control::DriveTells motor_tells = {};
+  control::DriveReport motor_report = {};
 };
 
 struct DeviceCommand {
@@ -65,7 +65,7 @@ class DeviceOf {
   using Command = Each<Reading, DeviceCommand>;
 
   virtual ~DeviceOf() = default;
-  /// Of each joint; they say how many there are. Not real-time safe.
+  /// Of each joint; their number is the number of joints. Not real-time safe.
   [[nodiscard]] virtual Each<Reading, DeviceLimits> limits() const = 0;
   /// Whether nobody can be hurt by it. Anything else needs limits of its own and gates that somebody has set.
   [[nodiscard]] virtual bool simulated() const noexcept { return false; }

@@ -22,27 +22,27 @@ double held_to(double value, double largest) noexcept {
 
 }  // namespace
 
-const char* in_words(LetGo cause) {
+const char* in_words(ReleaseCause cause) {
   switch (cause) {
-    case LetGo::none:
+    case ReleaseCause::none:
       return "nothing was wrong";
-    case LetGo::silent:
+    case ReleaseCause::timed_out:
       return "commands stopped coming";
-    case LetGo::not_finite:
-      return "a command or a reading was no number";
-    case LetGo::force:
+    case ReleaseCause::not_finite:
+      return "a command or a reading was not a number";
+    case ReleaseCause::force:
       return "commands insisted on more force than the device may give";
-    case LetGo::rate:
+    case ReleaseCause::rate:
       return "commands insisted on changing the force faster than the device may";
-    case LetGo::velocity:
+    case ReleaseCause::velocity:
       return "the device was faster than it may be";
-    case LetGo::position:
+    case ReleaseCause::position:
       return "the device left its workspace";
   }
   return "of what this version does not know";
 }
 
-DeviceGuard::DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept
+DeviceGuard::DeviceGuard(const DeviceLimits& limits, Seconds timeout) noexcept
     : limits_{.force_N = limit_or_none(limits.force_N),
               .handle_force_N = limit_or_none(limits.handle_force_N),
               .rate_N_per_s = limit_or_none(limits.rate_N_per_s),
@@ -50,29 +50,29 @@ DeviceGuard::DeviceGuard(const DeviceLimits& limits, Seconds patience) noexcept
               .position_m = limit_or_none(limits.position_m),
               .stiffness_N_per_m = limits.stiffness_N_per_m,
               .damping_N_s_per_m = limits.damping_N_s_per_m},
-      patience_ns_(std::llround(1e9 * patience.value)) {}
+      timeout_ns_(std::llround(1e9 * timeout.value)) {}
 
-void DeviceGuard::let_go(LetGo cause) noexcept {
-  if (cause_ == LetGo::none) cause_ = cause;
+void DeviceGuard::release(ReleaseCause cause) noexcept {
+  if (cause_ == ReleaseCause::none) cause_ = cause;
 }
 
 void DeviceGuard::rearm() noexcept {
-  cause_ = LetGo::none;
+  cause_ = ReleaseCause::none;
   insisting_ns_ = 0;
   marked_ = false;
 }
 
 void DeviceGuard::observe(double position_m, const Tick& tick, double age_s, double velocity_m_per_s) noexcept {
   if (!std::isfinite(position_m) || !std::isfinite(age_s) || !std::isfinite(velocity_m_per_s)) {
-    return let_go(LetGo::not_finite);
+    return release(ReleaseCause::not_finite);
   }
   position_m_ = position_m;
   velocity_m_per_s_ = velocity_m_per_s;
   const std::int64_t now_ns = tick.deadline_ns - std::llround(1e9 * age_s);
-  if (std::fabs(position_m) > limits_.position_m) let_go(LetGo::position);
+  if (std::fabs(position_m) > limits_.position_m) release(ReleaseCause::position);
   if (marked_) {
     const double window_s = 1e-9 * static_cast<double>(std::max(now_ns - mark_ns_, speed_window_ns));
-    if (std::fabs(position_m - mark_m_) > limits_.velocity_m_per_s * window_s) let_go(LetGo::velocity);
+    if (std::fabs(position_m - mark_m_) > limits_.velocity_m_per_s * window_s) release(ReleaseCause::velocity);
     if (now_ns - mark_ns_ < speed_window_ns) return;
   }
   marked_ = true;
@@ -94,7 +94,7 @@ DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) n
                                         law.damping_N_s_per_m * (law.velocity_m_per_s - velocity_m_per_s_)
                                   : wanted.force_N;
   const bool gains = std::isfinite(wanted.law.stiffness_N_per_m) && std::isfinite(wanted.law.damping_N_s_per_m);
-  if (!std::isfinite(whole_N) || !std::isfinite(wanted.handle_force_N) || !gains) let_go(LetGo::not_finite);
+  if (!std::isfinite(whole_N) || !std::isfinite(wanted.handle_force_N) || !gains) release(ReleaseCause::not_finite);
   const std::int64_t since_ns = passed_any_ ? std::max<std::int64_t>(0, tick.deadline_ns - passed_ns_) : 0;
   const std::int64_t period_ns = since_ns / (1 + std::max<std::int64_t>(0, tick.missed));
   passed_any_ = true;
@@ -110,7 +110,7 @@ DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) n
     return std::fabs(to_N - from_N) <= rounding * most_N ? to_N : from_N + std::copysign(most_N, to_N - from_N);
   };
 
-  if (cause_ == LetGo::none && wanted.enabled) {
+  if (cause_ == ReleaseCause::none && wanted.enabled) {
     const bool strongest = runs_law && std::fabs(whole_N) <= rounding * limits_.force_N;
     const DeviceCommand strong{.force_N = strongest ? whole_N : held_to(whole_N, limits_.force_N),
                                .handle_force_N = held_to(wanted.handle_force_N, limits_.handle_force_N)};
@@ -123,7 +123,7 @@ DeviceCommand DeviceGuard::pass(const DeviceCommand& wanted, const Tick& tick) n
     const bool too_fast = now.force_N != strong.force_N || now.handle_force_N != strong.handle_force_N;
     if (too_strong || too_fast) ++held_back_;
     insisting_ns_ = too_strong || too_fast ? insisting_ns_ + period_ns : 0;
-    if (insisting_ns_ > patience_ns_) let_go(too_strong ? LetGo::force : LetGo::rate);
+    if (insisting_ns_ > timeout_ns_) release(too_strong ? ReleaseCause::force : ReleaseCause::rate);
     passed_ = now;
     if (!runs_law) return now;
     // Of force and law the share that passes of both; where it is none, the force alone.
@@ -160,7 +160,7 @@ Check check_limits(const DeviceLimits& limits, bool simulated) {
                    .parameter = name,
                    .message =
                        "a device that is not simulated must state this limit of its own: without it nothing "
-                       "stands between a wrong controller and the motor",
+                       "is between a wrong controller and the motor",
                    .place = {}};
     }
   }
@@ -191,13 +191,13 @@ Reading GuardedDeviceOf<Reading>::read(const Tick& tick) noexcept {
   if (device_->health() != DeviceHealth::lost) {
     for_each_joint(
         [&tick](DeviceGuard& guard, const DeviceReading& joint) noexcept {
-          guard.observe(joint.position_m, tick, joint.age_s, joint.motor_tells.velocity_m_per_s);
+          guard.observe(joint.position_m, tick, joint.age_s, joint.motor_report.velocity_m_per_s);
         },
         guard_, reading);
   }
   if (written_ && silent) {
-    if (tick.deadline_ns - written_ns_ > patience_ns_) {
-      for_each_joint([](DeviceGuard& guard) noexcept { guard.let_go(LetGo::silent); }, guard_);
+    if (tick.deadline_ns - written_ns_ > timeout_ns_) {
+      for_each_joint([](DeviceGuard& guard) noexcept { guard.release(ReleaseCause::timed_out); }, guard_);
     }
     device_->write(pass());
   }
@@ -216,8 +216,8 @@ void GuardedDeviceOf<Reading>::write(const Command& command) noexcept {
 template <class Reading>
 typename GuardedDeviceOf<Reading>::Command GuardedDeviceOf<Reading>::pass() noexcept {
   if constexpr (has_joints<Reading>) {
-    if (const LetGo found = cause(); found != LetGo::none) {
-      for_each_joint([found](DeviceGuard& guard) noexcept { guard.let_go(found); }, guard_);
+    if (const ReleaseCause found = cause(); found != ReleaseCause::none) {
+      for_each_joint([found](DeviceGuard& guard) noexcept { guard.release(found); }, guard_);
     }
   }
   Command passed = wanted_;

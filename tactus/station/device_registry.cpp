@@ -19,7 +19,7 @@ Error unknown(std::string_view name) {
   message += "' is no device: ";
   if (registry().empty()) {
     message +=
-        "this program has none beside the simulated one: register yours in a program of your own, as "
+        "this program has only the simulated one: register yours in a program of your own, as "
         "examples/own-device does";
   } else {
     std::string_view between = "write one of ";

@@ -1,5 +1,5 @@
 #include <tactus/station/local_teleoperator.hpp>
-#include <tactus/station/wall.hpp>
+#include <tactus/station/make_device_guard.hpp>
 
 namespace tactus::station {
 
@@ -11,7 +11,7 @@ Check refuse_unsupervised(bool supervised, bool master_is_real, bool slave_is_re
   return Error{.code = ErrorCode::inconsistent,
                .parameter = master_is_real ? "master" : "slave",
                .message =
-                   "a device that is not simulated needs supervised sites, which a person arms and can stop: "
+                   "a device that is not simulated needs supervised sites, which an operator arms and can stop: "
                    "drive it by a LocalTeleoperator",
                .place = {}};
 }
@@ -21,16 +21,17 @@ Check refuse_unsupervised(bool supervised, bool master_is_real, bool slave_is_re
 template <class Pair>
 Result<DevicePair<Pair>> DevicePair<Pair>::make(const Params& control, const LinkParams& channel, Seconds tick,
                                                 const Lengths& slave_start_m, Device& master, Device& slave) {
-  auto master_wall = wall_before(master, control, control::SiteRole::master);
-  if (!master_wall) return master_wall.error();
-  auto slave_wall = wall_before(slave, control, control::SiteRole::slave);
-  if (!slave_wall) return slave_wall.error();
-  if (Check error = refuse_unsupervised(supervised, *master_wall != nullptr, *slave_wall != nullptr)) return *error;
+  auto master_guard = make_device_guard(master, control, control::SiteRole::master);
+  if (!master_guard) return master_guard.error();
+  auto slave_guard = make_device_guard(slave, control, control::SiteRole::slave);
+  if (!slave_guard) return slave_guard.error();
+  if (Check error = refuse_unsupervised(supervised, *master_guard != nullptr, *slave_guard != nullptr)) return *error;
   const Params own = tightened(tightened(control, control::SiteRole::master, master.limits()), control::SiteRole::slave,
                                slave.limits());
   auto sites = Pair::make(own, channel, tick, slave_start_m);
   if (!sites) return sites.error();
-  return DevicePair(*std::move(sites), {*std::move(master_wall), *std::move(slave_wall)}, slave_start_m, master, slave);
+  return DevicePair(*std::move(sites), {*std::move(master_guard), *std::move(slave_guard)}, slave_start_m, master,
+                    slave);
 }
 
 template <class Pair>
@@ -42,12 +43,12 @@ Result<DevicePair<Pair>> DevicePair<Pair>::around(Pair sites, Device& master, De
       return same_for_each(sites.slave().gates(), 0.0);
     }
   }();
-  auto master_wall = wall_before(master, joints_of(joints), control::SiteRole::master);
-  if (!master_wall) return master_wall.error();
-  auto slave_wall = wall_before(slave, joints_of(joints), control::SiteRole::slave);
-  if (!slave_wall) return slave_wall.error();
-  if (Check error = refuse_unsupervised(supervised, *master_wall != nullptr, *slave_wall != nullptr)) return *error;
-  return DevicePair(std::move(sites), {*std::move(master_wall), *std::move(slave_wall)}, joints, master, slave);
+  auto master_guard = make_device_guard(master, joints_of(joints), control::SiteRole::master);
+  if (!master_guard) return master_guard.error();
+  auto slave_guard = make_device_guard(slave, joints_of(joints), control::SiteRole::slave);
+  if (!slave_guard) return slave_guard.error();
+  if (Check error = refuse_unsupervised(supervised, *master_guard != nullptr, *slave_guard != nullptr)) return *error;
+  return DevicePair(std::move(sites), {*std::move(master_guard), *std::move(slave_guard)}, joints, master, slave);
 }
 
 template class DevicePair<SupervisedPair>;

@@ -11,14 +11,14 @@ namespace tactus::station {
 
 /// Both sites of a teleoperator on one computer, each with its device: what a servo thread steps.
 ///
-/// Where a device can do less than its safety gate lets through, the gate is tightened to that: what a site believes to
-/// be applied then is. A device that is not simulated stands behind a `GuardedDevice`, and is refused where it states
+/// Where a device can do less than its safety gate lets through, the gate is tightened to that: what a site assumes to
+/// be applied then is. A device that is not simulated is behind a `GuardedDevice`, and is refused where it states
 /// no limits of its own, where a limit of its gates was never chosen, and by sites without supervision.
 template <class Pair>
 class DevicePair {
  public:
   using Output = typename Pair::Output;
-  using Wish = typename Pair::Wish;
+  using Request = typename Pair::Request;
   using Params = typename Pair::Params;
   using Lengths = typename Pair::Lengths;  ///< in m
   using Reading = Each<Lengths, DeviceReading>;
@@ -33,13 +33,15 @@ class DevicePair {
   /// the devices allow (`tightened`). Errors name `master` and `slave`: of other numbers of joints, too.
   static Result<DevicePair> around(Pair sites, Device& master, Device& slave);
 
-  /// One tick. `wish` is what the person presses, at both sites, or, without supervision, the share of the force that
-  /// is let in. Real-time safe as far as the devices are.
-  Output step(const Tick& tick, const Wish& wish) noexcept { return sites_.step(*master_, *slave_, tick, wish); }
+  /// One tick. `request` is what the operator presses, at both sites, or, without supervision, the share of the force
+  /// that is let in. Real-time safe as far as the devices are.
+  Output step(const Tick& tick, const Request& request) noexcept {
+    return sites_.step(*master_, *slave_, tick, request);
+  }
   /// One tick of sites that want no force any more: what a loop does from its end on, tick by tick, until it is
   /// `at_rest`. The force falls at the gates' rate limits or, under supervision, as in hold. Real-time safe as far as
   /// the devices are.
-  Output let_go(const Tick& tick) noexcept { return step(tick, leaving()); }
+  Output step_to_rest(const Tick& tick) noexcept { return step(tick, leaving()); }
   /// No site commanded a force at the latest tick.
   [[nodiscard]] bool at_rest() const noexcept { return sites_.at_rest(); }
   /// Commands no force at once, whatever it was: for an end that cannot wait. Real-time safe as far as the devices are.
@@ -53,15 +55,15 @@ class DevicePair {
   [[nodiscard]] const Pair& sites() const noexcept { return sites_; }
 
  private:
-  static constexpr bool supervised = std::is_same_v<Wish, control::SiteRequests>;
-  using Walls = std::array<std::unique_ptr<GuardedDeviceOf<Reading>>, 2>;
-  DevicePair(Pair sites, Walls walls, const Lengths& joints, Device& master, Device& slave)
+  static constexpr bool supervised = std::is_same_v<Request, control::SiteRequests>;
+  using Guards = std::array<std::unique_ptr<GuardedDeviceOf<Reading>>, 2>;
+  DevicePair(Pair sites, Guards guards, const Lengths& joints, Device& master, Device& slave)
       : sites_(std::move(sites)),
-        walls_(std::move(walls)),
+        guards_(std::move(guards)),
         joints_(joints),
-        master_(walls_[0] ? walls_[0].get() : &master),
-        slave_(walls_[1] ? walls_[1].get() : &slave) {}
-  static Wish leaving() noexcept {
+        master_(guards_[0] ? guards_[0].get() : &master),
+        slave_(guards_[1] ? guards_[1].get() : &slave) {}
+  static Request leaving() noexcept {
     if constexpr (supervised) {
       return {.leave = true};
     } else {
@@ -70,13 +72,13 @@ class DevicePair {
   }
 
   Pair sites_;
-  Walls walls_;     ///< before devices that are not simulated
+  Guards guards_;   ///< before devices that are not simulated
   Lengths joints_;  ///< as many as the devices have
   Device* master_;
   Device* slave_;
 };
 
-/// With a person who arms it and holds a dead-man switch.
+/// With an operator who arms it and holds a dead-man switch.
 using LocalTeleoperator = DevicePair<SupervisedPair>;
 /// As in the papers, at work from the first tick on. For simulated devices only.
 using BareTeleoperator = DevicePair<BarePair>;

@@ -62,9 +62,9 @@ template <class Master, class Slave>
 Result<SitePair<Master, Slave>> SitePair<Master, Slave>::around(Master master, Slave slave, const LinkParams& channel,
                                                                 Seconds tick, const Lengths& slave_start_m) {
   const auto first = first_said<Payload>(slave_start_m);
-  auto to_slave = Way::make(channel.to_slave, tick, first);
+  auto to_slave = Transport::make(channel.to_slave, tick, first);
   if (!to_slave) return under("channel.to_slave", to_slave.error());
-  auto to_master = Way::make(channel.to_master, tick, first);
+  auto to_master = Transport::make(channel.to_master, tick, first);
   if (!to_master) return under("channel.to_master", to_master.error());
   return SitePair(std::move(master), std::move(slave), *std::move(to_slave), *std::move(to_master), tick, first);
 }

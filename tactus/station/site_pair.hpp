@@ -11,10 +11,10 @@
 
 namespace tactus::station {
 
-/// The way of one site of a pair: what it hears at this tick, and the channel into which it speaks. Messages for a site
-/// without supervision, packets for one with it.
+/// The way of one site of a pair: what it receives at this tick, and the channel into which it speaks. Messages for a
+/// site without supervision, packets for one with it.
 template <class Payload>
-struct WayEnd {
+struct TransportEnd {
   using Delivery = typename ChannelOf<Payload>::Delivery;
 
   const Delivery& heard;
@@ -23,7 +23,7 @@ struct WayEnd {
   double tick_s;
   bool a_tick_later;  ///< what arrived has lain there since the tick before
 
-  /// Puts what has come into what the site senses. A side of fewer joints, as a handle that leads a tool, says fewer
+  /// Puts what has come into what the site senses. A side of fewer joints, as a handle that leads a tool, states fewer
   /// numbers: those of the first joints.
   template <class Sensors>
   void hear(Sensors& sensors) const noexcept {
@@ -55,7 +55,7 @@ class SitePair {
   static constexpr bool supervised = Supervised<Master>;
   using Messages = Each<typename Master::Sensors, control::Message>;
   using Payload = std::conditional_t<supervised, control::PacketOf<Messages>, Messages>;
-  using Way = ChannelOf<Payload>;
+  using Transport = ChannelOf<Payload>;
 
  public:
   using Params = Each<Messages, control::ControlParams>;
@@ -64,8 +64,8 @@ class SitePair {
     Step<Master> master;
     Step<Slave> slave;
   };
-  /// Of supervised sites what the person presses, at both; of others the share of the controllers' forces.
-  using Wish = typename Master::Wish;
+  /// Of supervised sites what the operator presses, at both; of others the share of the controllers' forces.
+  using Request = typename Master::Request;
 
   /// With a slave that rests at `slave_start_m`. Errors name `control` and `channel`.
   static Result<SitePair> make(const Params& control, const LinkParams& channel, Seconds tick,
@@ -77,26 +77,26 @@ class SitePair {
 
   /// One tick. Real-time safe as far as the devices are.
   template <Drivable MasterDevice, Drivable SlaveDevice>
-  Output step(MasterDevice& master, SlaveDevice& slave, const Tick& tick, const Wish& wish) noexcept {
-    typename Way::Delivery at_slave;
-    WayEnd<Payload> of_master{
+  Output step(MasterDevice& master, SlaveDevice& slave, const Tick& tick, const Request& request) noexcept {
+    typename Transport::Delivery at_slave;
+    TransportEnd<Payload> of_master{
         .heard = at_master_, .out = to_slave_, .other_hears = at_slave, .tick_s = tick_s_, .a_tick_later = true};
-    WayEnd<Payload> of_slave{
+    TransportEnd<Payload> of_slave{
         .heard = at_slave, .out = to_master_, .other_hears = at_master_, .tick_s = tick_s_, .a_tick_later = false};
     // In this order, as the members of an output are made.
-    return {.master = station::step(master_, master, of_master, tick, wish),
-            .slave = station::step(slave_, slave, of_slave, tick, wish)};
+    return {.master = station::step(master_, master, of_master, tick, request),
+            .slave = station::step(slave_, slave, of_slave, tick, request)};
   }
 
-  /// Goes on with the channels of `made`, which has not been stepped, and gives it the own ones; what is on its way is
-  /// lost. Between ticks. Real-time safe.
+  /// Continues with the channels of `made`, which has not been stepped, and gives it the own ones; what is on its way
+  /// is lost. Between ticks. Real-time safe.
   void exchange_channels(SitePair& made) noexcept requires(!supervised) {
     made.to_slave_.continue_from(to_slave_);
     made.to_master_.continue_from(to_master_);
     std::swap(to_slave_, made.to_slave_);
     std::swap(to_master_, made.to_master_);
   }
-  /// Goes on with the controllers of `made`, brought to rest at the latest tick (`Site::exchange_controller`); the
+  /// Continues with the controllers of `made`, brought to rest at the latest tick (`Site::exchange_controller`); the
   /// gates stay. Between ticks; does not allocate, but takes as long as a thousand ticks.
   void exchange_controllers(SitePair& made) noexcept requires(!supervised) {
     constexpr int ticks_to_rest = 1000;
@@ -106,7 +106,7 @@ class SitePair {
 
   [[nodiscard]] const Master& master() const noexcept { return master_; }
   [[nodiscard]] const Slave& slave() const noexcept { return slave_; }
-  /// What has come for the master, which it hears at its next tick.
+  /// What has come for the master, which it receives at its next tick.
   [[nodiscard]] const Payload& at_master() const noexcept { return at_master_.message; }
   /// Neither site commands a force.
   [[nodiscard]] bool at_rest() const noexcept {
@@ -127,7 +127,7 @@ class SitePair {
     }
   }
 
-  SitePair(Master master, Slave slave, Way to_slave, Way to_master, Seconds tick, const Payload& nothing)
+  SitePair(Master master, Slave slave, Transport to_slave, Transport to_master, Seconds tick, const Payload& nothing)
       : master_(std::move(master)),
         slave_(std::move(slave)),
         to_slave_(std::move(to_slave)),
@@ -137,13 +137,13 @@ class SitePair {
 
   Master master_;
   Slave slave_;
-  Way to_slave_;
-  Way to_master_;
-  typename Way::Delivery at_master_;  ///< for its next tick
+  Transport to_slave_;
+  Transport to_master_;
+  typename Transport::Delivery at_master_;  ///< for its next tick
   double tick_s_;
 };
 
-/// As sites run on a machine: armed by a person, watched, held where anything is wrong.
+/// As sites run on a machine: armed by an operator, watched, held where anything is wrong.
 using SupervisedPair = SitePair<control::SupervisedMaster, control::SupervisedSlave>;
 /// As the papers have them: a controller and its gate, at work from the first tick on. For simulated devices.
 using BarePair = SitePair<control::MasterSite, control::SlaveSite>;

@@ -21,8 +21,8 @@ concept Drivable = requires(D& device, const Tick& tick,
   noexcept;
 };
 
-/// A site that takes packets and is asked things by a person. One without supervision hears messages, and is told which
-/// share of its controller's force to let in.
+/// A site that takes packets and is asked things by an operator. One without supervision receives messages, and is told
+/// which share of its controller's force to let in.
 template <class Site>
 concept Supervised = requires(Site& site, const typename Site::Packet& packet) {
   { site.take(packet) }
@@ -40,14 +40,14 @@ struct Step {
 inline void put(const DeviceReading& reading, control::MasterInput& sensors) noexcept {
   sensors.motor_position_m = reading.position_m;
   sensors.motor_age_s = reading.age_s;
-  sensors.motor_tells = reading.motor_tells;
+  sensors.motor_report = reading.motor_report;
   sensors.hand_force_N = reading.force_N;
   sensors.grip = reading.grip;
 }
 inline void put(const DeviceReading& reading, control::SlaveInput& sensors) noexcept {
   sensors.motor_position_m = reading.position_m;
   sensors.motor_age_s = reading.age_s;
-  sensors.motor_tells = reading.motor_tells;
+  sensors.motor_report = reading.motor_report;
   sensors.tip_force_N = reading.force_N;
 }
 inline DeviceCommand command_of(const control::MasterOutput& output, bool enabled = true) noexcept {
@@ -66,13 +66,13 @@ Joints<DeviceCommand> command_of(const Joints<Output>& output, bool enabled = tr
   return command;
 }
 
-/// What the device reads, and its health. Of a device that is lost no position is a number, so that its site lets go;
-/// nor of one that is silent, where no supervision could make its site hold.
+/// What the device reads, and its health. Of a device that is lost no position is a number, so that its site releases
+/// its force; nor of one that does not respond, where no supervision could make its site hold.
 template <class Site, Drivable Device>
 auto read(Device& device, const Tick& tick, DeviceHealth& health) noexcept {
   auto reading = device.read(tick);
   if constexpr (requires { device.health(); }) health = device.health();
-  const bool trusted = health < (Supervised<Site> ? DeviceHealth::lost : DeviceHealth::silent);
+  const bool trusted = health < (Supervised<Site> ? DeviceHealth::lost : DeviceHealth::not_responding);
   if (trusted) return reading;
   for_each_joint([](DeviceReading& joint) noexcept { joint.position_m = std::numeric_limits<double>::quiet_NaN(); },
                  reading);
@@ -84,10 +84,11 @@ auto read(Device& device, const Tick& tick, DeviceHealth& health) noexcept {
 ///
 /// A way of a supervised site has `receive(tick, take)`, which hands each packet that has come to `take`, and
 /// `send(packet, tick)`; one of a site without supervision has `hear(sensors)`, which puts what has come there, and
-/// `send(message)`. `wish` is what the person presses, or the share of the force. Real-time safe as far as device and
-/// way are.
-template <class Site, Drivable Device, class Way>
-Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const typename Site::Wish& wish) noexcept {
+/// `send(message)`. `request` is what the operator presses, or the share of the force. Real-time safe as far as device
+/// and way are.
+template <class Site, Drivable Device, class Transport>
+Step<Site> step(Site& site, Device& device, Transport& transport, const Tick& tick,
+                const typename Site::Request& request) noexcept {
   DeviceHealth health = DeviceHealth::good;
   const auto readings = read<Site>(device, tick, health);
   using Sensors = typename Site::Sensors;
@@ -97,21 +98,21 @@ Step<Site> step(Site& site, Device& device, Way& way, const Tick& tick, const ty
   const std::int64_t elapsed_ticks = tick.missed + 1;
   // The output is made where it is returned: to copy it as soon as it is written costs a tenth of a bare tick.
   if constexpr (Supervised<Site>) {
-    way.receive(tick, [&site](const typename Site::Packet& packet) noexcept { return site.take(packet); });
+    transport.receive(tick, [&site](const typename Site::Packet& packet) noexcept { return site.take(packet); });
     Step<Site> done{.reading = readings,
                     .health = health,
                     .output = site.step({.sensors = sensors,
-                                         .requests = wish,
+                                         .requests = request,
                                          .elapsed_ticks = elapsed_ticks,
-                                         .device_silent = health == DeviceHealth::silent})};
+                                         .device_silent = health == DeviceHealth::not_responding})};
     device.write(command_of(done.output.site, done.output.record.enabled));
-    way.send(done.output.packet, tick);
+    transport.send(done.output.packet, tick);
     return done;
   } else {
-    way.hear(sensors);
-    Step<Site> done{.reading = readings, .health = health, .output = site.step(sensors, wish, elapsed_ticks)};
+    transport.hear(sensors);
+    Step<Site> done{.reading = readings, .health = health, .output = site.step(sensors, request, elapsed_ticks)};
     device.write(command_of(done.output));
-    way.send(member_of_each(done.output, &JointOf<typename Site::Output>::message));
+    transport.send(member_of_each(done.output, &JointOf<typename Site::Output>::message));
     return done;
   }
 }

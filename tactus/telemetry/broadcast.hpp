@@ -15,7 +15,7 @@ namespace tactus::telemetry {
 /// From one producer thread to any number of consumers, each of which sees every value: one copy, whoever looks on. The
 /// producer never waits and never looks at a consumer. Fixed capacity, no allocation after it was made.
 ///
-/// A consumer that falls behind by more than the capacity finds the oldest values overwritten: it goes on with the
+/// A consumer that falls behind by more than the capacity finds the oldest values overwritten: it continues with the
 /// oldest that is left and counts what it lost. Others lose nothing by that.
 ///
 /// A value travels as words, each stored with `release` behind the count of pushes that have begun and loaded with

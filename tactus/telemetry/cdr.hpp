@@ -10,8 +10,8 @@
 
 namespace tactus::telemetry {
 
-/// Records as CDR, the bytes of ROS 2 and DDS (OMG DDSI-RTPS 2.3 §10, XCDR version 1): a header of four bytes that says
-/// little-endian plain CDR, then the members in order, each at a multiple of its size counted after the header.
+/// Records as CDR, the bytes of ROS 2 and DDS (OMG DDSI-RTPS 2.3 §10, XCDR version 1): a header of four bytes that
+/// states little-endian plain CDR, then the members in order, each at a multiple of its size counted after the header.
 inline constexpr std::array<unsigned char, 4> cdr_header{0x00, 0x01, 0x00, 0x00};
 
 /// Where a member of `size` bytes begins that may not begin before `offset`.

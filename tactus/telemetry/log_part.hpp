@@ -26,8 +26,8 @@ struct TimeSpan {
   [[nodiscard]] std::uint64_t first_or_zero() const { return std::min(first_ns, last_ns); }
 };
 
-/// Bytes that the end of a file needs: in memory while they are few, then in a file without a name beside it, so that a
-/// long log takes no more memory than a short one.
+/// Bytes that the end of a file needs: in memory while they are few, then in a file without a name alongside it, so
+/// that a long log takes no more memory than a short one.
 class EndIndex {
  public:
   explicit EndIndex(std::filesystem::path beside) : beside_(std::move(beside)) {}

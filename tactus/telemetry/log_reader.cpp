@@ -82,14 +82,14 @@ class Scan {
   /// A file none of whose chunks can be read is no empty log.
   Check check_content() const {
     if (summary_.messages > 0 || summary_.damaged_chunks == 0) return std::nullopt;
-    return Error{
-        .code = ErrorCode::syntax,
-        .parameter = {},
-        .message = "not one of its " + std::to_string(summary_.damaged_chunks) + " chunks can be read, for " +
-                   (unknown_compression_.empty() ? "their bytes or their checksums are wrong: copy the log anew"
-                                                 : "they are compressed as '" + unknown_compression_ +
-                                                       "', and zstd, lz4 and none are read: compress the log anew"),
-        .place = {}};
+    return Error{.code = ErrorCode::syntax,
+                 .parameter = {},
+                 .message = "not one of its " + std::to_string(summary_.damaged_chunks) + " chunks can be read, for " +
+                            (unknown_compression_.empty()
+                                 ? "their bytes or their checksums are wrong: copy the log again"
+                                 : "they are compressed as '" + unknown_compression_ +
+                                       "', and only zstd, lz4 and no compression are read: compress the log again"),
+                 .place = {}};
   }
 
   LogSummary summary() && { return std::move(summary_); }

@@ -221,7 +221,7 @@ Check LogWriter::State::put_chunk(const std::vector<std::uint64_t>& messages) {
     return Error{.code = ErrorCode::unwritable,
                  .parameter = {},
                  .message = "a part of the log may take " + std::to_string(most_part_bytes) +
-                            " bytes, in which not one chunk fits beside what describes it: allow the log more",
+                            " bytes, in which not one chunk fits with its description: allow the log more",
                  .place = part->path().string()};
   }
   return part->put_chunk(made.bytes, made.index, chunk.span, messages);

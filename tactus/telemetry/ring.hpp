@@ -14,7 +14,7 @@ namespace tactus::telemetry {
 ///
 /// One counter for each side, ever growing, taken modulo the capacity; each is written by one thread only. `release` on
 /// the own counter and `acquire` on the other's hand the slot over. Each side keeps the last value it saw of the
-/// other's counter, so the shared cache line is touched only when that says full or empty.
+/// other's counter, so the shared cache line is touched only when that states full or empty.
 ///
 /// Where the ring is full the new value is dropped and counted, and the old ones stay: what is lost is then one gap
 /// with a known place.

@@ -122,7 +122,7 @@ class BagReading {
       return Error{.code = ErrorCode::syntax,
                    .parameter = {},
                    .message = "message " + std::to_string(number_of_[channel.topic]) + " of " + channel.topic +
-                              " is no " + channel.type_name + " in CDR: record the topic anew",
+                              " is no " + channel.type_name + " in CDR: record the topic again",
                    .place = {}};
     }
     if (numbers_ <= most_bag_numbers && signals_.size() <= most_signals) return std::nullopt;

@@ -38,7 +38,7 @@ struct Bag {
 /// folder that holds one. Joints are told apart by their names, so messages may hold them in any order, or some of
 /// them.
 ///
-/// Errors: those of `scan_log`; `syntax` for a message that is not what its type says, with topic and number;
+/// Errors: those of `scan_log`; `syntax` for a message that is not what its type states, with topic and number;
 /// `missing` for a bag without such topics (the message lists the topics); `out_of_bounds` for more than 2^26 numbers
 /// or 4,096 signals. Not real-time safe.
 Result<Bag> read_bag(const std::filesystem::path& file_or_folder);

@@ -115,7 +115,7 @@ class Reader {
     number(mass, "value", "the mass of " + of, found.mass_kg);
     if (found.mass_kg < 0.0) {
       fail(ErrorCode::out_of_bounds, *mass,
-           of + " has a mass of " + format_number(found.mass_kg) + " kg; a mass must be at least 0 kg");
+           of + " has a mass of " + rounded_number(found.mass_kg) + " kg; a mass must be at least 0 kg");
     }
     if (inertia == nullptr) {
       fail(ErrorCode::missing, element,
@@ -163,7 +163,7 @@ class Reader {
     number(dynamics, "friction", "the dynamics of " + of, found.friction);
     if (found.damping < 0.0 || found.friction < 0.0) {
       fail(ErrorCode::out_of_bounds, *dynamics,
-           of + " has damping " + format_number(found.damping) + " and friction " + format_number(found.friction) +
+           of + " has damping " + rounded_number(found.damping) + " and friction " + rounded_number(found.friction) +
                "; neither may be less than 0");
     }
     return found;

@@ -48,7 +48,7 @@ struct Joint {
   int line = 0;
 };
 
-/// All that a file says of links and joints, in its order.
+/// All that a file states of links and joints, in its order.
 struct Robot {
   std::string name;
   std::vector<Link> links;

@@ -185,15 +185,15 @@ Check take_limits(const Walk& walk, const Joint& joint, Arm& into, arm::JointLim
   const std::string unit = slides ? " m" : " rad";
   if (limits.lower_rad > limits.upper_rad) {
     return walk.error(ErrorCode::inconsistent, joint.line,
-                      of + " has the limits lower=" + format_number(limits.lower_rad) + " and upper=" +
-                          format_number(limits.upper_rad) + unit + ", which leave no position; exchange them");
+                      of + " has the limits lower=" + rounded_number(limits.lower_rad) + " and upper=" +
+                          rounded_number(limits.upper_rad) + unit + ", which leave no position; exchange them");
   }
   const auto doubt = [&](const std::string& why) {
     into.doubtful_limits.push_back(describe(walk.error(ErrorCode::inconsistent, joint.line, of + why)));
   };
   const arm::JointLimits unstated;
   if (limits.lower_rad == limits.upper_rad) {
-    doubt(" has a range from " + format_number(limits.lower_rad) + " to " + format_number(limits.upper_rad) + unit +
+    doubt(" has a range from " + rounded_number(limits.lower_rad) + " to " + rounded_number(limits.upper_rad) + unit +
           ", in which it cannot move: its range counts as not stated; write lower and upper");
     limits.lower_rad = unstated.lower_rad;
     limits.upper_rad = unstated.upper_rad;

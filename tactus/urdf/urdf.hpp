@@ -28,7 +28,7 @@ struct Arm {
   /// Gravity is 9.81 m/s² along −z of the base. Limits and `dynamics` are taken over; `friction` is Coulomb's,
   /// `damping` viscous.
   arm::Chain::Params params = {};
-  /// What the file says that cannot be and does not count, each with `file:line`: an impossible body that moves no
+  /// What the file states that cannot be and does not count, each with `file:line`: an impossible body that moves no
   /// joint.
   std::vector<std::string> warnings = {};
   /// Limits that are 0 and so count as not stated, and ranges that are absent, each with `file:line`, joint and limit:

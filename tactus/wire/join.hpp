@@ -6,9 +6,10 @@
 
 namespace tactus::wire {
 
-/// Lets two ends hear one another in virtual time, from `from_ns` to before `to_ns`; the next call goes on from there.
-/// No time passes on the wire: put `Paced` around one end where it should. Ends that answer one another at once do so a
-/// nanosecond later, so that time goes on whatever they say. Deterministic. Real-time safe where the ends are.
+/// Lets two ends hear one another in virtual time, from `from_ns` to before `to_ns`; the next call continues from
+/// there. No time passes on the wire: put `Paced` around one end where it should. Ends that answer one another at once
+/// do so a nanosecond later, so that time continues whatever they say. Deterministic. Real-time safe where the ends
+/// are.
 void join(WireEnd& a, WireEnd& b, std::int64_t from_ns, std::int64_t to_ns) noexcept;
 
 }  // namespace tactus::wire

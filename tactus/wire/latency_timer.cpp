@@ -15,7 +15,7 @@ Check check_latency_timer(const std::string& port, const std::filesystem::path& 
   if (!(file >> waits_ms) || waits_ms <= 1) return std::nullopt;
   return Error{.code = ErrorCode::inconsistent,
                .parameter = {},
-               .message = "the adapter keeps what it hears for " + std::to_string(waits_ms) +
+               .message = "the adapter holds received bytes for " + std::to_string(waits_ms) +
                           " ms before it hands it over, where 1 ms is needed: echo 1 | sudo tee " + timer.string(),
                .place = port};
 }

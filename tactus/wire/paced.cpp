@@ -33,9 +33,9 @@ std::span<const std::uint8_t> Paced::say(std::int64_t now_ns) noexcept {
 }
 
 std::int64_t Paced::next_ns() const noexcept {
-  const std::int64_t heard_ns = count_ > 0 ? coming_[first_].there_ns : never_ns;
+  const std::int64_t received_ns = count_ > 0 ? coming_[first_].there_ns : never_ns;
   // An end that has nothing to say when it wanted to does not stop time.
-  return std::max(std::min(heard_ns, end_->wakes_ns()), lived_until_ns_ + 1);
+  return std::max(std::min(received_ns, end_->wakes_ns()), lived_until_ns_ + 1);
 }
 
 std::int64_t Paced::wakes_ns() const noexcept { return std::min(next_ns(), going_.due_ns()); }

@@ -13,8 +13,8 @@ namespace tactus::wire {
 /// What a byte takes on a serial line of 8 data bits, no parity and one stop bit: ten bits.
 constexpr std::int64_t byte_ns(std::int64_t bits_per_s) { return (10'000'000'000 + bits_per_s / 2) / bits_per_s; }
 
-/// An end whose bytes take the time that they would on a serial line: it hears each byte when its last bit has come,
-/// and what it says is there when the last bit of the packet has gone. To be put around an emulated peer, in virtual
+/// An end whose bytes take the time that they would on a serial line: it receives each byte when its last bit has come,
+/// and what it reports is there when the last bit of the packet has gone. To be put around an emulated peer, in virtual
 /// time and at a pseudo-terminal alike; the peer behind it lives at the exact times, however late a real clock calls.
 ///
 /// The line takes one byte after the other. Where it is half duplex, that holds for both directions together: who comes

@@ -34,12 +34,12 @@ Error port_error(ErrorCode code, const std::string& path, std::string message) {
 Error system_error(const std::string& path, const char* what) {
   return port_error(ErrorCode::failed, path,
                     std::string(what) + " failed (" + std::system_category().message(errno) +
-                        "): plug the device in anew, and look at what dmesg says of it");
+                        "): plug the device in again, and read what dmesg reports of it");
 }
 
 Error busy(const std::string& path) {
   return port_error(ErrorCode::inconsistent, path,
-                    "another program has it open: end that program (fuser -v " + path + " tells which)");
+                    "another program has it open: end that program (fuser -v " + path + " shows which)");
 }
 
 Error open_error(const std::string& path) {
@@ -53,7 +53,7 @@ Error open_error(const std::string& path) {
     case EPERM:
       return port_error(ErrorCode::inconsistent, path,
                         "no right to open it: become a member of the group dialout (sudo usermod -aG dialout $USER) "
-                        "and log in anew");
+                        "and log in again");
     case EBUSY:
       return busy(path);
     default:

@@ -35,7 +35,7 @@ class Port {
   Port& operator=(Port&& other) noexcept;
   ~Port();
 
-  /// What a person opens, or is told of.
+  /// What a user opens, or is told of.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   /// Of a terminal, as whoever opened it has set it; 0 where it is none. One system call.
   [[nodiscard]] std::int64_t bits_per_s() const noexcept;

@@ -30,7 +30,7 @@ Error gone(const Port& port, const std::string& why) {
   return {.code = ErrorCode::failed,
           .parameter = {},
           .message = "the port was closed (" + why +
-                     "): plug the device in again, look at its power and at what dmesg says, and start anew",
+                     "): plug the device in again, check its power and the output of dmesg, and start again",
           .place = port.path()};
 }
 

@@ -13,8 +13,8 @@ namespace tactus::wire {
 std::int64_t monotonic_ns() noexcept;
 
 /// Drives an end at a port by the real clock until `stop()`, which is asked at every turn and at least every 20 ms:
-/// what arrives it hears at once; where nothing arrives, it is called about 50 µs around the time at which it wanted to
-/// be. A packet for which the port has no room is lost, as on a wire, for an old command must not come late.
+/// what arrives it receives at once; where nothing arrives, it is called about 50 µs around the time at which it wanted
+/// to be. A packet for which the port has no room is lost, as on a wire, for an old command must not come late.
 ///
 /// Blocks; the calling thread belongs to it, and gets a timer slack of 1 µs. Does not allocate unless it fails. Errors:
 /// `failed` where the port was closed or unplugged.

@@ -66,7 +66,7 @@ TEST(ArmAdvise, RefusesAHandleThatLeadsTheToolByItsKey) {
 }
 
 TEST(ArmMethods, EachChoiceOfADimensionSetsTheSameKeysAndTheFirstIsBare) {
-  for (const char* with : {"arms/soft-hand.toml", "arms/yam-pair.toml", "arms/elastic-joints.toml"}) {
+  for (const char* with : {"arms/light-grip.toml", "arms/yam-pair.toml", "arms/elastic-joints.toml"}) {
     const ArmBench bench = arm_bench({}, {with});
     const auto dimensions = arm_dimensions(bench.as_given, bench.joints);
     for (const Dimension& dimension : dimensions) {
@@ -118,7 +118,7 @@ TEST(ArmBench, AHandIsAddedThatIsSoftUnlessOneWasGiven) {
   EXPECT_EQ(one.hands.size(), 1U);
   EXPECT_EQ(one.directions.size(), 1U);
   EXPECT_EQ(one.poses, std::vector<std::int64_t>{0});
-  EXPECT_EQ(arm_bench({}, {"arms/soft-hand.toml"}).hands.size(), 1U) << "the file's own is soft";
+  EXPECT_EQ(arm_bench({}, {"arms/light-grip.toml"}).hands.size(), 1U) << "the file's own is soft";
 }
 
 TEST(ArmBench, WhatWasGivenIsNoChoice) {
@@ -179,7 +179,7 @@ TEST(ArmTrial, FreeReachesAreInEachHandAlongEachDirectionTheOwnOneFirst) {
   std::size_t i = 0;
   using enum experiments::TapDirection;
   for (const auto direction : {down, along_x, along_y}) {
-    for (const arm::HandImpedance& hand : {params.person.hand, soft_hand}) {
+    for (const arm::HandImpedance& hand : {params.person.hand, light_grip}) {
       experiments::ArmTappingParams one = params;
       one.person.hand = hand;
       one.task.direction = direction;
@@ -196,7 +196,7 @@ TEST(ArmAdvise, DampingIsFoundForABarePairAndItsGainHoldsOnTapsThatNoSearchSaw) 
   EXPECT_EQ(last, 1.0);
   ASSERT_TRUE(advice->start);
   EXPECT_GE(advice->start->settled_fraction, 0.95);
-  // Plain settles up to about 2.8 in a firm hand (docs/theory/arms.md), damping in the drives lifts that.
+  // Plain settles up to about 2.8 in a firm hand (docs/theory/arm-methods.md), damping in the drives lifts that.
   EXPECT_NE(advice->start->method.words().find("in the leader's drives"), std::string::npos)
       << advice->start->method.words();
   EXPECT_GT(advice->start->force_gain, 2.0);

@@ -2,7 +2,7 @@
 
 #include <tactus/arm_control/arm_sites.hpp>
 #include <tactus/arm_plants/arm_device.hpp>
-#include <tactus/arm_plants/person.hpp>
+#include <tactus/arm_plants/tool_operator.hpp>
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/station/site_pair.hpp>
 
@@ -113,7 +113,7 @@ inline station::JointSupervisedPair supervised_pair(const PassivityParams& passi
 /// A firm hand at the leader's tool and a stiff surface below the follower's, 10 mm away. Nobody presses anything yet.
 struct Bench {
   ArmDevice leader = device(0.4), follower = device(0.0);
-  arm_plants::Person person;
+  arm_plants::ToolOperator person;
   station::JointSupervisedPair sites;
   station::JointSupervisedPair::Output last;
   arm::Vector3 began_m = follower.plant().tool().position_m;
@@ -128,7 +128,7 @@ struct Bench {
   bool held = true;
 
   explicit Bench(const PassivityParams& passivity = {})
-      : person(*arm_plants::Person::make({.hand = firm}, tick, leader.plant().tool())),
+      : person(*arm_plants::ToolOperator::make({.hand = firm}, tick, leader.plant().tool())),
         sites(supervised_pair(passivity)) {}
 
   void step(const SiteRequests& pressed, std::int64_t missed = 0) {

@@ -53,7 +53,7 @@ TEST(ArmsUnderSupervision, WithPassivePortsTheyFollowFeelContactAndCanBeArmedAne
     EXPECT_GT(bench.last.master.output.site[1].message.energy_J + bench.last.master.output.site[0].message.energy_J,
               1e-4)
         << name_of(port) << ": the hand put energy in";
-    bench.follower.set_health(DeviceHealth::silent);
+    bench.follower.set_health(DeviceHealth::not_responding);
     bench.run(0.03, {.dead_man = true});
     EXPECT_EQ(bench.sites.slave().state(), SiteState::hold);
     bench.follower.set_health(DeviceHealth::good);
@@ -89,7 +89,7 @@ TEST(ArmsUnderSupervision, ASilentDeviceIsAHoldWithoutForceAndCanBeArmedAnew) {
   Bench bench;
   bench.couple();
   ASSERT_TRUE(bench.both(SiteState::active));
-  bench.follower.set_health(DeviceHealth::silent);
+  bench.follower.set_health(DeviceHealth::not_responding);
   bench.run(0.03, {.dead_man = true});
   EXPECT_EQ(bench.sites.slave().state(), SiteState::hold);
   EXPECT_EQ(bench.sites.slave().cause(), SiteCause::device);
@@ -182,8 +182,8 @@ TEST(ArmsUnderSupervision, ALostLinkIsAHoldOfBothThatOnlyANewArmingLeaves) {
   cut = true;
   run(0.2, {.dead_man = true});
   EXPECT_TRUE(both(SiteState::hold));
-  EXPECT_EQ(master.cause(), SiteCause::silent);
-  EXPECT_EQ(slave.cause(), SiteCause::silent);
+  EXPECT_EQ(master.cause(), SiteCause::timed_out);
+  EXPECT_EQ(slave.cause(), SiteCause::timed_out);
   cut = false;
   run(0.5, {.dead_man = true});
   EXPECT_TRUE(both(SiteState::hold)) << "nothing comes back by itself";
@@ -195,12 +195,12 @@ TEST(ArmsUnderSupervision, ALostLinkIsAHoldOfBothThatOnlyANewArmingLeaves) {
 struct Spoilt {
   ArmDevice* arm;
   double station::DeviceReading::*member = nullptr;
-  double control::DriveTells::*tells = nullptr;
+  double control::DriveReport::*tells = nullptr;
   double told = std::numeric_limits<double>::infinity();
   Joints<station::DeviceReading> read(const station::Tick& now) noexcept {
     auto reading = arm->read(now);
     if (member != nullptr) reading[3].*member = std::numeric_limits<double>::quiet_NaN();
-    if (tells != nullptr) reading[3].motor_tells.*tells = told;
+    if (tells != nullptr) reading[3].motor_report.*tells = told;
     return reading;
   }
   void write(const Joints<station::DeviceCommand>& command) noexcept { arm->write(command); }
@@ -212,8 +212,8 @@ TEST(ArmsUnderSupervision, ANumberOfOneJointThatIsNoneLetsTheWholeArmGo) {
     bench.couple();
     Spoilt spoilt{.arm = &bench.follower};
     if (which == 0) spoilt.member = &station::DeviceReading::position_m;
-    if (which == 1) spoilt.tells = &control::DriveTells::velocity_m_per_s;
-    if (which == 2) spoilt.tells = &control::DriveTells::force_N;
+    if (which == 1) spoilt.tells = &control::DriveReport::velocity_m_per_s;
+    if (which == 2) spoilt.tells = &control::DriveReport::force_N;
     station::JointSupervisedPair::Output done;
     for (int i = 0; i < 100; ++i) {
       done = bench.sites.step(bench.leader, spoilt, {.number = bench.number++}, {.dead_man = true});
@@ -228,7 +228,7 @@ TEST(ArmsUnderSupervision, ANumberOfOneJointThatIsNoneLetsTheWholeArmGo) {
 TEST(ArmsUnderSupervision, WhatNoMotorDoesIsNotBelievedAndTheArmFollowsAgainAfterwards) {
   Bench bench;
   bench.couple();
-  Spoilt spoilt{.arm = &bench.follower, .tells = &control::DriveTells::velocity_m_per_s, .told = 1e300};
+  Spoilt spoilt{.arm = &bench.follower, .tells = &control::DriveReport::velocity_m_per_s, .told = 1e300};
   bench.sites.step(bench.leader, spoilt, {.number = bench.number++}, {.dead_man = true});
   EXPECT_EQ(bench.sites.slave().site().fault(), GateFault::not_finite);
   bench.run(0.1, {});

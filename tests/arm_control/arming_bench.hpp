@@ -85,8 +85,8 @@ class ArmingDevice final : public station::JointDevice {
     for (std::size_t i = 0; i < joints; ++i) {
       const auto motor = static_cast<Eigen::Index>(wiring_.motor[i]);
       reading[i].position_m = wiring_.sign[i] * now.position[motor];
-      reading[i].motor_tells = {.velocity_m_per_s = wiring_.sign[i] * now.velocity[motor],
-                                .force_N = wiring_.sign[i] * now.torque[motor]};
+      reading[i].motor_report = {.velocity_m_per_s = wiring_.sign[i] * now.velocity[motor],
+                                 .force_N = wiring_.sign[i] * now.torque[motor]};
     }
     return reading;
   }
@@ -304,7 +304,7 @@ inline Outcome arm_both(const arm::Chain::Params& believed, Before before, const
   std::int64_t number = 0;
   const auto see = [&number](const ArmingDevice& arm, Fate& fate, const auto& site) {
     fate.powered = fate.powered || site.state() != SiteState::configure;
-    for (const auto& gates : site.site().gates()) fate.let_go = fate.let_go || gates.motor().has_let_go();
+    for (const auto& gates : site.site().gates()) fate.let_go = fate.let_go || gates.motor().has_released();
     const double fast = arm.velocity().cwiseAbs().maxCoeff();
     if (site.state() == SiteState::active) {
       fate.active_rad_per_s = std::max(fate.active_rad_per_s, fast);

@@ -1,5 +1,5 @@
 #include <tactus/arm_control/induced_motion.hpp>
-#include <tactus/arm_plants/person.hpp>
+#include <tactus/arm_plants/tool_operator.hpp>
 
 #include <cmath>
 #include <complex>
@@ -29,8 +29,8 @@ std::vector<Moved> burst(const arm::JointFriction& friction, const InducedMotion
     motor.joint_stiffness_N_m_per_rad = joint_stiffness_N_m_per_rad;
   }
   arm_plants::ArmPlant arm = *arm_plants::ArmPlant::make(plant, arm_plants::bent());
-  arm_plants::Person person =
-      *arm_plants::Person::make({.hand = firm, .correction_gain_per_s = 0.0}, Seconds{tick_s}, arm.tool());
+  arm_plants::ToolOperator person =
+      *arm_plants::ToolOperator::make({.hand = firm, .correction_gain_per_s = 0.0}, Seconds{tick_s}, arm.tool());
   arm::Chain::Params model_arm = plant.chain;
   for (arm::JointParams& joint : model_arm.joints) {
     for_each_field<arm::Body>([&](const auto& f) {

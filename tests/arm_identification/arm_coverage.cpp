@@ -51,7 +51,7 @@ int main(int count, char** words) {
       for (std::size_t k = 0; k < values.size(); ++k) {
         const ArmParameter& p = found->joints[j].parameters[k];
         const int holds = values[k] >= p.lower && values[k] <= p.upper ? 1 : 0;
-        for (Count* to : {&all, p.told ? &told : nullptr, p.told ? &kinds[p.name] : nullptr}) {
+        for (Count* to : {&all, p.determined ? &told : nullptr, p.determined ? &kinds[p.name] : nullptr}) {
           if (to == nullptr) continue;
           ++to->all;
           to->held += holds;

@@ -76,7 +76,7 @@ TEST(ArmIdentification, IntervalsHoldWhatTheSimulationHas) {
         const ArmParameter& p = found->joints[j].parameters[k];
         const bool holds = values[k] >= p.lower && values[k] <= p.upper;
         ++all;
-        told += p.told ? 1 : 0;
+        told += p.determined ? 1 : 0;
         held += holds ? 1 : 0;
       }
     }

@@ -203,7 +203,7 @@ Told told_on(const FourierMotion& motion) {
                                  joint.friction.viscous_N_m_s_per_rad, joint.friction.offset_N_m});
     for (std::size_t k = 0; k < values.size(); ++k) {
       const ArmParameter& p = told.found.joints[j].parameters[k];
-      told.single += p.told ? 1 : 0;
+      told.single += p.determined ? 1 : 0;
       const bool holds = values[k] >= p.lower && values[k] <= p.upper;
       told.held += holds ? 1 : 0;
       if (!holds) told.missed += " " + told.found.joints[j].name + "." + p.name;
@@ -238,7 +238,7 @@ TEST(ArmExcitation, ARecordingOfItTellsMoreThanARandomOneOfTheSameLengthAndMostO
   RecordProperty("widths", std::to_string(std::exp(by_design.log_widths - by_chance.log_widths)));
   RecordProperty("unseen", std::to_string(by_design.worst_on_unseen));
   RecordProperty("unseen_by_chance", std::to_string(by_chance.worst_on_unseen));
-  EXPECT_GT(by_design.found.told_combinations, by_chance.found.told_combinations);
+  EXPECT_GT(by_design.found.determined_combinations, by_chance.found.determined_combinations);
   EXPECT_LT(by_design.log_widths, by_chance.log_widths);
   // One recording: its numbers share their noise, so that they are off together.
   EXPECT_GE(by_design.held, by_design.all * 17 / 20) << "not" << by_design.missed;
@@ -251,7 +251,7 @@ TEST(ArmExcitation, ARecordingOfItTellsMoreThanARandomOneOfTheSameLengthAndMostO
     for (std::size_t k = 0; k < designed->joints[j].parameters.size(); ++k) {
       const ArmParameter& promised = designed->joints[j].parameters[k];
       const ArmParameter& found = by_design.found.joints[j].parameters[k];
-      if (!promised.told || !found.told) continue;
+      if (!promised.determined || !found.determined) continue;
       log_ratio += std::log((promised.upper - promised.lower) / (found.upper - found.lower));
       ++both;
     }

@@ -32,7 +32,7 @@ TEST(ArmIntervals, HoldAsOftenAsTheySayOverArmsMotionsAndNoise) {
         ++all.all;
         all.held += holds ? 1 : 0;
         if (p.name != "coulomb" && p.name != "viscous" && p.name != "offset") continue;
-        EXPECT_TRUE(p.told) << seed << " " << made.names[j] << " " << p.name;
+        EXPECT_TRUE(p.determined) << seed << " " << made.names[j] << " " << p.name;
         ++friction.all;
         friction.held += holds ? 1 : 0;
       }

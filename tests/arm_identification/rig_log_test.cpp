@@ -118,7 +118,8 @@ TEST_F(RigLog, WhatCannotBeReadIsRefusedWithTheRemedy) {
   const auto expect = [](const std::string& said, const std::string& words) {
     EXPECT_NE(said.find(words), std::string::npos) << said;
   };
-  expect(complaint({}, {"lift", "elbow"}), "the arm's joint 'elbow' is none of the rig's, which are lift, turn: call");
+  expect(complaint({}, {"lift", "elbow"}),
+         "the arm's joint 'elbow' is not a joint of the rig, whose joints are lift, turn: call");
   expect(complaint({.joints = ""}, {"lift"}), "no log of a rig whose joints have names: leave one with 'tactus run");
   expect(complaint({.active_to_s = 1.5}, {"lift"}), "the follower did not follow for 1 s");
 }

@@ -77,8 +77,8 @@ TEST(ArmLoop, AKickGrowsOnTheSimulatedPairAsFastAsTheSlowestModeSays) {
       {"elastic-joints.toml", "control.method=position-force",
        "control.follower.observer.cutoff_each.joint_2.cutoff_Hz=12",
        "control.follower.observer.cutoff_each.joint_4.cutoff_Hz=12"},
-      {"yam-pair.toml", "soft-hand.toml"},
-      {"bare.toml", "soft-hand.toml", "control.command_low_pass_Hz=8", "control.force_low_pass_Hz=20",
+      {"yam-pair.toml", "light-grip.toml"},
+      {"bare.toml", "light-grip.toml", "control.command_low_pass_Hz=8", "control.force_low_pass_Hz=20",
        "task.direction=along-y", "task.pose=3"}};
   for (const Words& words : cases) {
     std::string named;
@@ -134,7 +134,7 @@ TEST(ArmLoop, ASurfaceOfACurvedLawIsThatOfItsSlopeAtTheForceThatIsNamed) {
 
 TEST(ArmMargins, TheLimitHasAPoleOnTheUnitCircleAndTheDiskMarginLiesWithin) {
   for (const Words& words : {Words{"control.method=position-force"}, Words{"bare.toml", "task.direction=along-x"},
-                             Words{"bare.toml", "soft-hand.toml"}}) {
+                             Words{"bare.toml", "light-grip.toml"}}) {
     const ArmLoop loop = loop_of(setup_of(words));
     const double limit = limit_of(loop);
     EXPECT_NEAR(std::abs(slowest_mode(loop, limit).pole), 1.0, 1e-4);

@@ -75,7 +75,7 @@ class GluedPair {
     return {setup,
             {leader, no_limits},
             {follower, no_limits},
-            arm_plants::Person::make(setup.params.person, tick, leader.tool()).value(),
+            arm_plants::ToolOperator::make(setup.params.person, tick, leader.tool()).value(),
             station::JointBarePair::around(std::move(leads), std::move(follows), {}, tick, start).value()};
   }
 
@@ -95,7 +95,7 @@ class GluedPair {
 
  private:
   GluedPair(const experiments::ArmPairSetup& setup, arm_plants::ArmDevice leader, arm_plants::ArmDevice follower,
-            arm_plants::Person person, station::JointBarePair sites)
+            arm_plants::ToolOperator person, station::JointBarePair sites)
       : leader_(std::move(leader)),
         follower_(std::move(follower)),
         person_(std::move(person)),
@@ -120,7 +120,7 @@ class GluedPair {
   }
 
   arm_plants::ArmDevice leader_, follower_;
-  arm_plants::Person person_;
+  arm_plants::ToolOperator person_;
   station::JointBarePair sites_;
   arm::Vector3 outward_, began_m_;
   double stiffness_, damping_, step_s_;

@@ -8,7 +8,7 @@
 namespace tactus::cli {
 namespace {
 
-using AdviseVerb = Command;
+using AdviseCommand = Command;
 using Json = nlohmann::json;
 using Words = std::vector<std::string>;
 
@@ -27,7 +27,7 @@ Words operator+(Words words, const Words& more) {
   return words;
 }
 
-TEST_F(AdviseVerb, TheAdviceIsASentenceFirstAndAFileThatRunLoads) {
+TEST_F(AdviseCommand, TheAdviceIsASentenceFirstAndAFileThatRunLoads) {
   const Outcome outcome = tactus(narrow(quick_experiment()) + Words{"--json", "--out", "advice"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json found = Json::parse(outcome.out);
@@ -65,7 +65,7 @@ TEST_F(AdviseVerb, TheAdviceIsASentenceFirstAndAFileThatRunLoads) {
   EXPECT_NE(again.err.find("--overwrite"), std::string::npos) << again.err;
 }
 
-TEST_F(AdviseVerb, OnTwoArmsItHasTheSameShape) {
+TEST_F(AdviseCommand, OnTwoArmsItHasTheSameShape) {
   const std::string arms = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arm-tapping.toml";
   // One hand, pose, direction and nothing to choose but damping in the drives, in short taps and coarse steps.
   const Words pair{arms,
@@ -115,7 +115,7 @@ TEST_F(AdviseVerb, OnTwoArmsItHasTheSameShape) {
   EXPECT_EQ(Json::parse(run.out)["configuration"]["control"]["force_gain"], found["force_gain"]);
 }
 
-TEST_F(AdviseVerb, AWrongRequestIsAnsweredAtOnceAndLeavesNothing) {
+TEST_F(AdviseCommand, AWrongRequestIsAnsweredAtOnceAndLeavesNothing) {
   const std::string file = quick_experiment();
   const std::string arms = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arm-tapping.toml";
   write("contest.toml", "[task]\nkind = \"contest\"\n");
@@ -145,7 +145,7 @@ TEST_F(AdviseVerb, AWrongRequestIsAnsweredAtOnceAndLeavesNothing) {
   EXPECT_EQ(files(), before);
 }
 
-TEST_F(AdviseVerb, ResultsOfAnotherVerbBesideAModelAreNoIntervals) {
+TEST_F(AdviseCommand, ResultsOfAnotherVerbBesideAModelAreNoIntervals) {
   make_folder("found");
   write("found/model.toml", "[control.model.linkage]\nstiffness_N_per_m = 3950.0\n");
   write("found/results.json", "{\"experiment\": \"tapping\"}");

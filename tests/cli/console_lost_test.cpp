@@ -201,7 +201,7 @@ TEST_F(ConsoleLost, KeepsNobodyFromLettingGoAndEndingASite) {
     EXPECT_GT(master["ticks_in"]["active"], 0) << name;
     EXPECT_EQ(master["steps_above_limit"], 0) << name;
     EXPECT_EQ(slave["holds"]["peer"], 1) << name << ": it saw the master leave";
-    EXPECT_EQ(slave["holds"]["silent"], 0) << name;
+    EXPECT_EQ(slave["holds"]["timed-out"], 0) << name;
     // After `release`, and what is the same, both stood armed for the second.
     for (const auto& site : {master, slave}) {
       EXPECT_EQ(site["ticks_in"]["armed"] > 0.2 * rate_Hz, stays) << name << site["ticks_in"];

@@ -63,7 +63,7 @@ TEST_F(DeviceRig, APairThatIsWhatItsFileSaysIsClean) {
   EXPECT_EQ(clean.status, 0) << clean.out << clean.err;
   EXPECT_EQ(clean.out.find("Clean: each motor is what was stated; "), 0U) << clean.out;
   EXPECT_TRUE(says(clean,
-                   "Motors of one model cannot tell whether two were swapped: move each joint by hand under "
+                   "Motors of one model cannot detect that two were swapped: move each joint by hand under "
                    "'tactus device watch rig.toml'.\n"));
   const Outcome json = device(motors, servos + follower, "check rig.toml arm.follower.elbow --json");
   expect_of_schema(json);
@@ -91,7 +91,7 @@ TEST_F(DeviceRig, MotorsThatAreNotTheStatedOnesAreToldWithTheirLine) {
   const std::string message = problem["message"];
   EXPECT_NE(message.find("it looks as if motors 1 and 2 were swapped: exchange their identifiers"), std::string::npos)
       << message;
-  const Outcome silent = device({"dynamixel --fault silent:2"}, servos, "check rig.toml");
+  const Outcome silent = device({"dynamixel --fault silence:2"}, servos, "check rig.toml");
   EXPECT_EQ(silent.status, 1);
   EXPECT_EQ(silent.out.find("Not clean; no motor got power.\nrig.toml:16:9: arm.leader.elbow.motor: servo 2 does not "
                             "answer at 1000000 bit/s: look at its power"),
@@ -102,7 +102,7 @@ TEST_F(DeviceRig, MotorsThatAreNotTheStatedOnesAreToldWithTheirLine) {
   EXPECT_EQ(twins.status, 1);
   EXPECT_TRUE(says(twins, "rig.toml:16:9: arm.follower.elbow.motor: motor 2 (DM4310) answers twice")) << twins.out;
   const Outcome other = device({"dynamixel --fault wrong-model:1"}, servos, "check rig.toml");
-  EXPECT_TRUE(says(other, "rig.toml:7:9: arm.leader.shoulder.model: servo 1 tells model number 1220 (XC330-T288)"))
+  EXPECT_TRUE(says(other, "rig.toml:7:9: arm.leader.shoulder.model: servo 1 reports model number 1220 (XC330-T288)"))
       << other.out;
   const Outcome elsewhere = device({"dynamixel --fault wrong-model:1"}, servos, "check rig.toml arm.leader.elbow");
   EXPECT_EQ(elsewhere.status, 1);
@@ -197,7 +197,7 @@ TEST_F(DeviceRig, ZeroOfOneMotorLeavesTheOthersOfItsArm) {
 }
 
 TEST_F(DeviceRig, WatchShowsEachJointALineAndLimitsWhichOneHolds) {
-  const Outcome watched = device({"dynamixel"}, servos, "watch rig.toml arm.leader.elbow --for 0.5");
+  const Outcome watched = device({"dynamixel"}, servos, "watch rig.toml arm.leader.elbow --duration-s 0.5");
   EXPECT_EQ(watched.status, 0) << watched.err;
   EXPECT_EQ(watched.out.find("# time_s joint unit position moved velocity temperature_C age_ms state\n"), 0U);
   EXPECT_TRUE(says(watched, " arm.leader.elbow rad 0.0000 0.0000 0.000 35 ")) << watched.out;

@@ -33,7 +33,7 @@ TEST_F(DeviceServos, AreCheckedAgainstWhatIsStated) {
   EXPECT_NE(clean.out.find("1.75 A"), std::string::npos) << clean.out;
   const Outcome other = check("dynamixel --fault wrong-model:2", "--bus dynamixel --motors 1:xl330-m288,2:xl330-m288");
   EXPECT_EQ(other.status, 1);
-  EXPECT_EQ(other.out.find("Not clean; no motor got power.\nservo 2 tells model number 1220 (XC330-T288) where "
+  EXPECT_EQ(other.out.find("Not clean; no motor got power.\nservo 2 reports model number 1220 (XC330-T288) where "
                            "XL330-M288 is stated: state the model that is there, or change the servo.\n"),
             0U)
       << other.out;
@@ -48,7 +48,7 @@ TEST_F(DeviceServos, AreCheckedAgainstWhatIsStated) {
 TEST_F(DeviceServos, AWrongModelOrRateIsRefusedWithWhatThereIs) {
   const Outcome model = tactus({"device", "check", "--bus", "dynamixel", "--port", "/dev/null", "--motors", "1:xl320"});
   EXPECT_EQ(model.status, 2);
-  EXPECT_NE(model.err.find("--motors: 'xl320' is none of xl330-m077, "), std::string::npos) << model.err;
+  EXPECT_NE(model.err.find("--motors: 'xl320' is not one of xl330-m077, "), std::string::npos) << model.err;
   const Outcome rate = tactus({"device", "check", "--bus", "feetech", "--port", "/dev/null", "--motors", "1:sts3215",
                                "--bits-per-s", "4000000"});
   EXPECT_EQ(rate.status, 2);

@@ -61,8 +61,8 @@ TEST_F(Device, AWrongRequestIsRefusedWithTheRemedy) {
       refusal("/dev/ttyACM-nobody", "1:DM4310", "usb2can").find("tactus: /dev/ttyACM-nobody: there is no such port"),
       0U);
   EXPECT_NE(refusal("/dev/null", "1", "usb2can").find("write ID:MODEL"), std::string::npos);
-  EXPECT_NE(refusal("/dev/null", "1:DM1", "usb2can").find("'DM1' is none of DM3507"), std::string::npos);
-  EXPECT_NE(refusal("/dev/null", "1:DM4310", "fax").find("'fax' is none of usb2can"), std::string::npos);
+  EXPECT_NE(refusal("/dev/null", "1:DM1", "usb2can").find("'DM1' is not one of DM3507"), std::string::npos);
+  EXPECT_NE(refusal("/dev/null", "1:DM4310", "fax").find("'fax' is not one of usb2can"), std::string::npos);
   EXPECT_NE(refusal("/dev/null", "1:DM4310,1:DM4310", "usb2can").find("two motors have this identifier"),
             std::string::npos);
 }

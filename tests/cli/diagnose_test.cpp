@@ -127,13 +127,13 @@ TEST_F(Diagnose, tells_a_wrong_range_of_velocity_and_an_old_reading_of_two_arms_
   };
   const Json sound = told("sound", {});
   EXPECT_TRUE(sound["oscillations"].empty()) << sound["verdict"];
-  EXPECT_NEAR(sound["told_velocity_scale"]["master"].get<double>(), 1.0, 0.02);
+  EXPECT_NEAR(sound["reported_velocity_scale"]["master"].get<double>(), 1.0, 0.02);
   EXPECT_EQ(sound["verdict"].get<std::string>().find("VMAX"), std::string::npos);
 
   const Json scaled = told("scaled", {"cause.velocity_scale=3"});
-  EXPECT_NEAR(scaled["told_velocity_scale"]["master"].get<double>(), 3.0, 0.05);
-  EXPECT_NEAR(scaled["told_velocity_scale"]["slave"].get<double>(), 1.0, 0.02);
-  EXPECT_EQ(scaled["verdict"].get<std::string>().rfind("The velocity leader_velocity is told 3.0 times", 0), 0U)
+  EXPECT_NEAR(scaled["reported_velocity_scale"]["master"].get<double>(), 3.0, 0.05);
+  EXPECT_NEAR(scaled["reported_velocity_scale"]["slave"].get<double>(), 1.0, 0.02);
+  EXPECT_EQ(scaled["verdict"].get<std::string>().rfind("The velocity leader_velocity is reported as 3.0 times", 0), 0U)
       << scaled["verdict"];
 
   const Json old = told("old", {"host.answer_ticks=29", "task.joint=5"});

@@ -44,7 +44,8 @@ TEST_F(Doctor, EveryFindingHasItsVerdictMeaningAndRemedyAndTheExitStatusSaysWhet
 TEST_F(Doctor, APersonGetsATableAndWhatItMeans) {
   const Outcome outcome = tactus(quick_look);
   EXPECT_NE(outcome.out.find("scheduler"), std::string::npos);
-  EXPECT_NE(outcome.out.find("lateness: a tick begins this long after it is due"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("lateness: a control cycle starts this long after it is due"), std::string::npos)
+      << outcome.out;
 }
 
 TEST_F(Doctor, ItsReportHoldsEveryFindingAndHowTimeWasKept) {

@@ -41,7 +41,7 @@ TEST_F(Export, TheTableHasEverySignalWithItsUnitAndOneRowATick) {
   std::getline(table, second);
   EXPECT_EQ(head,
             "time [s],master_position [m],induced_position [m],command [m],slave_position [m],tip_position [m],"
-            "displayed_force [N],handle_force [N],hand_force [N],told_force [N],contact_force [N],peak_contact_force "
+            "displayed_force [N],handle_force [N],hand_force [N],sent_force [N],contact_force [N],peak_contact_force "
             "[N],touched,"
             "touched_at [s],estimated_grip,estimated_grip_deviation");
   EXPECT_TRUE(first.starts_with("0,")) << first;

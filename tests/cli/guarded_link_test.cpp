@@ -31,7 +31,7 @@ struct Motor {
     ++readings.cycles;
     readings.time_ns = now_ns;
     readings.motors[0].enabled = commands.motors[0].enabled;
-    readings.motors[0].heard_ns = now_ns;
+    readings.motors[0].received_ns = now_ns;
     ++readings.motors[0].answers;
   }
 };

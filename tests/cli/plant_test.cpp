@@ -51,7 +51,7 @@ TEST_F(Plant, IsDrivenByARunInAnotherProcessWhoseLogReplays) {
   EXPECT_GT(run["runs"][0]["metrics"]["peak_force_N"], 0.05) << "what no sensor tells came too";
   EXPECT_EQ(plant["name"], name);
   EXPECT_EQ(plant["taps"], 4);
-  EXPECT_EQ(plant["let_go"], 0);
+  EXPECT_EQ(plant["released"], 0);
   EXPECT_GE(plant["commands"], run["runs"][0]["servo"]["ticks"].get<int>() - 2);
   EXPECT_GT(plant["readings"], 1000);
   const Outcome replayed = tactus({"replay", "results/log", "--check", "--json"});
@@ -83,7 +83,7 @@ TEST_F(Plant, ThatIsKilledEndsTheRunAndIsReplacedByTheNext) {
   EXPECT_NE(content("second.log").find("is driven already (process "), std::string::npos) << content("second.log");
   EXPECT_EQ(content("dead.status"), "2\n");
   EXPECT_NE(content("dead.log").find("is dead (process "), std::string::npos) << content("dead.log");
-  EXPECT_NE(content("plant.out").find("ticks missed"), std::string::npos) << content("plant.out");
+  EXPECT_NE(content("plant.out").find("control cycles missed"), std::string::npos) << content("plant.out");
   EXPECT_EQ(tactus({"replay", "results/log", "--check"}).status, 0) << "the log shows how it ended";
 }
 

@@ -25,8 +25,8 @@ Words run(const std::string& file, const Words& more) {
 TEST_F(RealTime, TheTappingExperimentGivesItsTableAndHowTimeWasKept) {
   const Outcome outcome = tactus(run(quick_experiment(), {}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  for (const char* word : {"verdict", "lateness, from deadline to begin", "duration of the step", "late ticks", "ours",
-                           "the machine's", "stalled"}) {
+  for (const char* word : {"verdict", "lateness, from deadline to begin", "duration of the step", "late control cycles",
+                           "ours", "the machine's", "stalled"}) {
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
   }
   EXPECT_EQ(files(), Words{"quick.toml"}) << "nothing is left behind without --out";

@@ -170,11 +170,10 @@ TEST_F(Results, ASchemaIsThereForEachVerbThatPrintsJsonAndForNoOther) {
     std::string name;
     for (const std::string& word : verb) name += (name.empty() ? "" : " ") + word;
     if (text.find("  --json ") != std::string::npos) with_json.insert(name);
-    const std::size_t below = text.find("Subcommands:\n");
+    const std::size_t below = std::min(text.find("\nRun:\n"), text.find("\nSubcommands:\n"));
     if (below == std::string::npos) return;
-    std::istringstream lines(text.substr(below));
+    std::istringstream lines(text.substr(below, text.find("\nExample:\n") - below));
     std::string line;
-    std::getline(lines, line);
     while (std::getline(lines, line)) {
       if (!line.starts_with("  ") || line.size() < 3 || line[2] == ' ') continue;
       Words next = verb;

@@ -18,7 +18,7 @@ class RigRun : public Command {
   static std::string side(const std::string& name, const std::string& port, const std::string& bus,
                           const std::string& model, int joints, const std::string& more) {
     std::string text = "[arm." + name + "]\nbus = \"" + bus + "\"\nport = \"" + port + "\"\n";
-    if (bus == "damiao") text += "patience_s = 0.05\nwatchdog_s = 1.0\n";
+    if (bus == "damiao") text += "reply_timeout_s = 0.05\nwatchdog_s = 1.0\n";
     for (int i = 1; i <= joints; ++i) {
       const std::string number = std::to_string(i);
       text += "[arm." + name + ".joint_" + number + "]\nmotor = " + number + "\nmodel = \"" + model +
@@ -80,19 +80,21 @@ TEST_F(RigRun, APairOfSevenJointsAlignsAndTeleoperatesWithALogThatIsWhole) {
   // It stands 0.2 rad away; what is left holds against the friction of the joint, less than 0.02 rad at 4 N m/rad.
   const auto follows = [](const std::string& said) { return apart(said, "5") < 0.02; };
   const std::string said =
-      shell_until({"; armed 1 times, held 0 times, ", ", silent in 0, lost in 0 ticks; "}, "damiao --motors 7",
+      shell_until({"; armed 1 times, held 0 times, ", ", not responding in 0, lost in 0 cycles; "}, "damiao --motors 7",
                   "damiao --motors 7", pair("damiao", "DM4310", 7, "offset_rad = 0.2\n"),
                   "$RUN --arm --duration-s 6 --out run --overwrite <&9; echo status $?\n"
                   "$TACTUS replay run/log --check; echo replayed $?",
                   follows);
   EXPECT_NE(said.find("; armed 1 times, held 0 times, a device late in "), std::string::npos) << said;
-  EXPECT_NE(said.find(", silent in 0, lost in 0 ticks; "), std::string::npos) << said;
+  EXPECT_NE(said.find(", not responding in 0, lost in 0 cycles; "), std::string::npos) << said;
   EXPECT_NE(said.find("5 s: leader active, follower active (none), "), std::string::npos) << said;
   EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)
       << said;
   EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
-  EXPECT_NE(said.find(" ticks of both sites of 7 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
-            std::string::npos)
+  EXPECT_NE(
+      said.find(
+          " control cycles of both sites of 7 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
+      std::string::npos)
       << said;
   EXPECT_PRED1(follows, said);
 }
@@ -152,9 +154,9 @@ TEST_F(RigRun, AMotorThatFallsSilentHoldsBothWithoutForceAndIsSaid) {
   EXPECT_NE(said.find("follower active"), std::string::npos) << said;
   EXPECT_NE(said.find("bit for bit.\nreplayed 0\n"), std::string::npos) << said;
   EXPECT_NE(said.find("leader hold, follower hold (device), "), std::string::npos) << said;
-  EXPECT_NE(said.find("; follower: joint_2 unheard for "), std::string::npos) << said;
-  EXPECT_NE(said.find("; the follower is silent: look at 'tactus device check'\n"), std::string::npos) << said;
-  EXPECT_EQ(said.find("silent in 0,"), std::string::npos) << said;
+  EXPECT_NE(said.find("; follower: joint_2 not responding for "), std::string::npos) << said;
+  EXPECT_NE(said.find("; the follower is not responding: look at 'tactus device check'\n"), std::string::npos) << said;
+  EXPECT_EQ(said.find("not responding in 0,"), std::string::npos) << said;
   // Nobody knows whether it is off: its last status was another.
   EXPECT_NE(said.find("tactus: arm.follower.joint_2: motor 2 at "), std::string::npos) << said;
   EXPECT_NE(said.find(" (damiao) did not report within 0.5 s that it is off (status 0x1 (enabled)): switch off the "
@@ -212,7 +214,7 @@ TEST_F(RigRun, NothingIsDrivenBeforeTheRigIsClean) {
                                  "$RUN --arm --duration-s 6 <&9; echo status $?");
   EXPECT_NE(said.find("arm.follower.joint_1.motor: motor 1: too hot: "), std::string::npos) << said;
   EXPECT_NE(
-      said.find("tactus: rig.toml: it is not clean, so nothing was driven: mend what 'tactus device check' tells"),
+      said.find("tactus: rig.toml: it is not clean, so nothing was driven: fix what 'tactus device check' reports"),
       std::string::npos)
       << said;
   EXPECT_NE(said.find("status 1\n"), std::string::npos) << said;
@@ -326,24 +328,26 @@ class ArmRun : public RigRun {
     setenv("RIGS", rigs.c_str(), 1);
     return shell_until(signs, arm + "1.55,0.2,0.1,0.2", arm + "1.4,0.2,0.1,0.2", "", R"sh(
       sed "s|/dev/serial/by-id/LEADER|$leader|; s|/dev/serial/by-id/FOLLOWER|$follower|
-           s|^framing.*|patience_s = 0.05\nwatchdog_s = 1.0|" $RIGS/openarm-arms.toml >rig.toml
+           s|^framing.*|reply_timeout_s = 0.05\nwatchdog_s = 1.0|" $RIGS/openarm-arms.toml >rig.toml
       ARMS="$TACTUS run $RIGS/arms.toml --realtime --device rig.toml"
       )sh" + rest);
   }
 };
 
 TEST_F(ArmRun, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
-  const std::string said = arms_until({"; armed 1 times, held 0 times, ", ", silent in 0, lost in 0 ticks; "},
+  const std::string said = arms_until({"; armed 1 times, held 0 times, ", ", not responding in 0, lost in 0 cycles; "},
                                       "$ARMS --arm --duration-s 12 --out run --overwrite <&9; echo status $?\n"
                                       "$TACTUS replay run/log --check; echo replayed $?");
-  EXPECT_NE(said.find(", silent in 0, lost in 0 ticks; "), std::string::npos) << said;
+  EXPECT_NE(said.find(", not responding in 0, lost in 0 cycles; "), std::string::npos) << said;
   EXPECT_NE(said.find("11 s: leader active, follower active (none), "), std::string::npos) << said;
   EXPECT_NE(said.find("; armed 1 times, held 0 times, "), std::string::npos) << said;
   EXPECT_NE(said.find("\n0 records of the log dropped.\nReport: run/report.html\nLog: run/log\n"), std::string::npos)
       << said;
   EXPECT_NE(said.find("status 0\n"), std::string::npos) << said;
-  EXPECT_NE(said.find(" ticks of both sites of 8 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
-            std::string::npos)
+  EXPECT_NE(
+      said.find(
+          " control cycles of both sites of 8 joints: every output is the recorded one, bit for bit.\nreplayed 0\n"),
+      std::string::npos)
       << said;
   EXPECT_LT(apart(said, "11"), 0.06) << said;
 }

@@ -32,7 +32,7 @@ class RigSites : public Command {
       set -u
       rig() {
         side=$1; shift
-        { echo "[arm.$side]"; echo 'bus = "damiao"'; echo "port = \"$1\""; echo 'patience_s = 0.05'; echo 'watchdog_s = 1.0'
+        { echo "[arm.$side]"; echo 'bus = "damiao"'; echo "port = \"$1\""; echo 'reply_timeout_s = 0.05'; echo 'watchdog_s = 1.0'
           shift; motor=0
           for joint in "$@"; do
             motor=$((motor + 1))
@@ -83,8 +83,8 @@ TEST_F(RigSites, TheFollowerGoesToItsLeaderAndBothHoldWhereTheLinkIsCut) {
     wait_for slave 'leader active, follower active'
     sleep 3
     kill -INT $relay
-    wait_for master 'leader hold, .*(silent)'
-    wait_for slave 'follower hold (silent)'
+    wait_for master 'leader hold, .*(timed-out)'
+    wait_for slave 'follower hold (timed-out)'
     end_both
   )sh");
   EXPECT_EQ(status, 0) << all();
@@ -117,8 +117,9 @@ TEST_F(RigSites, TheFollowerGoesToItsLeaderAndBothHoldWhereTheLinkIsCut) {
     EXPECT_EQ(told.out.find(other), std::string::npos) << told.out;
     const auto replayed = tactus({"replay", std::string(log) + "/log", "--check"});
     EXPECT_EQ(replayed.status, 0) << replayed.out << replayed.err;
-    EXPECT_NE(replayed.out.find(topic[1] == 'm' ? "ticks of the master of 3 joints: every output is the recorded one"
-                                                : "ticks of the slave of 3 joints: every output is the recorded one"),
+    EXPECT_NE(replayed.out.find(topic[1] == 'm'
+                                    ? "control cycles of the master of 3 joints: every output is the recorded one"
+                                    : "control cycles of the slave of 3 joints: every output is the recorded one"),
               std::string::npos)
         << replayed.out;
   }
@@ -185,7 +186,7 @@ TEST_F(RigSites, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
     arm 1.4 >said2 & peers="$peers $!"
     read -r at_leader <said1; read -r at_follower <said2
     sed "s|/dev/serial/by-id/LEADER|$at_leader|; s|/dev/serial/by-id/FOLLOWER|$at_follower|
-         s|^framing.*|patience_s = 0.05\nwatchdog_s = 1.0|" $rigs/openarm-arms.toml >leader.toml
+         s|^framing.*|reply_timeout_s = 0.05\nwatchdog_s = 1.0|" $rigs/openarm-arms.toml >leader.toml
     cp leader.toml follower.toml
     site() { name=$1; shift; exec $TACTUS run $JOINTS --set rig.supervision.longest_stall_s=0.5 \
                --set rig.supervision.watchdog.timeout_s=0.5 --set rig.supervision.overload.missed_share=0.9 \
@@ -205,7 +206,7 @@ TEST_F(RigSites, TwoArmsCarryThemselvesAndTheFollowerGoesToItsLeader) {
   for (const char* name : {"master", "slave"}) {
     const auto found = result(name);
     EXPECT_EQ(found["armings"], 1) << all();
-    EXPECT_EQ(found["silent_ticks"], 0) << all();
+    EXPECT_EQ(found["not_responding_ticks"], 0) << all();
     EXPECT_EQ(found["joints"].size(), 8U);
     double apart = 1.0;
     for (const auto& second : found["seconds"]) {
@@ -233,7 +234,7 @@ TEST_F(RigSites, WhatMakesNoSenseIsRefusedWithTheRemedy) {
   };
   EXPECT_NE(refusal(with({"--device", "follower.toml"})).find("name it alone"), std::string::npos);
   const std::string silent = refusal(with({"--set", "control.architecture=position-force"}));
-  EXPECT_NE(silent.find("control.architecture: a follower of position-force does not tell where it is"),
+  EXPECT_NE(silent.find("control.architecture: a follower of position-force does not send its position"),
             std::string::npos)
       << silent;
   const Outcome other = tactus({"run", TACTUS_EXAMPLE_FOLDER "/rigs/joints.toml", "--site", "slave", "--device",

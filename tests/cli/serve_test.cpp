@@ -9,7 +9,7 @@ namespace serve_test {
 using Serve = Command;
 
 TEST_F(Serve, LeavesAReportAndALog) {
-  const Outcome outcome = tactus({"serve", "--port", "0", "--duration", "0.3", "--out", "session"});
+  const Outcome outcome = tactus({"serve", "--port", "0", "--duration-s", "0.3", "--out", "session"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("connections taken"), std::string::npos) << outcome.out;
   const auto document = nlohmann::json::parse(content("session/results.json"));
@@ -21,7 +21,8 @@ TEST_F(Serve, LeavesAReportAndALog) {
 }
 
 TEST_F(Serve, SaysAtOnceThatAReportCannotBeWritten) {
-  const Outcome outcome = tactus({"serve", "--port", "0", "--duration", "0.3", "--out", write("file", "") + "/below"});
+  const Outcome outcome =
+      tactus({"serve", "--port", "0", "--duration-s", "0.3", "--out", write("file", "") + "/below"});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.err.find("file"), std::string::npos) << outcome.err;
   EXPECT_EQ(outcome.out, "");

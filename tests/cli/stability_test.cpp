@@ -76,7 +76,7 @@ TEST_F(Stability, a_scorecard_says_what_changes_the_limit) {
 }
 
 const std::string arms = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arm-tapping.toml";
-const std::string soft_hand = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arms/soft-hand.toml";
+const std::string light_grip = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arms/light-grip.toml";
 const std::string bare_arms = std::string(TACTUS_EXPERIMENT_FOLDER) + "/arms/bare.toml";
 
 TEST_F(Stability, two_arms_have_margins_too_and_a_report_is_left) {
@@ -95,13 +95,13 @@ TEST_F(Stability, two_arms_have_margins_too_and_a_report_is_left) {
 
 TEST_F(Stability, two_arms_are_mapped_over_pose_and_hand) {
   const Outcome outcome =
-      tactus({"stability", "map", arms, "--with", bare_arms, "--hand", soft_hand, "--vary", "task.pose=0,1", "--vary",
+      tactus({"stability", "map", arms, "--with", bare_arms, "--hand", light_grip, "--vary", "task.pose=0,1", "--vary",
               "control.method=position-force,cancellation", "--friction-speed", "0.1", "--json", "--out", "results"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json points = Json::parse(outcome.out)["points"];
   ASSERT_EQ(points.size(), 8U);
   EXPECT_EQ(points[0]["hand"], "own");
-  EXPECT_EQ(points[7]["hand"], "soft-hand");
+  EXPECT_EQ(points[7]["hand"], "light-grip");
   EXPECT_EQ(points[7]["set"]["task.pose"], 1);
   for (std::size_t i = 0; i < points.size(); i += 2) {
     // What docs/theory/arms.md says: without damping, do not cancel with a model that errs.
@@ -129,7 +129,7 @@ TEST_F(Stability, of_two_arms_what_has_no_linear_loop_or_no_use_is_refused_by_na
     EXPECT_NE(outcome.err.find(std::string(option).substr(0, 9)), std::string::npos) << outcome.err;
   }
   EXPECT_EQ(tactus({"stability", "map", arms, "--precision", "float"}).status, 2);
-  EXPECT_EQ(tactus({"stability", "map", tapping, "--hand", soft_hand}).status, 2);
+  EXPECT_EQ(tactus({"stability", "map", tapping, "--hand", light_grip}).status, 2);
 }
 
 TEST_F(Stability, what_cannot_be_judged_is_refused_at_its_place) {

@@ -53,18 +53,19 @@ class Terminal : public Command {
   }
 
   /// Every verb and every verb below one, from what help lists.
-  void for_each_verb(const Words& verb, const auto& use) const {
+  void for_each_command(const Words& verb, const auto& use) const {
     use(verb);
     Words help = verb;
     help.push_back("--help");
     std::istringstream lines(tactus(help).out);
     bool verbs = false;
     for (std::string line; std::getline(lines, line);) {
-      if (line == "Subcommands:") verbs = true;
+      if (line == "Subcommands:" || line == "Run:") verbs = true;
+      if (line == "Example:") break;
       if (!verbs || !line.starts_with("  ") || line[2] == ' ') continue;
       Words next = verb;
       next.push_back(line.substr(2, line.find(' ', 2) - 2));
-      for_each_verb(next, use);
+      for_each_command(next, use);
     }
   }
 };
@@ -78,13 +79,52 @@ std::size_t columns_of(const std::string& line) {
 
 TEST_F(Terminal, NoLineOfAnyHelpIsWiderThanEightyColumns) {
   std::size_t verbs = 0;
-  for_each_verb({}, [&](Words verb) {
+  for_each_command({}, [&](Words verb) {
     ++verbs;
     verb.push_back("--help");
     std::istringstream lines(tactus(verb).out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(columns_of(line), 80U) << line;
   });
   EXPECT_GT(verbs, 35U);
+}
+
+TEST_F(Terminal, EveryCommandHasAnExampleWhoseOptionsItHas) {
+  for_each_command({}, [&](Words command) {
+    if (command.empty()) return;
+    SCOPED_TRACE(::testing::PrintToString(command));
+    command.push_back("--help");
+    const std::string help = tactus(command).out;
+    const std::size_t at = help.find("\nExample:\n  tactus " + command.front());
+    ASSERT_NE(at, std::string::npos) << help;
+    std::istringstream words(help.substr(at));
+    for (std::string word; words >> word;) {
+      if (word.starts_with("--")) EXPECT_LT(help.find("  " + word), at) << word;
+    }
+  });
+}
+
+TEST_F(Terminal, CommandsAreGroupedAndOptionsInOneOrder) {
+  const std::string all = tactus({"--help"}).out;
+  std::size_t from = 0;
+  for (const char* group : {"\nRun:\n", "\nUnderstand:\n", "\nIdentify:\n", "\nDevices:\n", "\nData:\n", "\nHelp:\n"}) {
+    const std::size_t at = all.find(group);
+    ASSERT_NE(at, std::string::npos) << group;
+    EXPECT_GT(at, from) << group;
+    from = at;
+  }
+  EXPECT_EQ(all.find("\nSubcommands:"), std::string::npos);
+  for_each_command({}, [&](Words command) {
+    command.push_back("--help");
+    const std::string help = tactus(command).out;
+    std::size_t last = 0;
+    for (const char* option :
+         {"\n  --with ", "\n  --set ", "\n  --vary ", "\n  --seed ", "\n  --out ", "\n  --overwrite", "\n  --json"}) {
+      const std::size_t at = help.find(option);
+      if (at == std::string::npos) continue;
+      EXPECT_GT(at, last) << help;
+      last = at;
+    }
+  });
 }
 
 TEST_F(Terminal, HelpOfAVerbIsTheSameEitherWay) {

@@ -121,11 +121,11 @@ TEST_F(TwoSites, ASlaveThatIsKilledAndComesBackFollowsOnlyAfterArming) {
     site master --site master --listen 127.0.0.1:$P0 --peer 127.0.0.1:$P2 --arm & master=$!
     wait_for master ' active '
     kill -9 $slave
-    wait_for master ' hold  *silent '
+    wait_for master ' hold  *timed-out '
     site slave2 --site slave --listen 127.0.0.1:$P2 --peer 127.0.0.1:$P0 & slave=$!
     wait_for_next slave2 ' align '
     # A word to arm counts only while the other site is heard: a round trip is told then.
-    wait_for_next master ' hold  *silent  *none  *none  *[0-9.]*[1-9]'
+    wait_for_next master ' hold  *timed-out  *none  *none  *[0-9.]*[1-9]'
     kill -USR1 $master
     wait_for_next master ' active '
     wait_for_next slave2 ' active '

@@ -52,8 +52,8 @@ class WrongUse : public Command {
 TEST_F(WrongUse, WhatIsNoNumberOrNotInRange) {
   const std::string file = quick_experiment();
   for (const std::string value : {"nan", "-1", "inf", "1x", ""}) {
-    const Words named{"'" + value + "' is no number in [0 - "};
-    expect({{"serve", "--port", "0", "--duration", value}, 2, {"--duration", named[0] + "1e+06]"}});
+    const Words named{"'" + value + "' is not a number in [0 - "};
+    expect({{"serve", "--port", "0", "--duration-s", value}, 2, {"--duration-s", named[0] + "1e+06]"}});
     expect({{"stability", "margins", file, "--uncertainty", value}, 2, {"--uncertainty", named[0] + "0.9]"}});
     expect({{"emulate", "inverse3", "--late-s", value}, 2, {"--late-s", named[0] + "10]"}});
   }
@@ -73,6 +73,11 @@ TEST_F(WrongUse, NoCommandAnUnknownOneAndAnUnknownOption) {
   expect({{"run", quick_experiment(), "--set"}, 2, {"--set", "KEY=VALUE"}});
   expect({{"schema", "grasping"}, 2, {"'grasping'", "tapping, force-display"}});
   expect({{"schema", "tapping", "--verbose"}, 2, {"--verbose"}});
+}
+
+TEST_F(WrongUse, AnOldNameOfAnOptionIsRefusedWithItsNewOne) {
+  expect({{"serve", "--duration", "1"}, 2, {"'--duration' is now called --duration-s"}});
+  expect({{"device", "watch", "rig.toml", "--for", "1"}, 2, {"'--for' is now called --duration-s"}});
 }
 
 TEST_F(WrongUse, AFileThatIsMissingAFolderOrEmpty) {
@@ -119,7 +124,7 @@ TEST_F(WrongUse, ValuesThatContradictOneAnother) {
   const std::string start = "[task]\nkind = \"tapping\"\n";
   expect_refused_file(start + "slowest_m_per_s = 0.5\n", {"task.fastest_m_per_s", "0.08", "0.5", "raise one"});
   expect_refused_file(start + "[servo]\nrate_Hz = 5000.0\ncomputation_delay_s = 2e-4\n",
-                      {"bad.toml:5:23", "servo.computation_delay_s", "less than a tick"});
+                      {"bad.toml:5:23", "servo.computation_delay_s", "less than a control cycle"});
   expect_refused_file(start + "[environment]\nstiffness_N_per_m = 1e7\n[slave.mechanism.tip]\nmass_kg = 1e-5\n",
                       {"bad.toml:4:21", "environment.stiffness_N_per_m", "step finer"});
 }

@@ -164,12 +164,12 @@ TEST(GripCancellation, ALightHandIsShownAnImpactWholeAndOfWhatLastsAsMuchLessAsI
   Hand hand(linear(OperatorEstimate::online).cancellation.model.master);
   ASSERT_LT(after_chatter(cancellation, hand, 0.25).grip, 0.27);
   // The surprise of the first impacts still takes some of all force away.
-  const double whole_N = cancellation.bearable_N(4.0, 10.0);
+  const double whole_N = cancellation.admissible_N(4.0, 10.0);
   EXPECT_GT(whole_N, 3.0);
   double shown_N = 0.0;
-  for (int tick = 0; tick < 1500; ++tick) shown_N = cancellation.bearable_N(4.0, 10.0);
+  for (int tick = 0; tick < 1500; ++tick) shown_N = cancellation.admissible_N(4.0, 10.0);
   EXPECT_NEAR(shown_N, whole_N * cancellation.grip(), 0.05);
-  EXPECT_EQ(cancellation.bearable_N(0.0, 10.0), 0.0);
+  EXPECT_EQ(cancellation.admissible_N(0.0, 10.0), 0.0);
 }
 
 TEST(GripCancellation, MotionThatNoHandExplainsTakesForceAwayAndQuietGivesItBack) {
@@ -180,18 +180,18 @@ TEST(GripCancellation, MotionThatNoHandExplainsTakesForceAwayAndQuietGivesItBack
     }
   };
   shake(500, 5e-5);  // 35 um RMS: what a model that fits leaves
-  EXPECT_EQ(cancellation.bearable_N(1.0, 10.0), 1.0);
+  EXPECT_EQ(cancellation.admissible_N(1.0, 10.0), 1.0);
   shake(500, 2.83e-4);  // 200 um RMS: four times what is borne
-  EXPECT_NEAR(cancellation.bearable_N(1.0, 10.0), 0.25, 0.03);
+  EXPECT_NEAR(cancellation.admissible_N(1.0, 10.0), 0.25, 0.03);
   shake(25000, 0.0);
-  EXPECT_GT(cancellation.bearable_N(1.0, 10.0), 0.98);
+  EXPECT_GT(cancellation.admissible_N(1.0, 10.0), 0.98);
 }
 
 TEST(GripCancellation, OnlyAnOnlineEstimateShowsLessThanIsWanted) {
   for (const auto estimate : {OperatorEstimate::off, OperatorEstimate::scheduled}) {
     GripCancellation cancellation = make(linear(estimate));
     for (int tick = 0; tick < 500; ++tick) (void)cancellation.step({.measured_position_m = 0.01 * (tick % 2)});
-    EXPECT_EQ(cancellation.bearable_N(25.0, 10.0), 25.0);
+    EXPECT_EQ(cancellation.admissible_N(25.0, 10.0), 25.0);
     EXPECT_EQ(cancellation.hand().estimated_grip_deviation, 0.0);
   }
 }

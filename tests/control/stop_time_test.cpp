@@ -66,7 +66,7 @@ TEST(StopTime, ARateLimitOfHalfANewtonASecondDoesNotKeepASafetyGatePressing) {
   ASSERT_NEAR(grown.gate.passed_N(), 2.0, 1e-6) << "it grows at the rate limit";
   OfSafety fault = grown, released = grown, stopped = grown, unstopped = grown;
   EXPECT_LE(ticks_to_zero(fault, not_a_number, false) * tick_s, 0.25);
-  released.gate.let_go();
+  released.gate.release();
   EXPECT_LE(ticks_to_zero(released, 3.0, false) * tick_s, 0.25);
   EXPECT_LE(ticks_to_zero(stopped, 0.0, true) * tick_s, 0.25);
   EXPECT_NEAR(ticks_to_zero(unstopped, 0.0, false) * tick_s, 4.0, 0.01) << "a command that falls is no stop";
@@ -88,7 +88,7 @@ TEST(StopTime, ALateLoopFallsByTheTimeThatPassed) {
   for (const std::int64_t elapsed : {1, 3, 25}) {
     SafetyGate gate = SafetyGate::make(slow_gate(), tick).value();
     for (int i = 0; i < 20'000; ++i) gate.step({.command_N = 3.0, .position_m = 0.0});
-    gate.let_go();
+    gate.release();
     double time_s = 0.0;
     for (; gate.passed_N() != 0.0 && time_s < 10.0; time_s += tick_s * static_cast<double>(elapsed)) {
       gate.believe(0.0, elapsed);

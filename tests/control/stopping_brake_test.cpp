@@ -86,7 +86,7 @@ TEST(StoppingBrake, LettingGoAndAFaultTakeItsForceAndRearmingTheGateBeginsAnew) 
   refused.gate.refuse();
   refused.slide(0.01);
   EXPECT_EQ(refused.gate.passed_N(), 0.0);
-  device.gate.let_go();
+  device.gate.release();
   device.slide(0.01);
   EXPECT_EQ(device.gate.passed_N(), 0.0);
   device.gate.rearm();

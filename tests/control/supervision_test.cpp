@@ -164,7 +164,7 @@ TEST(Supervision, ACutEndsInHoldWithinTheTimeOutAndOnlyANewArmingLeadsOut) {
   pair.step(4);
   EXPECT_EQ(pair.master.state(), SiteState::hold);
   EXPECT_EQ(pair.slave.state(), SiteState::hold);
-  EXPECT_EQ(static_cast<SiteCause>(pair.slave_out.record.cause), SiteCause::silent);
+  EXPECT_EQ(static_cast<SiteCause>(pair.slave_out.record.cause), SiteCause::timed_out);
   pair.cut = false;
   pair.step(5);
   pair.buttons.arm = true;

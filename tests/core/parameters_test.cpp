@@ -34,6 +34,18 @@ TEST(Parameters, AnErrorNamesThePathTheValueTheBoundsAndTheUnit) {
   EXPECT_EQ(exit_status(*error), 2);
 }
 
+TEST(Parameters, AComputedNumberIsRoundedInAMessageAndAWrittenOneIsNot) {
+  EXPECT_EQ(rounded_number(-6.1000000000000005), "-6.1");
+  EXPECT_EQ(rounded_number(1.0 / 3.0), "0.333333");
+  EXPECT_EQ(rounded_number(2e-5 / 3.0), "6.66667e-06");
+  EXPECT_EQ(rounded_number(4097.0), "4097");
+  EXPECT_EQ(rounded_number(123.456789), "123.456789");
+  EXPECT_EQ(out_of_bounds("gain", 7.0 / 3.0, between(0, 1), units::none).message,
+            "2.33333 is out of bounds: it must be at least 0 and at most 1");
+  EXPECT_EQ(out_of_bounds("gain", 10.000000000000002, between(0, 10), units::none).message,
+            "10.000000000000002 is out of bounds: it must be at least 0 and at most 10");
+}
+
 TEST(Parameters, NothingThatIsNotFiniteIsEverWithinBounds) {
   for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                              -std::numeric_limits<double>::infinity()}) {

@@ -344,7 +344,7 @@ TEST(BusRate, ATickTakesNoLongerWithABusThatIsDead) {
   there.fall_silent();
   const double dead_ns = tick_ns(**device);
   std::printf("tick: %.0f ns with the bus on, %.0f ns with it dead\n", on_ns, dead_ns);
-  EXPECT_EQ((*device)->health(), station::DeviceHealth::silent);
+  EXPECT_EQ((*device)->health(), station::DeviceHealth::not_responding);
   EXPECT_LT(dead_ns, 2.0 * on_ns + 1000.0);
 }
 

@@ -60,11 +60,11 @@ class Motors {
   std::thread thread_;
 };
 
-/// With patience for a machine that does other things too.
+/// With timeout for a machine that does other things too.
 std::unique_ptr<BusThread> bus_at(const Motors& motors, double silence_s = 5.0) {
   damiao::DamiaoBusParams params;
   params.watchdog_s = 1.0;
-  params.patience_s = 0.05;
+  params.timeout_s = 0.05;
   params.motors = {{.id = 1, .feedback_id = 0x11}, {.id = 2, .feedback_id = 0x12}};
   auto port = wire::Port::serial(motors.path(), 921'600);
   EXPECT_TRUE(port.ok());
@@ -201,7 +201,7 @@ TEST(BusThread, CommandsThatStopTakeThePowerAndDoNotGiveItBackByThemselves) {
   const std::int64_t cycles = bus->newest()->cycles;
   EXPECT_TRUE(tick_until(*device, 0.1, true, [&] { return bus->newest()->cycles > cycles + 50; }));
   EXPECT_TRUE(all_off());
-  EXPECT_EQ(device->health(), DeviceHealth::silent);
+  EXPECT_EQ(device->health(), DeviceHealth::not_responding);
   EXPECT_EQ(device->trouble().fault, MotorFault::lost_master);
   EXPECT_TRUE(tick_until(*device, 0.0, false, [&] {
     return device->health() == DeviceHealth::good && bus->newest()->cycles > cycles + 100;
@@ -218,8 +218,8 @@ TEST(BusThread, ABusThatFallsSilentIsDegradedThenSilent) {
   motors.fall_silent();
   EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::degraded; }));
   EXPECT_EQ(device->trouble().what, Trouble::late);
-  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::silent; }));
-  EXPECT_EQ(device->trouble().what, Trouble::silent);
+  EXPECT_TRUE(tick_until(*device, 0.0, false, [&] { return device->health() == DeviceHealth::not_responding; }));
+  EXPECT_EQ(device->trouble().what, Trouble::not_responding);
   EXPECT_GT(device->trouble().age_s, 2.0);
 }
 

@@ -166,9 +166,10 @@ TYPED_TEST(ServoOff, AServoThatIsOnAndStaysOnWhenItIsAskedMakesTheBusRefused) {
   bench.run(300 * ms);
   EXPECT_EQ(bench.bus.state(), BusState::refused);
   EXPECT_EQ(bench.bus.reading(1).fault, MotorFault::stays_on);
-  EXPECT_EQ(describe(*bench.bus.problem()),
-            "servo 2 was told to switch off and does not report that it is off (error byte 0x00, torque enable 1): "
-            "switch off its supply, wait until it stands still, and switch it on again");
+  EXPECT_EQ(
+      describe(*bench.bus.problem()),
+      "servo 2 was commanded to switch off and does not report that it is off (error byte 0x00, torque enable 1): "
+      "switch off its supply, wait until it is at rest, and switch it on again");
 }
 
 }  // namespace servo_off_test

@@ -66,13 +66,14 @@ docs/theory/operator-impedance.md docs/theory/sensorless-teleoperation.md docs/t
 docs/theory/diagnosis.md docs/theory/servo-hydraulic-slave.md docs/theory/couplings.md docs/theory/four-channel.md
 docs/theory/simulation.md docs/theory/maps.md docs/theory/passivity.md docs/theory/successive-isolation.md
 docs/validation.md docs/theory/arm-margins.md docs/how-to/add-an-element.md docs/how-to/add-an-experiment.md
-docs/theory/arms.md docs/theory/changing-grip.md docs/how-to/identify-your-master.md docs/how-to/logs.md
-docs/architecture.md docs/how-to/identify-an-arm.md docs/how-to/identify-from-a-recording.md docs/how-to/rigs.md
+docs/theory/arms.md docs/theory/arm-identification.md docs/theory/arm-methods.md
+docs/theory/arm-advice.md docs/theory/arm-vibration.md docs/theory/changing-grip.md docs/how-to/identify-your-master.md docs/how-to/logs.md
+docs/architecture.md docs/how-to/identify-an-arm.md docs/how-to/identify-from-a-recording.md docs/how-to/rigs.md docs/how-to/faults.md
+docs/theory/safety.md docs/reference/wire-format.md
 """.split()
 
 # Pages that have yet to be rewritten. This list only shrinks.
 NOT_YET = """
-docs/reference/wire-format.md docs/how-to/faults.md docs/theory/safety.md
 """.split()
 
 # (page, word as it is found, why it may stay)

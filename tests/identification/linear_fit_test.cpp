@@ -38,7 +38,7 @@ TEST(LinearFit, ParametersThatTheDataCannotTellApartAreRefused) {
   const auto fit = fit_linear(twice, 2, std::vector<double>{1, 2, 3});
   ASSERT_FALSE(fit);
   EXPECT_EQ(fit.error().code, ErrorCode::inconsistent);
-  EXPECT_NE(fit.error().message.find("cannot tell the parameters apart"), std::string::npos);
+  EXPECT_NE(fit.error().message.find("cannot distinguish the parameters"), std::string::npos);
 }
 
 TEST(LinearFit, ARegressorThatIsAlwaysZeroIsNamed) {

@@ -76,7 +76,7 @@ TEST(Inbound, NoDatagramThatDoesNotAnswerTheOwnSessionCounts) {
     Inbound inbound(SiteRole::master, own_session);
     RC_ASSERT(inbound.take(datagram, 1000 * ms) != Verdict::counted);
     RC_ASSERT(inbound.counters().counted == 0U);
-    RC_ASSERT(inbound.heard_ns() == 0);
+    RC_ASSERT(inbound.received_ns() == 0);
   }));
 }
 

@@ -112,7 +112,7 @@ TEST_F(BridgeTest, AnotherVendorTellsWhereTheHandIsMeantToBe) {
   peer.advertise(topic("operator/servo_jp"), joint_state_type);
   Bridge bridge = Bridge::create(params).value();
   ASSERT_TRUE(eventually([&] { return peer.readers(topic("operator/servo_jp")) == 1; }));
-  EXPECT_EQ(bridge.take_wish(), std::nullopt);
+  EXPECT_EQ(bridge.take_request(), std::nullopt);
   const auto wish = [&](const JointState& command) {
     peer.publish(topic("operator/servo_jp"), test::to_fast_cdr(command));
   };
@@ -121,12 +121,12 @@ TEST_F(BridgeTest, AnotherVendorTellsWhereTheHandIsMeantToBe) {
   std::optional<double> taken;
   ASSERT_TRUE(eventually([&] {
     wish({.name = {"operator"}, .position = {0.1 / 3}});
-    return (taken = bridge.take_wish()).has_value();
+    return (taken = bridge.take_request()).has_value();
   }));
   EXPECT_EQ(taken, 0.1 / 3);
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  bridge.take_wish();
-  const std::uint64_t wishes = bridge.counts().wishes;
+  bridge.take_request();
+  const std::uint64_t requests = bridge.counts().requests;
 
   // Of several the newest; what is no single finite position is refused.
   wish({.position = {0.01}});
@@ -136,8 +136,8 @@ TEST_F(BridgeTest, AnotherVendorTellsWhereTheHandIsMeantToBe) {
   wish({.position = {std::numeric_limits<double>::quiet_NaN()}});
   wish({.position = {std::numeric_limits<double>::infinity()}});
   ASSERT_TRUE(eventually([&] { return bridge.counts().refused == 4; }));
-  EXPECT_EQ(bridge.take_wish(), 0.02);
-  EXPECT_EQ(bridge.counts().wishes, wishes + 2);
+  EXPECT_EQ(bridge.take_request(), 0.02);
+  EXPECT_EQ(bridge.counts().requests, requests + 2);
 }
 
 TEST_F(BridgeTest, MalformedMessagesAreDroppedAndTheNextGoodOneArrives) {
@@ -150,7 +150,7 @@ TEST_F(BridgeTest, MalformedMessagesAreDroppedAndTheNextGoodOneArrives) {
   const auto arrives = [&](const test::Bytes& message, double position) {
     return eventually([&] {
       peer.publish(name, message);
-      return bridge.take_wish() == position;
+      return bridge.take_request() == position;
     });
   };
   ASSERT_TRUE(arrives(last, 0.125));
@@ -177,7 +177,7 @@ TEST_F(BridgeTest, MalformedMessagesAreDroppedAndTheNextGoodOneArrives) {
 
   EXPECT_TRUE(arrives(last, 0.125));
   // Of the wrong words, those within stamp, texts and numbers leave a message that is well formed.
-  EXPECT_LE(bridge.counts().wishes, 1 + 2 * good.size() / 4);
+  EXPECT_LE(bridge.counts().requests, 1 + 2 * good.size() / 4);
 }
 
 TEST_F(BridgeTest, TheMeasuredSignalsComeAtTheRateThatWasAskedFor) {

@@ -9,7 +9,7 @@ template <>
 struct Doubles<ros2::RemotePath::Input> {
   using Row = std::array<double, 2>;
   static ros2::RemotePath::Input from(const Row& row) {
-    return {.scripted_m = row[0], .wished_m = row[1] > 0.0 ? std::optional(row[1]) : std::nullopt};
+    return {.scripted_m = row[0], .requested_m = row[1] > 0.0 ? std::optional(row[1]) : std::nullopt};
   }
 };
 

@@ -50,13 +50,14 @@ TEST_F(RunAmongRos2Nodes, AnotherVendorDrivesTheHandAndSeesMasterAndSlaveFollow)
         {"run", "quick.toml", "--ros2", "--namespace", name_space, "--set", "task.taps=4", "--json", "--out", "out"});
   });
   // Away from the wall, where no tap goes.
-  const double wished_m = -0.03;
+  const double requested_m = -0.03;
   const auto near = [&](const char* name) {
     const auto messages = peer.received(topic(name));
-    return !messages.empty() && std::fabs(ros2::test::joint_state_of(messages.back()).position.at(0) - wished_m) < 1e-3;
+    return !messages.empty() &&
+           std::fabs(ros2::test::joint_state_of(messages.back()).position.at(0) - requested_m) < 1e-3;
   };
   EXPECT_TRUE(eventually([&] {
-    peer.publish(topic("operator/servo_jp"), ros2::test::to_fast_cdr({.position = {wished_m}}));
+    peer.publish(topic("operator/servo_jp"), ros2::test::to_fast_cdr({.position = {requested_m}}));
     return near("master/measured_js") && near("slave/measured_js");
   }));
 
@@ -64,7 +65,7 @@ TEST_F(RunAmongRos2Nodes, AnotherVendorDrivesTheHandAndSeesMasterAndSlaveFollow)
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto told = nlohmann::json::parse(outcome.out);
   EXPECT_TRUE(told.at("driven"));
-  EXPECT_GT(told.at("wishes"), 0);
+  EXPECT_GT(told.at("requests"), 0);
   EXPECT_GT(told.at("published"), 100);
   EXPECT_EQ(told.at("dropped"), 0);
   EXPECT_EQ(told.at("commands_refused"), 0);

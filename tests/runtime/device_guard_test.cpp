@@ -19,7 +19,7 @@ namespace device_guard_test {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t period_ns = 200'000;
 constexpr double period_s = 1e-9 * static_cast<double>(period_ns);
-constexpr Seconds patience{0.004};  ///< 20 ticks
+constexpr Seconds timeout{0.004};  ///< 20 ticks
 constexpr station::DeviceLimits limits{.force_N = 2.0,
                                        .handle_force_N = 0.5,
                                        .rate_N_per_s = 1000.0,  // 0.2 N a tick
@@ -56,7 +56,7 @@ class Motor final : public station::Device {
 };
 
 TEST(DeviceGuard, WhatIsWithinTheLimitsPassesToTheBitAlsoWhereItIsExactlyAtThem) {
-  station::DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, timeout);
   (void)guard.pass({}, tick(0));
   double force_N = 0.0;
   for (std::int64_t n = 1; n <= 1000; ++n) {
@@ -67,12 +67,12 @@ TEST(DeviceGuard, WhatIsWithinTheLimitsPassesToTheBitAlsoWhereItIsExactlyAtThem)
     ASSERT_EQ(given.handle_force_N, wanted.handle_force_N) << n;
     ASSERT_TRUE(given.enabled);
   }
-  EXPECT_EQ(guard.cause(), station::LetGo::none);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::none);
   EXPECT_EQ(guard.held_back(), 0);
 }
 
 TEST(DeviceGuard, ASlipIsHeldBackAndForgivenAndWhoInsistsIsLetGoOf) {
-  station::DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, timeout);
   std::int64_t number = 0;
   const auto next = [&] { return tick(++number); };
   (void)guard.pass({}, tick(number));
@@ -80,11 +80,12 @@ TEST(DeviceGuard, ASlipIsHeldBackAndForgivenAndWhoInsistsIsLetGoOf) {
     EXPECT_DOUBLE_EQ(guard.pass({.handle_force_N = 0.6}, next()).handle_force_N, 0.2);
     (void)guard.pass({}, next());
   }
-  EXPECT_EQ(guard.cause(), station::LetGo::none);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::none);
   EXPECT_EQ(guard.held_back(), 100);
   int ticks = 0;
-  for (; guard.cause() == station::LetGo::none && ticks < 100; ++ticks) (void)guard.pass({.force_N = 2.1}, next());
-  EXPECT_EQ(guard.cause(), station::LetGo::force);
+  for (; guard.cause() == station::ReleaseCause::none && ticks < 100; ++ticks)
+    (void)guard.pass({.force_N = 2.1}, next());
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::force);
   EXPECT_EQ(ticks, 21);
   // From 2 N at 0.2 N a tick, then without power, and nothing brings it back but a new arming.
   for (int left = 1; left < 40; ++left) {
@@ -112,13 +113,13 @@ TEST(DeviceGuard, ASlowRateLimitKeepsNoForcePressingAfterAStop) {
       given_N = guard.pass({.force_N = by_command ? wanted_N : 0.0, .enabled = by_command}, tick(++number)).force_N;
     }
     EXPECT_LE(static_cast<double>(number - began) * period_s, 0.126) << "half of 0.25 s from half of the limit";
-    EXPECT_EQ(guard.cause(), station::LetGo::none);
+    EXPECT_EQ(guard.cause(), station::ReleaseCause::none);
     EXPECT_NEAR(guard.pass({.force_N = -1.0}, tick(++number)).force_N, -1e-4, 1e-12) << "it grows at the rate limit";
   }
 }
 
 TEST(DeviceGuard, TicksThatWereMissedEarnNoJump) {
-  station::DeviceGuard guard(limits, patience);
+  station::DeviceGuard guard(limits, timeout);
   (void)guard.pass({}, tick(0));
   station::Tick late = tick(10);
   late.missed = 9;
@@ -127,31 +128,32 @@ TEST(DeviceGuard, TicksThatWereMissedEarnNoJump) {
 
 TEST(DeviceGuard, ItMeasuresSpeedItselfAndAnEncodersStepIsNoSpeed) {
   const auto cause_at = [](double velocity_m_per_s, double ticks_jump_m) {
-    station::DeviceGuard guard(limits, patience);
-    for (std::int64_t n = 0; n < 200 && guard.cause() == station::LetGo::none; ++n) {
+    station::DeviceGuard guard(limits, timeout);
+    for (std::int64_t n = 0; n < 200 && guard.cause() == station::ReleaseCause::none; ++n) {
       const double true_m =
           -0.05 + velocity_m_per_s * period_s * static_cast<double>(n) + (n == 50 ? ticks_jump_m : 0.0);
       guard.observe(1e-4 * std::floor(true_m / 1e-4), tick(n));
     }
     return guard.cause();
   };
-  EXPECT_EQ(cause_at(0.9, 0.0), station::LetGo::none) << "though a count of 0.1 mm in a tick looks like 0.5 m/s more";
-  EXPECT_EQ(cause_at(1.1, 0.0), station::LetGo::velocity);
-  EXPECT_EQ(cause_at(0.0, 0.004), station::LetGo::none);
-  EXPECT_EQ(cause_at(0.0, 0.006), station::LetGo::velocity) << "a jump of what 5 ms allow";
-  EXPECT_EQ(cause_at(0.0, nan), station::LetGo::not_finite);
-  station::DeviceGuard guard(limits, patience);
+  EXPECT_EQ(cause_at(0.9, 0.0), station::ReleaseCause::none)
+      << "though a count of 0.1 mm in a tick looks like 0.5 m/s more";
+  EXPECT_EQ(cause_at(1.1, 0.0), station::ReleaseCause::velocity);
+  EXPECT_EQ(cause_at(0.0, 0.004), station::ReleaseCause::none);
+  EXPECT_EQ(cause_at(0.0, 0.006), station::ReleaseCause::velocity) << "a jump of what 5 ms allow";
+  EXPECT_EQ(cause_at(0.0, nan), station::ReleaseCause::not_finite);
+  station::DeviceGuard guard(limits, timeout);
   guard.observe(-0.1, tick(0));
-  EXPECT_EQ(guard.cause(), station::LetGo::none);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::none);
   guard.observe(-0.1001, tick(1));
-  EXPECT_EQ(guard.cause(), station::LetGo::position);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::position);
 }
 
 TEST(DeviceGuard, ItMeasuresSpeedOverTheTimeBetweenMeasurements) {
   // At 0.9 of the limit, a bus that stands still for 20 ms: what comes after that is no jump, but for who takes it for
   // new at each tick.
   const auto cause_at = [](bool age_is_told) {
-    station::DeviceGuard guard(limits, patience);
+    station::DeviceGuard guard(limits, timeout);
     for (std::int64_t n = 0; n < 500; ++n) {
       const double now_s = period_s * static_cast<double>(n);
       const double measured_s = now_s > 0.05 && now_s < 0.07 ? 0.05 : now_s;
@@ -159,35 +161,35 @@ TEST(DeviceGuard, ItMeasuresSpeedOverTheTimeBetweenMeasurements) {
     }
     return guard.cause();
   };
-  EXPECT_EQ(cause_at(true), station::LetGo::none);
-  EXPECT_EQ(cause_at(false), station::LetGo::velocity);
-  station::DeviceGuard guard(limits, patience);
+  EXPECT_EQ(cause_at(true), station::ReleaseCause::none);
+  EXPECT_EQ(cause_at(false), station::ReleaseCause::velocity);
+  station::DeviceGuard guard(limits, timeout);
   guard.observe(0.0, tick(0), nan);
-  EXPECT_EQ(guard.cause(), station::LetGo::not_finite);
+  EXPECT_EQ(guard.cause(), station::ReleaseCause::not_finite);
 }
 
 /// Controllers that are alive and wrong: what each commands at a tick.
 struct Wrong {
   const char* name;
   std::function<double(std::int64_t tick)> force_N;
-  station::LetGo cause;
+  station::ReleaseCause cause;
 };
 std::vector<Wrong> wrong_controllers() {
   const auto random = std::make_shared<signal::Random>(5);
-  return {
-      {"no number", [](std::int64_t n) { return n < 50 ? 1.0 : nan; }, station::LetGo::not_finite},
-      {"infinity", [](std::int64_t) { return std::numeric_limits<double>::infinity(); }, station::LetGo::not_finite},
-      {"a million newtons", [](std::int64_t) { return 1e6; }, station::LetGo::force},
-      {"minus a million newtons", [](std::int64_t) { return -1e6; }, station::LetGo::force},
-      {"the limit to and fro", [](std::int64_t n) { return n % 2 == 0 ? 2.0 : -2.0; }, station::LetGo::rate},
-      {"anything", [random](std::int64_t) { return 1e3 * (static_cast<double>(random->bits() % 2001) - 1000.0); },
-       station::LetGo::force}};
+  return {{"no number", [](std::int64_t n) { return n < 50 ? 1.0 : nan; }, station::ReleaseCause::not_finite},
+          {"infinity", [](std::int64_t) { return std::numeric_limits<double>::infinity(); },
+           station::ReleaseCause::not_finite},
+          {"a million newtons", [](std::int64_t) { return 1e6; }, station::ReleaseCause::force},
+          {"minus a million newtons", [](std::int64_t) { return -1e6; }, station::ReleaseCause::force},
+          {"the limit to and fro", [](std::int64_t n) { return n % 2 == 0 ? 2.0 : -2.0; }, station::ReleaseCause::rate},
+          {"anything", [random](std::int64_t) { return 1e3 * (static_cast<double>(random->bits() % 2001) - 1000.0); },
+           station::ReleaseCause::force}};
 }
 
 TEST(GuardedDevice, WhateverAWrongControllerWritesTheMotorStaysWithinItsLimitsAndIsSwitchedOff) {
   for (const Wrong& wrong : wrong_controllers()) {
     Motor motor;
-    station::GuardedDevice device(motor, patience);
+    station::GuardedDevice device(motor, timeout);
     for (std::int64_t n = 0; n < 200; ++n) {
       (void)device.read(tick(n));
       device.write({.force_N = n == 0 ? 0.0 : wrong.force_N(n)});
@@ -201,20 +203,20 @@ TEST(GuardedDevice, WhateverAWrongControllerWritesTheMotorStaysWithinItsLimitsAn
 
 TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayToo) {
   Motor motor;
-  station::GuardedDevice device(motor, patience);
+  station::GuardedDevice device(motor, timeout);
   for (std::int64_t n = 0; n < 300; ++n) {
     (void)device.read(tick(n));
     if (n < 100) device.write({.force_N = std::min(1.0, 0.1 * static_cast<double>(n))});
     if (n == 119) {
-      EXPECT_EQ(motor.now.force_N, 1.0) << "within patience";
+      EXPECT_EQ(motor.now.force_N, 1.0) << "within timeout";
     }
   }
   EXPECT_TRUE(motor.within);
-  EXPECT_EQ(device.guard().cause(), station::LetGo::silent);
+  EXPECT_EQ(device.guard().cause(), station::ReleaseCause::timed_out);
   EXPECT_FALSE(motor.now.enabled);
 
   Motor fast;
-  station::GuardedDevice around(fast, patience);
+  station::GuardedDevice around(fast, timeout);
   for (std::int64_t n = 0; n < 300; ++n) {
     fast.reading.position_m = -0.09 + 2.0 * period_s * static_cast<double>(n);
     (void)around.read(tick(n));
@@ -223,15 +225,15 @@ TEST(GuardedDevice, AMotorThatIsGivenNothingMoreIsSwitchedOffAndOneThatRunsAwayT
       EXPECT_FALSE(fast.now.enabled);
     }
   }
-  EXPECT_EQ(around.guard().cause(), station::LetGo::velocity);
+  EXPECT_EQ(around.guard().cause(), station::ReleaseCause::velocity);
 }
 
 /// The owner's side with its motor, and whatever lies in the slots.
 struct Owned {
   std::unique_ptr<DeviceSlots> slots = std::make_unique<DeviceSlots>();
   Motor motor;
-  DeviceServer owner{*slots, patience, limits};
-  SharedDevice controller{*slots, limits, patience};
+  DeviceServer owner{*slots, timeout, limits};
+  SharedDevice controller{*slots, limits, timeout};
 
   Owned() {
     owner.begin(1);
@@ -285,7 +287,7 @@ TEST(DeviceServer, CommandsThatSomethingRepeatsAreSilenceWhateverTimeTheyBear) {
     }
     EXPECT_TRUE(both.motor.within) << stale.name;
     EXPECT_EQ(both.motor.most_N, 1.5) << stale.name;
-    EXPECT_EQ(both.owner.guard().cause(), station::LetGo::silent) << stale.name;
+    EXPECT_EQ(both.owner.guard().cause(), station::ReleaseCause::timed_out) << stale.name;
     EXPECT_FALSE(both.motor.now.enabled) << stale.name;
   }
 }

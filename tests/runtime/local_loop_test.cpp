@@ -140,7 +140,7 @@ TEST_F(LocalSites, EndWithoutForceThatFallsAtTheRateLimitAndLeaveEveryTickInTheL
     EXPECT_LE(largest_step_N, rate_limit_N_per_s * 200e-6 * (1.0 + 1e-9)) << site;
   }
   // What the one told is what the other heard, in the same tick or at the next.
-  const auto told = column("/master/site", "told_position_m"), heard = column("/slave/site", "heard_position_m");
+  const auto told = column("/master/site", "sent_position_m"), heard = column("/slave/site", "received_position_m");
   EXPECT_EQ(told[6000], heard[6000]);
   EXPECT_EQ(column("/servo", "tick").size(), static_cast<std::size_t>(tick));
 }

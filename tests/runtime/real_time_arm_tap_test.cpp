@@ -104,7 +104,7 @@ TEST(RealTimeArmTap, ItLeavesWhatBothSitesHeardToldAndReadOfEachJoint) {
   while (tap->step(arm_tick(ticks - 1))) ++ticks;
   JointStreams::Joint::Entry of_master, of_slave;
   JointStreams::Site::Entry of_site;
-  double slave_told_N = 0.0, moved_rad = 0.0;
+  double slave_sent_N = 0.0, moved_rad = 0.0;
   for (std::int64_t number = 0; number < ticks; ++number) {
     ASSERT_TRUE(master.next(of_master));
     ASSERT_TRUE(slave.next(of_slave));
@@ -112,16 +112,16 @@ TEST(RealTimeArmTap, ItLeavesWhatBothSitesHeardToldAndReadOfEachJoint) {
     using Record = JointLogRecord;
     EXPECT_EQ(of_master.record.tick, number);
     EXPECT_EQ(of_slave.time_ns - of_master.time_ns, 0U);
-    EXPECT_EQ(of_slave.record.Record::Heard::position_m, of_master.record.Record::Told::position_m);
+    EXPECT_EQ(of_slave.record.Record::Received::position_m, of_master.record.Record::Sent::position_m);
     if (number > 0) {
-      EXPECT_EQ(of_master.record.Record::Heard::force_N, slave_told_N) << "of the tick before";
+      EXPECT_EQ(of_master.record.Record::Received::force_N, slave_sent_N) << "of the tick before";
     }
-    slave_told_N = of_slave.record.Record::Told::force_N;
+    slave_sent_N = of_slave.record.Record::Sent::force_N;
     moved_rad = std::fabs(of_slave.record.position_m - taps->setup().leader.start[3]);
     EXPECT_EQ(of_site.record.state, static_cast<std::int64_t>(control::SiteState::active));
     EXPECT_EQ(of_site.record.fault, 0);
   }
-  EXPECT_NE(slave_told_N, 0.0);
+  EXPECT_NE(slave_sent_N, 0.0);
   EXPECT_GT(moved_rad, 1e-3);
 }
 

@@ -193,14 +193,14 @@ TEST(SharedPlant, WhenTheControllerIsKilledInMidRunThePlantLetsGoAndTheNextOneTa
   ASSERT_TRUE(serve_until([&] { return plant.status().commands > 100; }));
   EXPECT_EQ(plant.status().controller, first.process);
   kill(first.process, SIGKILL);
-  EXPECT_TRUE(serve_until([&] { return plant.status().let_go == 1; }));
+  EXPECT_TRUE(serve_until([&] { return plant.status().released == 1; }));
   EXPECT_FALSE(plant.status().controller);
   heir.go();
   int status = -1;
   EXPECT_TRUE(serve_until([&] { return waitpid(heir.process, &status, WNOHANG) == heir.process; }));
   EXPECT_EQ(status, 0);
   EXPECT_EQ(plant.status().taps, 2);
-  EXPECT_EQ(plant.status().let_go, 1);
+  EXPECT_EQ(plant.status().released, 1);
   (*servo)->stop();
   (*servo)->finish();
 }

@@ -96,7 +96,7 @@ TEST(SharedPlant, InLockStepItIsBitForBitTheTapInVirtualTime) {
     EXPECT_TRUE((*running)->result().touched);
   }
   EXPECT_EQ(both.server->status().taps, 3);
-  EXPECT_EQ(both.server->status().let_go, 0);
+  EXPECT_EQ(both.server->status().released, 0);
 }
 
 TEST(SharedPlant, WithoutItsControllerThePlantLetsGoAndStandsReadyForTheNext) {
@@ -111,9 +111,9 @@ TEST(SharedPlant, WithoutItsControllerThePlantLetsGoAndStandsReadyForTheNext) {
     both.server->step(tick(++both.number));
   }
   for (int i = 1; i < 50; ++i) both.server->step(tick(++both.number));
-  EXPECT_EQ(both.server->status().let_go, 0) << "within its bound";
+  EXPECT_EQ(both.server->status().released, 0) << "within its bound";
   both.server->step(tick(++both.number));
-  EXPECT_EQ(both.server->status().let_go, 1);
+  EXPECT_EQ(both.server->status().released, 1);
   // The controller hears of it, lets go too, and the tap is over.
   int steps = 0;
   while ((*running)->step(tick(both.number)) && steps < 100) {
@@ -126,7 +126,7 @@ TEST(SharedPlant, WithoutItsControllerThePlantLetsGoAndStandsReadyForTheNext) {
   ASSERT_FALSE(both.begin(1));
   (void)both.plant->master().read(tick(both.number));
   EXPECT_FALSE(both.plant->lost());
-  EXPECT_EQ(both.server->status().let_go, 1);
+  EXPECT_EQ(both.server->status().released, 1);
 }
 
 TEST(SharedPlant, MemoryThatIsCutShortInMidRunEndsItOnBothSidesInWords) {
@@ -176,11 +176,11 @@ TEST(SharedPlant, ACommandFarBeyondTheDeviceNeverReachesItAndTheControllerHearsW
     both.plant->slave().write({});
     both.server->step(tick(++both.number));
   }
-  EXPECT_LT(own, 60) << "10 ms of patience";
+  EXPECT_LT(own, 60) << "10 ms of timeout";
   EXPECT_NE(both.plant->why_lost().message.find("at the master: commands insisted on more force"), std::string::npos)
       << both.plant->why_lost().message;
-  EXPECT_EQ(both.server->status().let_go, 1);
-  EXPECT_EQ(both.server->status().cause, station::LetGo::force);
+  EXPECT_EQ(both.server->status().released, 1);
+  EXPECT_EQ(both.server->status().cause, station::ReleaseCause::force);
   EXPECT_GT(both.server->status().held_back, 40);
 }
 

@@ -33,7 +33,7 @@ TEST_F(Sites, GoThroughTheirStatesAsAPersonAsks) {
   expect(SiteState::active, SiteState::active);
   ask(master, SiteWord::unclutch);
   const auto table = close(master, SiteRole::master);
-  const auto told = column(table, "told_position_m"), read = column(table, "position_m");
+  const auto told = column(table, "sent_position_m"), read = column(table, "position_m");
   const auto spread = [](const std::vector<double>& all, std::size_t begin, std::size_t end) {
     const auto [low, high] = std::minmax_element(all.begin() + static_cast<std::ptrdiff_t>(begin),
                                                  all.begin() + static_cast<std::ptrdiff_t>(end));
@@ -52,14 +52,14 @@ TEST_F(Sites, ThatAreCutOffHoldUntilAPersonArms) {
   run(600, true, false);
   run(5000);
   expect(SiteState::hold, SiteState::hold);
-  EXPECT_EQ(master.second.cause, SiteCause::silent);
+  EXPECT_EQ(master.second.cause, SiteCause::timed_out);
   run(5000);
   expect(SiteState::hold, SiteState::hold);
   ask(master, SiteWord::arm);
   expect(SiteState::active, SiteState::active);
   const SiteTotals totals = master.loop->totals();
   EXPECT_EQ(totals.armings, 2);
-  EXPECT_EQ(totals.holds[SiteCause::silent], 1);
+  EXPECT_EQ(totals.holds[SiteCause::timed_out], 1);
   EXPECT_NEAR(totals.longest_silence_at_hold_s, 0.1, 0.001);
   EXPECT_EQ(master.loop->link_totals().stale_applied, 0);
   EXPECT_EQ(totals.steps_above_limit, 0);
@@ -115,7 +115,7 @@ TEST_F(Sites, TheLastSecondIsInTheLogAndInTheReport) {
   for (const char* name : {"limit", "fault"}) EXPECT_EQ(column(table, name).back(), 0.0) << name;
   EXPECT_GT(column(table, "round_trip_s").back(), 0.0);
   EXPECT_EQ(column(table, "link_silence_s").back(), 0.0);
-  EXPECT_EQ(column(table, "told_sequence").back(), 7'777.0);
+  EXPECT_EQ(column(table, "sent_sequence").back(), 7'777.0);
   EXPECT_EQ(column(table, "applied_sequence").back(), 7'777.0) << "the master is stepped first";
   const auto forces = column(table, "motor_force_N");
   EXPECT_GT(*std::ranges::max_element(forces), 0.01);

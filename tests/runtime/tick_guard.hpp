@@ -11,7 +11,7 @@ struct Deeds {
   std::int64_t locks = 0;         ///< of mutexes and their relatives, contended or not
   std::int64_t minor_faults = 0;  ///< pages that were not there, by RUSAGE_THREAD
   std::int64_t major_faults = 0;
-  std::int64_t system_calls = 0;  ///< other than those of the wait for the deadline and of the books
+  std::int64_t system_calls = 0;  ///< other than those of the wait for the deadline and of the counters
   std::int64_t first_system_call = -1;
 };
 

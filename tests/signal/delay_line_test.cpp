@@ -51,10 +51,10 @@ TEST(DelayLine, RoundsToTheNearestTick) {
 TEST(DelayLine, ADelayBeyondItsCapacityIsRefusedWithTheRemedy) {
   const auto refused = DelayLine<double, 8>::make({.delay_s = 0.01}, tick);
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(
-      describe(refused.error()),
-      "delay_s: 0.01 s is 50 ticks, and this delay line holds at most 8 (0.0016 s): shorten the delay or lengthen "
-      "the tick");
+  EXPECT_EQ(describe(refused.error()),
+            "delay_s: 0.01 s is 50 control cycles, and this delay line holds at most 8 (0.0016 s): shorten the delay "
+            "or lengthen "
+            "the control cycle");
   EXPECT_FALSE((DelayLine<double, 8>::make({.delay_s = 1e300}, tick).ok()));
 }
 

@@ -73,13 +73,13 @@ class End {
     packet.sequence += origin_.sequence;
     packet.agreement = agreement.excerpt(packet.sequence);
     packet.message.energy_J += origin_.energy_J;
-    const bool echoes = inbound_.echo_heard_ns() != 0;
+    const bool echoes = inbound_.echo_received_ns() != 0;
     return link::encode({.site = role_,
                          .packet = packet,
                          .peer_session = inbound_.answered_session(),
                          .sent_ns = now_ns,
                          .echo_sent_ns = inbound_.echo_sent_ns(),
-                         .echo_hold_ns = echoes ? now_ns - inbound_.echo_heard_ns() : 0});
+                         .echo_hold_ns = echoes ? now_ns - inbound_.echo_received_ns() : 0});
   }
   [[nodiscard]] const link::Inbound& inbound() const { return inbound_; }
   [[nodiscard]] std::int64_t malformed() const { return malformed_; }
@@ -127,12 +127,12 @@ class TwoSites {
     const std::int64_t since_ns = tick_ * tick_ns();
 
     const station::Tick tick{.number = tick_, .missed = elapsed_ticks - 1};
-    Way<control::SupervisedMaster> of_master{*this,      master_,   master_end_,
-                                             to_master_, to_slave_, origin_.master_clock_ns + since_ns};
+    Transport<control::SupervisedMaster> of_master{*this,      master_,   master_end_,
+                                                   to_master_, to_slave_, origin_.master_clock_ns + since_ns};
     seen_.master = station::step(master_, master_plant_, of_master, tick, requests);
     seen_.master_heard_age_s = of_master.heard_age_s;
-    Way<control::SupervisedSlave> of_slave{*this,     slave_,     slave_end_,
-                                           to_slave_, to_master_, origin_.slave_clock_ns + since_ns + tick_ns() / 2};
+    Transport<control::SupervisedSlave> of_slave{
+        *this, slave_, slave_end_, to_slave_, to_master_, origin_.slave_clock_ns + since_ns + tick_ns() / 2};
     seen_.slave = station::step(slave_, slave_plant_, of_slave, tick, requests);
     seen_.slave_heard_age_s = of_slave.heard_age_s;
 
@@ -174,7 +174,7 @@ class TwoSites {
 
   /// The way of a site over its end, with what lies at it and what it leaves for the other.
   template <class Site>
-  struct Way {
+  struct Transport {
     const TwoSites& sites;
     const Site& site;
     End& end;

@@ -42,10 +42,10 @@ const auto below_shaper = [](std::string_view own) { return join("shaper", own);
 TEST(Declared, AStageThatSaysNothingIsRefusedByNameOnOrOff) {
   EXPECT_EQ(refusal_of(check_stage<Silent>(Analysis::linear, {}, below_shaper)),
             "control.shaper: has not declared whether it is linear: declare it in its class as "
-            "tactus/control/stages/stage.hpp says, or use `tactus run`");
+            "tactus/control/stages/stage.hpp describes, or use `tactus run`");
   EXPECT_EQ(refusal_of(check_stage<Silent>(Analysis::lanes, {}, below_shaper)),
             "control.shaper: has not declared whether it runs on lanes: declare it in its class as "
-            "tactus/control/stages/stage.hpp says, or use `tactus run`");
+            "tactus/control/stages/stage.hpp describes, or use `tactus run`");
 }
 
 TEST(Declared, AStageIsTakenAtItsWord) {

@@ -19,7 +19,7 @@ constexpr DeviceLimits with_law{.force_N = 4.0,
                                 .position_m = 10.0,
                                 .stiffness_N_per_m = 200.0,
                                 .damping_N_s_per_m = 5.0};
-constexpr Seconds patience{0.02};
+constexpr Seconds timeout{0.02};
 
 double given_N(const DeviceCommand& command, double at_m, double at_m_per_s) {
   return command.force_N + command.law.force_N(at_m, at_m_per_s);
@@ -54,7 +54,7 @@ TEST(DeviceGuardOfADriveWithALaw, BoundsWhatTheLawGivesWhereTheDeviceIs) {
                                        .damping_N_s_per_m = random.uniform(0.0, 10.0)}};
     const DeviceCommand passed = guard.pass(wanted, tick(number));
     const double now_N = given_N(passed, at_m, at_m_per_s);
-    if (guard.cause() != LetGo::none) break;
+    if (guard.cause() != ReleaseCause::none) break;
     ASSERT_LE(std::fabs(now_N), 4.0 * (1.0 + 1e-6)) << number;
     if (number > 0) {
       ASSERT_LE(std::fabs(now_N - before_N), 0.2 * (1.0 + 1e-6)) << number;
@@ -67,7 +67,7 @@ TEST(DeviceGuardOfADriveWithALaw, BoundsWhatTheLawGivesWhereTheDeviceIs) {
 }
 
 TEST(DeviceGuardOfADriveWithALaw, PassesWhatIsWithinItsLimitsToTheBit) {
-  DeviceGuard guard(with_law, patience);
+  DeviceGuard guard(with_law, timeout);
   guard.observe(0.01, tick(0), 0.0, 0.2);
   const DeviceCommand wanted{
       .force_N = 1.0,
@@ -80,18 +80,18 @@ TEST(DeviceGuardOfADriveWithALaw, PassesWhatIsWithinItsLimitsToTheBit) {
     ASSERT_EQ(passed.law.stiffness_N_per_m, 200.0);
     ASSERT_EQ(passed.law.damping_N_s_per_m, 5.0);
   }
-  EXPECT_EQ(guard.cause(), LetGo::none);
+  EXPECT_EQ(guard.cause(), ReleaseCause::none);
 }
 
 TEST(DeviceGuardOfADriveWithALaw, LetsGoOfTheLawWithTheForce) {
   for (const DeviceCommand& wrong :
        {DeviceCommand{.law = {.position_m = nan, .stiffness_N_per_m = 1.0}},
         DeviceCommand{.law = {.stiffness_N_per_m = nan}}, DeviceCommand{.law = {.damping_N_s_per_m = nan}}}) {
-    DeviceGuard guard(with_law, patience);
+    DeviceGuard guard(with_law, timeout);
     guard.observe(0.0, tick(0));
     guard.pass({.law = {.position_m = 0.01, .stiffness_N_per_m = 100.0}}, tick(0));
     DeviceCommand passed = guard.pass(wrong, tick(1));
-    EXPECT_EQ(guard.cause(), LetGo::not_finite);
+    EXPECT_EQ(guard.cause(), ReleaseCause::not_finite);
     for (std::int64_t number = 2; number < 50; ++number) {
       EXPECT_FALSE(passed.law.acts());
       EXPECT_TRUE(std::isfinite(passed.force_N));
@@ -103,12 +103,12 @@ TEST(DeviceGuardOfADriveWithALaw, LetsGoOfTheLawWithTheForce) {
 }
 
 TEST(DeviceGuardOfADriveWithoutALaw, LetsGoOfAControllerThatInsistsOnOne) {
-  DeviceGuard guard(limits, patience);
+  DeviceGuard guard(limits, timeout);
   for (std::int64_t number = 0; number < 300; ++number) {
     guard.observe(0.0, tick(number));
     EXPECT_FALSE(guard.pass({.law = {.position_m = 0.01, .stiffness_N_per_m = 100.0}}, tick(number)).law.acts());
   }
-  EXPECT_EQ(guard.cause(), LetGo::force);
+  EXPECT_EQ(guard.cause(), ReleaseCause::force);
 }
 
 }  // namespace drive_law_test

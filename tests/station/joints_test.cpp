@@ -18,7 +18,7 @@ namespace joints_test {
 using control::SiteRequests;
 using control::SiteState;
 
-/// A device of several carriages, which stay in sight.
+/// A device of several carriages, which stay in snapshot.
 struct Arm {
   std::vector<Carriage*> joints;
   std::unique_ptr<JoinedDevices> device;
@@ -77,8 +77,8 @@ SiteRequests pressed_at(std::int64_t number) {
 }
 
 /// Runs three axes in one station and each by itself, and compares all that the motors get and all that the sites are.
-template <class JointPair, class Pair, class WishAt>
-void compare_with_single_runs(std::int64_t ticks, const WishAt& wish_at) {
+template <class JointPair, class Pair, class RequestAt>
+void compare_with_single_runs(std::int64_t ticks, const RequestAt& request_at) {
   constexpr std::size_t count = 3;
   Arm masters(count, true), slaves(count, true);
   auto together = DevicePair<JointPair>::make(of_joints(count), lossy, period, Joints<double>(count, 0.0),
@@ -100,9 +100,9 @@ void compare_with_single_runs(std::int64_t ticks, const WishAt& wish_at) {
     for (std::size_t joint = 0; joint < count; ++joint) {
       masters.joints[joint]->hand_m = lone_masters[joint]->hand_m = hand_m(joint, number);
     }
-    together.step(now, wish_at(number));
+    together.step(now, request_at(number));
     for (std::size_t joint = 0; joint < count; ++joint) {
-      alone[joint].step(now, wish_at(number));
+      alone[joint].step(now, request_at(number));
       for (const auto& [one, other] : {std::pair{masters.joints[joint], lone_masters[joint].get()},
                                        std::pair{slaves.joints[joint], lone_slaves[joint].get()}}) {
         ASSERT_TRUE(same_bits(one->command.force_N, other->command.force_N)) << "joint " << joint << " at " << number;
@@ -237,7 +237,7 @@ TEST(SeveralJoints, OneThatIsBeyondWhatItsDeviceAllowsHasTheWallLetAllGo) {
   for (const Carriage* joint : arm.joints) EXPECT_EQ(joint->command.force_N, 0.1);
   arm.joints[2]->carry_to(0.06);
   run(5);
-  EXPECT_EQ(wall.cause(), LetGo::position);
+  EXPECT_EQ(wall.cause(), ReleaseCause::position);
   EXPECT_EQ(wall.health(), DeviceHealth::lost);
   for (const Carriage* joint : arm.joints) EXPECT_FALSE(joint->command.enabled);
 }

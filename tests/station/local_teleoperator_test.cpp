@@ -1,5 +1,5 @@
 #include <tactus/station/local_teleoperator.hpp>
-#include <tactus/station/wall.hpp>
+#include <tactus/station/make_device_guard.hpp>
 
 #include <cmath>
 #include <cstdint>
@@ -197,7 +197,7 @@ TEST(LocalTeleoperator, LettingGoEndsWithoutAForceAndWithoutAStepInIt) {
   bench.master.largest_step_N = 0.0;
   int ticks = 0;
   while (ticks < 5000 && (ticks == 0 || !bench.loop.at_rest())) {
-    bench.loop.let_go(tick(bench.number++));
+    bench.loop.step_to_rest(tick(bench.number++));
     ++ticks;
   }
   EXPECT_LT(ticks, 5000);
@@ -226,7 +226,7 @@ TEST(LocalTeleoperator, ADeviceThatIsSilentIsAHoldWithoutForceAndNoFault) {
   bench.slave.state = DeviceHealth::degraded;
   bench.run(0.1, {.dead_man = true});
   EXPECT_TRUE(bench.both(SiteState::active)) << "an old reading alone stops nobody";
-  bench.slave.state = DeviceHealth::silent;
+  bench.slave.state = DeviceHealth::not_responding;
   bench.run(0.4, {.dead_man = true});
   EXPECT_TRUE(bench.both(SiteState::hold));
   EXPECT_EQ(bench.loop.sites().slave().cause(), control::SiteCause::device);
@@ -278,7 +278,7 @@ TEST(BareTeleoperator, ASiteWhoseDeviceIsSilentLetsGo) {
   slave.reading.position_m = -0.01;
   for (std::int64_t number = 0; number < 50; ++number) loop->step(tick(number), 1.0);
   EXPECT_GT(slave.command.force_N, 0.1);
-  slave.state = DeviceHealth::silent;  // which nothing but its gate can act on
+  slave.state = DeviceHealth::not_responding;  // which nothing but its gate can act on
   for (std::int64_t number = 50; number < 2000; ++number) loop->step(tick(number), 1.0);
   EXPECT_EQ(slave.command.force_N, 0.0);
   EXPECT_FALSE(loop->healthy());

@@ -76,18 +76,18 @@ TEST_F(RecorderTest, OneCopyIsForTheLogAndForWhoeverElseLooksOn) {
   ASSERT_TRUE(recorder);
   RecordStream<Sample> stream;
   recorder->add("/sample", "tactus_msgs/msg/Sample", stream);
-  auto onlooker = stream.watch();
+  auto observer = stream.watch();
   for (std::int64_t k = 0; k < 20; ++k) stream.push(time_of(k), sample(k));
   recorder->start(Seconds{0.001});
   ASSERT_FALSE(recorder->stop());
   EXPECT_EQ(read_log(file_).value().tables.front().times_ns.size(), 20U);
   RecordStream<Sample>::Entry entry;
   for (std::uint64_t k = 0; k < 20; ++k) {
-    ASSERT_TRUE(onlooker.next(entry));
+    ASSERT_TRUE(observer.next(entry));
     EXPECT_EQ(entry.number, k);
     EXPECT_EQ(entry.time_ns, time_of(static_cast<std::int64_t>(k)));
   }
-  EXPECT_FALSE(onlooker.next(entry));
+  EXPECT_FALSE(observer.next(entry));
 }
 
 TEST_F(RecorderTest, AFullDiskLeavesThePushingThreadAloneAndIsReportedAtTheEnd) {

@@ -21,7 +21,7 @@ TEST(LatencyTimer, OneThatIsTooSlowIsToldWithTheCommandThatMendsIt) {
   const Check slow = check_latency_timer((folder / "by-id").string(), folder / "sys");
   ASSERT_TRUE(slow);
   EXPECT_EQ(slow->message,
-            "the adapter keeps what it hears for 16 ms before it hands it over, where 1 ms is needed: "
+            "the adapter holds received bytes for 16 ms before it hands it over, where 1 ms is needed: "
             "echo 1 | sudo tee " +
                 timer.string());
   std::ofstream(timer) << "1\n";

@@ -16,7 +16,7 @@ inline nlohmann::ordered_json parameters_json(const std::vector<arm_identificati
                    {"value", p.value},
                    {"unit", p.unit},
                    {"interval_95", {p.lower, p.upper}},
-                   {"determined", p.told}});
+                   {"determined", p.determined}});
   }
   return all;
 }

@@ -12,8 +12,8 @@ Result<EnergyTank> EnergyTank::make(const Params& params, Seconds dt) {
   if (params.capacity_J < params.desired_level_J) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "capacity_J",
-                 .message = format_number(params.capacity_J) + " J is less than desired_level_J, " +
-                            format_number(params.desired_level_J) + " J: raise one or lower the other",
+                 .message = rounded_number(params.capacity_J) + " J is less than desired_level_J, " +
+                            rounded_number(params.desired_level_J) + " J: raise one or lower the other",
                  .place = {}};
   }
   return EnergyTank(params, dt);

@@ -6,8 +6,8 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
 
-/// Two layers: position-force control says what force would be transparent, and a tank of energy at each site says how
-/// much of it may be had.
+/// Two layers: position-force control states what force would be transparent, and a tank of energy at each site states
+/// how much of it may be had.
 ///
 /// The motor's work is paid from the site's own tank and what the world does to the motor flows into it. So no site
 /// gives more than it got, whatever the other layer, the channel or the other site do. Sites send each other packets of
@@ -47,7 +47,7 @@ class EnergyTank {
                 "Damping with which the master draws energy when its tank is empty; less in proportion up to the "
                 "desired level."),
           field("fastest_m_per_s", &Params::fastest_m_per_s, units::metre_per_second, positive_up_to(100.0),
-                "Highest speed of the motor, encoder step over tick included."),
+                "Highest speed of the motor, encoder step per control cycle included."),
           field("velocity", &Params::velocity, "Filter of the velocity on which the drawing damping acts.")};
     }
   };

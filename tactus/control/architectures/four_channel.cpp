@@ -15,8 +15,8 @@ Check check_share(const char* parameter, double share, const char* loop_paramete
   if (std::fabs(share - transparent) <= round_off * std::max(1.0, transparent)) return {};
   return Error{.code = ErrorCode::inconsistent,
                .parameter = parameter,
-               .message = format_number(share) + " does not meet the condition of transparency: write " +
-                          format_number(transparent) + ", 1 + " + loop_parameter,
+               .message = rounded_number(share) + " does not meet the condition of transparency: write " +
+                          rounded_number(transparent) + ", 1 + " + loop_parameter,
                .place = {}};
 }
 
@@ -144,7 +144,7 @@ Result<Controllers> make_four_channel_cancellation(const ControlParams& params, 
 
 Architecture four_channel_architecture() {
   return {.name = "four-channel",
-          .summary = "both sites tell the other position and force (Lawrence), with local force loops",
+          .summary = "both sites send position and force (Lawrence), with local force loops",
           .make = make_four_channel,
           .keys = own_keys<FourChannelParams>("four_channel", "Architecture four-channel: gains of its channels.")};
 }

@@ -19,7 +19,7 @@
 /// measured at the slave's tip. One class for each site.
 namespace tactus::control {
 
-/// Whether cancellation of induced master motion stands in the command path.
+/// Whether cancellation of induced master motion is in the command path.
 enum class CancellationMode { off, on };
 constexpr auto enumerators(CancellationMode) {
   return std::array{Enumerator{CancellationMode::off, "off"}, Enumerator{CancellationMode::on, "on"}};
@@ -47,8 +47,8 @@ struct MasterStages {
 /// asked for, and what is off changes no bit. Damping acts on the measured position and counts as displayed force, so
 /// it drives the model of cancellation too; so does what compensation of the way from motor to hand makes of the force.
 /// That takes the force saturated, for the hand should get no more than the limit. What the actuator on the handle does
-/// is no part of the model. An online estimate of the hand lessens the force before damping (`BearableForce`). With
-/// cancellation off the model still runs beside the loop, so that its estimate can be
+/// is no part of the model. An online estimate of the hand lessens the force before damping (`AdmissibleForce`). With
+/// cancellation off the model still runs alongside the loop, so that its estimate can be
 /// looked at.
 class PositionForceMaster {
  public:
@@ -80,12 +80,12 @@ class PositionForceMaster {
                 "that the slave felt; below half the servo rate; 0 is off."),
           field("cancellation", &Params::cancellation, "Cancellation of induced master motion."),
           field("cancellation_model", &Params::cancellation_model,
-                "How much of master and hand the model of cancellation tells apart."),
+                "How much of master and hand the model of cancellation distinguishes."),
           field("cancellation_step", &Params::cancellation_step, "How the model of cancellation is advanced."),
           field("cancellation_friction", &Params::cancellation_friction,
                 "On which velocity the Coulomb friction of the sixth-order model acts."),
           field("operator_estimate", &Params::operator_estimate,
-                "Where cancellation learns how firmly the person holds."),
+                "Source of the firmness of the operator's grip for cancellation."),
           field("model", &Params::model, "The controller's model of master and hand."),
           field("damping", &Params::damping, "Local derivative damping of the master's motor."),
           field("command_filter", &Params::command_filter, "Filter of the position command."),
@@ -142,7 +142,7 @@ class PositionForceMaster {
     const double damping_N = stages.damping.step(input.motor_position_m);
     // A NaN passes through clamp, so it reaches the gate, which catches and latches it.
     const double displayed_N =
-        std::clamp(stages.cancellation.bearable_N(wanted_N, limit_N) - damping_N, -limit_N, limit_N);
+        std::clamp(stages.cancellation.admissible_N(wanted_N, limit_N) - damping_N, -limit_N, limit_N);
     const double handle_N = std::clamp(above_N, -limit_N, limit_N);
     const double intended_m = stages.cancellation.intended(input.motor_position_m, input.grip);
     const double command_m = stages.command_filter.step(gains.cancels ? intended_m : input.motor_position_m);

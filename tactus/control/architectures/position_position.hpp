@@ -15,10 +15,10 @@ namespace tactus::control {
 /// give off no power; sampled, while k_d > k_p·dt/2 (Colgate and Brown). Any other μ is an amplifier. A round trip of d
 /// is felt as drag: at steady speed v, with a slave that keeps up, F_e = k_p λ v d.
 ///
-/// e holds the measured position, cancellation or not: the hand feels where the slave is, not where it was told to be.
-/// Before the slave has been heard there is no error and no force; while it is silent its last position stands.
-/// Source: Lawrence, Stability and transparency in bilateral teleoperation, 1993 (position-position as the case of his
-/// general architecture that has position channels alone).
+/// e holds the measured position, cancellation or not: the hand feels where the slave is, not where it was commanded to
+/// be. Before the slave has been heard there is no error and no force; while it does not respond its last position
+/// stands. Source: Lawrence, Stability and transparency in bilateral teleoperation, 1993 (position-position as the case
+/// of his general architecture that has position channels alone).
 class PositionPositionMaster {
  public:
   struct Params {
@@ -72,7 +72,7 @@ class PositionPositionMaster {
   bool heard_ = false;
 };
 
-/// The slave site: follows as in position-force control, and tells where it is instead of what it touches.
+/// The slave site: follows as in position-force control, and reports where it is instead of what it touches.
 class PositionPositionSlave {
  public:
   using Params = PositionForceSlave::Params;

@@ -3,7 +3,7 @@
 #include <tactus/control/architectures/position_force.hpp>
 #include <tactus/signal/low_pass.hpp>
 
-/// Shared compliant control: the slave yields to what it touches without waiting for the person.
+/// Shared compliant control: the slave yields to what it touches without waiting for the operator.
 namespace tactus::control {
 
 /// How far and how fast the slave's command yields.
@@ -24,8 +24,8 @@ struct ComplianceParams {
 ///     x_d = x_cmd − F̄_e / K_c,    F̄_e = F_e low-passed at `cutoff_Hz`.
 ///
 /// At rest the tip is as soft as the servo, K_c and the mechanism in series. The yielding is local, so delay leaves it
-/// untouched; it moves the balance of a press from the person, who knows of it a round trip late, to the slave. The tip
-/// force goes to the master as measured.
+/// untouched; it moves the balance of a press from the operator, who knows of it a round trip late, to the slave. The
+/// tip force goes to the master as measured.
 ///
 /// Against a wall the local loop has the gain k_p/K_c below the cutoff and one low-pass, so while the tip stays in
 /// contact it is stable. But a command that yields much and fast takes the tip off the wall, and the contact bounces:

@@ -58,7 +58,8 @@ class WaveReceiver {
   static Result<WaveReceiver> make(const WaveParams& params, Seconds dt);
 
   /// The wave to act on in this tick. `start_m` is the displacement from which the sender counts, as far as this site
-  /// can tell, read at the first call: a difference between the two is made up for like a lost wave. Real-time safe.
+  /// can determine, read at the first call: a difference between the two is made up for like a lost wave. Real-time
+  /// safe.
   double step(const Arrival& arrival, double start_m) noexcept;
   void reset() noexcept { state_ = {}; }
 

@@ -22,7 +22,7 @@ namespace tactus::control {
 ///
 /// Good below the first mode of the device (75 Hz for the default master), so keep the cutoff below that. A position
 /// step of Δ gives at most about m (2π·cutoff)² Δ of noise: 0.011 N for 32 g, 30 Hz and 10 µm. Friction is taken as
-/// f_c·clamp(v / 5 mm/s, ±1); the estimate of a resting hand is uncertain by f_c, which no observer can tell.
+/// f_c·clamp(v / 5 mm/s, ±1); the estimate of a resting hand is uncertain by f_c, which no observer can determine.
 /// Positive when the hand pushes toward the environment. Starts at rest.
 /// Source: the disturbance observer of Ohnishi, with the filter's second order taken from the second derivative.
 class HandForceObserver {

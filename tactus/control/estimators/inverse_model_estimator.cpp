@@ -82,20 +82,22 @@ Check check_prediction(const InverseModelEstimator::Params& params, Seconds dt) 
   const double time_constant_s = prediction.block.time_constant_s;
   if (by_blocks && prediction.blocks > 0 && time_constant_s < 0.5 * dt.value) {
     return inconsistent("prediction.block.time_constant_s",
-                        "is " + format_number(time_constant_s) + " s, less than half a sample (" +
-                            format_number(0.5 * dt.value) + " s): predict further or set prediction.blocks to 0");
+                        "is " + rounded_number(time_constant_s) + " s, less than half a sample (" +
+                            rounded_number(0.5 * dt.value) + " s): predict further or set prediction.blocks to 0");
   }
   const double wanted_s = params.declared_delay_s + params.derivative_filter_s;
   if (params.declared_delay_s > 0.0 && std::abs(wanted_s - prediction.lead_s()) > 0.5 * wanted_s) {
     std::string remedy = "set prediction.blocks to 1 or more";
     if (!by_blocks) {
-      remedy = "set prediction." + std::string(name_of(prediction.kind)) + ".horizon_s near " + format_number(wanted_s);
+      remedy =
+          "set prediction." + std::string(name_of(prediction.kind)) + ".horizon_s near " + rounded_number(wanted_s);
     } else if (prediction.blocks > 0) {
       remedy = "set prediction.block.time_constant_s near " +
-               format_number(wanted_s / static_cast<double>(prediction.blocks));
+               rounded_number(wanted_s / static_cast<double>(prediction.blocks));
     }
-    return inconsistent("declared_delay_s", "is " + format_number(params.declared_delay_s) +
-                                                " s, and prediction looks ahead " + format_number(prediction.lead_s()) +
+    return inconsistent("declared_delay_s", "is " + rounded_number(params.declared_delay_s) +
+                                                " s, and prediction looks ahead " +
+                                                rounded_number(prediction.lead_s()) +
                                                 " s: more than half of the delay is left, and free motion would feel "
                                                 "like a force; " +
                                                 remedy + ", or declare no delay");

@@ -11,7 +11,7 @@
 
 namespace tactus::control {
 
-/// How friction depends on velocity, beside the viscous part of the linear model.
+/// How friction depends on velocity, alongside the viscous part of the linear model.
 enum class FrictionLaw { none, sigmoid, smooth_coulomb, dead_band_coulomb };
 
 /// The words for a friction law in a file.
@@ -96,15 +96,15 @@ class InverseModelEstimator {
           field("viscous_damping_N_s_per_m", &Params::viscous_damping_N_s_per_m, units::newton_second_per_metre,
                 non_negative, "Viscous damping h (mass-damping)."),
           field("plant", &Params::plant, "Position over actuator force, N(s)/D(s) (rational)."),
-          field("friction", &Params::friction, "Friction beside the linear model."),
+          field("friction", &Params::friction, "Friction in addition to the linear model."),
           field("actuator_gain", &Params::actuator_gain, units::none, any_finite,
                 "K_a: force in N for one unit of the command; not 0."),
           field("sensor_gain", &Params::sensor_gain, units::none, any_finite,
                 "K_s: measured position for one metre; not 0."),
           field("force_filter_s", &Params::force_filter_s, units::second, non_negative,
-                "T_f: low-pass on command and force; 0 is none."),
+                "T_f: low-pass on command and force; 0: no filter."),
           field("derivative_filter_s", &Params::derivative_filter_s, units::second, non_negative,
-                "T_d: low-pass on velocity; 0 is none."),
+                "T_d: low-pass on velocity; 0: no filter."),
           field("declared_delay_s", &Params::declared_delay_s, units::second, non_negative,
                 "Delays and lags of actuator and sensor together, as far as prediction must make up for them; 0 "
                 "declares none."),

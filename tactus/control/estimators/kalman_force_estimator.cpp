@@ -18,7 +18,7 @@ Result<KalmanForceEstimator> KalmanForceEstimator::make(const Params& params, Se
   if (!filter.stable) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "position_noise_m",
-                 .message = "no stable gain can be computed from " + format_number(params.position_noise_m) +
+                 .message = "no stable gain can be computed from " + rounded_number(params.position_noise_m) +
                             " m of position noise and the noises of force and model: bring them nearer together",
                  .place = {}};
   }

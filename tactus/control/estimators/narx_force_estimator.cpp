@@ -32,8 +32,8 @@ Result<NarxMemory> NarxMemory::make(const NarxScales& scales, double actuator_ga
   if (!(ticks >= 1.0 && ticks <= static_cast<double>(most_lag_ticks))) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "lag_s",
-                 .message = "is " + format_number(scales.lag_s) + " s, which must be 1 to " +
-                            std::to_string(most_lag_ticks) + " samples of " + format_number(dt.value) + " s",
+                 .message = "is " + rounded_number(scales.lag_s) + " s, which must be 1 to " +
+                            std::to_string(most_lag_ticks) + " samples of " + rounded_number(dt.value) + " s",
                  .place = {}};
   }
   return NarxMemory(*filter, scales, actuator_gain, static_cast<std::size_t>(ticks));

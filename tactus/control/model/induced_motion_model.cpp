@@ -107,9 +107,9 @@ Result<InducedMotionModel> InducedMotionModel::make(const Params& requested, Sec
     if (radius > 1.0 + round_off) {
       return Error{.code = ErrorCode::inconsistent,
                    .parameter = "step",
-                   .message = "forward Euler with substeps of " + format_number(substep * 1e6) +
+                   .message = "forward Euler with substeps of " + rounded_number(substep * 1e6) +
                               " us is unstable for this model (a mode grows by " +
-                              format_number(std::round(1e6 * radius) / 1e6) +
+                              rounded_number(std::round(1e6 * radius) / 1e6) +
                               " a substep): use the exact step, or less stiffness or more mass",
                    .place = {}};
     }

@@ -77,7 +77,7 @@ struct MasterModel {
 ///     m_h ẍ_h = linkage(x_d − x_h) + b_l (ẋ_d − ẋ_h) − k_o x_h − k_5 x_h⁵ − b_o ẋ_h
 ///
 /// The quintic spring belongs to the controller, not to the hand: it holds the slow deflection to about 2 mm at full
-/// force, a tenth of the real one, because the person takes out slow deflections without help and an overestimate
+/// force, a tenth of the real one, because the operator takes out slow deflections without help and an overestimate
 /// would be positive feedback (Sec. VI and VIII-A).
 ///
 /// The linear models leave out friction and quintic spring and have the linkage at its average stiffness. A linear hand
@@ -111,7 +111,7 @@ class InducedMotionModel {
     static constexpr auto fields() {
       return List{
           field("master", &Params::master, "Master and hand."),
-          field("fidelity", &Params::fidelity, "How much of them the model tells apart."),
+          field("fidelity", &Params::fidelity, "How much of them the model distinguishes."),
           field("step", &Params::step, "How the model is advanced."),
           field("friction", &Params::friction, "On which velocity Coulomb friction acts, in the model that has it."),
           field("friction_band_m_per_s", &Params::friction_band_m_per_s, units::metre_per_second, positive,
@@ -150,7 +150,7 @@ class InducedMotionModel {
   [[nodiscard]] double motor_position_m() const noexcept { return exact_.state[0]; }
   [[nodiscard]] const State& state() const noexcept { return exact_.state; }
 
-  /// The exact step as it stands, for sweeps; `hysteretic` tells whether its linkage is.
+  /// The exact step as it is, for sweeps; `hysteretic` reports whether its linkage is.
   [[nodiscard]] const InducedMotionStep<double>& exact_step() const noexcept { return exact_; }
   [[nodiscard]] bool hysteretic() const noexcept { return hysteretic_; }
 

@@ -85,7 +85,7 @@ struct InducedMotionStep {
                           const Bounds& own, const Bounds& other) {
       const Scalar a = per_other * other.least_N, b = per_other * other.most_N;
       const Scalar coupled = clamped<Scalar>(stops_both_N, stops_alone_N - max(a, b), stops_alone_N - min(a, b));
-      // In this order, unlike in a clamp, a motor force that is no number comes out as it went in.
+      // In this order, unlike in a clamp, a motor force that is not a number comes out as it went in.
       return min(max(own.least_N, coupled), own.most_N);
     };
     const Bounds motor = bounds(motor_force_N, motor_friction_N), drum = bounds(Scalar(0.0), drum_friction_N);
@@ -173,7 +173,7 @@ struct InducedMotionStep {
   /// The end of a tick without forces on motor and drum from outside.
   [[nodiscard]] Column coast(const State& from, const Scalar& on_handle_N, const Scalar& slipped_N,
                              const Scalar& offset_m_per_s) const noexcept {
-    // The sum stands in the order in which its terms become known, so that few of them are waited for.
+    // The sum is in the order in which its terms become known, so that few of them are waited for.
     Column next;
     for (std::size_t row = 0; row < next.size(); ++row) {
       const Scalar offset = offset_response[row] * offset_m_per_s;

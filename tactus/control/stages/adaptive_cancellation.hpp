@@ -1,7 +1,7 @@
 #pragma once
 
 #include <tactus/control/site.hpp>
-#include <tactus/control/stages/bearable_force.hpp>
+#include <tactus/control/stages/admissible_force.hpp>
 #include <tactus/control/stages/cancellation.hpp>
 #include <tactus/signal/second_order_filter.hpp>
 
@@ -14,13 +14,13 @@ namespace tactus::control {
 ///
 /// One model of the master, nonlinear as that of `Cancellation`, with two numbers that are estimated while a force is
 /// displayed: the mobility θ₁ of the hand, 1 over its grip, so that stiffness and damping are k_o/θ₁ and b_o/θ₁, and
-/// the share θ₂ by which the linkage is stiffer than identified. Beside the model run the tangents
+/// the share θ₂ by which the linkage is stiffer than identified. Alongside the model run the tangents
 ///
 ///     ξᵢ = ∂x/∂θᵢ,  driven by the force that a change of θᵢ adds:  (b_o v_h + k_o x_h)/θ₁²  on the handle,  the
 ///     linkage's force  between drum and handle
 ///
-/// and a Kalman filter of the two numbers compares, above 40 Hz, where the person does not move by intent, what was
-/// measured with what the model says, e = H (x_m − x̂_m), whose slopes are H ξᵢ. Each number is a random walk drawn
+/// and a Kalman filter of the two numbers compares, above 40 Hz, where the operator does not move by intent, what was
+/// measured with what the model states, e = H (x_m − x̂_m), whose slopes are H ξᵢ. Each number is a random walk drawn
 /// back to what was identified (Ornstein and Uhlenbeck): without evidence it is forgotten, within 3 s for the hand and
 /// 20 s for the linkage. What lies within the encoder's step is no evidence.
 ///
@@ -35,7 +35,7 @@ namespace tactus::control {
 ///
 ///     x̂_intended = x_m − (1 − W) x̂_m,   W(s) = (0.1 + 0.9 · 3/(s + 3)) / (1 + s/(2π 15))
 ///
-/// All below about 3 /s, where the person takes the displacement out and subtracting it would be positive feedback; a
+/// All below about 3 /s, where the operator takes the displacement out and subtracting it would be positive feedback; a
 /// tenth up to 15 Hz, so that an estimate of the hand that is a tenth too light still does not feed back
 /// positively; nothing above.
 ///
@@ -47,11 +47,11 @@ class AdaptiveCancellation {
   /// `Cancellation`; `inconsistent` for a model that is stepped by Euler.
   static Result<AdaptiveCancellation> make(const Cancellation::Params& params, Seconds dt);
 
-  /// The position in m that the person intended, from the one measured now. Once a tick. Real-time safe.
+  /// The position in m that the operator intended, from the one measured now. Once a tick. Real-time safe.
   double intended(double measured_position_m) noexcept;
-  /// What of the force `wanted_N` this hand is shown, in N (`BearableForce`). Once a tick, before `intended`. Real-time
-  /// safe.
-  double bearable_N(double wanted_N) noexcept { return force_.step(wanted_N, grip_); }
+  /// What of the force `wanted_N` this hand is shown, in N (`AdmissibleForce`). Once a tick, before `intended`.
+  /// Real-time safe.
+  double admissible_N(double wanted_N) noexcept { return force_.step(wanted_N, grip_); }
   /// Advances model and tangents to the next tick, under the force that really acts until then. Real-time safe.
   void advance(double motor_force_N) noexcept;
   void reset() noexcept;
@@ -111,7 +111,7 @@ class AdaptiveCancellation {
   Covariance covariance_{};
   double grip_ = 1.0;  ///< 1 over the estimated mobility
   double person_m_ = 0.0, passed_m_ = 0.0;
-  BearableForce force_;
+  AdmissibleForce force_;
   bool primed_ = false;
   double induced_m_ = 0.0;
   double intended_velocity_m_per_s_ = 0.0;

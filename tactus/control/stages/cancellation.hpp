@@ -7,7 +7,7 @@
 
 namespace tactus::control {
 
-/// Cancellation of induced master motion: what the person meant, from where the motor is and what force was displayed
+/// Cancellation of induced master motion: what the operator meant, from where the motor is and what force was displayed
 /// (paper A, eq. 7 and 8): x̂_intended = x_m − x̂_induced.
 ///
 /// The model's position at a tick comes from the forces displayed up to that tick, so it is subtracted from the sample
@@ -29,12 +29,12 @@ class Cancellation {
     double measured_position_m = 0.0;  ///< of the motor, now
     double motor_force_N = 0.0;        ///< that acts from now to the next tick, positive toward the environment
   };
-  /// The motor position in m that the person intended.
+  /// The motor position in m that the operator intended.
   using Output = double;
 
   static Result<Cancellation> make(const Params& params, Seconds dt);
 
-  /// The position in m that the person intended, from the one measured now. Once a tick. Real-time safe.
+  /// The position in m that the operator intended, from the one measured now. Once a tick. Real-time safe.
   double intended(double measured_position_m) noexcept {
     const double intended_m = measured_position_m - model_.motor_position_m();
     intended_velocity_m_per_s_ = intended_velocity_.step(intended_m);

@@ -14,7 +14,7 @@
 
 namespace tactus::control {
 
-/// Where cancellation learns how firmly the person holds.
+/// Source of the firmness of the operator's grip for cancellation.
 enum class OperatorEstimate {
   off,        ///< nowhere: the operator of the model is fixed, as in paper A
   online,     ///< from what the displayed force does to the motor
@@ -58,7 +58,7 @@ class GripCancellation {
     double motor_force_N = 0.0;        ///< that acts from now to the next tick, positive toward the environment
     double grip = 1.0;                 ///< the sensor's, over nominal; used by `scheduled` alone
   };
-  /// The motor position in m that the person intended.
+  /// The motor position in m that the operator intended.
   using Output = double;
 
   /// The grips that the bank knows, over nominal. A sensor's below or above counts as the nearest.
@@ -79,14 +79,14 @@ class GripCancellation {
 
   static Result<GripCancellation> make(const Params& params, Seconds dt);
 
-  /// The position in m that the person intended, from the one measured now. Once a tick. A sensor's grip that is not a
-  /// positive number counts as 1. Real-time safe.
+  /// The position in m that the operator intended, from the one measured now. Once a tick. A sensor's grip that is not
+  /// a positive number counts as 1. Real-time safe.
   double intended(double measured_position_m, double grip) noexcept;
   /// What of the force `wanted_N` the hand is shown, in N, where no more than `limit_N` can be. Only `online` shows
-  /// less (`BearableForce`). Once a tick, before `intended`. Real-time safe.
-  double bearable_N(double wanted_N, double limit_N) noexcept {
+  /// less (`AdmissibleForce`). Once a tick, before `intended`. Real-time safe.
+  double admissible_N(double wanted_N, double limit_N) noexcept {
     if (estimate_ != OperatorEstimate::online) return wanted_N;
-    return adaptive_.bearable_N(std::clamp(wanted_N, -limit_N, limit_N));
+    return adaptive_.admissible_N(std::clamp(wanted_N, -limit_N, limit_N));
   }
   /// Advances the models to the next tick, under the force that really acts until then. Real-time safe.
   void advance(double motor_force_N) noexcept;

@@ -15,7 +15,7 @@ namespace tactus::control {
 ///
 ///     x_m = x_int + G_ind(G_se(x_m) + B s x_m)
 ///
-/// It makes G_ind smaller for everything that moves the motor, the person included, who feels B v in free motion too.
+/// It makes G_ind smaller for everything that moves the motor, the operator included, who feels B v in free motion too.
 /// The filter is needed because an encoder that counts Δ per tick reads as Δ/dt, and it bounds B: with its lag and the
 /// tick's, strong damping of a light motor oscillates by itself. Nothing here refuses that; the safety gate bounds it.
 ///

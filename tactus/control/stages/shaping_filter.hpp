@@ -23,7 +23,7 @@ constexpr auto enumerators(Shaping) {
 ///
 ///     x_m = x_int + G_ind(G_se(F_p x_m))      x_m = x_int + G_ind(F_f G_se(x_m))
 ///
-/// Both stand in the same loop and lower its gain alike; they differ in who pays. The first lags the slave, by
+/// Both are in the same loop and lower its gain alike; they differ in who pays. The first lags the slave, by
 /// √2 / (2π f) for a low-pass and by width / (2π f²) for a notch at slow motion; the second keeps the removed band from
 /// the hand. Second order, so that the band next to the frequency keeps most of its phase.
 ///

@@ -5,7 +5,7 @@
 /// How a stage of a site stands to those who judge the loop without running it: linear analysis, and lanes, which run
 /// many loops at once by arithmetic of their own.
 ///
-/// Each stage declares it beside its parameters, and what declares nothing is refused there by name, on or off:
+/// Each stage declares it alongside its parameters, and what declares nothing is refused there by name, on or off:
 ///
 ///     static constexpr int linear_states = 2;  // it is linear, its steps are its model, of at most so many states
 ///     static std::optional<Unfit> not_linear(const Params& params);    // or: linear where this finds nothing
@@ -20,14 +20,14 @@ struct Unfit {
   const char* remedy;  ///< what to write there
 };
 
-/// Whether a stage says how it stands to linear analysis.
+/// Whether a stage states how it stands to linear analysis.
 template <class Stage>
 concept DeclaredLinear = requires {
   Stage::linear_states;
 }
 || requires(const typename Stage::Params& params) { Stage::not_linear(params); };
 
-/// Whether a stage says how it stands to lanes.
+/// Whether a stage states how it stands to lanes.
 template <class Stage>
 concept DeclaredOnLanes = requires(const typename Stage::Params& params) {
   Stage::not_on_lanes(params);

@@ -65,7 +65,7 @@ Result<std::unique_ptr<DamiaoBus>> DamiaoBus::make(const DamiaoBusParams& params
 
 DamiaoBus::DamiaoBus(const DamiaoBusParams& params)
     : framing_(params.framing),
-      patience_ns_(ns_of(params.patience_s)),
+      reply_timeout_ns_(ns_of(params.reply_timeout_s)),
       shortest_cycle_ns_(ns_of(params.shortest_cycle_s)),
       silence_ns_(ns_of(params.watchdog_s)),
       ask_absent_ns_(std::min(absent_asked_every_ns, silence_ns_ / 4)),
@@ -77,7 +77,7 @@ DamiaoBus::DamiaoBus(const DamiaoBusParams& params)
     motors_.push_back({.params = motor,
                        .scale = scale_of(motor.model),
                        .questions = Questions(motor, timeout),
-                       .reading = {.fault = MotorFault::silent},
+                       .reading = {.fault = MotorFault::not_responding},
                        .command = {},
                        .off = {}});
   }
@@ -100,8 +100,9 @@ MotorSheet DamiaoBus::sheet(std::size_t motor) const {
                    .problem = asked.questions.problem()};
   if (facts.software_version >= 0) {
     sheet.firmware = std::to_string(facts.software_version);
-    sheet.scales = format_number(facts.position_scale_rad) + " rad, " + format_number(facts.velocity_scale_rad_per_s) +
-                   " rad/s, " + format_number(facts.torque_scale_Nm) + " Nm";
+    sheet.scales = rounded_number(facts.position_scale_rad) + " rad, " +
+                   rounded_number(facts.velocity_scale_rad_per_s) + " rad/s, " + rounded_number(facts.torque_scale_Nm) +
+                   " Nm";
   }
   return sheet;
 }
@@ -149,7 +150,7 @@ std::span<const std::uint8_t> DamiaoBus::say(std::int64_t now_ns) noexcept {
   if (state_ == BusState::asking) {
     ask(now_ns);
   } else if (state_ == BusState::ready) {
-    if (in_cycle_ && (all_answered() || now_ns >= progress_ns_ + patience_ns_)) end_cycle(now_ns);
+    if (in_cycle_ && (all_answered() || now_ns >= progress_ns_ + reply_timeout_ns_)) end_cycle(now_ns);
     if (!in_cycle_ && now_ns >= cycle_began_ns_ + shortest_cycle_ns_) begin_cycle(now_ns);
   }
   return outbox_.take(now_ns);
@@ -161,7 +162,7 @@ std::int64_t DamiaoBus::wakes_ns() const noexcept {
     case BusState::asking:
       return opened_ ? motors_[asked_].questions.wakes_ns() : 0;
     case BusState::ready:
-      return in_cycle_ && !all_answered() ? progress_ns_ + patience_ns_ : cycle_began_ns_ + shortest_cycle_ns_;
+      return in_cycle_ && !all_answered() ? progress_ns_ + reply_timeout_ns_ : cycle_began_ns_ + shortest_cycle_ns_;
     case BusState::refused:
       break;
   }
@@ -207,7 +208,7 @@ void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t 
   MotorReading& reading = motor.reading;
   const double turn_rad = 2.0 * motor.scale.position_rad;
   if (reading.answers > 0) {
-    const double silent_s = static_cast<double>(now_ns - reading.heard_ns) * 1e-9;
+    const double silent_s = static_cast<double>(now_ns - reading.received_ns) * 1e-9;
     // It could have turned by half its range meanwhile, and its number says nothing of that.
     if (silent_s * motor.scale.velocity_rad_per_s > motor.scale.position_rad) motor.latched = MotorFault::encoder;
     motor.turns -= std::round((told->position_rad - motor.wrapped_rad) / turn_rad);
@@ -225,7 +226,7 @@ void DamiaoBus::take_feedback(Motor& motor, const CanFrame& frame, std::int64_t 
   reading.temperature_C = std::max(told->drive_C, told->winding_C);
   reading.status = told->status;
   reading.enabled = means_off(told->status) ? 0 : 1;
-  reading.heard_ns = now_ns;
+  reading.received_ns = now_ns;
   ++reading.answers;
   judge(motor, now_ns);
 }
@@ -234,7 +235,7 @@ bool DamiaoBus::is_absent(const Motor& motor) noexcept { return motor.missed >= 
 
 bool DamiaoBus::is_silent(const Motor& motor, std::int64_t now_ns) const noexcept {
   // Once is not enough: where this program stood still, it was not the motor that was silent.
-  return motor.missed > 1 && (motor.reading.heard_ns < 0 || now_ns - motor.reading.heard_ns > silence_ns_);
+  return motor.missed > 1 && (motor.reading.received_ns < 0 || now_ns - motor.reading.received_ns > silence_ns_);
 }
 
 /// Which fault it has, and whether that stays.
@@ -243,7 +244,7 @@ void DamiaoBus::judge(Motor& motor, std::int64_t now_ns) noexcept {
   const bool silent = is_silent(motor, now_ns);
   const bool told = reading.status != no_status;
   const MotorFault of_status = told ? fault_of(static_cast<std::uint8_t>(reading.status)) : MotorFault::none;
-  const MotorFault now = silent ? MotorFault::silent : of_status;
+  const MotorFault now = silent ? MotorFault::not_responding : of_status;
   if (motor.was_wanted && motor.latched == MotorFault::none) {
     if (reading.status == status_enabled) motor.had_power = true;
     const bool lost_power = motor.had_power && reading.status == status_disabled;
@@ -290,7 +291,7 @@ void DamiaoBus::end_cycle(std::int64_t now_ns) noexcept {
     const bool asked = motor.owed > 0;
     // What is late comes in a later cycle and must not be taken for the answer to that one: each would begin too soon
     // from then on. What is lost is waited for once more.
-    const bool heard = motor.reading.heard_ns >= cycle_began_ns_;
+    const bool heard = motor.reading.received_ns >= cycle_began_ns_;
     if (asked && !heard) ++motor.missed;
     if (heard || is_absent(motor)) motor.owed = 0;
     judge(motor, now_ns);

@@ -17,20 +17,20 @@ namespace tactus::devices::damiao {
 struct DamiaoBusParams {
   Framing framing = Framing::usb2can;
   double watchdog_s = 0.05;
-  double patience_s = 0.002;
+  double reply_timeout_s = 0.002;
   double shortest_cycle_s = 0.0005;
   std::vector<MotorParams> motors;  ///< 1 to 15
 
   static constexpr auto fields() {
-    return List{
-        field("framing", &DamiaoBusParams::framing, "How frames of CAN become bytes."),
-        field("watchdog_s", &DamiaoBusParams::watchdog_s, units::second, between(0.002, 1.0),
-              "A motor lets go when it hears nothing for so long: its register TIMEOUT, set before it gets power. One "
-              "that is not heard for so long is silent."),
-        field("patience_s", &DamiaoBusParams::patience_s, units::second, between(0.0002, 0.05),
-              "The longest wait for the next answer of a cycle."),
-        field("shortest_cycle_s", &DamiaoBusParams::shortest_cycle_s, units::second, between(0.0001, 0.1),
-              "A cycle takes at least that, where the wire allows more.")};
+    return List{field("framing", &DamiaoBusParams::framing, "How frames of CAN become bytes."),
+                field("watchdog_s", &DamiaoBusParams::watchdog_s, units::second, between(0.002, 1.0),
+                      "A motor that receives no command for this time disables itself: its register TIMEOUT, set "
+                      "before it gets power. A motor "
+                      "without a reply for this time is not responding."),
+                field("reply_timeout_s", &DamiaoBusParams::reply_timeout_s, units::second, between(0.0002, 0.05),
+                      "The longest wait for the next answer of a cycle."),
+                field("shortest_cycle_s", &DamiaoBusParams::shortest_cycle_s, units::second, between(0.0001, 0.1),
+                      "A cycle takes at least that, where the wire allows more.")};
   }
 };
 
@@ -40,22 +40,22 @@ struct DamiaoBusParams {
 /// that is not what the parameters say makes the bus `refused`. Then each cycle sends one frame to every motor at once,
 /// each of which is answered by feedback, and ends when all have answered or the next one keeps it waiting too long.
 ///
-/// Power: a motor gets it when its command asks for it anew; a fault from before is cleared first. A fault or a status
+/// Power: a motor gets it when its command asks for it again; a fault from before is cleared first. A fault or a status
 /// that is not known under power, no answer for longer than its own watchdog waits, or power lost without being asked
-/// latch its fault: it is switched off and stays so until the command asks anew.
+/// latch its fault: it is switched off and stays so until the command asks again.
 ///
 /// Off: a motor that is to have no power is sent `disable` in every cycle until it has reported three times in a row
 /// that it is off; only then is it asked by `refresh`. One that does not within 0.1 s has the fault `stays_on` for good
 /// if it answers, and is then sent `disable` only at times that are farther apart than its own watchdog waits, so that
 /// this may take its power.
 ///
-/// One that was silent for so long that it could have turned by half the
+/// One that did not respond for so long that it could have turned by half the
 /// range of its number has the fault `encoder` for good. A motor that missed three cycles is asked rarely, with the
 /// same command, so that it costs the others nothing; a stall of the machine ends as it began.
 ///
 /// Law: position, velocity and gains go with the torque, each cut to the next code of the frame below, which takes up
 /// to a step of position times the stiffness from the torque. A motor knows nothing of the turns that its number does
-/// not show: one that is to hold a position and comes near to where its number begins anew would take the whole range
+/// not show: one that is to hold a position and comes near to where its number restarts would take the whole range
 /// for its way, so it loses its power before, with the fault `encoder` for good.
 class DamiaoBus final : public MotorBus {
  public:
@@ -91,7 +91,7 @@ class DamiaoBus final : public MotorBus {
     int tries = 0;                    ///< to clear and to enable, since it was wanted
     int owed = 0;                     ///< answers
     int missed = 0;                   ///< cycles without an answer, one after the other
-    std::int64_t asked_again_ns = 0;  ///< when it was silent
+    std::int64_t asked_again_ns = 0;  ///< when it did not respond
     double turns = 0.0;               ///< of its number, each of twice its scale
     double wrapped_rad = 0.0;
   };
@@ -113,7 +113,7 @@ class DamiaoBus final : public MotorBus {
   [[nodiscard]] static CanFrame frame_that_stops(Motor& motor, std::int64_t now_ns) noexcept;
 
   Framing framing_;
-  std::int64_t patience_ns_, shortest_cycle_ns_, silence_ns_, ask_absent_ns_, rest_ns_;
+  std::int64_t reply_timeout_ns_, shortest_cycle_ns_, silence_ns_, ask_absent_ns_, rest_ns_;
   FrameReader reader_;
   wire::Outbox outbox_;
   std::vector<Motor> motors_;

@@ -76,7 +76,7 @@ MotorFault fault_of(std::uint8_t status) noexcept;
 /// Whether a motor with this status has no power: disabled, or a fault of the protocol, which disables it. A status
 /// that the protocol does not have counts as power.
 bool means_off(std::uint8_t status) noexcept;
-/// `status 0x7 (unknown)`, for a person; `no status` where that is negative. Not real-time safe.
+/// `status 0x7 (unknown)`, for a user; `no status` where that is negative. Not real-time safe.
 std::string status_text(std::int64_t status);
 
 struct RegisterAnswer {

@@ -35,7 +35,7 @@ Wrapped wrap(Framing framing, const CanFrame& frame) noexcept;
 Wrapped opening(Framing framing) noexcept;
 
 /// Finds frames of 11-bit identifiers in what comes. Bytes of serial framings may be cut anywhere, and garbage may
-/// stand between two frames: it looks for the next frame after it. With Linux' structures each piece is one frame.
+/// are between two frames: it looks for the next frame after it. With Linux' structures each piece is one frame.
 /// Frames that no motor sends (remote, extended, of errors) and notices of the adapter are left out. Real-time safe.
 class FrameReader {
  public:

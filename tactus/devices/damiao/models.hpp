@@ -40,7 +40,7 @@ struct Scale {
 /// The largest gains that a frame has a number for, of the law that each motor runs by itself.
 inline constexpr double largest_stiffness_Nm_per_rad = 500.0, largest_damping_Nms_per_rad = 5.0;
 
-/// As the maker delivers it. Public drivers disagree on DM3507 and DM4340, so what a motor tells must be compared.
+/// As the maker delivers it. Public drivers disagree on DM3507 and DM4340, so what a motor reports must be compared.
 constexpr Scale scale_of(Model model) {
   switch (model) {
     case Model::dm3507:

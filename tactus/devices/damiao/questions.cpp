@@ -184,7 +184,7 @@ Check Questions::problem() const {
   const std::string motor = "motor " + std::to_string(stated_.id) + " (" + name_of(stated_.model) + ")";
   const std::string reg =
       std::string("register ") + std::to_string(static_cast<int>(which_)) + " (" + name_of_register(which_) + ")";
-  const std::string found = format_number(found_), expected = format_number(expected_) + unit_of(which_);
+  const std::string found = rounded_number(found_), expected = rounded_number(expected_) + unit_of(which_);
   std::string message;
   switch (wrong_) {
     case Wrong::nothing:
@@ -196,10 +196,10 @@ Check Questions::problem() const {
                 "each other's answers) and the bit rate";
       break;
     case Wrong::stays_on:
-      message = motor + " was told " + std::to_string(most_questions) +
+      message = motor + " was commanded " + std::to_string(most_questions) +
                 " times to switch off and does not report that it is off (" +
                 status_text(static_cast<std::int64_t>(found_)) +
-                "): switch off its supply, wait until it stands still, and switch it on again";
+                "): switch off its supply, wait until it is at rest, and switch it on again";
       break;
     case Wrong::twice:
       message = motor + " answers twice to one question: two motors have the identifier " + std::to_string(stated_.id) +

@@ -18,7 +18,7 @@ struct MotorParams {
   Model model = Model::dm4310;
 };
 
-/// What a motor said of itself. NaN and negative numbers: not told.
+/// What a motor said of itself. NaN and negative numbers: not reported.
 struct MotorFacts {
   std::int64_t feedback_id = -1;
   double position_scale_rad = std::numeric_limits<double>::quiet_NaN();
@@ -45,7 +45,7 @@ class Questions {
   bool take(const CanFrame& frame) noexcept;
 
   [[nodiscard]] const MotorFacts& facts() const noexcept { return facts_; }
-  /// The models with the scales that it told, where the stated one is none of them; empty where it is, and where no
+  /// The models with the scales that it told, where the stated one is not one of them; empty where it is, and where no
   /// model has them. Not real-time safe.
   [[nodiscard]] std::string model_told() const;
   /// The first thing that is wrong, with the remedy. Not real-time safe.
@@ -76,7 +76,7 @@ class Questions {
   std::size_t at_ = 0;
   int tries_ = 0;
   bool asked_once_ = false;  ///< the step before this one
-  int on_status_ = -1;       ///< that it reported when it was told to switch off; negative: none that is not off
+  int on_status_ = -1;       ///< that it reported when it was commanded to switch off; negative: none that is not off
   std::int64_t deadline_ns_ = 0;
   MotorFacts facts_;
   Wrong wrong_ = Wrong::nothing;

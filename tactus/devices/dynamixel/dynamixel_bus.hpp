@@ -32,10 +32,10 @@ const ServoModel& servo_model(DynamixelModel model) noexcept;
 /// Dynamixel servos in current mode behind one serial line, Protocol 2.0.
 ///
 /// Each is read for model number and current limit, loses its torque, and gets return delay 0 and current mode where it
-/// has another (both stand in memory that wears out). One that is given power gets bus watchdog 5 first: 100 ms without
-/// any packet, and it lets go by itself, whatever became of this program. A cycle is a sync write of goal currents and
-/// a fast sync read of current, velocity and position. In a fast read those behind a silent servo stay silent too; so
-/// after one that was not whole, plain sync reads follow, until all answered a thousand times in a row.
+/// has another (both are in memory that wears out). One that is given power gets bus watchdog 5 first: 100 ms without
+/// any packet, and it releases its force by itself, whatever became of this program. A cycle is a sync write of goal
+/// currents and a fast sync read of current, velocity and position. In a fast read those behind a silent servo stay
+/// silent too; so after one that was not whole, plain sync reads follow, until all answered a thousand times in a row.
 ///
 /// A servo drops a goal beyond its limit without a word. So the limit is read from it and kept to here. Not tried on
 /// hardware.
@@ -47,7 +47,7 @@ class DynamixelBus final : public ServoBus {
   };
   struct Params {
     std::vector<Motor> motors;
-    std::int64_t bits_per_s = 1'000'000;  ///< as register 8 of each servo says
+    std::int64_t bits_per_s = 1'000'000;  ///< as register 8 of each servo reports
     bool fast_sync_read = true;           ///< firmware from 45 (X430) respectively 46 (X330) on knows it
   };
   /// `out_of_bounds` for a number of motors, an id or a bit rate that cannot be; `inconsistent` for an id twice.

@@ -36,7 +36,7 @@ struct PacketFormat {
   static std::size_t size(std::span<const std::uint8_t> begun) noexcept;
 };
 
-/// A packet as it was heard. The echo of an own packet is one too, with its own instruction.
+/// A packet as it was received. The echo of an own packet is one too, with its own instruction.
 struct Heard {
   std::uint8_t id = 0;
   Instruction instruction = Instruction::status;  ///< or any other byte

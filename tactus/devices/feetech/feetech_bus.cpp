@@ -99,7 +99,7 @@ Result<FeetechBus> FeetechBus::make(const Params& params) {
     }
     if (!positive.contain(motor.torque_Nm_per_A)) {
       return of_motor(ErrorCode::out_of_bounds, i, ".torque_Nm_per_A",
-                      format_number(motor.torque_Nm_per_A) + " must be greater than 0 N m/A");
+                      rounded_number(motor.torque_Nm_per_A) + " must be greater than 0 N m/A");
     }
   }
   return FeetechBus(params);

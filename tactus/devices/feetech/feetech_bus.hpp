@@ -29,7 +29,7 @@ const ServoModel& servo_model(FeetechModel model) noexcept;
 /// Feetech servos behind one serial line: STS as the leader of an arm, HLS with a constant current.
 ///
 /// **STS3215 and STS3250 give no force.** They take positions, not currents, so a torque that is commanded of one is
-/// not sent and a command for power is not obeyed: it turns freely, tells where it is, and `enabled` stays 0. Its
+/// not sent and a command for power is not obeyed: it turns freely, reports where it is, and `enabled` stays 0. Its
 /// `torque_Nm` is 0, for what it calls load is the duty of its bridge.
 ///
 /// HLS runs in mode 2, constant current. Its limit is read from its protection current and kept to here. **It has no
@@ -48,7 +48,7 @@ class FeetechBus final : public ServoBus {
   };
   struct Params {
     std::vector<Motor> motors;
-    std::int64_t bits_per_s = 1'000'000;  ///< as register 6 of each servo says
+    std::int64_t bits_per_s = 1'000'000;  ///< as register 6 of each servo reports
   };
   /// `out_of_bounds` for a number of motors, an id, a bit rate or a torque that cannot be; `missing` for the torque of
   /// an HLS; `inconsistent` for an id twice.

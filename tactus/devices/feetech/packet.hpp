@@ -15,7 +15,7 @@ enum class Instruction : std::uint8_t { ping = 0x01, read = 0x02, write = 0x03, 
 /// All servos.
 inline constexpr std::uint8_t broadcast = 254;
 
-/// The complement of the sum of what stands between the header and it. Real-time safe.
+/// The complement of the sum of what is between the header and it. Real-time safe.
 std::uint8_t checksum(std::span<const std::uint8_t> bytes) noexcept;
 
 /// A packet: header, id, length, instruction, parameters, checksum. Real-time safe.
@@ -29,7 +29,7 @@ struct PacketFormat {
   static std::size_t size(std::span<const std::uint8_t> begun) noexcept;
 };
 
-/// Numbers are a sign, at the bit of that number, and what stands below it. Real-time safe.
+/// Numbers are a sign, at the bit of that number, and what is below it. Real-time safe.
 constexpr std::int64_t from_sign_magnitude(std::int64_t raw, int sign_bit) noexcept {
   const std::int64_t sign = std::int64_t{1} << sign_bit;
   const std::int64_t magnitude = raw & (sign - 1);

@@ -232,7 +232,7 @@ class Inverse3Link::Worker {
       reading.status = status_of(device);
       reading.off = off_.confirmed() ? 1 : 0;
       reading.enabled = gives_[i] && device.calibrated ? 1 : 0;
-      reading.heard_ns = told_readings_.time_ns;
+      reading.received_ns = told_readings_.time_ns;
       ++reading.answers;
     }
     readings.publish(told_readings_);

@@ -32,7 +32,7 @@ Check check(const LinkParams& params);
 /// for.
 ///
 /// There is no force before the device is calibrated. The service ends a force by itself when messages stop, so a
-/// program that was killed leaves none. Where the connection ends, it is made anew, for ever; meanwhile readings grow
+/// program that was killed leaves none. Where the connection ends, it is made again, for ever; meanwhile readings grow
 /// old. A message that is none is left out. Not tried on hardware.
 class Inverse3Link final : public MotorLink {
  public:

@@ -21,7 +21,7 @@ std::string message_of(std::string_view device_id, const char* command, json con
 }
 
 Error wrong(const std::string& what, const char* should) {
-  return {ErrorCode::wrong_type, what, std::string("the service tells no ") + should, {}};
+  return {ErrorCode::wrong_type, what, std::string("the service reports no ") + should, {}};
 }
 
 /// The member of that name, where there is one.
@@ -107,7 +107,7 @@ Result<Dialect> dialect_of(std::string_view answer) {
     return new_keys ? Dialect::named : Dialect::values;
   }
   return Error{
-      ErrorCode::syntax, {}, "the service tells no version: look whether another program listens at this port", {}};
+      ErrorCode::syntax, {}, "the service reports no version: look whether another program listens at this port", {}};
 }
 
 std::string force_message(std::string_view device_id, const Vector& force_N, Dialect dialect) {
@@ -154,7 +154,7 @@ Check Devices::take(std::string_view message) {
   const json told = json::parse(message, nullptr, false);
   const json* list = member(told, "inverse3");
   if (list == nullptr || !list->is_array()) {
-    return Error{ErrorCode::syntax, {}, "the service tells no list of devices", {}};
+    return Error{ErrorCode::syntax, {}, "the service reports no list of devices", {}};
   }
   std::vector<Device> devices = devices_;
   for (const json& one : *list) {

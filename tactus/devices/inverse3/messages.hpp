@@ -20,7 +20,7 @@ using Vector = std::array<double, 3>;
 
 /// How commands name what they hold.
 enum class Dialect : std::int64_t {
-  values,  ///< `values`, until 3.4; also what every open client says
+  values,  ///< `values`, until 3.4; also what every open client reports
   named    ///< `vector` for a force, from 3.5 on
 };
 constexpr auto enumerators(Dialect) {
@@ -30,8 +30,8 @@ constexpr auto enumerators(Dialect) {
 /// form 3.5 in it counts. Errors: `syntax` where there is none.
 Result<Dialect> dialect_of(std::string_view answer);
 
-/// The message of a tick: so much force at the cursor, newtons, on this device. A force that is no number is none. It
-/// asks for a fresh state too, and what is not sent again ends: the service keeps no command.
+/// The message of a tick: so much force at the cursor, newtons, on this device. A force that is not a number is none.
+/// It asks for a fresh state too, and what is not sent again ends: the service keeps no command.
 std::string force_message(std::string_view device_id, const Vector& force_N, Dialect dialect);
 /// The message of a tick without force, which keeps states fresh.
 std::string probe_message(std::string_view device_id);
@@ -40,10 +40,10 @@ std::string probe_message(std::string_view device_id);
 struct Device {
   std::string id;
   Vector position_m{}, velocity_m_per_s{};
-  Vector force_N{};         ///< that the service says to give
+  Vector force_N{};         ///< that the service reports to give
   bool calibrated = false;  ///< no force before it is
   bool ready = false;
-  bool supplied = true;     ///< false only where the service says that it has no supply of power
+  bool supplied = true;     ///< false only where the service reports that it has no supply of power
   bool told_force = false;  ///< in the latest message
   std::string mode;         ///< what drives it, as `idle` or `force`; empty where the latest message does not say
   /// Filters of the service in the way of the force; empty where nothing was told of them. What is not 0 belongs to the
@@ -56,7 +56,7 @@ struct Device {
 bool reports_off(const Device& device) noexcept;
 /// The first seven letters of a mode as a number (`MotorReading::status`); `no_status` where there is none.
 std::int64_t status_of(const Device& device) noexcept;
-/// `mode 'force'`, for a person; `no mode` where that is negative. Not real-time safe.
+/// `mode 'force'`, for a user; `no mode` where that is negative. Not real-time safe.
 std::string status_text(std::int64_t status);
 
 /// All devices of a service. The first message tells all, later ones what changed: what one leaves out stays as it was.

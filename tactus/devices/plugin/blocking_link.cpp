@@ -115,7 +115,7 @@ class BlockingLink::Shared {
     const std::int64_t end_ns = wire::monotonic_ns();
     for (std::size_t i = 0; i < motors_; ++i) {
       told_.motors[i].off = told_.motors[i].enabled == 0 && commands[i].enabled == 0 ? 1 : 0;
-      told_.motors[i].heard_ns = end_ns;
+      told_.motors[i].received_ns = end_ns;
       ++told_.motors[i].answers;
     }
     ++told_.cycles;
@@ -196,7 +196,7 @@ Check BlockingLink::wait_until_asked(Seconds longest) {
   }
   stop();
   if (Check problem = shared_->problem()) return problem;
-  return driver_failed("the driver did not complete a cycle within " + format_number(longest.value) +
+  return driver_failed("the driver did not complete a cycle within " + rounded_number(longest.value) +
                        " s: check that the device is on and reachable");
 }
 

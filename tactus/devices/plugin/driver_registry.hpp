@@ -53,9 +53,9 @@ concept PluggableDriver = std::derived_from<Driver, BlockingDriver> && Described
   { Driver::make(params, request) } -> std::same_as<Result<std::unique_ptr<BlockingDriver>>>;
 };
 
-/// Adds the driver to those that a rig file can name. Its keys stand under `[PAIR.leader]` or `[PAIR.follower]`, beside
-/// `bus`, `port` and `watchdog_s`; they are loaded, checked against their bounds and reported with their line as all
-/// keys.
+/// Adds the driver to those that a rig file can name. Its keys are under `[PAIR.leader]` or `[PAIR.follower]`,
+/// alongside `bus`, `port` and `watchdog_s`; they are loaded, checked against their bounds and reported with their line
+/// as all keys.
 template <PluggableDriver Driver>
 Check register_driver(std::string name, std::string summary) {
   class Settings final : public DriverSettings {

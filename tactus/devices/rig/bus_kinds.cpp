@@ -41,7 +41,7 @@ Result<E> value_of(const std::string& key, const std::string& word) {
     all += (all.empty() ? "" : ", ") + std::string(entry.name);
   }
   return Error{
-      .code = ErrorCode::unknown_key, .parameter = key, .message = "'" + word + "' is none of " + all, .place = {}};
+      .code = ErrorCode::unknown_key, .parameter = key, .message = "'" + word + "' is not one of " + all, .place = {}};
 }
 
 std::string key_of_motor(std::size_t motor, const char* key) {
@@ -54,7 +54,7 @@ Result<damiao::DamiaoBusParams> damiao_params(const StatedBus& stated) {
   if (!framing) return framing.error();
   params.framing = *framing;
   params.watchdog_s = stated.watchdog_s;
-  params.patience_s = stated.patience_s;
+  params.reply_timeout_s = stated.reply_timeout_s;
   for (std::size_t i = 0; i < stated.motors.size(); ++i) {
     const StatedMotor& motor = stated.motors[i];
     const auto model = value_of<damiao::Model>(key_of_motor(i, "model"), motor.model);

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-/// Buses and their motors as a person states them: in a rig file, or on a command line.
+/// Buses and their motors as a user states them: in a rig file, or on a command line.
 namespace tactus::devices {
 
 /// A word for each kind of bus whose motors have a driver. `plugged` is any that was registered (`register_driver`): a
@@ -34,11 +34,11 @@ struct StatedMotor {
 
 struct StatedBus {
   BusKind kind = BusKind::damiao;
-  std::string port;                     ///< of Haply's service HOST:PORT
-  std::string device = {};              ///< which one of that service; empty: the first
-  std::string framing = "usb2can";      ///< of CAN
-  double patience_s = 0.002;            ///< of Damiao, for an answer; three times in a row make a motor silent
-  double watchdog_s = 0.05;             ///< a motor that is unheard for so long is lost; of Damiao it lets go by itself
+  std::string port;                 ///< of Haply's service HOST:PORT
+  std::string device = {};          ///< which one of that service; empty: the first
+  std::string framing = "usb2can";  ///< of CAN
+  double reply_timeout_s = 0.002;   ///< of Damiao, for an answer; three times in a row make a motor silent
+  double watchdog_s = 0.05;  ///< a motor that is unheard for so long is lost; of Damiao it releases its force by itself
   std::int64_t bits_per_s = 1'000'000;  ///< of servos
   std::vector<StatedMotor> motors;
   std::string driver = {};                              ///< name of the registered driver, where `kind` is `plugged`
@@ -57,7 +57,7 @@ constexpr bool has_watchdog(BusKind kind) { return kind != BusKind::feetech; }
 /// Of a motor of a bus that `check` passed.
 MotorAbility ability_of(const StatedBus& bus, const StatedMotor& motor);
 
-/// The status of a motor as a person reads it, as `status 0x7 (unknown)`.
+/// The status of a motor as a user reads it, as `status 0x7 (unknown)`.
 std::string status_text(BusKind kind, std::int64_t status);
 
 /// That the statement is one, before anything is opened. Errors, with the remedy, under `framing`, `bits_per_s`,

@@ -41,7 +41,7 @@ bool run_cycles(const MotorLink& bus, BusFinding& found) {
                   (static_cast<double>(after->time_ns - before->time_ns) * 1e-9);
   for (std::size_t i = 0; i < found.motors.size(); ++i) {
     found.motors[i].reading = after->motors[i];
-    found.motors[i].age_s = 1e-9 * static_cast<double>(after->time_ns - after->motors[i].heard_ns);
+    found.motors[i].age_s = 1e-9 * static_cast<double>(after->time_ns - after->motors[i].received_ns);
   }
   return true;
 }
@@ -86,7 +86,7 @@ const char* remedy_of(MotorFault fault) {
   switch (fault) {
     case MotorFault::none:
       return "";
-    case MotorFault::silent:
+    case MotorFault::not_responding:
       return "does not answer any more: look at its power and its plug";
     case MotorFault::voltage:
       return "its supply is too high or too low: measure it under load";
@@ -95,17 +95,17 @@ const char* remedy_of(MotorFault fault) {
     case MotorFault::hot:
       return "too hot: let it cool, and lower the torque limit";
     case MotorFault::lost_master:
-      return "let go when nobody spoke to it: this is cleared when it gets power";
+      return "released because it received no command: this is cleared when it gets power";
     case MotorFault::overload:
       return "overloaded: take the load off; this is cleared when it gets power";
     case MotorFault::encoder:
-      return "does not know where it is: start anew";
+      return "does not know its position: start again";
     case MotorFault::refused:
       return "refused what it was asked: switch it off and on";
     case MotorFault::unknown_status:
       return "reports a status that is not known: switch it off and on, and look at its firmware";
     case MotorFault::stays_on:
-      return "was told to switch off and does not report that it is off: switch off its supply, wait until it stands "
+      return "was commanded to switch off and does not report that it is off: switch off its supply, wait until it is "
              "still, and switch it on again";
   }
   return "";
@@ -174,7 +174,7 @@ std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const s
   const auto add = [&](const char* key, std::string message) {
     problems.push_back({ErrorCode::inconsistent, join(one.path, key), std::move(message), {}});
   };
-  const auto rounded = [](double value) { return format_number(std::round(value * 1e3) * 1e-3); };
+  const auto rounded = [](double value) { return rounded_number(std::round(value * 1e3) * 1e-3); };
   const double position_rad = joint.first_position_rad(found.reading.position_rad);
   if (!joint.contains(position_rad)) {
     MotorJoint turned = joint;
@@ -195,7 +195,7 @@ std::vector<Error> judge(const RigJoint& one, const MotorFinding& found, const s
   }
   const double most_Nm = found.sheet.torque_limit_Nm * joint.gear;
   if (joint.gives_force && joint.torque_limit_Nm > most_Nm * (1.0 + 1e-9)) {
-    add(words.force_limit, format_number(joint.torque_limit_Nm) + " " + words.force_unit +
+    add(words.force_limit, rounded_number(joint.torque_limit_Nm) + " " + words.force_unit +
                                " is more than its motor is set to give, " + rounded(most_Nm) + " " + words.force_unit +
                                ": lower it, or raise the limit in the motor with its maker's tool");
   }

@@ -10,7 +10,7 @@
 /// What motors say of themselves when they are asked, and what is wrong with that. No motor gets power.
 namespace tactus::devices {
 
-/// What is wrong with a motor that answers, and what mends it; empty where it is well.
+/// What is wrong with a motor that answers, and what fixes it; empty where it is well.
 const char* remedy_of(MotorFault fault);
 
 struct MotorFinding {
@@ -37,8 +37,8 @@ Result<BusFinding> examine(const StatedBus& stated);
 /// The same of a side of a rig, with what its joints make of it; every problem has the line of its key.
 BusFinding examine(const Rig& rig, const RigSide& side);
 
-/// What is wrong with a joint whose motor says that, under the key that it contradicts: outside of its limits, too hot,
-/// more torque than the motor is set to give. `file` is for the command that mends it.
+/// What is wrong with a joint whose motor reports that, under the key that it contradicts: outside of its limits, too
+/// hot, more torque than the motor is set to give. `file` is for the command that fixes it.
 std::vector<Error> judge(const RigJoint& joint, const MotorFinding& found, const std::string& file);
 
 }  // namespace tactus::devices

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// What stands at the ports of this machine.
+/// What is at the ports of this machine.
 namespace tactus::devices {
 
 /// A port as Linux shows it. Nothing was opened.
@@ -22,13 +22,13 @@ std::vector<FoundPort> list_ports(const std::filesystem::path& device = "/dev",
 
 /// Motors that answered.
 struct Answering {
-  StatedBus bus;                  ///< with those motors; the model empty where they do not tell it
-  std::vector<std::string> said;  ///< of each, for a person
+  StatedBus bus;                  ///< with those motors; the model empty where they do not determine it
+  std::vector<std::string> said;  ///< of each, for a user
 };
 
 /// Asks at a serial port who is there, in each protocol and at each bit rate that motors are commonly set to. It writes
-/// questions alone, which change nothing in a motor, but to what is none of ours they are bytes of any meaning. Blocks
-/// for about two seconds. Errors: those of the port.
+/// questions alone, which change nothing in a motor, but to what is not one of ours they are bytes of any meaning.
+/// Blocks for about two seconds. Errors: those of the port.
 Result<std::vector<Answering>> probe(const std::string& port);
 
 }  // namespace tactus::devices

@@ -38,9 +38,9 @@ std::string own_port(const std::string& port) {
 
 /// What a number may be where it is too large by far: in degrees, or in millimetres.
 std::string in_another_unit(const RigJoint& one, double value) {
-  const auto rounded = [](double number) { return format_number(std::round(number * 1e4) / 1e4); };
-  if (one.slides) return format_number(value) + " mm are " + rounded(value * 1e-3) + " m";
-  return format_number(value) + " degrees are " + rounded(value * std::numbers::pi / 180.0) + " rad";
+  const auto rounded = [](double number) { return rounded_number(std::round(number * 1e4) / 1e4); };
+  if (one.slides) return rounded_number(value) + " mm are " + rounded(value * 1e-3) + " m";
+  return rounded_number(value) + " degrees are " + rounded(value * std::numbers::pi / 180.0) + " rad";
 }
 
 /// That a joint's limits, and its offset, are where its motor can be: `farthest` either way from the motor's zero.
@@ -55,9 +55,9 @@ Check check_positions(const RigJoint& one, double farthest) {
         std::tuple{words.lower, joint.lower_rad, first, last}, std::tuple{words.upper, joint.upper_rad, first, last}}) {
     if (value >= least && value <= most) continue;
     const std::string unit = std::string(" ") + words.position_unit;
-    const auto rounded = [](double number) { return format_number(std::round(number * 1e4) / 1e4); };
+    const auto rounded = [](double number) { return rounded_number(std::round(number * 1e4) / 1e4); };
     return at(join(one.path, key), ErrorCode::inconsistent,
-              format_number(value) + unit + " is beyond where a joint with a " + one.motor.model + " can be, from " +
+              rounded_number(value) + unit + " is beyond where a joint with a " + one.motor.model + " can be, from " +
                   rounded(least) + " to " + rounded(most) + unit + ": state it in " + words.position_unit + " (" +
                   in_another_unit(one, value) + ")");
   }
@@ -76,9 +76,9 @@ Joints<MotorJoint> RigSide::motor_joints() const {
 
 std::string describe_powered(const RigSide& side, const PoweredMotor& motor) {
   const RigJoint& joint = side.joints[motor.motor];
-  const auto seconds = [](std::int64_t ns) { return format_number(static_cast<double>(ns) * 1e-9) + " s"; };
+  const auto seconds = [](std::int64_t ns) { return rounded_number(static_cast<double>(ns) * 1e-9) + " s"; };
   const std::string what =
-      motor.off ? " did not switch off within " + seconds(off_within_ns) + " when it was told to, and is off now"
+      motor.off ? " did not switch off within " + seconds(off_within_ns) + " when commanded to, and is off now"
                 : " did not report within " + seconds(farewell_ns) + " that it is off";
   return joint.path + ": motor " + std::to_string(joint.motor.id) +
          (side.bus.port.empty() ? std::string() : " at " + side.bus.port) + " (" + std::string(bus_name(side.bus)) +
@@ -190,17 +190,17 @@ Check Rig::check_side(const RigSide& side) const {
     }
     if (!(joint.lower_rad < joint.upper_rad)) {
       return at(join(one.path, words.upper), ErrorCode::inconsistent,
-                format_number(joint.upper_rad) + " " + words.position_unit + " must be above " + words.lower + ", " +
-                    format_number(joint.lower_rad) + " " + words.position_unit);
+                rounded_number(joint.upper_rad) + " " + words.position_unit + " must be above " + words.lower + ", " +
+                    rounded_number(joint.lower_rad) + " " + words.position_unit);
     }
     if (Check error = check_positions(one, ability.position_rad)) return error;
     const auto beyond = [&](const char* key, double limit, double most, const char* unit) {
       return at(join(one.path, key), ErrorCode::inconsistent,
-                format_number(limit) + unit + " is beyond what a " + one.motor.model +
+                rounded_number(limit) + unit + " is beyond what a " + one.motor.model +
                     (joint.gear == 1.0 ? std::string()
-                     : one.slides      ? " with a lever of " + format_number(1.0 / joint.gear) + " m"
-                                       : " behind a gear of " + format_number(joint.gear)) +
-                    " can do, " + format_number(most) + unit + ": lower it, or state the model that is there");
+                     : one.slides      ? " with a lever of " + rounded_number(1.0 / joint.gear) + " m"
+                                       : " behind a gear of " + rounded_number(joint.gear)) +
+                    " can do, " + rounded_number(most) + unit + ": lower it, or state the model that is there");
     };
     const std::string force_unit = std::string(" ") + words.force_unit,
                       velocity_unit = std::string(" ") + words.velocity_unit;

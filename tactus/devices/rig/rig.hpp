@@ -51,7 +51,7 @@ struct RigPair {
 /// (enabled)): switch off the supply of arm.follower and keep clear of it until then`.
 std::string describe_powered(const RigSide& side, const PoweredMotor& motor);
 
-/// What stands on the desk, as a file tells it: one or two pairs of leader and follower, their buses, motors and
+/// What is on the desk, as a file reports it: one or two pairs of leader and follower, their buses, motors and
 /// joints.
 ///
 ///     [arm.leader]                # PAIR.leader or PAIR.follower

@@ -28,21 +28,22 @@ struct AgreedArms {
   double answer_within_s = 0.0, blend_s = 0.0;
   static constexpr auto fields() {
     using P = AgreedArms;
-    return List{field("arm", &P::leader, "Dynamics of the leader."),
-                field("arm.follower", &P::follower, "The same of the follower."),
-                field("arm.tool", &P::leader_tool, "Where the leader's hand is."),
-                field("arm.follower.tool", &P::follower_tool, "Where the follower touches."),
-                field("servo.rate_Hz", &P::rate_Hz, units::hertz, positive, "Ticks count at both sites."),
-                field("control", &P::control, "Each site takes the other to be its half."),
-                field("rig.leader_gate", &P::leader_gate, "What the leader's motors do at most."),
-                field("rig.follower_gate", &P::follower_gate, "What the follower's motors do at most."),
-                field("rig.gripper", &P::gripper, "Both ends of a spring between the sites."),
-                field("rig.supervision.packets", &P::packets, "What a site believes of the other."),
-                field("rig.supervision.silence", &P::silence, "What a site does in silence."),
-                field("rig.supervision.watchdog", &P::watchdog, "When it holds."),
-                field("rig.supervision.answer_within_s", &P::answer_within_s, units::second, positive,
-                      "When an arming is given up."),
-                field("rig.supervision.blend_s", &P::blend_s, units::second, positive, "How a force comes and goes.")};
+    return List{
+        field("arm", &P::leader, "Dynamics of the leader."),
+        field("arm.follower", &P::follower, "The same of the follower."),
+        field("arm.tool", &P::leader_tool, "Where the leader's hand is."),
+        field("arm.follower.tool", &P::follower_tool, "Where the follower touches."),
+        field("servo.rate_Hz", &P::rate_Hz, units::hertz, positive, "Control cycles per second, equal at both sites."),
+        field("control", &P::control, "Each site takes the other to be its half."),
+        field("rig.leader_gate", &P::leader_gate, "What the leader's motors do at most."),
+        field("rig.follower_gate", &P::follower_gate, "What the follower's motors do at most."),
+        field("rig.gripper", &P::gripper, "Both ends of a spring between the sites."),
+        field("rig.supervision.packets", &P::packets, "What a site accepts of the other."),
+        field("rig.supervision.silence", &P::silence, "What a site does in silence."),
+        field("rig.supervision.watchdog", &P::watchdog, "When it holds."),
+        field("rig.supervision.answer_within_s", &P::answer_within_s, units::second, positive,
+              "When an arming is given up."),
+        field("rig.supervision.blend_s", &P::blend_s, units::second, positive, "How a force comes and goes.")};
   }
 };
 
@@ -114,9 +115,9 @@ RigAgreement RigAgreement::of(const RigSide& side, const experiments::ArmPairSet
 
 control::Agreement RigAgreement::agreement() const { return control::agreement_of(values_->all); }
 
-std::string RigAgreement::describe(const runtime::SiteMisfit& misfit, control::SiteRole role) const {
-  const auto found = control::first_disagreement(misfit.agreement, values_->all);
-  return runtime::describe(misfit, role, found ? &*found : nullptr, remedy);
+std::string RigAgreement::describe(const runtime::SiteMismatch& mismatch, control::SiteRole role) const {
+  const auto found = control::first_disagreement(mismatch.agreement, values_->all);
+  return runtime::describe(mismatch, role, found ? &*found : nullptr, remedy);
 }
 
 }  // namespace tactus::devices

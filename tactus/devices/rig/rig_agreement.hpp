@@ -5,7 +5,7 @@
 #include <tactus/core/units.hpp>
 #include <tactus/devices/rig/rig.hpp>
 #include <tactus/experiments/arm_tapping/arm_pair.hpp>
-#include <tactus/runtime/site_misfit.hpp>
+#include <tactus/runtime/site_mismatch.hpp>
 
 #include <memory>
 #include <string>
@@ -24,8 +24,8 @@ class RigAgreement {
   static RigAgreement of(const RigSide& side, const experiments::ArmPairSetup& setup);
 
   [[nodiscard]] control::Agreement agreement() const;
-  /// What a person at the site of this role has to know of a misfit, in one sentence with the remedy.
-  [[nodiscard]] std::string describe(const runtime::SiteMisfit& misfit, control::SiteRole role) const;
+  /// What a person at the site of this role has to know of a mismatch, in one sentence with the remedy.
+  [[nodiscard]] std::string describe(const runtime::SiteMismatch& mismatch, control::SiteRole role) const;
 
  private:
   struct Values;

@@ -1,7 +1,7 @@
 #include <tactus/control/protective_limits.hpp>
 #include <tactus/devices/rig/rig_arms.hpp>
 #include <tactus/experiments/arm_tapping/supervised_arms.hpp>
-#include <tactus/station/wall.hpp>
+#include <tactus/station/make_device_guard.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -66,7 +66,7 @@ Check check_joint(const RigJoint& joint, const DriveGains& asked) {
     if (wanted <= limit) return std::nullopt;
     return problem_at(
         join(joint.path, key), ErrorCode::inconsistent,
-        format_number(limit) + unit + " is less than the " + format_number(wanted) + unit +
+        rounded_number(limit) + unit + " is less than the " + rounded_number(wanted) + unit +
             " that the experiment asks of its motor's own law: write at least that, or lower the gain there");
   };
   const MotorJoint& may = joint.joint;
@@ -85,10 +85,10 @@ Check check_limits(const RigJoint& joint, const arm::JointLimits& can_be, const 
        {std::pair{joint.words().lower, joint.joint.lower_rad}, std::pair{joint.words().upper, joint.joint.upper_rad}}) {
     if (value_rad >= can_be.lower_rad - farther_rad && value_rad <= can_be.upper_rad + farther_rad) continue;
     return problem_at(join(joint.path, key), ErrorCode::inconsistent,
-                      format_number(value_rad) + " rad is far beyond where " + urdf + " lets this joint be, from " +
-                          format_number(can_be.lower_rad) + " to " + format_number(can_be.upper_rad) +
-                          " rad: state it in rad (" + format_number(value_rad) + " degrees are " +
-                          format_number(std::round(value_rad * std::numbers::pi / 180.0 * 1e4) / 1e4) +
+                      rounded_number(value_rad) + " rad is far beyond where " + urdf + " lets this joint be, from " +
+                          rounded_number(can_be.lower_rad) + " to " + rounded_number(can_be.upper_rad) +
+                          " rad: state it in rad (" + rounded_number(value_rad) + " degrees are " +
+                          rounded_number(std::round(value_rad * std::numbers::pi / 180.0 * 1e4) / 1e4) +
                           " rad), or name the joint that the motor moves");
   }
   return std::nullopt;
@@ -112,8 +112,8 @@ Result<RigSide> in_order(const RigSide& side, const experiments::DescribedArm& a
     const auto found = std::ranges::find(side.joints, arm.joints[i], &RigJoint::name);
     if (found == side.joints.end()) {
       return problem_at(side.path, ErrorCode::missing,
-                        "the arm of " + arm.urdf + " has a joint " + arm.joints[i] + ", and the rig has none: write [" +
-                            join(side.path, arm.joints[i]) + "]");
+                        "the arm of " + arm.urdf + " has a joint " + arm.joints[i] +
+                            ", and the rig has no such joint: write [" + join(side.path, arm.joints[i]) + "]");
     }
     if (Check error = add(*found, asked[i])) return *std::move(error);
     if (Check error = check_limits(*found, arm.arm.chain.joints[i].limits, arm.urdf)) return *std::move(error);

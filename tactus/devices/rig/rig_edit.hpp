@@ -17,7 +17,7 @@ struct NewOffset {
 
 /// The text of a rig file with this offset, to a millionth of a radian; all else stays as it was, comments and layout
 /// too. Where none was written, it is written below the joint's `motor`. Errors: those of `Rig::parse`; `inconsistent`
-/// where `motor` does not stand on a line of its own.
+/// where `motor` does not are on a line of its own.
 Result<std::string> with_offset(std::string_view text, const std::string& name, const NewOffset& offset);
 
 /// Writes these offsets into the file, all or none: a reader sees the old file or the new one, also after a power

@@ -21,21 +21,22 @@ struct DamiaoSide {
   BusKind bus = BusKind::damiao;
   std::string port;
   damiao::Framing framing = damiao::Framing::usb2can;
-  double patience_s = 0.002, watchdog_s = 0.05;
+  double reply_timeout_s = 0.002, watchdog_s = 0.05;
   static constexpr auto fields() {
     return List{field("bus", &DamiaoSide::bus, "Kind of motors."),
                 field("port", &DamiaoSide::port, "Serial port of the adapter, or interface of CAN."),
                 field("framing", &DamiaoSide::framing, "How frames of CAN become bytes."),
-                field("patience_s", &DamiaoSide::patience_s, units::second, between(0.0002, 0.05),
-                      "The longest wait for an answer; a motor that keeps it waiting three times in a row is silent."),
+                field("reply_timeout_s", &DamiaoSide::reply_timeout_s, units::second, between(0.0002, 0.05),
+                      "Timeout of a reply; a motor that exceeds it three times in a row is not responding."),
                 field("watchdog_s", &DamiaoSide::watchdog_s, units::second, between(0.005, 1.0),
-                      "A motor that hears nothing for so long lets go, and one that is unheard for so long is lost.")};
+                      "A motor that receives no command for this time disables itself, and one without a reply for "
+                      "this time is lost.")};
   }
   void put_into(StatedBus& stated) const {
     stated = {.kind = bus,
               .port = port,
               .framing = name_of(framing),
-              .patience_s = patience_s,
+              .reply_timeout_s = reply_timeout_s,
               .watchdog_s = watchdog_s,
               .motors = {}};
   }

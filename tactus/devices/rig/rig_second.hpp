@@ -39,7 +39,7 @@ struct RigSecond {
 struct RigTotals {
   double duration_s = 0.0;
   std::int64_t ticks = 0, active_ticks = 0, armings = 0, holds = 0;
-  std::int64_t late_ticks = 0, silent_ticks = 0, lost_ticks = 0;  ///< of the worse device
+  std::int64_t late_ticks = 0, not_responding_ticks = 0, lost_ticks = 0;  ///< of the worse device
 };
 
 /// Seconds on their way from the servo thread to one other.
@@ -62,8 +62,8 @@ inline void count(RigTotals& totals, station::DeviceHealth health) noexcept {
     case station::DeviceHealth::degraded:
       ++totals.late_ticks;
       return;
-    case station::DeviceHealth::silent:
-      ++totals.silent_ticks;
+    case station::DeviceHealth::not_responding:
+      ++totals.not_responding_ticks;
       return;
     case station::DeviceHealth::lost:
       ++totals.lost_ticks;
@@ -84,7 +84,7 @@ void note_support(RigSecond& second, const Site& site, bool of_leader) noexcept 
   second.support = site.support().found();
   second.support_of_leader = of_leader;
 }
-/// Begins anew what a second gathers. What stopped the sites is told until they are armed again.
+/// Begins again what a second gathers. What stopped the sites is told until they are armed again.
 inline void begin_anew(RigSecond& second, bool stands) noexcept {
   second.most_torque = 0.0;
   if (!stands) second.leader_trouble = second.follower_trouble = {};

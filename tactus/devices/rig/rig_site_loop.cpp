@@ -1,6 +1,6 @@
 #include <tactus/devices/rig/rig_site_loop.hpp>
+#include <tactus/station/make_device_guard.hpp>
 #include <tactus/station/step.hpp>
-#include <tactus/station/wall.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -39,15 +39,15 @@ Result<RigSiteLoop> RigSiteLoop::make(JointSite site, link::JointEndpoint endpoi
                             std::to_string(joints),
                  .place = {}};
   }
-  auto wall = control ? station::wall_before<Joints<DeviceReading>>(device, *control, role)
-                      : station::wall_before<Joints<DeviceReading>>(device, joints, role);
-  if (!wall) return wall.error();
-  return RigSiteLoop(std::move(site), std::move(endpoint), tick, params, exchange, device, *std::move(wall));
+  auto guard = control ? station::make_device_guard<Joints<DeviceReading>>(device, *control, role)
+                       : station::make_device_guard<Joints<DeviceReading>>(device, joints, role);
+  if (!guard) return guard.error();
+  return RigSiteLoop(std::move(site), std::move(endpoint), tick, params, exchange, device, *std::move(guard));
 }
 
 RigSiteLoop::RigSiteLoop(JointSite site, link::JointEndpoint endpoint, Seconds tick, const Params& params,
                          runtime::SiteExchange& exchange, MotorBusDevice& device,
-                         std::unique_ptr<station::GuardedJointDevice> wall)
+                         std::unique_ptr<station::GuardedJointDevice> guard)
     : console_({.duration_s = params.pair.duration_s,
                 .arm_at_once = params.pair.arm_at_once,
                 .listen_before_arming_s = params.pair.listen_before_arming_s,
@@ -57,8 +57,8 @@ RigSiteLoop::RigSiteLoop(JointSite site, link::JointEndpoint endpoint, Seconds t
       site_(std::move(site)),
       link_(std::move(endpoint), params.longest_age_s),
       device_(&device),
-      wall_(std::move(wall)),
-      driven_(wall_ ? static_cast<station::JointDevice*>(wall_.get()) : device_),
+      guard_(std::move(guard)),
+      driven_(guard_ ? static_cast<station::JointDevice*>(guard_.get()) : device_),
       read_(params.scales.size()),
       told_(params.scales.size()) {}
 
@@ -159,7 +159,8 @@ void RigSiteLoop::end_second() noexcept {
   second_.link = link_.end_second();
   shared_->try_push(second_);
   begin_anew(second_, stands(own_));
-  std::visit([this](const auto& site) noexcept { link_.tell_misfit(site.agreement(), console_.exchange()); }, site_);
+  std::visit([this](const auto& site) noexcept { link_.report_mismatch(site.agreement(), console_.exchange()); },
+             site_);
 }
 
 }  // namespace tactus::devices

@@ -13,7 +13,7 @@ namespace tactus::devices {
 /// One site of several joints, of either role.
 using JointSite = runtime::JointSupervisedSite;
 
-/// Whether the slave of these parameters tells where its motors are, so that its master can see how far it is.
+/// Whether the slave of these parameters reports where its motors are, so that its master can see how far it is.
 bool tells_its_place(const Joints<control::ControlParams>& control, Seconds tick);
 
 /// One side of a pair on this computer, the other side being elsewhere: the link, a supervised site of several joints
@@ -22,7 +22,7 @@ bool tells_its_place(const Joints<control::ControlParams>& control, Seconds tick
 /// It arms as `RigLoop` does. No motor has power until somebody arms at the leader's; that is not heard while the
 /// follower tells of a joint that is farther from its leader than it may be, is not heard itself, or works by other
 /// parameters. The leader then stands and arms; the follower, which sees it do so, stands and follows the arming, but
-/// not from a place that is farther from where it is told to be than it may be.
+/// not from a place that is farther from where it is commanded to be than it may be.
 class RigSiteLoop {
  public:
   struct Params {
@@ -33,8 +33,8 @@ class RigSiteLoop {
     double timeout_s = 0.0;      ///< of its watchdog
   };
   /// What outlives it: the exchange and the device. `endpoint` is that whose session the site has. `control` is of
-  /// joints that are driven each by itself, for the wall before the device; without it whoever made the site answers
-  /// for its gates. Errors: those of `wall_before`; `inconsistent` for other numbers of joints.
+  /// joints that are driven each by itself, for the guard before the device; without it whoever made the site answers
+  /// for its gates. Errors: those of `make_device_guard`; `inconsistent` for other numbers of joints.
   static Result<RigSiteLoop> make(JointSite site, link::JointEndpoint endpoint, Seconds tick, const Params& params,
                                   runtime::SiteExchange& exchange, MotorBusDevice& device,
                                   const std::optional<Joints<control::ControlParams>>& control);
@@ -49,13 +49,13 @@ class RigSiteLoop {
   /// fault of the run. After the last tick.
   [[nodiscard]] const RigSecond& last() const noexcept { return at_end_ ? *at_end_ : second_; }
   [[nodiscard]] runtime::LinkTotals link_totals() const { return link_.totals(); }
-  /// The seconds that ended, as they end; of the other side its state as it tells it, and no more. One other thread.
+  /// The seconds that ended, as they end; of the other side its state as it reports it, and no more. One other thread.
   [[nodiscard]] std::optional<RigSecond> next_second() noexcept { return next_of(*shared_); }
 
  private:
   RigSiteLoop(JointSite site, link::JointEndpoint endpoint, Seconds tick, const Params& params,
               runtime::SiteExchange& exchange, MotorBusDevice& device,
-              std::unique_ptr<station::GuardedJointDevice> wall);
+              std::unique_ptr<station::GuardedJointDevice> guard);
   [[nodiscard]] bool leads() const noexcept { return site_.index() == 0; }
   [[nodiscard]] bool may_align() const noexcept;
   [[nodiscard]] control::SiteRequests asked(const control::SiteRequests& pressed) noexcept;
@@ -69,8 +69,8 @@ class RigSiteLoop {
   JointSite site_;
   runtime::JointSiteLink link_;
   MotorBusDevice* device_;
-  std::unique_ptr<station::GuardedJointDevice> wall_;  ///< before the device
-  station::JointDevice* driven_;                       ///< the wall
+  std::unique_ptr<station::GuardedJointDevice> guard_;  ///< before the device
+  station::JointDevice* driven_;                        ///< the guard
   runtime::JointStreams* streams_ = nullptr;
   std::shared_ptr<RigSeconds> shared_ = std::make_shared<RigSeconds>();
   Joints<station::DeviceReading> read_;

@@ -149,8 +149,8 @@ void ServoBus::take(Servo& servo, const State& state) noexcept {
 
 void ServoBus::answered(Servo& servo) noexcept {
   // It may have been without power meanwhile, or its watchdog may have let go.
-  if (now_ns_ - servo.reading.heard_ns > table_.silence_ns / 2) servo.looks = 0xff;
-  servo.reading.heard_ns = now_ns_;
+  if (now_ns_ - servo.reading.received_ns > table_.silence_ns / 2) servo.looks = 0xff;
+  servo.reading.received_ns = now_ns_;
   ++servo.reading.answers;
 }
 
@@ -158,7 +158,7 @@ void ServoBus::wait(Waiting for_what, std::size_t answer_bytes) noexcept {
   const auto bits = 10 * (said_bytes_ + static_cast<std::int64_t>(packet_.size() + answer_bytes));
   said_bytes_ = 0;
   waiting_ = for_what;
-  deadline_ns_ = now_ns_ + bits * 1'000'000'000 / bits_per_s_ + patience_ns;
+  deadline_ns_ = now_ns_ + bits * 1'000'000'000 / bits_per_s_ + reply_timeout_ns;
 }
 
 std::int64_t ServoBus::wakes_ns() const noexcept {
@@ -281,8 +281,8 @@ void ServoBus::cycle_ended() noexcept {
       servo.owed = servo.answered ? 0 : std::min(servo.owed + 1, most_tries);
     }
     // Once is not enough: where this program stood still, it was not the servo that was silent.
-    if (servo.missed > 1 && now_ns_ - servo.reading.heard_ns > table_.silence_ns) {
-      fail(servo, servo.spoke ? MotorFault::refused : MotorFault::silent);
+    if (servo.missed > 1 && now_ns_ - servo.reading.received_ns > table_.silence_ns) {
+      fail(servo, servo.spoke ? MotorFault::refused : MotorFault::not_responding);
     }
     judge_power(servo);
     const bool gone = servo.answered && servo.ails == MotorFault::none && servo.looks == 0;

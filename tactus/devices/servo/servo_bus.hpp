@@ -15,7 +15,7 @@ namespace tactus::devices {
 /// A servo as its maker built it.
 struct ServoModel {
   const char* name;
-  std::int64_t number;         ///< that it tells of itself; 0 where no page says it, and then it is not compared
+  std::int64_t number;         ///< that it tells of itself; 0 where no page reports it, and then it is not compared
   double current_unit_A;       ///< of its goal and its present current
   std::int64_t current_limit;  ///< the largest goal that it can be set to take, in units; 0: it takes no current
   double torque_Nm_per_A;      ///< at the output; friction of the gear is not in it
@@ -44,12 +44,12 @@ struct ServoTable {
   std::span<const ServoStep> hush;      ///< written to all at once before anything is asked; nobody answers
   std::span<const ServoStep> enabling;  ///< for each servo, when it is given power; only writes
   std::span<const Register>
-      looks;              ///< read of a servo after its alert, the first, which tells its error, or a silence, all
+      looks;              ///< read of a servo after its alert, the first, which reports its error, or a silence, all
   std::size_t announced;  ///< of these: the others are also read now and then, of one servo at a time
   Register power, goal;
   std::int64_t steps_per_turn;
   std::int64_t steps_until_wrap;  ///< of the position on the wire
-  std::int64_t silence_ns;        ///< after that long without an answer a servo is silent
+  std::int64_t silence_ns;        ///< after that long without an answer a servo does not respond
   std::int64_t rest_ns;           ///< longer than the servo's own watchdog waits for any packet; 0: it has none
 };
 
@@ -63,7 +63,7 @@ struct ServoStatus {
             static_cast<std::uint8_t>(number >> 16 & 0xff)};
   }
 };
-/// `error byte 0x24, error register 0x20, torque enable 1`, for a person; `no status` where that is negative. Not
+/// `error byte 0x24, error register 0x20, torque enable 1`, for a user; `no status` where that is negative. Not
 /// real-time safe.
 std::string servo_status_text(std::int64_t status);
 
@@ -110,7 +110,7 @@ class ServoBus : public MotorBus {
   /// A servo's state, in the units of the wire.
   struct State {
     std::int64_t current, velocity, position;
-    double temperature_C;  ///< NaN: not told
+    double temperature_C;  ///< NaN: not reported
   };
   /// What was found while asking.
   enum class Wrong : std::uint8_t { nothing, silent, garbled, twice, model, limit, refused, stays_on };
@@ -121,7 +121,7 @@ class ServoBus : public MotorBus {
 
   [[nodiscard]] const ServoModel& model(std::size_t motor) const noexcept { return servos_[motor].model; }
   [[nodiscard]] std::uint8_t id(std::size_t motor) const noexcept { return servos_[motor].id; }
-  /// Whose state is asked for in this cycle: of all but those that were silent a moment ago.
+  /// Whose state is asked for in this cycle: of all but those that did not respond a moment ago.
   [[nodiscard]] std::span<const std::uint8_t> asked() const noexcept { return {asked_ids_.data(), asked_count_}; }
   /// Only where the servo's own limit is narrower than its model's.
   void limit(std::size_t motor, std::int64_t current) noexcept { servos_[motor].limit = current; }
@@ -165,7 +165,7 @@ class ServoBus : public MotorBus {
   virtual Wrong check(std::size_t motor, Register place, std::int64_t value) noexcept = 0;
   /// What a look showed.
   virtual void looked(std::size_t motor, Register place, std::int64_t value) noexcept = 0;
-  /// The name of the model that tells this number, empty where no page says it.
+  /// The name of the model that tells this number, empty where no page reports it.
   [[nodiscard]] virtual std::string model_named(std::int64_t number) const = 0;
 
  private:
@@ -187,7 +187,7 @@ class ServoBus : public MotorBus {
     std::size_t owed = 0;                                 ///< answers to cycles before, which may still come
     std::size_t missed = 0;                               ///< cycles in a row
     MotorFault ails = MotorFault::none;
-    std::int64_t firmware = -1;  ///< negative: not told
+    std::int64_t firmware = -1;  ///< negative: not reported
     std::size_t step = 0;        ///< of its enabling
     std::size_t tries = 0;       ///< of that step
     std::uint8_t looks = 0;      ///< that are due, a bit each
@@ -196,7 +196,7 @@ class ServoBus : public MotorBus {
     Register found_at{};
   };
   enum class Waiting : std::uint8_t { nothing, states, errand, second_answer, rest };
-  /// What a cycle says, one after the other.
+  /// What a cycle reports, one after the other.
   enum class Part : std::uint8_t { power_off, errand, goals, states };
   enum class Purpose : std::uint8_t { asking, enabling, power_off, look };
   struct Errand {
@@ -239,7 +239,7 @@ class ServoBus : public MotorBus {
   [[nodiscard]] std::span<const std::uint8_t> sent() const noexcept { return packet_.bytes(); }
 
   /// Beyond the time of the bytes: a USB adapter collects for a millisecond and hands over in the next frame.
-  static constexpr std::int64_t patience_ns = 2'000'000;
+  static constexpr std::int64_t reply_timeout_ns = 2'000'000;
   /// How often a servo is asked in a row before it counts as one that does not answer.
   static constexpr std::size_t most_tries = 10;
   /// One look at the power of a servo that stays on in so many cycles.
@@ -257,7 +257,7 @@ class ServoBus : public MotorBus {
   Waiting waiting_ = Waiting::nothing;
   Part part_ = Part::goals;
   std::size_t looks_at_power_ = 0;  ///< since the last cycle
-  int refused_said_ = 0;            ///< how often all were told to switch off
+  int refused_said_ = 0;            ///< how often all were commanded to switch off
   bool keeping_ = false;            ///< the register that was read is to be written
   std::size_t hushed_ = 0, asked_ = 0, asked_step_ = 0;
   std::size_t turn_ = 0, look_turn_ = 0;

@@ -13,7 +13,7 @@ std::span<const std::uint8_t> ServoBus::send_errand(const Errand& errand, std::i
   wait(Waiting::errand, answer_bytes(errand.reads ? errand.place.bytes : 0U));
   // Each time longer, for nothing is driven yet: this program or the adapter may stand still for a moment.
   if (errand.purpose == Purpose::asking) {
-    deadline_ns_ += static_cast<std::int64_t>(servos_[errand.motor].tries) * patience_ns;
+    deadline_ns_ += static_cast<std::int64_t>(servos_[errand.motor].tries) * reply_timeout_ns;
   }
   return sent();
 }
@@ -121,7 +121,7 @@ void ServoBus::errand_answered(std::span<const std::uint8_t> data) noexcept {
       if (errand_.which == 0) {
         // Another servo with this id answers too; later its answer would be taken for that to another question.
         waiting_ = Waiting::second_answer;
-        deadline_ns_ = now_ns_ + patience_ns;
+        deadline_ns_ = now_ns_ + reply_timeout_ns;
       }
       return;
     }
@@ -169,7 +169,7 @@ void ServoBus::found_wrong(Wrong wrong, std::int64_t value) noexcept {
   servo.wrong = wrong;
   servo.found = value;
   servo.found_at = errand_.place;
-  if (wrong == Wrong::silent || wrong == Wrong::garbled) fail(servo, MotorFault::silent);
+  if (wrong == Wrong::silent || wrong == Wrong::garbled) fail(servo, MotorFault::not_responding);
   if (wrong == Wrong::refused) fail(servo, MotorFault::refused);
   if (wrong == Wrong::stays_on) fail(servo, MotorFault::stays_on);
   ask_next(false);

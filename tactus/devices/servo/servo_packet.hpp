@@ -39,9 +39,9 @@ constexpr std::int64_t little_endian(std::span<const std::uint8_t> bytes) noexce
   return static_cast<std::int64_t>(value);
 }
 
-/// The bytes that came and are not read yet, from the place on where a packet may begin. `Format` says what a packet
+/// The bytes that came and are not read yet, from the place on where a packet may begin. `Format` reports what a packet
 /// is; `next` finds it, or the next place where one may begin. A packet that is damaged or only looked like one costs
-/// its first byte: what stands behind that is looked at again. Real-time safe.
+/// its first byte: what is behind that is looked at again. Real-time safe.
 ///
 ///     struct Format {
 ///       static constexpr std::size_t most;                                // bytes of the longest packet
@@ -58,7 +58,7 @@ class PacketFinder {
       find(take);
     }
   }
-  /// Nothing more will come of the packet that began: what stands behind its first byte counts.
+  /// Nothing more will come of the packet that began: what is behind its first byte counts.
   template <class Take>
   constexpr void give_up(Take&& take) noexcept {
     while (size_ > 0) {

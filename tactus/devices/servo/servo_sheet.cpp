@@ -47,7 +47,7 @@ Check ServoBus::problem(std::size_t motor) const {
       const std::string other = model_named(servo.found);
       return Error{ErrorCode::inconsistent,
                    {},
-                   who + " tells model number " + std::to_string(servo.found) +
+                   who + " reports model number " + std::to_string(servo.found) +
                        (other.empty() ? std::string(", which is not known here,") : std::string(" (") + other + ")") +
                        " where " + name + " is stated: state the model that is there, or change the servo",
                    {}};
@@ -83,9 +83,9 @@ Check ServoBus::problem(std::size_t motor) const {
     case Wrong::stays_on:
       return Error{ErrorCode::failed,
                    {},
-                   who + " was told to switch off and does not report that it is off (" +
+                   who + " was commanded to switch off and does not report that it is off (" +
                        servo_status_text(servo.status.number()) +
-                       "): switch off its supply, wait until it stands still, and switch it on again",
+                       "): switch off its supply, wait until it is at rest, and switch it on again",
                    {}};
     case Wrong::silent:
       break;

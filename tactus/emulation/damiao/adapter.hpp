@@ -11,7 +11,7 @@
 
 namespace tactus::emulation::damiao {
 
-/// What stands between the computer and the bus.
+/// What is between the computer and the bus.
 enum class AdapterType : std::int64_t { usb2can, slcan, slcan_fd, socketcan, socketcan_fd };
 constexpr auto enumerators(AdapterType) {
   return std::array{Enumerator{AdapterType::usb2can, "usb2can"}, Enumerator{AdapterType::slcan, "slcan"},
@@ -26,7 +26,7 @@ constexpr bool is_flexible(AdapterType type) {
 /// The side of an adapter that the computer sees. Does not allocate.
 class Adapter {
  public:
-  /// The longest that it says at once.
+  /// The longest that it reports at once.
   struct Said {
     std::array<std::uint8_t, 72> bytes{};
     std::size_t size = 0;

@@ -54,7 +54,7 @@ Result<Fault> parse_fault(std::string_view text) {
   for (const auto& [part, bounds, what] :
        {std::tuple{from, seconds, "its beginning"}, {lasts, seconds, "its length"}, {motor, motors, "the motor"}}) {
     const auto value = number(part.value_or("1"));
-    if (!value) return refuse(std::string(what) + " is no number");
+    if (!value) return refuse(std::string(what) + " is not a number");
     if (!bounds.contain(*value)) return refuse(std::string(what) + " " + describe_bounds(bounds, units::none));
   }
   fault.from_ns = std::llround(*number(from.value_or("0")) * 1e9);

@@ -10,7 +10,7 @@
 namespace tactus::emulation::damiao {
 
 enum class FaultKind : std::int64_t {
-  silence,       ///< hears nothing and says nothing
+  silence,       ///< receives nothing and reports nothing
   wrong_scale,   ///< VMAX half as large again as the type has; from the start
   over_voltage,  ///< these: a status that stays, whatever the motor is told
   under_voltage,
@@ -19,7 +19,7 @@ enum class FaultKind : std::int64_t {
   hot_winding,
   communication_lost,
   overload,
-  status,           ///< its feedback has a status that is not its own, which it goes on by
+  status,           ///< its feedback has a status that is not its own, which it continues by
   ignores_disable,  ///< it answers the order and keeps its power
   register_answer,  ///< among feedback, as if another program asked
   twin,             ///< another motor has its identifiers and answers too

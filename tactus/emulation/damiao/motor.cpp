@@ -194,8 +194,8 @@ void Motor::live_until(std::int64_t now_ns) noexcept {
 
 double Motor::give(std::int64_t now_ns) noexcept {
   now_ns_ = now_ns;
-  const std::int64_t patience_ns = static_cast<std::int64_t>(slot(timeout)) * timeout_unit_ns;
-  if (enabled() && patience_ns > 0 && now_ns_ - spoken_to_ns_ > patience_ns) status_ = lost;
+  const std::int64_t timeout_ns = static_cast<std::int64_t>(slot(timeout)) * timeout_unit_ns;
+  if (enabled() && timeout_ns > 0 && now_ns_ - spoken_to_ns_ > timeout_ns) status_ = lost;
   torque_Nm_ = 0.0;
   if (enabled()) {
     const double end = real(t_max);

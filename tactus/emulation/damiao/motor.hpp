@@ -93,7 +93,7 @@ class Motor {
   void recover() noexcept { stays_ = false; }
   /// From now on its feedback has this status, whatever it does; none: its own.
   void report(std::optional<std::uint8_t> status) noexcept { reported_ = status; }
-  /// Whether it keeps its power when it is told to disable.
+  /// Whether it keeps its power when it is commanded to disable.
   void ignore_disable(bool ignores) noexcept { ignores_disable_ = ignores; }
   /// A motor whose velocity register is not that of its type.
   void scale_velocity(double factor) noexcept;

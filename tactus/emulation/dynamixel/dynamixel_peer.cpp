@@ -42,7 +42,7 @@ std::size_t word(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
 
 Result<DynamixelPeer> DynamixelPeer::make(const Params& params) {
   if (params.servos.empty() || params.servos.size() > most_servos) {
-    return Error{ErrorCode::out_of_bounds, "servos", "1 to 16 servos can stand behind one line", {}};
+    return Error{ErrorCode::out_of_bounds, "servos", "1 to 16 servos fit on one line", {}};
   }
   for (const Servo& servo : params.servos) {
     if (servo.id < 0 || servo.id > 252) {
@@ -51,7 +51,7 @@ Result<DynamixelPeer> DynamixelPeer::make(const Params& params) {
     if (make_of(servo.model_number) == makes.size()) {
       return Error{ErrorCode::unknown_key,
                    "model_number",
-                   std::to_string(servo.model_number) + " is none of 1020, 1030, 1190, 1200, 1220 and 1240",
+                   std::to_string(servo.model_number) + " is not one of 1020, 1030, 1190, 1200, 1220 and 1240",
                    {}};
     }
   }
@@ -159,7 +159,7 @@ void DynamixelPeer::advance(std::int64_t now_ns) noexcept {
 
 bool DynamixelPeer::answers(const State& servo, std::int64_t now_ns) const noexcept {
   if (now_ns < servo.off_until_ns) return false;
-  return servo.fault != ServoFault::silent || now_ns < servo.fault_from_ns;
+  return servo.fault != ServoFault::silence || now_ns < servo.fault_from_ns;
 }
 
 void DynamixelPeer::hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept {

@@ -28,8 +28,9 @@ class DynamixelPeer final : public wire::WireEnd {
     std::int64_t id = 1;
     std::int64_t model_number = 1200;  ///< as its maker numbers it
     ServoFault fault = ServoFault::none;
-    std::int64_t fault_from_ns = 0;  ///< after the first byte that the peer hears, where the fault is one that begins
-    std::uint8_t error = 0;          ///< that `ServoFault::error` reports
+    std::int64_t fault_from_ns =
+        0;                   ///< after the first byte that the peer receives, where the fault is one that begins
+    std::uint8_t error = 0;  ///< that `ServoFault::error` reports
   };
   struct Params {
     std::vector<Servo> servos{{.id = 1}, {.id = 2}};
@@ -54,7 +55,7 @@ class DynamixelPeer final : public wire::WireEnd {
   /// The largest current that it ever gave, in its units; and how often it refused a goal without being able to say so.
   [[nodiscard]] std::int64_t largest_current(std::size_t servo) const noexcept { return servos_[servo].largest; }
   [[nodiscard]] std::int64_t lost_goals() const noexcept { return lost_goals_; }
-  /// Lets time pass where nothing is heard, for who looks at the truth.
+  /// Lets time pass where nothing is received, for who looks at the truth.
   void advance(std::int64_t now_ns) noexcept;
 
  private:
@@ -114,10 +115,10 @@ class DynamixelPeer final : public wire::WireEnd {
   ServoLine line_;
   std::array<std::uint8_t, packet_bytes> came_{};
   std::size_t came_size_ = 0;
-  bool began_ = false;  ///< something was heard
+  bool began_ = false;  ///< something was received
   bool in_packet_ = false;
   std::uint32_t last_four_ = 0;
-  std::int64_t instruction_ns_ = 0;  ///< when the last one was heard
+  std::int64_t instruction_ns_ = 0;  ///< when the last one was received
   std::int64_t lost_goals_ = 0;
 };
 

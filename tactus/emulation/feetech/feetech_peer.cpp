@@ -33,7 +33,7 @@ std::int64_t with_sign_bit(std::int64_t value) noexcept { return value >= 0 ? va
 
 Result<FeetechPeer> FeetechPeer::make(const Params& params) {
   if (params.servos.empty() || params.servos.size() > most_servos) {
-    return Error{ErrorCode::out_of_bounds, "servos", "1 to 16 servos can stand behind one line", {}};
+    return Error{ErrorCode::out_of_bounds, "servos", "1 to 16 servos fit on one line", {}};
   }
   for (const Servo& servo : params.servos) {
     if (servo.id < 0 || servo.id > 253) {
@@ -131,7 +131,7 @@ void FeetechPeer::advance(std::int64_t now_ns) noexcept {
 
 bool FeetechPeer::answers(const State& servo, std::int64_t now_ns) noexcept {
   if (now_ns < servo.off_until_ns) return false;
-  return servo.fault != ServoFault::silent || now_ns < servo.fault_from_ns;
+  return servo.fault != ServoFault::silence || now_ns < servo.fault_from_ns;
 }
 
 std::int64_t FeetechPeer::delay_ns(const State& servo) noexcept {

@@ -33,8 +33,9 @@ class FeetechPeer final : public wire::WireEnd {
     std::int64_t id = 1;
     Make make = Make::hls3625;
     ServoFault fault = ServoFault::none;
-    std::int64_t fault_from_ns = 0;  ///< after the first byte that the peer hears, where the fault is one that begins
-    std::uint8_t error = 0;          ///< that `ServoFault::error` reports
+    std::int64_t fault_from_ns =
+        0;                   ///< after the first byte that the peer receives, where the fault is one that begins
+    std::uint8_t error = 0;  ///< that `ServoFault::error` reports
   };
   struct Params {
     std::vector<Servo> servos{{.id = 1}, {.id = 2}};
@@ -54,7 +55,7 @@ class FeetechPeer final : public wire::WireEnd {
   ServoJoint& joint(std::size_t servo) noexcept { return servos_[servo].joint; }
   /// The largest current that it ever gave, in its units.
   [[nodiscard]] std::int64_t largest_current(std::size_t servo) const noexcept { return servos_[servo].largest; }
-  /// Lets time pass where nothing is heard.
+  /// Lets time pass where nothing is received.
   void advance(std::int64_t now_ns) noexcept;
 
  private:
@@ -97,7 +98,7 @@ class FeetechPeer final : public wire::WireEnd {
   ServoLine line_;
   std::array<std::uint8_t, 260> came_{};
   std::size_t came_size_ = 0;
-  bool began_ = false;  ///< something was heard
+  bool began_ = false;  ///< something was received
 };
 
 }  // namespace tactus::emulation::feetech

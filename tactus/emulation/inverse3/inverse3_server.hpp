@@ -10,7 +10,7 @@
 namespace tactus::emulation::inverse3 {
 
 /// An emulated Inverse Service at a port of the loopback: WebSocket and HTTP on the same one, as the vendor's. One
-/// thread does all; clients share the devices. It goes on when a client leaves.
+/// thread does all; clients share the devices. It continues when a client leaves.
 class Inverse3Server {
  public:
   /// Begins to listen, at any free port where it is 0, and starts the thread. Errors: those of `Inverse3Service::make`;

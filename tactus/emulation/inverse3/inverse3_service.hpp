@@ -19,14 +19,14 @@ constexpr auto enumerators(Dialect) {
   return std::array{Enumerator{Dialect::v3_1, "3.1"}, Enumerator{Dialect::v3_5, "3.5"}};
 }
 
-/// An emulated Inverse Service of Haply, without its sockets: which JSON it says to which. A snapshot at the start,
+/// An emulated Inverse Service of Haply, without its sockets: which JSON it reports to which. A snapshot at the start,
 /// then exactly one state for each message, whatever that holds; a device's state is fresh only where something was
 /// asked of it. Each device is a free mass in three axes, pushed by `set_cursor_force`, which acts until the next
 /// message and at most for `silence_ns`, 10 N an axis at most. Where it is not calibrated there is no force. Commands
 /// of positions and angles are taken and do nothing; so do the filters, which are told. Times never go back.
 ///
-/// Source: Haply, Inverse SDK pages of the WebSocket protocol and of the migration to 3.5. What the service says to
-/// JSON that is none is on no page: here it says its state.
+/// Source: Haply, Inverse SDK pages of the WebSocket protocol and of the migration to 3.5. What the service reports to
+/// JSON that is none is on no page: here it reports its state.
 class Inverse3Service {
  public:
   struct Params {

@@ -112,8 +112,8 @@ Result<ArmContest> make_arm_contest(const ArmContestParams& params, const std::f
   if (!(params.task.lowest_gain < params.task.highest_gain)) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "task.highest_gain",
-                 .message = format_number(params.task.highest_gain) + " is not above lowest_gain, " +
-                            format_number(params.task.lowest_gain) + ": raise one or lower the other",
+                 .message = rounded_number(params.task.highest_gain) + " is not above lowest_gain, " +
+                            rounded_number(params.task.lowest_gain) + ": raise one or lower the other",
                  .place = {}};
   }
   struct Pair {

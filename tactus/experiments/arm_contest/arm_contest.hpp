@@ -37,14 +37,14 @@ struct ArmContestTask {
                 field("taps", &T::taps, between(1, 100000), "Taps at each gain that is tried."),
                 field("seed", &T::seed, non_negative, "Seed that draws them."),
                 field("pose", &T::pose, between(0, 1000), "Where both arms begin, as in `arm-tapping`."),
-                field("direction", &T::direction, "Where the surface lies that the person goes to."),
+                field("direction", &T::direction, "Direction of the surface to which the operator moves."),
                 field("model_error", &T::model_error, units::none, between(0.0, 0.5),
                       "Errors that every tap draws of the model of induced motion."),
                 field("lowest_gain", &T::lowest_gain, units::none, between(0.001, 100.0),
                       "Where the search for the largest gain ends downward."),
                 field("highest_gain", &T::highest_gain, units::none, between(0.001, 100.0), "Where it ends upward."),
                 field("bare", &T::bare,
-                      "File with what a pair is without what is recommended for it: the other methods stand on that.")};
+                      "File with what a pair is without what is recommended for it: the base of the other methods.")};
   }
 };
 
@@ -57,7 +57,7 @@ struct ArmContestPair {
     using P = ArmContestPair;
     return List{field("name", &P::name, "Its name in the table; without one there is no such pair."),
                 field("file", &P::file, "Experiment of the kind arm-tapping, as recommended; counts from this file."),
-                field("with", &P::with, "File whose keys stand in place of that experiment's, or none.")};
+                field("with", &P::with, "File whose keys replace that experiment's; empty: none.")};
   }
 };
 
@@ -103,7 +103,7 @@ struct ArmContestParams {
 /// A competitor: its name, and what it sets on top of a pair's experiment, as `key=value`.
 struct ArmContestMethod {
   std::string_view name;
-  bool recommended;  ///< stands on the experiment as recommended, without `task.bare`
+  bool recommended;  ///< is on the experiment as recommended, without `task.bare`
   std::vector<std::string_view> settings;
   std::string_view explanation;  ///< what it does, in one sentence
 };

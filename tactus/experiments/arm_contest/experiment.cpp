@@ -23,7 +23,7 @@ report::Table arm_methods_table() {
   using Align = report::Column::Align;
   report::Table table({{"method", "", Align::left},
                        {"what it does", "", Align::left},
-                       {"stands on", "", Align::left},
+                       {"based on", "", Align::left},
                        {"set on top", "", Align::left}},
                       "What each method is");
   for (const ArmContestMethod& method : arm_contest_methods()) {
@@ -42,7 +42,7 @@ report::Page arm_contest_page(const Request& request, const std::string& verdict
   report::Page page(request.name + ": " + std::string(arm_contest_title));
   page.paragraph(verdict);
   page.paragraph(
-      "The same person taps the same surface through the same arms; only the controllers differ. For each method the "
+      "The same operator taps the same surface through the same arms; only the controllers differ. For each method the "
       "force gain is raised in steps of √2 until taps no longer settle. Simulated.");
   page.figure(figure);
   page.table(table);

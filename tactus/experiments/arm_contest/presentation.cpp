@@ -107,7 +107,7 @@ report::Figure arm_contest_figure(const ArmContest& contest, const std::vector<A
     return of_hands;
   };
   report::Figure figure{.title = "How much force gain each method allows on two arms, and what it costs",
-                        .caption = "A good method has long bars in the first two columns and short ones beside them.",
+                        .caption = "A good method has long bars in the first two columns and short ones next to them.",
                         .columns = 4,
                         .panels = {},
                         .column_titles = {"largest gain that settles", "felt there", "lag", "effort"},

@@ -99,7 +99,7 @@ class FaultyArm {
       const station::DeviceCommand& joint = commanded[i];
       double given_N_m = process.killed() || !joint.enabled ? 0.0 : joint.force_N;
       if (!process.stands_still() && joint.enabled && joint.law.acts()) {
-        given_N_m += joint.law.force_N(sensed[i].position_m, sensed[i].motor_tells.velocity_m_per_s);
+        given_N_m += joint.law.force_N(sensed[i].position_m, sensed[i].motor_report.velocity_m_per_s);
         law_N_m_[i] = given_N_m - joint.force_N;
       } else if (process.stands_still() && !process.killed() && joint.enabled) {
         given_N_m += law_N_m_[i];

@@ -2,7 +2,7 @@
 
 #include <tactus/control/packet.hpp>
 #include <tactus/experiments/arm_faults/plan.hpp>
-#include <tactus/experiments/faults/faulty_person.hpp>
+#include <tactus/experiments/faults/faulty_operator.hpp>
 #include <tactus/simulation/bad_number.hpp>
 #include <tactus/simulation/fault_moment.hpp>
 #include <tactus/simulation/faulty_actuator.hpp>
@@ -36,7 +36,7 @@ class ArmFaultInjection {
         span_(plan.start_s, plan.start_s + plan.length_s, tick_s) {}
 
   Site master, slave;
-  FaultyPerson person;
+  FaultyOperator person;
 
   [[nodiscard]] Site& at(FaultSite site) noexcept { return site == FaultSite::master ? master : slave; }
   [[nodiscard]] const simulation::FaultSpan& span() const noexcept { return span_; }
@@ -45,7 +45,7 @@ class ArmFaultInjection {
 
   /// No packet passes either way.
   [[nodiscard]] bool cuts() const noexcept { return plan_.kind == FaultKind::cut && moment_.during; }
-  /// A drive of `site` has no power, and says so.
+  /// A drive of `site` has no power, and states it.
   [[nodiscard]] bool is_without_power(FaultSite site) const noexcept {
     return plan_.kind == FaultKind::power_lost && plan_.site == site && moment_.during;
   }
@@ -56,10 +56,10 @@ class ArmFaultInjection {
     if (plan_.site != site) return;
     if (moment_.begins) spoil_number(joint);
     if (!moment_.during) return;
-    control::DriveTells& tells = joint.motor_tells;
+    control::DriveReport& tells = joint.motor_report;
     if (plan_.kind == FaultKind::encoder_reversed) tells.velocity_m_per_s = -tells.velocity_m_per_s;
     if (plan_.kind == FaultKind::encoder_freeze) tells.velocity_m_per_s = 0.0;
-    // What a drive believes to give, from its current.
+    // What a drive assumes to give, from its current.
     if (plan_.kind == FaultKind::motor_reversed) tells.force_N = -tells.force_N;
     if (plan_.kind == FaultKind::torque_constant) tells.force_N /= plan_.size;
   }
@@ -72,7 +72,7 @@ class ArmFaultInjection {
     joint.law = joint.law.times(share);
   }
 
-  /// What `FaultProcessOf` asks, beside the clock.
+  /// What `FaultProcessOf` asks, alongside the clock.
   [[nodiscard]] bool sleeps() const noexcept { return false; }
   [[nodiscard]] double age_error_s(FaultSite) const noexcept { return 0.0; }
   void spoil(FaultSite site, control::JointPacket& packet) const noexcept {
@@ -99,8 +99,8 @@ class ArmFaultInjection {
   }
   void spoil_number(station::DeviceReading& joint) const noexcept {
     if (plan_.kind != FaultKind::bad_number || input() >= told_of_drive) return;
-    double* const told[told_of_drive] = {&joint.position_m, &joint.motor_tells.velocity_m_per_s,
-                                         &joint.motor_tells.force_N};
+    double* const told[told_of_drive] = {&joint.position_m, &joint.motor_report.velocity_m_per_s,
+                                         &joint.motor_report.force_N};
     *told[input()] = bad_value();
   }
 

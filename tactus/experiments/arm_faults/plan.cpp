@@ -1,6 +1,6 @@
 #include <tactus/experiments/arm_faults/plan.hpp>
+#include <tactus/experiments/faults/fault_operator.hpp>
 #include <tactus/experiments/faults/internal/families.hpp>
-#include <tactus/experiments/faults/person.hpp>
 #include <tactus/experiments/faults/schedule.hpp>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ FaultPlan draw_arm_plan(FaultKind kind, std::int64_t index, std::int64_t seed, c
   // Half of all faults begin where the person presses most.
   if (random.uniform() < 0.5) {
     const double moving_s = plan.start_s - fault_schedule::still_until_s;
-    plan.start_s = fault_schedule::still_until_s + FaultPerson(plan, 0.0, true).deepest_after_s(moving_s);
+    plan.start_s = fault_schedule::still_until_s + FaultOperator(plan, 0.0, true).deepest_after_s(moving_s);
   }
   const double least_rad = std::min(2.0 * gate.encoder.fastest_m_per_s / rate_Hz, most_spike_rad);
   switch (kind) {
@@ -87,22 +87,23 @@ std::vector<FaultRow> arm_fault_rows(std::string_view only) {
        "NaN, infinity, huge: position, velocity, torque of a joint's drive or packet, or a packet's age",
        "refused, finite output"},
       {FaultKind::encoder_spike, "encoder-spike", "encoder spike", "one reading of a joint, up to 3 rad",
-       "latched in the tick"},
+       "latched in the control cycle"},
       {FaultKind::encoder_freeze, "encoder-freeze", "encoder frozen", "of a joint for 1 s", "bounded"},
-      {FaultKind::encoder_wrap, "encoder-wrap", "encoder wrap", "of a joint by a turn", "latched in the tick"},
+      {FaultKind::encoder_wrap, "encoder-wrap", "encoder wrap", "of a joint by a turn", "latched in the control cycle"},
       {FaultKind::encoder_reversed, "encoder-reversed", "encoder reversed",
        "of a joint, from the start or for 1 s while following", "never followed, or bounded"},
       {FaultKind::motor_reversed, "motor-reversed", "motor reversed",
        "of a joint, its drive's law too, from the start or for 1 s while following", "never followed, or bounded"},
       {FaultKind::torque_constant, "torque-constant", "torque constant wrong",
-       "a joint gives 0.2 to 0.5 or 2 to 3 times what its drive believes, for 1.5 s", "bounded"},
-      {FaultKind::actuator_dead, "actuator-dead", "motor dead", "of a joint, and nobody says so, for 1.5 s", "bounded"},
-      {FaultKind::power_lost, "power-lost", "power lost", "of a joint's drive, which says so, for 100 to 500 ms",
+       "a joint gives 0.2 to 0.5 or 2 to 3 times what its drive reports, for 1.5 s", "bounded"},
+      {FaultKind::actuator_dead, "actuator-dead", "motor dead", "of a joint, without a report of the drive, for 1.5 s",
+       "bounded"},
+      {FaultKind::power_lost, "power-lost", "power lost", "of a joint's drive, which reports it, for 100 to 500 ms",
        "no site active at once"},
-      {FaultKind::stall, "stall", "site stalled", "1 to 100 ms, its drives go on by their law",
+      {FaultKind::stall, "stall", "site stalled", "1 to 100 ms, its drives continue to run their law",
        "hold after a long one"},
-      {FaultKind::hand_lets_go, "hand-lets-go", "hand lets go", "for 1 s, and of the dead-man switch at the tool",
-       "no site active at once, neither arm falls"},
+      {FaultKind::hand_lets_go, "hand-lets-go", "hand releases the handle",
+       "for 1 s, and of the dead-man switch at the tool", "no site active at once, neither arm falls"},
       {FaultKind::dead_man_released, "dead-man-released", "dead-man switch released", "for 1 s, the hand holds on",
        "no site active at once"},
       {FaultKind::emergency_stop, "emergency-stop", "emergency stop", "pressed at one site for 0.5 s",

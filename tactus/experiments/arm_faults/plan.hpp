@@ -26,7 +26,7 @@ inline bool is_wired_so(const FaultPlan& plan) { return plan.start_s == 0.0; }
 /// The joint, from 0, that a plan is about, of so many.
 std::size_t joint_of_plan(const FaultPlan& plan, std::size_t joints);
 
-/// What must come of a plan: `duty_of`, and what arms' drives tell besides.
+/// What must come of a plan: `duty_of`, and what arms' drives report besides.
 FaultDuty arm_duty_of(const FaultPlan& plan, const control::SupervisionParams& supervision, double rate_Hz);
 
 /// Every row, or the one with the id `only`; their rules are `arm_duty_of` and the bounds.

@@ -1,5 +1,5 @@
 #include <tactus/experiments/arm_faults/arm_faults.hpp>
-#include <tactus/experiments/arm_faults/arm_person.hpp>
+#include <tactus/experiments/arm_faults/arm_operator.hpp>
 #include <tactus/experiments/arm_faults/faulty_arm.hpp>
 #include <tactus/experiments/arm_faults/injection.hpp>
 #include <tactus/experiments/faults/judge.hpp>
@@ -68,7 +68,7 @@ class ArmFaultRun {
   [[nodiscard]] const ArmFaultInjection& injection() const { return injections_.front(); }
   [[nodiscard]] const FaultMoment& moment() const { return injection().moment(); }
   [[nodiscard]] double end_s() const { return injection().span().end_s(); }
-  [[nodiscard]] bool nobody_holds() const { return injection().person.hand(moment()) == FaultyPerson::Hand::lets_go; }
+  [[nodiscard]] bool nobody_holds() const { return injection().person.hand(moment()) == FaultyOperator::Hand::lets_go; }
 
   template <class Here, class There>
   void step_site(Here& here, There& there) {
@@ -85,7 +85,7 @@ class ArmFaultRun {
       here.goes_on(injection(), tick_s_);
     } else {
       const control::SiteRequests pressed = injection().person.presses(
-          FaultPerson::presses(moment().now_s, end_s(), judge_.rearms()), here.where, moment());
+          FaultOperator::presses(moment().now_s, end_s(), judge_.rearms()), here.where, moment());
       ArmFaultWay<Here, There> way{.here = here, .there = there, .injection = injection(), .tick_s = tick_s_};
       const station::Tick now{.number = tick_, .missed = here.process.elapsed_ticks() - 1};
       ArmDrives<Here> drives{.arm = here, .injection = injection()};
@@ -150,7 +150,7 @@ class ArmFaultRun {
   int steps_;
   double step_s_;
   std::vector<ArmFaultInjection> injections_;  ///< one
-  ArmFaultPerson person_;
+  ArmFaultOperator person_;
   arm_plants::Wall wall_;
   Leader leader_;
   Follower follower_;

@@ -68,7 +68,7 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
   if (const auto contact = mechanics::Environment::make(params.wall.environment(), tick); !contact) {
     return under("wall", contact.error());
   }
-  if (const auto person = arm_plants::Person::make(params.person, tick, leader->tool()); !person) {
+  if (const auto person = arm_plants::ToolOperator::make(params.person, tick, leader->tool()); !person) {
     return under("operator", person.error());
   }
   return ArmFaultBench{.setup = *setup,
@@ -147,7 +147,7 @@ Result<Outcome> arm_faults(const Request& request, const Progress& progress) {
   const FaultsShown shown{
       .kind = std::string(name_of(params->task.kind)),
       .subject =
-          "Two supervised arms, a person who taps a stiff surface through them, and one fault in each run, drawn by "
+          "Two supervised arms, an operator who taps a stiff surface through them, and one fault in each run, drawn by "
           "its "
           "seed, at a joint that is drawn too. A witness outside of the sites reads what reaches the motors, what was "
           "sent when, and what becomes of both tools.",

@@ -180,7 +180,7 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const Urdfs
 }
 
 ArmPair::ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, ArmDevice leader, ArmDevice follower,
-                 const std::optional<arm::Chain>& other_follower, arm_plants::Person person,
+                 const std::optional<arm::Chain>& other_follower, arm_plants::ToolOperator person,
                  station::JointBarePair sites, double wall_m, const mechanics::Environment& contact)
     : tick_s_(1.0 / setup.params.servo.rate_Hz),
       steps_(steps_in_a_tick(setup.params.servo)),
@@ -204,22 +204,23 @@ ArmPair::ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, ArmD
   latest_ = at_rest.step(leader_, follower_, {}, 1.0);
 }
 
-Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmBeliefs& beliefs) {
+Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmModelParams& model_params) {
   const ArmTappingParams& params = setup.params;
   const ArmPlant::Params &leads = setup.leader.arm, &follows = setup.follower.arm;
   const Seconds tick{1.0 / params.servo.rate_Hz};
   const std::size_t joints = leads.chain.joints.size();
   arm_control::ArmLeader::Params control = params.control;
-  control.model.hand = beliefs.hand;
+  control.model.hand = model_params.hand;
   const Joints<control::SafetyGate::Params> gates(joints, arm_control::widest_gate());
   const Joints<control::SafetyGate::Params> follower_gates(follows.chain.joints.size(), arm_control::widest_gate());
   auto leader_site = arm_control::leader_site(
-      control, {.carried = leads.chain, .induced = beliefs.induced, .gains = params.control.follower.gains.of(joints)},
+      control,
+      {.carried = leads.chain, .induced = model_params.induced, .gains = params.control.follower.gains.of(joints)},
       gates, tick);
   if (!leader_site) return under("control", leader_site.error());
   arm_control::ArmFollower::Arm known{.chain = follows.chain,
                                       .tool_m = follows.tool_m,
-                                      .joint_stiffness_N_m_per_rad = beliefs.follower_joint_stiffness_N_m_per_rad,
+                                      .joint_stiffness_N_m_per_rad = model_params.follower_joint_stiffness_N_m_per_rad,
                                       .passivity = {params.control.passivity, params.control.force_gain}};
   if (params.control.method == arm_control::ArmMethod::four_channel) {
     known.four_channel =
@@ -237,7 +238,7 @@ Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const A
   return station::JointBarePair::around(*std::move(leader_site), *std::move(follower_site), {}, tick, start);
 }
 
-Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmBeliefs& beliefs, double wall_m) {
+Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmModelParams& model_params, double wall_m) {
   const ArmTappingParams& params = setup.params;
   const ArmPlant::Params &leads = setup.leader.arm, &follows = setup.follower.arm;
   const Seconds tick{1.0 / params.servo.rate_Hz};
@@ -247,9 +248,9 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmBeliefs& belie
   if (!leader) return under("arm", leader.error());
   auto follower = ArmPlant::make(follows, setup.follower.start);
   if (!follower) return under(differs(params.arm) ? "arm.follower" : "arm", follower.error());
-  auto person = arm_plants::Person::make(params.person, tick, leader->tool());
+  auto person = arm_plants::ToolOperator::make(params.person, tick, leader->tool());
   if (!person) return under("operator", person.error());
-  auto sites = bare_arm_sites(setup, beliefs);
+  auto sites = bare_arm_sites(setup, model_params);
   if (!sites) return sites.error();
   const Joints<station::DeviceLimits> no_limits(leads.chain.joints.size()),
       no_follower_limits(follows.chain.joints.size());
@@ -302,7 +303,7 @@ ArmRecord ArmPair::step_arms(const Vector3& path_m, const Vector3& path_at_next_
   return record;
 }
 
-ArmSight ArmPair::sight() const {
+ArmSnapshot ArmPair::snapshot() const {
   const auto joints = static_cast<std::size_t>(leader_chain_.joints());
   JointVector displayed(leader_chain_.joints());
   JointVector told = displayed;
@@ -313,7 +314,7 @@ ArmSight ArmPair::sight() const {
     const station::DeviceReading& read = latest_.master.reading[i];
     const control::MasterOutput& site = latest_.master.output[i];
     displayed[at] =
-        site.motor_force_N - site.support_N + site.law.force_N(read.position_m, read.motor_tells.velocity_m_per_s);
+        site.motor_force_N - site.support_N + site.law.force_N(read.position_m, read.motor_report.velocity_m_per_s);
     told[at] = -latest_.slave.output[i].message.force_N;
     induced[at] = site.induced_position_m;
     commanded[at] = site.message.position_m;
@@ -327,7 +328,7 @@ ArmSight ArmPair::sight() const {
           .leader_m = leader_.plant().tool().position_m,
           .follower_m = follower_.plant().tool().position_m,
           .displayed_N = force_nearest_to(at_leader, displayed),
-          .told_N = leads_joints_ ? force_nearest_to(moves_tool(follower_chain, follower_rad, follower_tool_m_), told)
+          .sent_N = leads_joints_ ? force_nearest_to(moves_tool(follower_chain, follower_rad, follower_tool_m_), told)
                                   : Vector3(force_nearest_to(at_leader, told) / tool_scale_),
           .induced_m = at_leader * induced,
           .command_m = led_to_m(commanded)};

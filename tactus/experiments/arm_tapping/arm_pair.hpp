@@ -11,19 +11,19 @@
 
 namespace tactus::experiments {
 
-/// What the sites believe of the arms and of the hand, as far as a tap draws errors of it.
-struct ArmBeliefs {
+/// Parameters of arms and hand that the models of the sites have, as far as a tap draws errors of them.
+struct ArmModelParams {
   arm_control::InducedMotion::Arm induced;                ///< the leader, for the model of induced motion
   arm::HandImpedance hand;                                ///< that holds it, for the same
   arm::JointVector follower_joint_stiffness_N_m_per_rad;  ///< for an observer of elastic joints
 };
 
-/// All that a pair is made of, read and checked. What the sites believe to carry and to resist the arms is exact.
+/// All that a pair is made of, read and checked. Gravity compensation and friction compensation of the sites are exact.
 struct ArmPairSetup {
   ArmTappingParams params;
   DescribedArm leader;
-  DescribedArm follower;                         ///< the same as the leader, or another arm (`differs`)
-  ArmBeliefs exact;                              ///< beliefs without error, but that the hand is control.model.hand
+  DescribedArm follower;  ///< the same as the leader, or another arm (`differs`)
+  ArmModelParams exact;   ///< model_params without error, but that the hand is control.model.hand
   arm::Vector3 outward = arm::Vector3::UnitZ();  ///< of the surface, along the axes of both bases
   /// How far the follower's tool goes where the leader's goes outward, over that, at the start: 1 where they are alike,
   /// 2 for a leader of half the follower's size; of a handle that leads the tool it is control.follower.tool_scale. The
@@ -38,7 +38,7 @@ Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const Urdfs& urdfs);
 
 /// The sites of a tap, without supervision, behind the widest gates. Errors: those of the controllers, under `control`.
-Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmBeliefs& beliefs);
+Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmModelParams& model_params);
 
 /// What both tools did at a tick.
 struct ArmRecord {
@@ -52,7 +52,7 @@ struct ArmRecord {
   static constexpr auto signals() {
     using R = ArmRecord;
     return List{observed("contact_N", &R::contact_N, units::newton, "slave", "tool", "out of the surface",
-                         "Of the surface on the follower's tool, mean over the tick."),
+                         "Of the surface on the follower's tool, mean over the control cycle."),
                 observed("hand_N", &R::hand_N, units::newton, "master", "tool", "into the surface",
                          "Of the hand's spring and damper on the leader's tool."),
                 observed("leader_m", &R::leader_m, units::metre, "master", "tool", "out of the surface",
@@ -65,53 +65,53 @@ struct ArmRecord {
 };
 
 /// What both arms are about, for who draws them: vectors along the axes of the bases, forces on the hand and the
-/// follower's tool. What a site says is that of the latest tick.
-struct ArmSight {
+/// follower's tool. Values of a site are those of the latest tick.
+struct ArmSnapshot {
   arm::JointVector leader_rad;  ///< of the links
   arm::JointVector follower_rad;
   arm::Vector3 leader_m;  ///< of the tools
   arm::Vector3 follower_m;
-  /// What the leader's motors and their law do beside carrying the arm, as the force at the tool whose torques come
-  /// nearest to theirs.
+  /// What the leader's motors and their law do in addition to gravity compensation, as the force at the tool whose
+  /// torques come nearest to theirs.
   arm::Vector3 displayed_N;
-  arm::Vector3 told_N;     ///< of what the follower's site tells of the torques that resist it, the same
+  arm::Vector3 sent_N;     ///< of the resisting torques that the follower's site sends, the same
   arm::Vector3 induced_m;  ///< motion of the leader's tool that its site takes from the command
   arm::Vector3 command_m;  ///< where the leader's site sends the follower's tool
 };
 
-/// Two simulated arms with their sites, the leader in a person's hand, in virtual time. The sites are bare, as the
+/// Two simulated arms with their sites, the leader in an operator's hand, in virtual time. The sites are bare, as the
 /// papers have theirs, behind the widest gates.
 ///
-/// One tick: `station::step` of the leader's site with what the follower told at the tick before, then of the
-/// follower's with what the leader tells now, where the commands of the tick before go to the drives, as on a bus; the
-/// person aims; the arms step.
+/// One tick: `station::step` of the leader's site with what the follower sent at the tick before, then of the
+/// follower's with what the leader sends now, where the commands of the tick before go to the drives, as on a bus; the
+/// operator aims; the arms step.
 class ArmPair {
  public:
   /// The wall lies `wall_m` outward from where the follower's tool begins.
-  static Result<ArmPair> make(const ArmPairSetup& setup, const ArmBeliefs& beliefs, double wall_m);
+  static Result<ArmPair> make(const ArmPairSetup& setup, const ArmModelParams& model_params, double wall_m);
 
-  /// One tick, with where the person wants the follower's tool now and a tick later, from where it began; the hand goes
-  /// that over `ArmPairSetup::tool_scale`. `share` is that of what the controllers want, the arms' support with it; 0
-  /// lets go.
+  /// One tick, with where the operator wants the follower's tool now and a tick later, from where it began; the hand
+  /// goes that over `ArmPairSetup::tool_scale`. `share` is that of what the controllers want, the arms' support with
+  /// it; 0 releases the tool.
   ArmRecord step(const arm::Vector3& path_m, const arm::Vector3& path_at_next_tick_m, double share = 1.0);
   /// The parts of a tick, for a clock that is not the pair's own: first what a servo thread owes the drives in time...
   void step_sites(const station::Tick& tick, double share = 1.0) noexcept;
-  /// ...then person and arms, for as long as a tick takes; at a tick that the sites missed, these alone, under the
+  /// ...then operator and arms, for as long as a tick takes; at a tick that the sites missed, these alone, under the
   /// commands that the drives have. Real-time safe, as the other.
   ArmRecord step_arms(const arm::Vector3& path_m, const arm::Vector3& path_at_next_tick_m);
   /// What the sites did at the latest tick.
   [[nodiscard]] const station::JointBarePair::Output& latest() const noexcept { return latest_; }
   [[nodiscard]] const station::JointBarePair& sites() const noexcept { return sites_; }
-  [[nodiscard]] ArmSight sight() const;
+  [[nodiscard]] ArmSnapshot snapshot() const;
 
   /// What `exchange` takes over.
   struct Parts {
-    bool hand = false;         ///< spring and damper of the person; the mass is the arm's
+    bool hand = false;         ///< spring and damper of the operator; the mass is the arm's
     bool wall = false;         ///< how hard it is; it stays where it is
     bool controllers = false;  ///< of both sites
     bool operator==(const Parts&) const = default;
   };
-  /// Goes on with these parts of `made`, a pair of the same arms and clock that has not been stepped; `made` gets the
+  /// Continues with these parts of `made`, a pair of the same arms and clock that has not been stepped; `made` gets the
   /// own ones. Arms stay where they are. Controllers are first brought to rest at this very instant
   /// (`Site::exchange_controller`): as long as 1000 ticks of the sites. Between ticks; does not allocate.
   void exchange(ArmPair& made, const Parts& parts) noexcept;
@@ -127,8 +127,9 @@ class ArmPair {
 
  private:
   ArmPair(const ArmPairSetup& setup, const arm::Chain& leader_chain, arm_plants::ArmDevice leader,
-          arm_plants::ArmDevice follower, const std::optional<arm::Chain>& other_follower, arm_plants::Person person,
-          station::JointBarePair sites, double wall_m, const mechanics::Environment& contact);
+          arm_plants::ArmDevice follower, const std::optional<arm::Chain>& other_follower,
+          arm_plants::ToolOperator person, station::JointBarePair sites, double wall_m,
+          const mechanics::Environment& contact);
   /// Where the leader leads the follower's tool, along the axes of its base, by its joints.
   [[nodiscard]] arm::Vector3 led_to_m(const arm::JointVector& leader) const;
   [[nodiscard]] double apart_m(const arm_plants::ToolState& leader, const arm_plants::ToolState& follower) const;
@@ -138,10 +139,10 @@ class ArmPair {
   double step_s_;
   arm_plants::ArmDevice leader_;
   arm_plants::ArmDevice follower_;
-  arm_plants::Person person_;
+  arm_plants::ToolOperator person_;
   station::JointBarePair sites_;
   station::JointBarePair::Output latest_;
-  arm::Chain leader_chain_;  ///< to tell what joints do at the tool
+  arm::Chain leader_chain_;  ///< maps joints to the tool
   arm::Vector3 leader_tool_m_;
   std::int64_t tick_ = 0;
   arm::Vector3 outward_;

@@ -8,13 +8,13 @@ namespace tactus::experiments {
 
 namespace {
 
-constexpr double patience_s = 2.0;  ///< after the reach, for a follower that has not touched
-constexpr double farthest_m = 0.3;  ///< from where it began, for a follower's tool that has not run away
+constexpr double no_touch_timeout_s = 2.0;  ///< after the reach, for a follower that has not touched
+constexpr double farthest_m = 0.3;          ///< from where it began, for a follower's tool that has not run away
 
 }  // namespace
 
 Result<ArmTapRun> ArmTapRun::make(const ArmPairSetup& setup, const ArmTap& tap) {
-  auto pair = ArmPair::make(setup, tap.beliefs, tap.wall_m);
+  auto pair = ArmPair::make(setup, tap.model_params, tap.wall_m);
   if (!pair) return pair.error();
   return ArmTapRun(setup, tap, *std::move(pair));
 }
@@ -23,7 +23,7 @@ ArmTapRun::ArmTapRun(const ArmPairSetup& setup, const ArmTap& tap, ArmPair pair)
     : setup_(&setup),
       tap_(&tap),
       pair_(std::move(pair)),
-      last_(ticks_in(tap.path.start_time_s + tap.path.duration_s + patience_s, pair_.tick_s())) {
+      last_(ticks_in(tap.path.start_time_s + tap.path.duration_s + no_touch_timeout_s, pair_.tick_s())) {
   // So that a tick does not allocate: a touch comes before `last_`, and the observation after it.
   trace_.records.reserve(last_ + ticks_in(setup.params.task.observation_s, pair_.tick_s()));
 }
@@ -42,7 +42,7 @@ void ArmTapRun::step_arms() {
     last_ = k + ticks_in(setup_->params.task.observation_s, dt_s);
   }
   if (touched_ && k == first_touch_ + ticks_in(pressing_after_s, dt_s)) {
-    trace_.pressing = {record.contact_N, pair_.sight()};
+    trace_.pressing = {record.contact_N, pair_.snapshot()};
   }
   diverged_ = !pair_.healthy() || !(std::fabs(record.leader_m) * setup_->tool_scale < farthest_m) ||
               !(std::fabs(record.follower_m) < farthest_m);

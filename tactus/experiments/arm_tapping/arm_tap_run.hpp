@@ -7,7 +7,7 @@
 
 namespace tactus::experiments {
 
-/// One tap through two simulated arms while it goes on: who steps it has the clock. Each tick, the sites, then the
+/// One tap through two simulated arms while it continues: who steps it has the clock. Each tick, the sites, then the
 /// arms, until it is `over`.
 class ArmTapRun {
  public:
@@ -16,8 +16,8 @@ class ArmTapRun {
 
   /// The sites' part of a tick. Real-time safe.
   void step_sites(const station::Tick& tick) noexcept { pair_.step_sites(tick); }
-  /// Person and arms, until the next tick; for each tick that the sites missed as well. Not once it is over. Real-time
-  /// safe.
+  /// Operator and arms, until the next tick; for each tick that the sites missed as well. Not once it is over.
+  /// Real-time safe.
   void step_arms();
 
   /// A while after the first touch; where nothing was touched in time; or where an arm ran away.

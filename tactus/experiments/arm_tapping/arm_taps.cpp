@@ -33,7 +33,7 @@ double drawn(double value, double error, signal::Random& random) {
 }
 
 void draw_errors(ArmTap& tap, double error, signal::Random& random) {
-  for (arm::JointParams& joint : tap.beliefs.induced.chain.joints) {
+  for (arm::JointParams& joint : tap.model_params.induced.chain.joints) {
     const double mass = drawn(1.0, error, random);
     arm::Body& body = joint.body;
     for (double arm::Body::*part :
@@ -45,14 +45,14 @@ void draw_errors(ArmTap& tap, double error, signal::Random& random) {
     joint.friction.coulomb_N_m = drawn(joint.friction.coulomb_N_m, error, random);
     joint.friction.viscous_N_m_s_per_rad = drawn(joint.friction.viscous_N_m_s_per_rad, error, random);
   }
-  auto& of_leader = tap.beliefs.induced.joint_stiffness_N_m_per_rad;
-  auto& of_follower = tap.beliefs.follower_joint_stiffness_N_m_per_rad;
+  auto& of_leader = tap.model_params.induced.joint_stiffness_N_m_per_rad;
+  auto& of_follower = tap.model_params.follower_joint_stiffness_N_m_per_rad;
   for (Eigen::Index i = 0; i < std::max(of_leader.size(), of_follower.size()); ++i) {
     const double share = drawn(1.0, error, random);
     if (i < of_leader.size()) of_leader[i] *= share;
     if (i < of_follower.size()) of_follower[i] *= share;
   }
-  arm::HandImpedance& hand = tap.beliefs.hand;
+  arm::HandImpedance& hand = tap.model_params.hand;
   hand.mass_kg = drawn(hand.mass_kg, error, random);
   hand.stiffness_N_per_m = drawn(hand.stiffness_N_per_m, error, random);
   hand.damping_N_s_per_m = drawn(hand.damping_N_s_per_m, error, random);
@@ -114,12 +114,12 @@ Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const Urdfs& urdfs
                         .start_time_s = rest_s,
                         .duration_s = mechanics::MinimumJerk::duration_for(2.0 * depth_m, speed_m_per_s)},
                .wall_m = -depth_m,
-               .beliefs = taps.setup_.exact};
+               .model_params = taps.setup_.exact};
     draw_errors(tap, task.model_error, draw);
     taps.taps_.push_back(std::move(tap));
   }
   const ArmTap& first = taps.taps_.front();
-  if (const auto made = ArmPair::make(taps.setup_, first.beliefs, first.wall_m); !made) return made.error();
+  if (const auto made = ArmPair::make(taps.setup_, first.model_params, first.wall_m); !made) return made.error();
   return taps;
 }
 
@@ -155,7 +155,7 @@ ArmReach ArmTaps::reach() const {
   constexpr double far_below_m = -10.0;
   const mechanics::MinimumJerk reach{.start_m = 0.0, .end_m = 0.2, .start_time_s = rest_s, .duration_s = 0.75};
   const ArmTap& tap = taps_.front();
-  ArmPair pair = *ArmPair::make(setup_, tap.beliefs, far_below_m);
+  ArmPair pair = *ArmPair::make(setup_, tap.model_params, far_below_m);
   ArmReach found;
   std::vector<double> forces_N, false_forces_N;
   for (std::size_t k = 0; k < ticks_in(rest_s + reach.duration_s, pair.tick_s()); ++k) {
@@ -165,9 +165,9 @@ ArmReach ArmTaps::reach() const {
     found.lag_m = std::max(found.lag_m, record.tools_apart_m);
     if (now_s < rest_s) continue;
     forces_N.push_back(record.hand_N);
-    const ArmSight sight = pair.sight();
-    false_forces_N.push_back(sight.told_N.norm());
-    found.drift_m = std::max(found.drift_m, sight.induced_m.norm());
+    const ArmSnapshot snapshot = pair.snapshot();
+    false_forces_N.push_back(snapshot.sent_N.norm());
+    found.drift_m = std::max(found.drift_m, snapshot.induced_m.norm());
   }
   found.effort_N = signal::root_mean_square(forces_N);
   found.false_force_N = signal::root_mean_square(false_forces_N);

@@ -11,18 +11,18 @@
 
 namespace tactus::experiments {
 
-/// One tap: how the person goes about it, and what the controller believes.
+/// One tap: what the operator does, and the model that the controller has.
 struct ArmTap {
   mechanics::MinimumJerk path;  ///< of the follower's tool, outward from where it began
   double wall_m = 0.0;
-  ArmBeliefs beliefs;
+  ArmModelParams model_params;
 };
 
 /// A tap as it went.
 struct ArmTrace {
   struct Contact {
     double force_N = 0.0;  ///< of the wall
-    ArmSight sight;
+    ArmSnapshot snapshot;
   };
   std::vector<ArmRecord> records;   ///< of each tick
   std::optional<Contact> pressing;  ///< `pressing_after_s` after the first touch; none where it did not come to that
@@ -51,21 +51,21 @@ struct ArmTapResult {
   [[nodiscard]] bool settled() const { return contact.touched && !contact.rings && !ran_away && !diverged; }
 };
 
-/// Judges it beside the same tap at gain 0.
+/// Compares it with the same tap at gain 0.
 ArmTapResult judge_arm_tap(const ArmContact& contact, bool diverged, const ArmContact& without_display);
 
 /// A reach of 200 mm outward in 0.75 s, of the follower's tool, that meets nothing.
 struct ArmReach {
   double lag_m = 0.0;          ///< farthest of the follower's tool from where the leader leads it
   double effort_N = 0.0;       ///< of the hand's spring and damper along the reach, RMS
-  double false_force_N = 0.0;  ///< what the follower tells, as a force at the leader's tool (`ArmSight`), RMS
+  double false_force_N = 0.0;  ///< what the follower sends, as a force at the leader's tool (`ArmSnapshot`), RMS
   double drift_m = 0.0;        ///< farthest that cancellation moves the command from where the leader is
 };
 
 /// The ensemble of one combination.
 class ArmTaps {
  public:
-  /// Errors: those of `set_up_arm_pair`; `inconsistent` for ranges that are none; what a pair refuses.
+  /// Errors: those of `set_up_arm_pair`; `inconsistent` for empty ranges; what a pair refuses.
   static Result<ArmTaps> make(const ArmTappingParams& params, const std::filesystem::path& folder);
   static Result<ArmTaps> make(const ArmTappingParams& params, const Urdfs& urdfs);
 

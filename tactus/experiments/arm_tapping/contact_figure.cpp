@@ -79,14 +79,14 @@ report::Panel panel_of(std::string title, std::vector<Line> lines) {
 
 report::Figure contact_figure(const ArmPairSetup& setup, const ArmTrace::Contact& contact,
                               const std::string& settings) {
-  const ArmSight& sight = contact.sight;
+  const ArmSnapshot& snapshot = contact.snapshot;
   const double contact_N = contact.force_N;
-  const double displayed_N = sight.displayed_N.norm();
+  const double displayed_N = snapshot.displayed_N.norm();
   const double most_N = std::max({contact_N, displayed_N, std::numeric_limits<double>::min()});
 
-  const SideView view = side_view(setup, sight.follower_m);
-  const auto leader = links_of(setup.leader, sight.leader_rad, sight.leader_m);
-  const auto follower = links_of(setup.follower, sight.follower_rad, sight.follower_m);
+  const SideView view = side_view(setup, snapshot.follower_m);
+  const auto leader = links_of(setup.leader, snapshot.leader_rad, snapshot.leader_m);
+  const auto follower = links_of(setup.follower, snapshot.follower_rad, snapshot.follower_m);
   const auto force = [&](const std::string& name, double newtons, const std::vector<Vector3>& arm,
                          const Vector3& along) {
     const double length = longest_arrow_share * reach_of(arm) / most_N;
@@ -94,28 +94,29 @@ report::Figure contact_figure(const ArmPairSetup& setup, const ArmTrace::Contact
   };
   const Vector3 level = std::fabs(setup.outward.z()) > 0.5 ? view.across : Vector3(Vector3::UnitZ());
   const double half_m = 0.5 * longest_arrow_share * reach_of(follower);
-  const Line surface =
-      line_of(view, "surface", {sight.follower_m - half_m * level, sight.follower_m + half_m * level}, of_surface, 3.0);
-  const double induced_m = sight.induced_m.norm();
+  const Line surface = line_of(
+      view, "surface", {snapshot.follower_m - half_m * level, snapshot.follower_m + half_m * level}, of_surface, 3.0);
+  const double induced_m = snapshot.induced_m.norm();
   const double magnified =
       induced_m > 0.0 ? std::pow(10.0, std::floor(std::log10(longest_arrow_share * reach_of(leader) / induced_m)))
                       : 1.0;
   Line induced = arrow(
       view, "induced motion × " + report::number(magnified, 1) + ", " + report::number(1e3 * induced_m, 2) + " mm",
-      sight.leader_m, magnified * sight.induced_m, of_induced);
-  return {.title = "Both arms on the surface",
-          .caption =
-              "From the side, " + report::number(1e3 * pressing_after_s, 2) +
-              " ms after the first touch of the first tap: the surface pushes the follower's tool, the motors of the "
-              "leader display that at the hand, and move it. Forces are drawn to one scale. " +
-              settings,
-          .columns = 2,
-          .panels = {panel_of("Leader, in the hand",
-                              {line_of(view, "leader", leader, of_leader, 4.0),
-                               force("displayed force", displayed_N, leader, sight.displayed_N), std::move(induced)}),
-                     panel_of("Follower, on the surface",
-                              {surface, line_of(view, "follower", follower, of_follower, 4.0),
-                               force("contact force", contact_N, follower, contact_N * setup.outward)})}};
+      snapshot.leader_m, magnified * snapshot.induced_m, of_induced);
+  return {
+      .title = "Both arms on the surface",
+      .caption =
+          "From the side, " + report::number(1e3 * pressing_after_s, 2) +
+          " ms after the first touch of the first tap: the surface pushes the follower's tool, the motors of the "
+          "leader display that at the hand, and move it. Forces are drawn to one scale. " +
+          settings,
+      .columns = 2,
+      .panels = {panel_of("Leader, in the hand",
+                          {line_of(view, "leader", leader, of_leader, 4.0),
+                           force("displayed force", displayed_N, leader, snapshot.displayed_N), std::move(induced)}),
+                 panel_of("Follower, on the surface",
+                          {surface, line_of(view, "follower", follower, of_follower, 4.0),
+                           force("contact force", contact_N, follower, contact_N * setup.outward)})}};
 }
 
 }  // namespace tactus::experiments

@@ -60,9 +60,9 @@ Check check_start(const DescribedArm& of, const std::string& key) {
     if (start_rad >= limits.lower_rad && start_rad <= limits.upper_rad) continue;
     return Error{.code = ErrorCode::out_of_bounds,
                  .parameter = key,
-                 .message = "joint '" + of.joints[i] + "' starts at " + format_number(start_rad) +
-                            ", outside its range from " + format_number(limits.lower_rad) + " to " +
-                            format_number(limits.upper_rad) + " in " + of.urdf + ": set start_rad of joint_" +
+                 .message = "joint '" + of.joints[i] + "' starts at " + rounded_number(start_rad) +
+                            ", outside its range from " + rounded_number(limits.lower_rad) + " to " +
+                            rounded_number(limits.upper_rad) + " in " + of.urdf + ": set start_rad of joint_" +
                             std::to_string(i + 1) + " within it",
                  .place = {}};
   }
@@ -116,13 +116,13 @@ Result<DescribedPair> describe_pair(const ArmPairParams& params, arm_control::Co
   if (!differs(params)) {
     if (configuration::to_toml(params.follower) != configuration::to_toml(ArmParams{})) {
       return inconsistent("arm.follower.urdf",
-                          "none, so the follower is like the leader, and yet something is said of it: name its "
-                          "URDF here and say all of it below arm.follower, or nothing");
+                          "empty, so the follower is like the leader, and yet it has keys: name its "
+                          "URDF here and describe all of it below arm.follower, or nothing");
     }
     if (coupling == arm_control::Coupling::tool) {
       return inconsistent("arm.follower.urdf",
                           "none, and control.follower.coupling is tool: name the URDF of the arm whose tool the leader "
-                          "leads, such as arms/openarm-class.urdf, and say all of it below arm.follower");
+                          "leads, such as arms/openarm-class.urdf, and describe all of it below arm.follower");
     }
     return DescribedPair{.leader = *leader, .follower = *leader};
   }

@@ -2,7 +2,7 @@
 
 #include <tactus/arm_control/arm_follower.hpp>
 #include <tactus/arm_control/arm_leader.hpp>
-#include <tactus/arm_plants/person.hpp>
+#include <tactus/arm_plants/tool_operator.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/supervision.hpp>
 #include <tactus/core/parameters.hpp>
@@ -34,11 +34,11 @@ struct ArmJoint {
                 field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
                       "Stiffness of an elastic joint over joint_stiffness_N_m_per_rad of its arm."),
                 field("position_step_rad", &J::position_step_rad, u::radian, between(0.0, 0.1),
-                      "Step in which the drive tells position; 0 is exact."),
+                      "Step of the position that the drive reports; 0: exact."),
                 field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
-                      "Step in which it tells velocity."),
+                      "Step of the velocity that it reports."),
                 field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
-                      "Step in which it tells torque.")};
+                      "Step of the torque that it reports.")};
   }
 };
 
@@ -62,16 +62,16 @@ struct ArmParams {
   arm_control::EachJoint<ArmJoint> joints;
   static constexpr auto fields() {
     using A = ArmParams;
-    return List{
-        field("urdf", &A::urdf,
-              "URDF of the arm, z up; its path counts from the experiment's file. Effort limits bound "
-              "the motors, damping and friction rub at them."),
-        field("tool", &A::tool, "The point that the person holds, or that touches."),
-        field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
-              between(0.0, 1e6), "Of the transmission between motor and link; 0 is rigid."),
-        field("joint_damping_N_m_s_per_rad", &A::joint_damping_N_m_s_per_rad,
-              arm::units::newton_metre_second_per_radian, between(0.0, 100.0), "Damping beside that stiffness."),
-        field("joints", &A::joints, "What the URDF does not say of each joint.")};
+    return List{field("urdf", &A::urdf,
+                      "URDF of the arm, z up; its path counts from the experiment's file. Effort limits bound "
+                      "the motors, damping and friction rub at them."),
+                field("tool", &A::tool, "The point that the operator holds, or that touches."),
+                field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
+                      between(0.0, 1e6), "Of the transmission between motor and link; 0 is rigid."),
+                field("joint_damping_N_m_s_per_rad", &A::joint_damping_N_m_s_per_rad,
+                      arm::units::newton_metre_second_per_radian, between(0.0, 100.0),
+                      "Damping in parallel with that stiffness."),
+                field("joints", &A::joints, "What the URDF does not state of each joint.")};
   }
 };
 
@@ -83,10 +83,10 @@ struct ArmPairParams : ArmParams {
   static constexpr auto fields() {
     return joined(ArmParams::fields(),
                   List{field("follower", &ArmPairParams::follower,
-                             "The follower where it is another arm than the leader: then all of it stands here. "
+                             "The follower, if it differs from the leader: then all of it is described here. "
                              "Without a urdf here it is like the leader. Joint i of the leader, counted from the base, "
                              "commands joint i of the follower, angle for angle, unless control.follower.coupling "
-                             "says tool.")});
+                             "is tool.")});
   }
 };
 
@@ -103,9 +103,9 @@ struct ArmClockParams {
   double plant_step_s = 1e-4;
   static constexpr auto fields() {
     return List{field("rate_Hz", &ArmClockParams::rate_Hz, units::hertz, between(100.0, 10000.0),
-                      "Ticks per second; a command acts from the next tick on."),
+                      "Control cycles per second; a command acts from the next control cycle on."),
                 field("plant_step_s", &ArmClockParams::plant_step_s, units::second, between(1e-6, 5e-4),
-                      "Step of the simulated arms, rounded so that a tick is a whole number of them.")};
+                      "Step of the simulated arms, rounded so that a control cycle is a whole number of them.")};
   }
 };
 
@@ -197,7 +197,7 @@ struct ArmRigParams {
     using P = ArmRigParams;
     return List{
         field("leader_gate", &P::leader_gate,
-              "The safety gate of each of the leader's joints; what the rig file allows a joint holds beside it."),
+              "The safety gate of each of the leader's joints; the limits of the rig file apply as well."),
         field("follower_gate", &P::follower_gate, "The same of the follower's."),
         field("supervision", &P::supervision, "What the sites make of one another and of their own state."),
         field("support", &P::support, "How gravity compensation comes in on arming, and how it is judged."),
@@ -211,9 +211,10 @@ struct ArmRigParams {
 struct ArmHarmBounds : HarmBounds {
   double sank_m = 0.025;
   static constexpr auto fields() {
-    return joined(HarmBounds::fields(),
-                  List{field("sank_m", &ArmHarmBounds::sank_m, units::metre, positive,
-                             "How far a tool that nobody holds may sink while its site promises to carry the arm.")});
+    return joined(
+        HarmBounds::fields(),
+        List{field("sank_m", &ArmHarmBounds::sank_m, units::metre, positive,
+                   "How far a tool that nobody holds may sink while its site promises gravity compensation.")});
   }
 };
 
@@ -271,16 +272,16 @@ struct ArmTappingTask {
               "Where both arms begin: 0 at start_rad of each joint, and others drawn within 0.6 rad of it by this "
               "number, "
               "no nearer to a singular pose than three quarters of it."),
-        field("direction", &T::direction, "Where the surface lies that the person goes to."),
+        field("direction", &T::direction, "Direction of the surface to which the operator moves."),
         field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
               "Slowest approach: intended speed at the surface."),
         field("fastest_m_per_s", &T::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
               "Fastest approach."),
         field("shallowest_m", &T::shallowest_m, units::metre, between(1e-4, 0.1),
-              "Smallest depth: how far beyond the surface the person means to go."),
+              "Smallest depth: how far beyond the surface the operator aims."),
         field("deepest_m", &T::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
         field("observation_s", &T::observation_s, units::second, between(0.25, 10.0),
-              "How long a tap is observed from first touch, while the person keeps pressing."),
+              "How long a tap is observed from first touch, while the operator keeps pressing."),
         field(
             "model_error", &T::model_error, units::none, between(0.0, 0.5),
             "Every tap draws the errors of the model of induced motion (mass and inertia of each link, armature and "
@@ -291,7 +292,7 @@ struct ArmTappingTask {
 struct ArmTappingParams {
   ArmTappingTask task;
   ArmPairParams arm;
-  arm_plants::Person::Params person;
+  arm_plants::ToolOperator::Params person;
   ArmControlParams control;
   ArmWallParams wall;
   ArmClockParams servo;
@@ -299,18 +300,18 @@ struct ArmTappingParams {
   ArmFaultsParams faults;
   static constexpr auto fields() {
     using P = ArmTappingParams;
-    return List{
-        field("task", &P::task, "The taps."),
-        field("arm", &P::arm, "The leader; and the follower, which is like it unless arm.follower says otherwise."),
-        field("operator", &P::person, "The person who holds the leader's tool."),
-        field("control", &P::control, "The sites of both arms."),
-        field("wall", &P::wall, "What the follower's tool meets."),
-        field("servo", &P::servo, "The clocks."),
-        field("rig", &P::rig,
-              "With --device and tactus faults alone: what stands between the sites and the motors of a rig. Where a "
-              "key says N, m "
-              "or m/s, N m, rad or rad/s are meant."),
-        field("faults", &P::faults, "With tactus faults alone: how often each is tried, and what it may do.")};
+    return List{field("task", &P::task, "The taps."),
+                field("arm", &P::arm, "The leader; and the follower, which is like it unless arm.follower differs."),
+                field("operator", &P::person, "The operator who holds the leader's tool."),
+                field("control", &P::control, "The sites of both arms."),
+                field("wall", &P::wall, "What the follower's tool meets."),
+                field("servo", &P::servo, "The clocks."),
+                field("rig", &P::rig,
+                      "With --device and tactus faults only: gates and supervision between the sites and the motors of "
+                      "a rig. If a "
+                      "key has N, m "
+                      "or m/s, N m, rad or rad/s are meant."),
+                field("faults", &P::faults, "With tactus faults alone: how often each is tried, and what it may do.")};
   }
 };
 

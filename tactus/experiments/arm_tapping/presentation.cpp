@@ -116,7 +116,8 @@ report::Page arm_page(const Request& request, const std::string& verdict, const 
   report::Page page(request.name + ": " + std::string(arm_tapping_title));
   page.paragraph(verdict);
   page.paragraph(
-      "A person holds the leader's tool, goes to a stiff surface, and presses; the follower's tool meets it. Each row "
+      "An operator holds the leader's tool, moves to a stiff surface, and presses; the follower's tool meets it. Each "
+      "row "
       "is an ensemble of taps that differ in speed, depth and errors of the controller's model. Simulated.");
   page.table(table);
   page.definitions(
@@ -133,7 +134,7 @@ report::Page arm_page(const Request& request, const std::string& verdict, const 
         "the "
         "leader leads it."},
        {"effort", "Force of the hand's spring and damper along that reach, RMS."},
-       {"false force", "What the follower tells of a force in it, though there is none, at the leader's tool, RMS."},
+       {"false force", "Force that the follower sends in it although nothing is touched, at the leader's tool, RMS."},
        {"drift", "Farthest in it of the command from where the leader is, by cancellation."}});
   for (const report::Figure& figure : figures) page.figure(figure);
   return page;

@@ -2,7 +2,7 @@
 #include <tactus/control/protective_limits.hpp>
 #include <tactus/control/support_law.hpp>
 #include <tactus/experiments/arm_tapping/supervised_arms.hpp>
-#include <tactus/station/wall.hpp>
+#include <tactus/station/make_device_guard.hpp>
 
 #include <algorithm>
 #include <string>

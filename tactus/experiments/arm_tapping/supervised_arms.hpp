@@ -9,7 +9,7 @@
 /// The sites of two arms as they run before motors: gates and supervision of `[rig]` around the controllers.
 namespace tactus::experiments {
 
-/// How a joint that the arm does not have is driven, as `[rig.gripper]` says.
+/// How a joint that the arm does not have is driven, as `[rig.gripper]` states.
 arm_control::DriveGains beside_the_arm(const ArmPairSetup& setup, bool leads);
 
 /// The gates of a site's joints: those of the file, within what each joint of its device allows.
@@ -25,7 +25,7 @@ struct ArmSiteStart {
 };
 
 /// One site before a device of these limits, joint by joint, those of the arm first: its gates are within them, and so
-/// is the torque that the site believes to have. Errors: those of the controller, under `control`; of gates and
+/// is the torque that the site assumes to have. Errors: those of the controller, under `control`; of gates and
 /// supervision, under `rig`; `inconsistent` for gates that nobody chose, naming their keys, and for a method that is
 /// tried in virtual time alone.
 Result<control::JointSupervisedMaster> arm_leader_site(const ArmPairSetup& setup,

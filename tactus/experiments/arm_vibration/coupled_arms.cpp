@@ -179,7 +179,7 @@ Result<CoupledArmsSetup> set_up_coupled_arms(const ArmVibrationParams& params, c
 
 Result<CoupledArmsResult> run_coupled_arms(const CoupledArmsSetup& setup) {
   const ArmVibrationParams& p = setup.params;
-  const bool held = p.task.held_by == HeldBy::person;
+  const bool held = p.task.held_by == HeldBy::hand;
   const auto law = ReleasedLaw::make(p.control, setup.believed);
   if (!law) return under("control", law.error());
   ArmPlant::Params leader_arm = setup.arm;
@@ -191,7 +191,7 @@ Result<CoupledArmsResult> run_coupled_arms(const CoupledArmsSetup& setup) {
   if (!follower) return follower.error();
   const signal::Random random = signal::Random(static_cast<std::uint64_t>(p.task.seed)).fork(4);
   LoopClock exchange(p.host, p.host.exchange_phase, random);
-  auto person = arm_plants::Person::make(p.person, Seconds{record_s}, leader->arm.plant().tool());
+  auto person = arm_plants::ToolOperator::make(p.person, Seconds{record_s}, leader->arm.plant().tool());
   if (!person) return under("operator", person.error());
   const Vector3 began_m = leader->arm.plant().tool().position_m;
   const mechanics::MinimumJerk reach{
@@ -256,7 +256,7 @@ Result<CoupledArmsTheory> theory_of(const CoupledArmsSetup& setup) {
   const arm::JointMatrix none = arm::JointMatrix::Zero(joints, joints);
   const arm_control::CoupledArm free{.inertia = chain->mass_matrix(setup.start), .damping = none, .stiffness = none};
   arm_control::CoupledArm leader = free;
-  if (setup.params.task.held_by == HeldBy::person) {
+  if (setup.params.task.held_by == HeldBy::hand) {
     const arm::HandImpedance& hand = setup.params.person.hand;
     const arm::Jacobian tool = chain->jacobian(setup.start, joints - 1, setup.arm.tool_m);
     const arm::JointMatrix moving = tool.topRows<3>().transpose() * tool.topRows<3>();

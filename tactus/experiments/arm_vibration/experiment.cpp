@@ -159,7 +159,7 @@ report::Figure vibration_figure(const ArmVibrationRun& run) {
 std::string recording_of(const ArmVibrationRun& run) {
   std::string text =
       "# Made by tactus' simulator (arm-vibration), not measured: one joint of two arms that are coupled by position.\n"
-      "# Torques are the motors' less what carries the arm; nothing touches the follower.\n"
+      "# Torques are the motors' without gravity compensation; nothing touches the follower.\n"
       "time_s,leader_position_rad,follower_position_rad,displayed_torque_N_m,tip_torque_N_m,slave_torque_N_m,"
       "leader_velocity_rad_per_s,follower_velocity_rad_per_s\n";
   for (std::size_t k = 0; k < run.found.records.size(); ++k) {
@@ -179,7 +179,7 @@ report::Page vibration_page(const Request& request, const std::string& verdict, 
   report::Page page(request.name + ": " + std::string(arm_vibration_title));
   page.paragraph(verdict);
   page.paragraph(
-      "Drives pull each of two arms to the other's position, as a host with three loops tells them. The leader is "
+      "Drives pull each of two arms to the other's position, as a host with three loops commands them. The leader is "
       "moved "
       "or pushed once; a second of that motion and the last second are judged. Simulated.");
   page.table(table);

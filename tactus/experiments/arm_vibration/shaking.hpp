@@ -12,8 +12,8 @@ struct Shaking {
   double amplitude_rad = 0.0;  ///< half of what it moves from end to end
 };
 
-/// From what a drive tells at a fixed rate, 400 Hz or more, over half a second or more; as many of each. Not real-time
-/// safe.
+/// From what a drive reports at a fixed rate, 400 Hz or more, over half a second or more; as many of each. Not
+/// real-time safe.
 Shaking shaking_of(std::span<const double> position_rad, std::span<const double> velocity_rad_per_s, double rate_Hz);
 
 /// `Shaking::rms_rad_per_s` of the same alone, without the search for the frequency. Not real-time safe.

@@ -33,12 +33,12 @@ std::optional<double> hand_error(const TappingParams& params,
 }
 
 /// Between what the slave told and the contact force at its sample, from first touch on.
-double told_force_error(const std::vector<simulation::Teleoperator::Record>& trace, double first_touch_s) {
+double sent_force_error(const std::vector<simulation::Teleoperator::Record>& trace, double first_touch_s) {
   double squares = 0.0;
   std::size_t counted = 0;
   for (std::size_t i = 1; i < trace.size(); ++i) {
     if (trace[i].time_s < first_touch_s) continue;
-    const double error_N = trace[i].told_force_N - trace[i - 1].contact_force_N;
+    const double error_N = trace[i].sent_force_N - trace[i - 1].contact_force_N;
     squares += error_N * error_N;
     ++counted;
   }
@@ -51,8 +51,8 @@ Check check(const GainSearch& search) {
   if (search.lowest_gain < search.highest_gain) return {};
   return Error{.code = ErrorCode::inconsistent,
                .parameter = "task.highest_gain",
-               .message = format_number(search.highest_gain) + " is not above lowest_gain, " +
-                          format_number(search.lowest_gain) + ": raise one or lower the other",
+               .message = rounded_number(search.highest_gain) + " is not above lowest_gain, " +
+                          rounded_number(search.lowest_gain) + ": raise one or lower the other",
                .place = {}};
 }
 
@@ -105,27 +105,27 @@ GainScore score_taps(const TappingParams& params) {
   const auto ensemble = TappingEnsemble::make(params);
   std::vector<TapResult> taps;
   std::vector<double> errors;
-  std::vector<double> told_errors_N;
+  std::vector<double> sent_errors_N;
   for (std::size_t tap = 0; tap < ensemble->size(); ++tap) {
     std::vector<simulation::Teleoperator::Record> trace;
     taps.push_back(ensemble->run(tap, &trace));
     if (!taps.back().touched) continue;
     if (const auto error = hand_error(params, trace, taps.back().first_touch_s)) errors.push_back(*error);
-    told_errors_N.push_back(told_force_error(trace, taps.back().first_touch_s));
+    sent_errors_N.push_back(sent_force_error(trace, taps.back().first_touch_s));
   }
   GainScore score{.force_gain = params.control.force_gain,
                   .force_limit_N = params.control.force_limit_N,
                   .metrics = summarise(taps),
                   .spectral_error = {},
-                  .told_force_error_N = {}};
+                  .sent_force_error_N = {}};
   if (!errors.empty()) score.spectral_error = simulation::quantile(errors, 0.5);
-  if (!told_errors_N.empty()) score.told_force_error_N = simulation::quantile(told_errors_N, 0.5);
+  if (!sent_errors_N.empty()) score.sent_force_error_N = simulation::quantile(sent_errors_N, 0.5);
   return score;
 }
 
 FreeSpaceScore score_free_space(const simulation::Teleoperator::Params& params) {
   constexpr double rest_s = 0.05;
-  constexpr double patience_s = 0.5;
+  constexpr double touch_timeout_s = 0.5;
   const double end_m = params.environment.position_m / params.control.position_scale - reach_m;
   const mechanics::MinimumJerk path{
       .start_m = end_m - reach_m, .end_m = end_m, .start_time_s = rest_s, .duration_s = reach_s};
@@ -138,7 +138,7 @@ FreeSpaceScore score_free_space(const simulation::Teleoperator::Params& params) 
   std::size_t counted = 0;
   std::optional<double> master_half_way_s;
   std::optional<double> slave_half_way_s;
-  for (double time_s = 0.0; time_s < rest_s + reach_s + patience_s + round_trip_s(params); time_s += tick_s) {
+  for (double time_s = 0.0; time_s < rest_s + reach_s + touch_timeout_s + round_trip_s(params); time_s += tick_s) {
     const auto record = teleoperator->step(path.position_m(time_s), path.position_m(time_s + tick_s));
     if (time_s >= rest_s && time_s <= rest_s + reach_s) {
       squares += record.hand_force_N * record.hand_force_N;

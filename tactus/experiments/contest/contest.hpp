@@ -79,7 +79,7 @@ struct GainScore {
   std::optional<double> spectral_error;
   /// Median over the taps that touched of the RMS difference between the force that the slave told and the contact
   /// force of the tick before, from first touch to the end of the observation. None where no tap touched.
-  std::optional<double> told_force_error_N;
+  std::optional<double> sent_force_error_N;
 };
 
 /// A reach of 60 mm in 0.5 s that meets nothing, at force gain 1.

@@ -54,10 +54,10 @@ report::Page page_of(const Request& request, const std::string& verdict, const r
         "median within 100 ms plus two round trips. ≥: the search ended there. <: not even its lowest gain settled."},
        {"at … N", "The same with a display that saturates later."},
        {"at … ms", "The same with this delay each way."},
-       {"grip × …", "The same with a hand that holds so much firmer or lighter than the model believes."},
+       {"grip × …", "The same with a hand that holds so much firmer or lighter than the model assumes."},
        {"hand error",
         "Spectral error, 20 Hz to 1 kHz, between what the hand should feel (contact force times gain, saturated) and "
-        "the force on the hand, median over the taps. Where the taps do not settle it says nothing."},
+        "the force on the hand, median over the taps. If the taps do not settle, it has no meaning."},
        {"effort", "Force of the hand over a reach of 60 mm in 0.5 s that meets nothing, at force gain 1."},
        {"lag", "How much later than the master's motor the slave's tip is half-way on that reach."}});
   page.table(settings_table());

@@ -122,7 +122,7 @@ report::Figure contest_figure(const std::vector<MethodScore>& scores, const Cont
     return 1.3 * longest;
   };
   report::Figure figure{.title = "How much force gain each method allows, and what it costs",
-                        .caption = "A good method has long bars on the left and short ones beside them.",
+                        .caption = "A good method has long bars on the left and short ones next to them.",
                         .columns = 4,
                         .panels = {},
                         .share_y = report::Sharing::in_line};

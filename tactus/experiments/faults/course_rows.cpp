@@ -1,8 +1,8 @@
 #include <tactus/experiments/faults/duty.hpp>
+#include <tactus/experiments/faults/fault_operator.hpp>
 #include <tactus/experiments/faults/faulty_configuration.hpp>
 #include <tactus/experiments/faults/internal/families.hpp>
 #include <tactus/experiments/faults/pairs.hpp>
-#include <tactus/experiments/faults/person.hpp>
 
 namespace tactus::experiments::fault_families {
 
@@ -86,23 +86,23 @@ std::vector<FaultRow> course_rows() {
   return {
       {FaultKind::overload,
        "overload",
-       "ticks missed",
+       "control cycles missed",
        "a share of 5 to 90 %, at random, for 1.5 s",
        "hold above the share, soon",
        broken_duty,
-       {"the share of missed ticks", loose_overload}},
+       {"the share of missed control cycles", loose_overload}},
       {FaultKind::stop_and_go,
        "stop-and-go",
        "stop and go",
        "stalls of 4 to 19 ms, again and again for 1.5 s",
-       "hold, as for missed ticks",
+       "hold, as for missed control cycles",
        broken_duty,
-       {"the share of missed ticks", loose_overload}},
+       {"the share of missed control cycles", loose_overload}},
       {FaultKind::suspend,
        "suspend",
        "suspended",
        "the process, or the machine and its clock, for 1 s to the longest cut",
-       "the other site holds within the time-out, the drive lets go",
+       "the other site holds within the timeout, the drive releases its force",
        broken_duty,
        {"watchdogs, and the drive's own", loose_watchdogs}},
       {FaultKind::rate_drift,
@@ -141,7 +141,7 @@ std::vector<FaultRow> course_rows() {
        "the same packet under fresh numbers, for 0.3 to 2 s",
        "hold within the time-out",
        broken_duty,
-       {"what a packet says beside its number", unasked}},
+       {"the contents of a packet", unasked}},
       {FaultKind::peer_wrong,
        "peer-wrong",
        "the other site is wrong",
@@ -159,7 +159,7 @@ std::vector<FaultRow> course_rows() {
       {FaultKind::dead_man_stuck,
        "dead-man-stuck",
        "dead-man stuck",
-       "pressed from the start; or in use, and the person has gone",
+       "pressed from the start; or in use, after the operator has left",
        "arms nothing; within the limits",
        dead_man_stuck,
        {"the switch does not stick", unasked}},
@@ -187,8 +187,8 @@ std::vector<FaultRow> course_rows() {
       {FaultKind::stale_commands,
        "stale-commands",
        "old commands",
-       "a live controller's drive is told the same for 1.5 s",
-       "the drive lets go of it",
+       "a live controller's drive receives the same command for 1.5 s",
+       "the drive releases its force",
        stale_commands,
        {"the drive's time-out", unasked},
        holds_firmly},
@@ -241,7 +241,7 @@ void draw_course(FaultPlan& plan, signal::Random& random, double) {
       break;
     case FaultKind::stale_commands:
       plan.site = FaultSite::master;
-      plan.start_s = FaultPerson(plan, 0.0, false).deepest_after_s(plan.start_s);
+      plan.start_s = FaultOperator(plan, 0.0, false).deepest_after_s(plan.start_s);
       plan.length_s = 1.5;
       plan.size = drive_timeout_s;
       break;

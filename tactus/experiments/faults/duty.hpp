@@ -7,8 +7,8 @@
 #include <limits>
 #include <string_view>
 
-/// What the sites owe to a person when something fails, besides the bounds on harm: that they see it and stop, and by
-/// when. One duty for each fault, whether it comes alone, beside another one or while arming.
+/// What the sites owe to an operator when something fails, besides the bounds on harm: that they see it and stop, and
+/// by when. One duty for each fault, whether it comes alone, alongside another one or while arming.
 namespace tactus::experiments {
 
 struct FaultDuty {

@@ -39,7 +39,7 @@ Outcome present_faults(const Request& request, const FaultsParams& params, const
     return FaultsShown{
         .kind = "faults",
         .subject =
-            "Two supervised sites, a person who taps a stiff wall, and one fault in each run, drawn by its seed. A "
+            "Two supervised sites, an operator who taps a stiff wall, and one fault in each run, drawn by its seed. A "
             "witness outside of the sites reads what reaches the motors and what was sent when.",
         .seeds = of.task.seeds,
         .rate_Hz = of.servo.rate_Hz,

@@ -22,7 +22,7 @@ Check refuse_variations(const Request& request);
 struct LostInRealTime {
   FaultRow row;
   FaultFailure failure;
-  std::int64_t missed_ticks = 0;       ///< while it ran, and those beside it
+  std::int64_t missed_ticks = 0;       ///< while it ran, and those alongside it
   std::int64_t longest_gap_ticks = 0;  ///< most of them in a row
   std::int64_t late_ours = 0;          ///< late ticks that our own step made so, not the machine
   bool survives_on_time = false;

@@ -8,7 +8,7 @@
 
 namespace tactus::experiments {
 
-/// What a site is made with: what the run says, or something else at the site of a plan that says so.
+/// What a site is made with: what the run states, or something else at the site of a plan that states it.
 struct FaultyConfiguration {
   control::ControlParams control;
   Seconds tick;

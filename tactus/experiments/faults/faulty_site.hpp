@@ -9,7 +9,7 @@
 
 namespace tactus::experiments {
 
-/// One site of a run with faults: the plant that it drives, the process that it runs in, and what stands between them
+/// One site of a run with faults: the plant that it drives, the process that it runs in, and what is between them
 /// and the site, where faults have their place. To the site it is its device.
 template <class PlantOfSite, class SupervisedSite>
 struct FaultySite {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <tactus/experiments/faults/fault_operator.hpp>
 #include <tactus/experiments/faults/injection.hpp>
-#include <tactus/experiments/faults/person.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/simulation/site_plants.hpp>
 
@@ -10,14 +10,14 @@
 
 namespace tactus::experiments {
 
-/// What holds the master's handle from tick to tick, as the faults have it: the person's hand, nobody, or a clamp.
+/// What holds the master's handle from tick to tick, as the faults have it: the operator's hand, nobody, or a clamp.
 class FaultHandle {
  public:
   explicit FaultHandle(const mechanics::LinearSpring::Params& grip) : grip_(grip) {}
 
   /// Holds the handle of `plant` as it is held at this tick, and leads it for `tick_s`. Once a tick, after what the
   /// plant is commanded and before its substeps.
-  void lead(simulation::MasterPlant& plant, const FaultPerson& person, const std::vector<FaultInjection>& injections,
+  void lead(simulation::MasterPlant& plant, const FaultOperator& person, const std::vector<FaultInjection>& injections,
             double tick_s) {
     const double now_s = injections.front().moment().now_s;
     hold(plant, person, injections, now_s);
@@ -31,12 +31,12 @@ class FaultHandle {
   }
 
  private:
-  using Hand = FaultyPerson::Hand;
+  using Hand = FaultyOperator::Hand;
   /// What a clamp holds a handle with.
   static constexpr mechanics::LinearSpring::Params clamp{.stiffness_N_per_m = 20000.0, .damping_N_s_per_m = 50.0};
 
-  /// Lets go of the handle, clamps it or takes it again.
-  void hold(simulation::MasterPlant& plant, const FaultPerson& person, const std::vector<FaultInjection>& injections,
+  /// releases the handle, clamps it or takes it again.
+  void hold(simulation::MasterPlant& plant, const FaultOperator& person, const std::vector<FaultInjection>& injections,
             double now_s) {
     Hand hand = Hand::holds;
     for (const FaultInjection& injection : injections) {
@@ -47,7 +47,7 @@ class FaultHandle {
     const double handle_m = plant.mechanism().tip_position_m();
     clamped_at_m_ = handle_m;
     if (hand == Hand::holds) {
-      returns_ = FaultyPerson::returns_from(handle_m - person.path_m(now_s), now_s);
+      returns_ = FaultyOperator::returns_from(handle_m - person.path_m(now_s), now_s);
       plant.take_again(grip_);
     } else {
       plant.hold(hand == Hand::lets_go ? mechanics::nobody_holds : clamp);

@@ -4,7 +4,7 @@
 
 namespace tactus::experiments {
 
-/// What a person at the handle, and whoever is at the tool, may be exposed to by a fault: the largest that a run
+/// What an operator at the handle, and whoever is at the tool, may be exposed to by a fault: the largest that a run
 /// survives with.
 struct HarmBounds {
   double given_J = 0.25;
@@ -20,7 +20,7 @@ struct HarmBounds {
         field("speed_m_per_s", &HarmBounds::speed_m_per_s, units::metre_per_second, positive,
               "Speed that handle and tool may reach."),
         field("strayed_m", &HarmBounds::strayed_m, units::metre, positive,
-              "How far they may go beyond the ends of the way on which the person leads them."),
+              "How far they may go beyond the ends of the path on which the operator leads them."),
         field("hand_force_N", &HarmBounds::hand_force_N, units::newton, positive, "Force between hand and handle."),
         field("tool_force_N", &HarmBounds::tool_force_N, units::newton, positive,
               "Force between the tool and what it touches."),

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/experiments/faults/faulty_person.hpp>
+#include <tactus/experiments/faults/faulty_operator.hpp>
 #include <tactus/experiments/faults/plan.hpp>
 #include <tactus/experiments/faults/schedule.hpp>
 #include <tactus/simulation/bad_number.hpp>
@@ -45,7 +45,7 @@ class FaultInjection {
 
   Site master, slave;
   simulation::FaultyForceSensor force_sensor;
-  FaultyPerson person;
+  FaultyOperator person;
 
   [[nodiscard]] Site& at(FaultSite site) noexcept { return site == FaultSite::master ? master : slave; }
   [[nodiscard]] simulation::FaultSpan& span() noexcept { return span_; }
@@ -70,15 +70,15 @@ class FaultInjection {
     }
     return plan_.kind == FaultKind::delay_creeping ? moment_.since_s / plan_.length_s : 1.0;
   }
-  /// How wrong `site` is about the age of what comes. Clocks cannot tell a way that takes longer than the other from an
-  /// offset between them; once the offset from before is forgotten, half of the difference is taken for one.
+  /// How wrong `site` is about the age of what comes. Clocks cannot determine a way that takes longer than the other
+  /// from an offset between them; once the offset from before is forgotten, half of the difference is taken for one.
   [[nodiscard]] double age_error_s(FaultSite site) const noexcept {
     const bool errs =
         plan_.kind == FaultKind::delay_asymmetric && moment_.during && moment_.since_s > slows_down_s + clock_memory_s;
     return errs ? (plan_.site == site ? -0.5 : 0.5) * plan_.impairment.delay_s : 0.0;
   }
-  /// Whether a site takes what the other tells of its agreement as its own would be: for a control, what compares them
-  /// is gone.
+  /// Whether a site takes what the other reports of its agreement as its own would be: for a control, what compares
+  /// them is gone.
   [[nodiscard]] bool hides_disagreement() const noexcept {
     const bool told = plan_.kind == FaultKind::configurations_differ || plan_.kind == FaultKind::peer_repeats;
     return told && plan_.size != 0.0;

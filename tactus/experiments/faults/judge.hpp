@@ -26,7 +26,7 @@ class FaultJudge {
   /// Once a tick; the fault ends at `end_s`.
   void see(const SiteView& master, const SiteView& slave, const FaultMoment& moment, double end_s,
            FaultOutcome& outcome);
-  /// Whether the person must clear and arm after the fault.
+  /// Whether the operator must clear and arm after the fault.
   [[nodiscard]] bool rearms() const { return rearms_; }
 
  private:

@@ -8,7 +8,7 @@
 /// What came of a run with a fault.
 namespace tactus::experiments {
 
-/// What a fault did at one site to whoever holds the handle or stands at the tool, from its first tick until the person
+/// What a fault did at one site to whoever holds the handle or is at the tool, from its first tick until the operator
 /// clears it. Truths, whatever the sensors say.
 struct SiteHarm {
   double given_J = 0.0;
@@ -19,40 +19,42 @@ struct SiteHarm {
   double pressing_N = 0.0;
   double drive_step_N = 0.0;
   static constexpr auto signals() {
-    return List{observed("given_J", &SiteHarm::given_J, units::joule, "", "", "the motor gave it",
-                         "Largest rise of the energy that the motor gave."),
-                observed("speed_m_per_s", &SiteHarm::speed_m_per_s, units::metre_per_second, "", "", "",
-                         "Fastest of the handle or the tool."),
-                observed("strayed_m", &SiteHarm::strayed_m, units::metre, "", "", "",
-                         "Farthest of it beyond the ends of the way on which the person leads it."),
-                observed("peak_force_N", &SiteHarm::peak_force_N, units::newton, "", "", "",
-                         "Largest between the hand and the handle, or the tool and the wall."),
-                observed("release_s", &SiteHarm::release_s, units::second, "", "", "",
-                         "From the moment when no site was active until the motor gave no force for good."),
-                observed("pressing_N", &SiteHarm::pressing_N, units::newton, "", "", "",
-                         "Largest of it that lasts: low-passed over 0.1 s."),
-                observed("drive_step_N", &SiteHarm::drive_step_N, units::newton, "", "", "",
-                         "Largest change in a tick of what the motor really gives, but for the fault's first.")};
+    return List{
+        observed("given_J", &SiteHarm::given_J, units::joule, "", "", "the motor gave it",
+                 "Largest rise of the energy that the motor gave."),
+        observed("speed_m_per_s", &SiteHarm::speed_m_per_s, units::metre_per_second, "", "", "",
+                 "Fastest of the handle or the tool."),
+        observed("strayed_m", &SiteHarm::strayed_m, units::metre, "", "", "",
+                 "Farthest of it beyond the ends of the path on which the operator leads it."),
+        observed("peak_force_N", &SiteHarm::peak_force_N, units::newton, "", "", "",
+                 "Largest between the hand and the handle, or the tool and the wall."),
+        observed("release_s", &SiteHarm::release_s, units::second, "", "", "",
+                 "From the moment when no site was active until the motor gave no force for good."),
+        observed("pressing_N", &SiteHarm::pressing_N, units::newton, "", "", "",
+                 "Largest of it that lasts: low-passed over 0.1 s."),
+        observed("drive_step_N", &SiteHarm::drive_step_N, units::newton, "", "", "",
+                 "Largest change in a control cycle of what the motor really gives, except for the fault's first.")};
   }
 };
 
-/// What a fault did to two arms besides: truths of both, from its first tick until the person clears it.
+/// What a fault did to two arms besides: truths of both, from its first tick until the operator clears it.
 struct ArmHarm {
   double fastest_joint_share = 0.0;
   double sank_m = 0.0;
   double fell_m = 0.0;
   static constexpr auto signals() {
-    return List{observed("fastest_joint_share", &ArmHarm::fastest_joint_share, units::none, "", "", "",
-                         "Fastest joint of an arm that has power, over the velocity limit of its gate."),
-                observed("sank_m", &ArmHarm::sank_m, units::metre, "", "", "down",
-                         "How far a tool that nobody holds sank while its site promised to carry the arm and did not "
-                         "follow."),
-                observed("fell_m", &ArmHarm::fell_m, units::metre, "", "", "down",
-                         "How far a tool went down once its drives had no power.")};
+    return List{
+        observed("fastest_joint_share", &ArmHarm::fastest_joint_share, units::none, "", "", "",
+                 "Fastest joint of an arm that has power, over the velocity limit of its gate."),
+        observed("sank_m", &ArmHarm::sank_m, units::metre, "", "", "down",
+                 "How far a tool that nobody holds sank while its site promised gravity compensation and did not "
+                 "follow."),
+        observed("fell_m", &ArmHarm::fell_m, units::metre, "", "", "down",
+                 "How far a tool went down once its drives had no power.")};
   }
 };
 
-/// What a witness saw that stands outside of both sites: it reads what reaches the motors, and remembers when each
+/// What a witness saw that is outside of both sites: it reads what reaches the motors, and remembers when each
 /// packet was sent. It shares no code with what it judges.
 struct FaultOutcome {
   std::int64_t not_finite = 0;             ///< forces at a motor that were no numbers

@@ -57,7 +57,7 @@ report::Table harm_table(const std::vector<FaultTally>& tallies, const std::stri
                        {"on the hand", "N"},
                        {"at the tool", "N"},
                        {"release", "ms"}},
-                      "What a fault did until the person cleared it, at most (" + time + " time)");
+                      "What a fault did until the operator cleared it, at most (" + time + " time)");
   for (const FaultTally& tally : tallies) {
     const SiteHarm &master = tally.worst.master, &slave = tally.worst.slave;
     table.add_row({std::string(tally.row.name), report::number(master.given_J, 3), report::number(slave.given_J, 3),
@@ -74,7 +74,7 @@ report::Table arms_table(const std::vector<FaultTally>& tallies, const std::stri
   using Align = report::Column::Align;
   report::Table table(
       {{"fault", "", Align::left}, {"fastest joint", "% of its limit"}, {"sank", "mm"}, {"fell without power", "mm"}},
-      "What became of the arms until the person cleared it, at most (" + time + " time)");
+      "What became of the arms until the operator cleared it, at most (" + time + " time)");
   for (const FaultTally& tally : tallies) {
     const ArmHarm& arms = *tally.worst.arms;
     table.add_row({std::string(tally.row.name), report::number(100.0 * arms.fastest_joint_share, 3),
@@ -144,7 +144,7 @@ std::string summary(const FaultsShown& shown, const std::vector<FaultTally>& tal
     text += failures_text(tally);
   }
   return "Survived " + of(survived, tried) +
-         " runs. Rate limit a tick: " + report::number(shown.rate_limit_N_per_s / shown.rate_Hz, 3) + " " +
+         " runs. Rate limit per control cycle: " + report::number(shown.rate_limit_N_per_s / shown.rate_Hz, 3) + " " +
          shown.motors_give + "." + clean_text(tallies, time) + "\n" + text;
 }
 
@@ -162,8 +162,9 @@ std::string control_summary(const std::vector<FaultTally>& controls) {
 
 /// The runs that were lost at the real clock, and what lost them.
 report::Table lost_table(const std::vector<LostInRealTime>& lost, double rate_Hz) {
-  report::Table table({{"fault"}, {"number"}, {"rule"}, {"ticks missed"}, {"in a row", "ms"}, {"with none missed"}},
-                      "Not survived in real time");
+  report::Table table(
+      {{"fault"}, {"number"}, {"rule"}, {"control cycles missed"}, {"in a row", "ms"}, {"with none missed"}},
+      "Not survived in real time");
   for (const LostInRealTime& run : lost) {
     table.add_row({std::string(run.row.name), std::to_string(run.failure.number), std::string(run.failure.rule),
                    std::to_string(run.missed_ticks),
@@ -178,7 +179,7 @@ std::string lost_text(const std::vector<LostInRealTime>& lost) {
   if (lost.empty()) return {};
   const auto explained =
       std::count_if(lost.begin(), lost.end(), [](const LostInRealTime& run) { return run.survives_on_time; });
-  return "Lost by missed ticks alone: " + of(explained, static_cast<std::int64_t>(lost.size())) +
+  return "Lost by missed control cycles alone: " + of(explained, static_cast<std::int64_t>(lost.size())) +
          ". With none missed such a run survives.\n";
 }
 

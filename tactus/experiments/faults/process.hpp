@@ -18,7 +18,7 @@ class FaultProcessOf {
   explicit FaultProcessOf(FaultSite site) : site_(site) { waiting_.reserve(4096); }
 
   /// One tick of the faults; `missed` where the machine itself steps no site. Returns whether the process must be
-  /// started anew, under the next session.
+  /// started again, under the next session.
   template <class Injection>
   bool fare(std::vector<Injection>& injections, bool missed) noexcept {
     using Beat = simulation::FaultyClock::Beat;

@@ -40,7 +40,7 @@ std::vector<FaultRow> fault_rows(std::string_view only = {});
 
 /// Of the rules that hold for every run, in words, the one that was broken: no bound on harm among them.
 std::string_view broken_rule_of_all(const FaultOutcome& outcome);
-/// The bound on harm that was broken, in words; what may go on for `release_s` after both sites stopped.
+/// The bound on harm that was broken, in words; what may continue for `release_s` after both sites stopped.
 std::string_view broken_bound(const FaultOutcome& outcome, const HarmBounds& bounds, double release_s);
 /// Of a run in which nothing goes wrong.
 std::string_view tripped_on_clean_data(const FaultOutcome& outcome);

@@ -1,11 +1,11 @@
 #include <tactus/control/supervised_site.hpp>
+#include <tactus/experiments/faults/fault_operator.hpp>
 #include <tactus/experiments/faults/faulty_configuration.hpp>
 #include <tactus/experiments/faults/faulty_site.hpp>
 #include <tactus/experiments/faults/handle.hpp>
 #include <tactus/experiments/faults/injection.hpp>
 #include <tactus/experiments/faults/judge.hpp>
 #include <tactus/experiments/faults/pairs.hpp>
-#include <tactus/experiments/faults/person.hpp>
 #include <tactus/experiments/faults/run.hpp>
 #include <tactus/simulation/site_plants.hpp>
 #include <tactus/station/step.hpp>
@@ -38,7 +38,7 @@ class FaultRun::Run {
   using Master = FaultySite<simulation::MasterPlant, control::SupervisedMaster>;
   using Slave = FaultySite<simulation::SlavePlant, control::SupervisedSlave>;
 
-  Run(const simulation::Teleoperator::Params& params, const FaultPlan& plan, const FaultPerson& person,
+  Run(const simulation::Teleoperator::Params& params, const FaultPlan& plan, const FaultOperator& person,
       const simulation::Clock& clock, Master master, Slave slave)
       : params_(params),
         plan_(plan),
@@ -113,7 +113,7 @@ class FaultRun::Run {
   void spoil(station::DeviceReading& reading, FaultSite site);
   double drive(double told_N, bool enabled, FaultSite site);
   template <class Here, class There>
-  struct Way;
+  struct Transport;
   template <class Here, class There>
   void step_site(Here& here, There& there);
   void advance();
@@ -125,7 +125,7 @@ class FaultRun::Run {
   simulation::Clock clock_;
   double tick_s_;
   std::vector<FaultInjection> injections_;  ///< all that goes wrong; the first counts for the judge
-  FaultPerson person_;
+  FaultOperator person_;
   FaultHandle handle_;
   Master master_;
   Slave slave_;
@@ -159,8 +159,8 @@ Result<FaultRun::Run> FaultRun::Run::make(const simulation::Teleoperator::Params
   const auto clock = simulation::Clock::make(params.servo, params.plant);
   if (!clock) return clock.error();
   const Seconds tick{clock->tick_s};
-  const FaultPerson person(plan, params.environment.position_m / params.control.position_scale,
-                           params.control.supervision.probe.force_N > 0.0);
+  const FaultOperator person(plan, params.environment.position_m / params.control.position_scale,
+                             params.control.supervision.probe.force_N > 0.0);
   const double start_m = person.path_m(0.0);
   auto master = simulation::MasterPlant::make(params.master, params.person, *clock, start_m);
   if (!master) return master.error();
@@ -196,7 +196,7 @@ Result<FaultRun::Run> FaultRun::Run::make(const simulation::Teleoperator::Params
 }
 
 control::SiteRequests FaultRun::Run::requests(FaultSite site) const {
-  control::SiteRequests pressed = FaultPerson::presses(moment().now_s, end_s(), judge_.rearms());
+  control::SiteRequests pressed = FaultOperator::presses(moment().now_s, end_s(), judge_.rearms());
   for (const FaultInjection& injection : injections_) {
     pressed = injection.person.presses(pressed, site, injection.moment());
   }
@@ -228,7 +228,7 @@ double FaultRun::Run::drive(double told_N, bool enabled, FaultSite site) {
 
 /// The way of a site: what waits for its process, and whatever the network and a faulty site make of what it says.
 template <class Here, class There>
-struct FaultRun::Run::Way {
+struct FaultRun::Run::Transport {
   Run& run;
   Here& here;
   There& there;
@@ -265,9 +265,9 @@ void FaultRun::Run::step_site(Here& here, There& there) {
   if (here.process.killed()) here.forces = {};
   here.process.collect(here.inbox, tick_, injections_);
   if (!here.process.stands_still()) {
-    Way<Here, There> way{*this, here, there};
+    Transport<Here, There> transport{*this, here, there};
     const station::Tick tick{.number = tick_, .missed = here.process.elapsed_ticks() - 1};
-    const auto done = station::step(here.site, here, way, tick, requests(here.where));
+    const auto done = station::step(here.site, here, transport, tick, requests(here.where));
     there.sent.applied(done.output.record, tick_, outcome_);
   }
   here.forces.drive_N = drive(here.forces.motor_N, here.forces.enabled, here.where);

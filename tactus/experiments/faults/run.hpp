@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <memory>
 
-/// Two supervised sites in virtual time, a person who taps the wall, and one fault.
+/// Two supervised sites in virtual time, an operator who taps the wall, and one fault.
 namespace tactus::experiments {
 
 /// One plan, tick by tick, in virtual or in real time.
@@ -19,8 +19,8 @@ class FaultRun {
   FaultRun& operator=(FaultRun&&) noexcept;
   ~FaultRun();
 
-  /// One tick; false once there is none left. Before it the machine missed so many: devices, person and packets went on
-  /// and neither site was stepped. Real-time safe.
+  /// One tick; false once there is none left. Before it the machine missed so many: devices, operator and packets
+  /// continued and neither site was stepped. Real-time safe.
   bool step(std::int64_t missed = 0) noexcept;
   [[nodiscard]] const FaultOutcome& outcome() const;
 

@@ -5,7 +5,7 @@
 /// What happens when in a run of `FaultRun`, in s: of the run, or after the end of the fault.
 namespace tactus::experiments::fault_schedule {
 
-/// When the person at the sites presses what, before the fault.
+/// When the operator at the sites presses what, before the fault.
 inline constexpr double align_s = 0.05, arm_s = 0.10, press_s = 0.15, button_s = 0.01;
 /// Until when who waits for the motors to be tried keeps the hand still.
 inline constexpr double still_until_s = 0.5;

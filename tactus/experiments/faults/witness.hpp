@@ -66,7 +66,7 @@ class PacketWitness {
     if (sent_tick <= newest_ || tick - sent_tick > longest_ticks_) ++outcome.stale_applied;
     newest_ = std::max(newest_, sent_tick);
   }
-  /// The receiver starts anew, and with it what it may apply.
+  /// The receiver restarts, and with it what it may apply.
   void restart() { newest_ = -1; }
 
  private:
@@ -142,10 +142,10 @@ class Lasting {
   double value_ = 0.0;
 };
 
-/// Measures what a fault does to the person and to what the slave touches, from its first tick on.
+/// Measures what a fault does to the operator and to what the slave touches, from its first tick on.
 class HarmWitness {
  public:
-  /// `range_m` is how far to either side of `middle_m` the person leads the tip, `released_N` a force that is none.
+  /// `range_m` is how far to either side of `middle_m` the operator leads the tip, `released_N` a force that is none.
   HarmWitness(double middle_m, double range_m, double released_N, double tick_s)
       : middle_m_(middle_m), range_m_(range_m), released_N_(released_N), pressing_(0.1, tick_s) {}
 
@@ -165,7 +165,7 @@ class HarmWitness {
 
  private:
   /// A force against the motion, as that of the damper which a passivity monitor leaves on: it takes energy from who
-  /// moves the device, and ends with the motion. What only presses stands still and is none, what pushes goes along.
+  /// moves the device, and ends with the motion. What only presses is at rest and is none, what pushes goes along.
   static bool brakes(const SiteTruth& truth) {
     return std::fabs(truth.motor_m_per_s) > at_rest_m_per_s && truth.drive_N * truth.motor_m_per_s < 0.0;
   }

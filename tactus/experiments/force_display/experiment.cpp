@@ -130,9 +130,9 @@ report::Page page_of(const Request& request, const std::string& verdict, const s
   report::Page page(request.name + ": " + std::string(force_display_title));
   page.paragraph(verdict);
   page.paragraph(
-      "While a person moves the handle at constant speed, a force is played that knows nothing of the motion. The "
+      "While an operator moves the handle at constant speed, a force is played that knows nothing of the motion. The "
       "motion "
-      "that it induces at the motor is known exactly here, from the same run without the force. The table says how "
+      "that it induces at the motor is known exactly here, from the same run without the force. The table shows how "
       "much "
       "of it is left in the estimate of the intended motion, measured position less the model's, above 20 Hz.");
   page.table(table);

@@ -86,7 +86,7 @@ struct ForceDisplayControl {
   control::MasterModel model;
   static constexpr auto fields() {
     return List{field("cancellation_model", &ForceDisplayControl::cancellation_model,
-                      "How much of master and hand the model tells apart."),
+                      "How much of master and hand the model distinguishes."),
                 field("cancellation_step", &ForceDisplayControl::cancellation_step, "How the model is advanced."),
                 field("model", &ForceDisplayControl::model, "The controller's model of master and hand.")};
   }
@@ -102,7 +102,7 @@ struct ForceDisplayParams {
   ForceDisplayTask task;
   static constexpr auto fields() {
     return List{field("master", &ForceDisplayParams::master, "The master device."),
-                field("operator", &ForceDisplayParams::person, "The person at the master."),
+                field("operator", &ForceDisplayParams::person, "The operator at the master."),
                 field("servo", &ForceDisplayParams::servo, "The servo clock."),
                 field("plant", &ForceDisplayParams::plant, "The clock of the simulated plant."),
                 field("control", &ForceDisplayParams::control, "The model under test."),

@@ -42,7 +42,7 @@ Result<std::vector<double>> load_profile(const ForceDisplayParams& params) {
   if (!signal->sample_time_s) {
     return Error{.code = ErrorCode::missing,
                  .parameter = "profile.sample_time_s",
-                 .message = "the file does not say when its samples were taken: give the time between samples",
+                 .message = "the file does not state the times of its samples: give the time between samples",
                  .place = {}};
   }
   const double recorded_s = static_cast<double>(signal->values.size()) * *signal->sample_time_s;
@@ -51,9 +51,10 @@ Result<std::vector<double>> load_profile(const ForceDisplayParams& params) {
   if (first + count > signal->values.size() || count < 2) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "profile.start_s",
-                 .message = "the piece from " + format_number(profile.start_s) + " s to " +
-                            format_number(profile.start_s + profile.duration_s) + " s is not within the recording of " +
-                            format_number(recorded_s) + " s: choose start_s and duration_s inside it",
+                 .message = "the piece from " + rounded_number(profile.start_s) + " s to " +
+                            rounded_number(profile.start_s + profile.duration_s) +
+                            " s is not within the recording of " + rounded_number(recorded_s) +
+                            " s: choose start_s and duration_s inside it",
                  .place = {}};
   }
   const auto begin = signal->values.begin() + static_cast<std::ptrdiff_t>(first);

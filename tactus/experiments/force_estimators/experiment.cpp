@@ -136,8 +136,8 @@ std::string sentence_of(const EstimatorsRun& run) {
   return "Without a sensor the " + in_contact.name + " is nearest in contact, " +
          report::number(1e3 * in_contact.contact_error_N, 3) + " mN RMS off where the sensor is " +
          report::number(1e3 * scores.front().contact_error_N, 3) + "; the " + in_free_motion.name +
-         " says least where nothing is touched, " + report::number(1e3 * in_free_motion.free_residual_N, 3) +
-         " mN RMS.";
+         " has the smallest error where nothing is touched, " +
+         report::number(1e3 * in_free_motion.free_residual_N, 3) + " mN RMS.";
 }
 
 std::string json_of(const EstimatorsRun& run) {

@@ -38,7 +38,7 @@ struct ForceEstimatorsTask {
               "Amplitude of the motion to and fro, which ends this far before the wall."),
         field("free_frequency_Hz", &Task::free_frequency_Hz, units::hertz, between(0.1, 20.0), "Its frequency."),
         field("press_depth_m", &Task::press_depth_m, units::metre, between(1e-4, 0.5),
-              "How far beyond the wall's surface the slave is told to go.")};
+              "How far beyond the wall's surface the slave is commanded to go.")};
   }
 };
 
@@ -58,12 +58,12 @@ struct ForceEstimatorsParams {
     using Params = ForceEstimatorsParams;
     return List{field("task", &Params::task, "The motion."),
                 field("slave", &Params::slave, "The slave device."),
-                field("environment", &Params::environment, "The wall before the slave."),
+                field("environment", &Params::environment, "The wall in front of the slave."),
                 field("controller", &Params::controller, "The slave's position controller."),
                 field("servo", &Params::servo, "The servo clock."),
                 field("plant", &Params::plant, "The clock of the simulated plant."),
                 field("inverse_model", &Params::inverse_model,
-                      "The inverse model; it runs without prediction and with each kind of it, whichever kind says."),
+                      "The inverse model; it runs without prediction and with each kind of it, whatever kind states."),
                 field("disturbance_observer", &Params::disturbance_observer, "The disturbance observer."),
                 field("momentum_observer", &Params::momentum_observer, "The momentum observer."),
                 field("kalman", &Params::kalman, "The Kalman filter."),

@@ -98,7 +98,7 @@ std::string sentence_of(const HydraulicChirpRun& run) {
   const auto best = std::min_element(scores.begin(), scores.end(), [](const CurrentScore& a, const CurrentScore& b) {
     return std::tuple(a.blocks == 0, a.mae_mA) < std::tuple(b.blocks == 0, b.mae_mA);
   });
-  if (plain == scores.end() || best->blocks == 0) return "No prediction was tried beside another.";
+  if (plain == scores.end() || best->blocks == 0) return "Only one prediction was tried.";
   return "In free motion the estimate is off by " + report::number(percent_of_full(run, best->mae_mA), 2) +
          " % of the full current with " + best->name + ", by " +
          report::number(percent_of_full(run, plain->mae_mA), 2) + " % with " + plain->name + ".";
@@ -138,7 +138,7 @@ Presentation HydraulicChirpExperiment::present(const Request& request, const Run
   page.paragraph(
       "A servo-hydraulic slave follows a chirp and touches nothing. An inverse model, identified on another motion, "
       "says "
-      "from the measured position which current that took; what it says amiss would be felt as force.");
+      "from the measured position which current that took; its error would be felt as force.");
   page.table(table);
   page.definitions(
       {{"error", "Mean absolute difference of the measured and the estimated current along the chirp."},

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// The valve's current in free motion along a chirp, measured and as an inverse model says it (paper B, Fig. 7).
+/// The valve's current in free motion along a chirp, measured and as an inverse model states it (paper B, Fig. 7).
 namespace tactus::experiments {
 
 /// The word that selects the experiment in a file.
@@ -43,7 +43,7 @@ struct HydraulicChirpParams : simulation::HydraulicRigParams {
   }
 };
 
-/// How well one estimator says the current. What the filters need to settle, 0.2 s, does not count.
+/// How well one estimator states the current. What the filters need to settle, 0.2 s, does not count.
 struct CurrentScore {
   std::string name;
   std::int64_t blocks = 0;

@@ -63,27 +63,29 @@ std::string why_they_differ(const RigidContactRun& run) {
   const auto both = [&](double RigidContact::*force_N) {
     return report::number(run.contacts[0].*force_N, 3) + " and " + report::number(run.contacts[1].*force_N, 3) + " N";
   };
-  return "At the end of the presses the loop feeds back " + both(&RigidContact::fed_back_N) + ", the pressures say " +
+  return "At the end of the presses the loop feeds back " + both(&RigidContact::fed_back_N) + ", the pressures give " +
          both(&RigidContact::pressure_force_N) + ", and the stop is pressed with " + both(&RigidContact::stop_force_N) +
-         ". So the pressures are right: a piston that stands lets even a small current fill its chamber to the "
+         ". So the pressures are right: a piston at rest lets even a small current fill its chamber to the "
          "supply's "
-         "pressure. The estimate takes current for force, which holds in motion alone: on the stop it says how far the "
+         "pressure. The estimate takes current for force, which holds in motion alone: on the stop it shows how far "
+         "the "
          "master is ahead, so it grows with the press where the force hardly can.";
 }
 
 report::Figure figure_of(const ContactCase& one) {
-  report::Figure figure{.title = "Two presses onto the end stop",
-                        .caption =
-                            "Above: positions of master and slave. Below: the force fed back to the master, and "
-                            "that of the filtered chamber pressures, divided alike. " +
-                            why_they_differ(one.found.back()) +
-                            " Beside Fig. 8 of Saków et al. the text gives three figures: forces a hundredth of what "
-                            "they are, at most 20 kN, and an estimate up to 200 ms before the pressures. " +
-                            settings_caption(one.settings),
-                        .columns = static_cast<int>(one.found.size()),
-                        .panels = {},
-                        .share_x = report::Sharing::in_line,
-                        .share_y = report::Sharing::in_line};
+  report::Figure figure{
+      .title = "Two presses onto the end stop",
+      .caption =
+          "Above: positions of master and slave. Below: the force fed back to the master, and "
+          "that of the filtered chamber pressures, divided alike. " +
+          why_they_differ(one.found.back()) +
+          " In addition to Fig. 8 of Saków et al. the text gives three figures: forces a hundredth of what "
+          "they are, at most 20 kN, and an estimate up to 200 ms before the pressures. " +
+          settings_caption(one.settings),
+      .columns = static_cast<int>(one.found.size()),
+      .panels = {},
+      .share_x = report::Sharing::in_line,
+      .share_y = report::Sharing::in_line};
   const report::Axis time{.label = "time", .unit = "s"};
   for (const RigidContactRun& run : one.found) {
     figure.panels.push_back({.title = run.name,
@@ -156,11 +158,12 @@ Presentation HydraulicRigidContactExperiment::present(const Request& request, co
   report::Page page(request.name + ": " + std::string(hydraulic_rigid_contact_title));
   page.paragraph(verdict);
   page.paragraph(
-      "A person drives a servo-hydraulic slave into its end stop twice. Nothing measures the contact force: an inverse "
-      "model says which valve current free motion would take, and what the current has beyond that is fed back.");
+      "An operator drives a servo-hydraulic slave into its end stop twice. Nothing measures the contact force: an "
+      "inverse "
+      "model states which valve current free motion would take, and what the current has beyond that is fed back.");
   page.table(table);
   page.definitions(
-      {{"false force", "Fed back on the way to the first touch, where there is nothing to feel."},
+      {{"false force", "Fed back before the first touch, where there is nothing to feel."},
        {"settled", "In the last 0.3 s of the press the piston stays on its stop and the master within 0.1 mm RMS."},
        {"touches", "How often the piston met the stop during the press."},
        {"estimate after, pressure after",

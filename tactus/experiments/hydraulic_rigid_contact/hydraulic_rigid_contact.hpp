@@ -30,7 +30,7 @@ struct HydraulicRigidContactTask {
     using P = HydraulicRigidContactTask;
     return List{field("kind", &P::kind, "The experiment."),
                 field("first_press_m", &P::first_press_m, units::metre, between(1e-3, 0.1),
-                      "How far beyond the end stop the person means to go the first time."),
+                      "How far beyond the end stop the operator aims the first time."),
                 field("second_press_m", &P::second_press_m, units::metre, between(1e-3, 0.1), "And the second time."),
                 field("force_division", &P::force_division, units::none, between(1.0, 1e5),
                       "Force at the slave over force at the master."),
@@ -43,7 +43,7 @@ struct HydraulicRigidContactTask {
   }
 };
 
-/// The person's arm and the master that it moves: a mass on a spring and damper to where the person means to be.
+/// The operator's arm and the master that it moves: a mass on a spring and damper to where the operator means to be.
 struct HydraulicMasterParams {
   double mass_kg = 1.0;
   mechanics::LinearSpring::Params hand{.stiffness_N_per_m = 800.0, .damping_N_s_per_m = 40.0};

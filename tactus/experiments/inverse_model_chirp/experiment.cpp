@@ -134,7 +134,7 @@ Presentation InverseModelChirpExperiment::present(const Request& request, const 
   report::Page page(request.name + ": " + std::string(inverse_model_chirp_title));
   page.paragraph(verdict);
   page.paragraph(
-      "A slave with transport delays and lags follows a path and touches nothing. An inverse model says from the "
+      "A slave with transport delays and lags follows a path and touches nothing. An inverse model computes from the "
       "measured position which command that took; the difference is fed back as force and should be zero. The fitted "
       "model has nine free coefficients and saw the chirp; the multisine is new to all.");
   page.table(table);

@@ -82,7 +82,7 @@ Check check(const InverseModelChirpParams& params) {
   if (const double margin_deg = simulation::phase_margin_deg(params.slave); !(margin_deg > 0.0)) {
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "slave.controller_gain_N_per_m",
-                 .message = "the slave's position loop is unstable, its phase margin " + format_number(margin_deg) +
+                 .message = "the slave's position loop is unstable, its phase margin " + rounded_number(margin_deg) +
                             " degrees: lower the gain or the delays, or add damping",
                  .place = {}};
   }

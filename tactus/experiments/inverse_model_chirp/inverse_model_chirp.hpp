@@ -47,7 +47,7 @@ struct InverseModelChirpParams {
     return List{field("task", &P::task, "Trajectories and sampling."),
                 field("slave", &P::slave, "The simulated slave."),
                 field("estimator", &P::estimator,
-                      "What the inverse model believes; blocks and time constant are set by the experiment.")};
+                      "Parameters of the inverse model; blocks and time constant are set by the experiment.")};
   }
 };
 

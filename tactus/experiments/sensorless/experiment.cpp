@@ -32,7 +32,7 @@ report::Page page_of(const Request& request, const report::Table& table, const r
         "Spectral error, 20 Hz to 1 kHz, between what the hand should feel (true contact force times gain, saturated) "
         "and the force on the hand, median over the taps; only where 95 % of them settle."},
        {"force error",
-        "RMS difference between the force that the slave told and the true contact force, from first touch on, median "
+        "RMS difference between the force that the slave sent and the true contact force, from first touch on, median "
         "over the taps."},
        {"false force", "Force of the master's motor over a reach of 60 mm in 0.5 s that meets nothing."},
        {"gain limit",

@@ -64,7 +64,7 @@ report::Table sensorless_table(const std::vector<SensorlessCase>& rows, const st
                    std::string(name_of(rows[i].cancellation)),
                    report::number(100.0 * score.at_gain.metrics.settled_fraction, 3),
                    in_milli(settling_time_s(score.at_gain)), percent(hand_error(score.at_gain)),
-                   in_milli(score.at_gain.told_force_error_N), in_milli(score.free_space.displayed_force_rms_N),
+                   in_milli(score.at_gain.sent_force_error_N), in_milli(score.free_space.displayed_force_rms_N),
                    gain_limit_text(score.limit, params.task.lowest_gain),
                    gain_limit_text(score.strong_display, params.task.lowest_gain)});
   }
@@ -155,7 +155,7 @@ report::Figure sensorless_figure(const std::vector<SensorlessCase>& rows, const 
   figure.panels.push_back(panel("false force in free motion", 0, {.label = "displayed force", .unit = "mN RMS"},
                                 [&](const SensorlessScore& s) { return milli(s.free_space.displayed_force_rms_N); }));
   figure.panels.push_back(panel("force error in contact", 0, {.label = "slave's force", .unit = "mN RMS"},
-                                [&](const SensorlessScore& s) { return milli(s.at_gain.told_force_error_N); }));
+                                [&](const SensorlessScore& s) { return milli(s.at_gain.sent_force_error_N); }));
   figure.panels.push_back(
       panel("error at the hand", 0, {.label = "spectral error", .unit = "%"}, [&](const SensorlessScore& score) {
         std::optional<double> error = hand_error(score.at_gain);
@@ -188,7 +188,7 @@ std::string sensorless_json(const std::string& experiment, const std::vector<Sen
     row.update(json_of_settling(score.at_gain.metrics));
     row.update({{"strong_display", strong},
                 {"spectral_error", json_of(score.at_gain.spectral_error)},
-                {"force_error_rms_N", json_of(score.at_gain.told_force_error_N)},
+                {"force_error_rms_N", json_of(score.at_gain.sent_force_error_N)},
                 {"free_space_displayed_force_rms_N", score.free_space.displayed_force_rms_N}});
     document["rows"].push_back(std::move(row));
   }

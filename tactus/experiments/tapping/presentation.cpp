@@ -94,7 +94,8 @@ report::Page tapping_page(const Request& request, const std::string& verdict, co
   report::Page page(request.name + ": " + std::string(tapping_title));
   page.paragraph(verdict);
   page.paragraph(
-      "A person reaches through the teleoperator onto a wall and presses. The force measured at the slave's tip, times "
+      "An operator reaches through the teleoperator onto a wall and presses. The force measured at the slave's tip, "
+      "times "
       "the force gain, is displayed to the hand, saturated. Each row of the table is an ensemble of taps that differ "
       "in speed, depth, tremor and model error; each picture shows one of them, the one with the median settling "
       "time.");

@@ -9,7 +9,7 @@ namespace tactus::experiments {
 namespace {
 
 /// A slave that has not met the wall this long after the reach has ended never will.
-constexpr double tap_patience_s = 0.2;
+constexpr double touch_timeout_s = 0.2;
 constexpr double workspace_m = 1.0;
 
 }  // namespace
@@ -18,7 +18,7 @@ TapObserver::TapObserver(const Tap& tap, double observation_s)
     : tick_s_(1.0 / tap.params.servo.rate_Hz),
       observation_s_(observation_s),
       slave_workspace_m_(workspace_m * tap.params.control.position_scale),
-      last_(ticks_in(tap.path.start_time_s + tap.path.duration_s + tap_patience_s, tick_s_)) {
+      last_(ticks_in(tap.path.start_time_s + tap.path.duration_s + touch_timeout_s, tick_s_)) {
   // Filled and emptied, so that every page of it is there.
   contact_force_N_.resize(last_ + ticks_in(observation_s, tick_s_));
   contact_force_N_.clear();

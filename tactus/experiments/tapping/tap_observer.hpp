@@ -10,7 +10,7 @@
 
 namespace tactus::experiments {
 
-/// One tap: the teleoperator and the path that the person intends.
+/// One tap: the teleoperator and the path that the operator intends.
 struct Tap {
   simulation::Teleoperator::Params params;
   mechanics::MinimumJerk path;

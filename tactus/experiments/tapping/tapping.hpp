@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-/// The main experiment: a person taps a stiff wall through the teleoperator (paper A, Fig. 13).
+/// The main experiment: an operator taps a stiff wall through the teleoperator (paper A, Fig. 13).
 namespace tactus::experiments {
 
 /// Taps that differ. A single tap near the boundary of stability is decided by accident, so each tap draws its approach
@@ -35,10 +35,10 @@ struct TapSeries {
         field("fastest_m_per_s", &TapSeries::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
               "Fastest approach."),
         field("shallowest_m", &TapSeries::shallowest_m, units::metre, between(1e-4, 0.1),
-              "Smallest depth: how far beyond the wall the person means to go."),
+              "Smallest depth: how far beyond the wall the operator aims."),
         field("deepest_m", &TapSeries::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
         field("observation_s", &TapSeries::observation_s, units::second, between(0.15, 10.0),
-              "How long a tap is observed from first touch, while the person keeps pressing."),
+              "How long a tap is observed from first touch, while the operator keeps pressing."),
         field("model_error", &TapSeries::model_error, units::none, between(0.0, 0.5),
               "Every tap draws the errors of the model's masses, linkage stiffness and operator damping evenly from "
               "minus to plus this share."),
@@ -57,7 +57,7 @@ struct TappingTask : TapSeries {
     return joined(List{field("kind", &TappingTask::kind, "Which experiment this is."),
                        field("supervised", &TappingTask::supervised,
                              "Sites that are armed before each tap and watched, as on a machine; false: at work from "
-                             "the first tick on, as in the papers.")},
+                             "the first control cycle on, as in the papers.")},
                   TapSeries::fields());
   }
 };
@@ -69,7 +69,7 @@ struct TappingParams : simulation::Teleoperator::Params {
   }
 };
 
-/// For what runs these sites without supervision, which `who` tells, as "the live page": refuses others.
+/// For what runs these sites without supervision, which `who` names, as "the live page": refuses others.
 Check refuse_supervised(const TappingParams& params, const std::string& who);
 
 enum class Verdict { settled, ringing, limit_cycle, diverged, stopped };

@@ -53,7 +53,7 @@ Check check_table(const telemetry::LogTable& table) {
   if (!lacking.empty()) {
     return refuse_replay(ErrorCode::missing, "topic " + table.topic + " has no " + lacking +
                                                  ": the log is of another version, and this one replays with it; "
-                                                 "replay it with the version that wrote it, or record it anew");
+                                                 "replay it with the version that wrote it, or record it again");
   }
   if (!std::ranges::equal(table.columns, expected, [](const auto& one, const auto& other) {
         return one.name == other.name && one.type == other.type;

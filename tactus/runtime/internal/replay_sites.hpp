@@ -280,7 +280,7 @@ Check replay_one(const telemetry::LogContent& content, control::SiteRole role, c
       {*tables}, content.summary.complete, false, replay,
       [&](std::int64_t, const station::Tick& tick, const Rows& logged) -> Result<Rows> {
         if (!way->go_to(tick.number, logged[0].arrivals)) {
-          return refuse_replay(ErrorCode::inconsistent, "topic /packets lacks what came at tick " +
+          return refuse_replay(ErrorCode::inconsistent, "topic /packets lacks what arrived in control cycle " +
                                                             std::to_string(tick.number) +
                                                             ": there is nothing to replay it from");
         }

@@ -18,7 +18,7 @@ TEST(DamiaoBus, EveryFaultOfTheMotorsEndsWithoutTorqueBeyondTheCommandAndIsTold)
     MotorFault expected;
     bool stays_driven;
   };
-  const std::array cases{Case{FaultKind::silence, MotorFault::silent, false},
+  const std::array cases{Case{FaultKind::silence, MotorFault::not_responding, false},
                          Case{FaultKind::over_voltage, MotorFault::voltage, false},
                          Case{FaultKind::under_voltage, MotorFault::voltage, false},
                          Case{FaultKind::over_current, MotorFault::current, false},
@@ -26,7 +26,7 @@ TEST(DamiaoBus, EveryFaultOfTheMotorsEndsWithoutTorqueBeyondTheCommandAndIsTold)
                          Case{FaultKind::hot_winding, MotorFault::hot, false},
                          Case{FaultKind::communication_lost, MotorFault::lost_master, false},
                          Case{FaultKind::overload, MotorFault::overload, false},
-                         Case{FaultKind::bus_off, MotorFault::silent, false},
+                         Case{FaultKind::bus_off, MotorFault::not_responding, false},
                          Case{FaultKind::register_answer, MotorFault::none, true},
                          Case{FaultKind::garbage, MotorFault::none, true},
                          Case{FaultKind::heartbeat, MotorFault::none, true},
@@ -104,12 +104,12 @@ TEST(DamiaoBus, SilenceShorterThanTheWatchdogOfTheMotorsIsNoFault) {
           bench.run(200 * ms);
           bench.command_all(0.1);
           bench.run(100 * ms + silent_ns - ms);
-          EXPECT_LT(bench.bus->reading(1).heard_ns, 302 * ms) << what << ": it tells how old it is";
+          EXPECT_LT(bench.bus->reading(1).received_ns, 302 * ms) << what << ": it tells how old it is";
           bench.run(30 * ms);
           for (const std::size_t each : {0U, 1U}) {
             EXPECT_EQ(bench.bus->reading(each).fault, MotorFault::none) << what;
             EXPECT_TRUE(bench.peer->motor(each).enabled()) << what;
-            EXPECT_GT(bench.bus->reading(each).heard_ns, bench.now_ns - 5 * ms) << what;
+            EXPECT_GT(bench.bus->reading(each).received_ns, bench.now_ns - 5 * ms) << what;
           }
           EXPECT_TRUE(bench.never_beyond(0.1)) << what;
         }

@@ -26,7 +26,7 @@ TEST(DamiaoBus, EveryFramingAsksTheMotorsThenReadsAndDrivesThem) {
     EXPECT_NEAR(reading.torque_Nm, 0.5, 2.0 * torque_step_Nm);
     EXPECT_NEAR(reading.position_rad, bench.peer->motor(1).position_rad(), 0.03);
     EXPECT_GT(reading.position_rad, 0.05);
-    EXPECT_LT(bench.now_ns - reading.heard_ns, 10 * ms);
+    EXPECT_LT(bench.now_ns - reading.received_ns, 10 * ms);
     EXPECT_TRUE(bench.never_beyond(0.5));
     EXPECT_EQ(bench.peer->motor(0).most_torque_Nm(), 0.0);
     bench.command_all(0.0, false);
@@ -121,7 +121,7 @@ TEST(DamiaoBus, OneSilentMotorCostsNoOtherItsData) {
         const std::int64_t before = bench.bus->reading(motor).answers;
         bench.run(300 * ms);
         fewest = std::min(fewest, bench.bus->reading(motor).answers - before);
-        oldest_ns = std::max(oldest_ns, bench.now_ns - bench.bus->reading(motor).heard_ns);
+        oldest_ns = std::max(oldest_ns, bench.now_ns - bench.bus->reading(motor).received_ns);
         EXPECT_EQ(bench.bus->reading(motor).fault, MotorFault::none);
       }
       EXPECT_LT(oldest_ns, 8 * ms);
@@ -165,7 +165,7 @@ TEST(DamiaoBus, WhereAllAreSilentEachIsAskedEvery10msSoThatNothingPilesUpInAnAda
       {.motors = 7, .framing = Framing::socketcan, .faults = {{.kind = FaultKind::silence, .from_ns = 300 * ms}}});
   Counted counted(*bench.peer);
   wire::join(*bench.bus, counted, 0, 400 * ms);
-  EXPECT_EQ(bench.bus->reading(6).fault, MotorFault::silent);
+  EXPECT_EQ(bench.bus->reading(6).fault, MotorFault::not_responding);
   const std::int64_t before = counted.packets;
   wire::join(*bench.bus, counted, 400 * ms, 500 * ms);
   EXPECT_LE(counted.packets - before, 7 * 11);
@@ -220,15 +220,15 @@ TEST(DamiaoBus, ASilentMotorIsToldAndComesBackWithoutPower) {
   EXPECT_EQ(bench.bus->reading(1).enabled, 1);
   bench.run(50 * ms);
   EXPECT_EQ(bench.bus->reading(1).fault, MotorFault::none) << "its own watchdog waits for 50 ms";
-  EXPECT_GT(bench.now_ns - bench.bus->reading(1).heard_ns, 38 * ms);
+  EXPECT_GT(bench.now_ns - bench.bus->reading(1).received_ns, 38 * ms);
   bench.run(15 * ms);
-  EXPECT_EQ(bench.bus->reading(1).fault, MotorFault::silent);
+  EXPECT_EQ(bench.bus->reading(1).fault, MotorFault::not_responding);
   EXPECT_EQ(bench.bus->reading(0).fault, MotorFault::none);
   bench.run(145 * ms);
   // It lost its master meanwhile; it answers again, and nobody asked anew for its power.
-  EXPECT_LT(bench.now_ns - bench.bus->reading(1).heard_ns, 10 * ms);
+  EXPECT_LT(bench.now_ns - bench.bus->reading(1).received_ns, 10 * ms);
   EXPECT_EQ(bench.peer->motor(1).status(), 0xd);
-  EXPECT_EQ(bench.bus->reading(1).fault, MotorFault::silent);
+  EXPECT_EQ(bench.bus->reading(1).fault, MotorFault::not_responding);
   EXPECT_EQ(bench.peer->motor(1).torque_Nm(), 0.0);
   bench.command_all(0.3, false);
   bench.run(20 * ms);

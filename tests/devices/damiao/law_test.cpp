@@ -181,8 +181,8 @@ MotorJoint turned() {
 
 station::DeviceReading told_by(const MotorJoint& joint, const MotorReading& motor) {
   return {.position_m = joint.position_rad(motor.position_rad),
-          .motor_tells = {.velocity_m_per_s = joint.velocity_rad_per_s(motor.velocity_rad_per_s),
-                          .force_N = joint.torque_Nm(motor.torque_Nm)}};
+          .motor_report = {.velocity_m_per_s = joint.velocity_rad_per_s(motor.velocity_rad_per_s),
+                           .force_N = joint.torque_Nm(motor.torque_Nm)}};
 }
 
 TEST(MotorLaw, OfAJointStandsInTheJointsSignGearAndOffset) {
@@ -197,7 +197,7 @@ TEST(MotorLaw, OfAJointStandsInTheJointsSignGearAndOffset) {
   EXPECT_NEAR(joint.position_rad(one.motor().position_rad()), 0.6 + 0.05, 0.002);
   const station::DeviceReading told = told_by(joint, one.bus->reading(0));
   EXPECT_NEAR(told.position_m, 0.65, 0.002);
-  EXPECT_NEAR(told.motor_tells.force_N, 0.0, 2.0 * 2.0 * step_Nm + 20.0 * step_rad);
+  EXPECT_NEAR(told.motor_report.force_N, 0.0, 2.0 * 2.0 * step_Nm + 20.0 * step_rad);
   EXPECT_DOUBLE_EQ(joint.torque_Nm(1.0), -2.0);
   // Whole turns that the number does not count belong to the joint.
   EXPECT_NEAR(joint.motor_law({.position_m = 1.4}, 1.0).position_rad, 0.0, 1e-12);
@@ -205,12 +205,12 @@ TEST(MotorLaw, OfAJointStandsInTheJointsSignGearAndOffset) {
 
 TEST(MotorLaw, TorqueAndLawTogetherStayWithinTheJointsLimit) {
   const MotorJoint joint = turned();
-  const station::DeviceReading at{.position_m = 0.1, .motor_tells = {.velocity_m_per_s = 0.5}};
+  const station::DeviceReading at{.position_m = 0.1, .motor_report = {.velocity_m_per_s = 0.5}};
   const control::DriveLaw law{
       .position_m = 0.6, .velocity_m_per_s = 0.0, .stiffness_N_per_m = 40.0, .damping_N_s_per_m = 2.0};
   const auto given_Nm = [&](double force_N) {
     const MotorCommand motor = joint.motor_command({.force_N = force_N, .law = law}, at, 0.0);
-    const double p = -2.0 * (at.position_m - joint.offset_rad), v = -2.0 * at.motor_tells.velocity_m_per_s;
+    const double p = -2.0 * (at.position_m - joint.offset_rad), v = -2.0 * at.motor_report.velocity_m_per_s;
     return -2.0 * (motor.torque_Nm + motor.law.stiffness_Nm_per_rad * (motor.law.position_rad - p) +
                    motor.law.damping_Nms_per_rad * (motor.law.velocity_rad_per_s - v));
   };
@@ -244,8 +244,12 @@ struct DeviceOnALink {
   std::unique_ptr<MotorBusDevice> device;
   explicit DeviceOnALink(const MotorJoint& joint) {
     for (std::size_t i = 0; i < 2; ++i) {
-      link.told.motors[i] = {
-          .position_rad = 0.2, .velocity_rad_per_s = 1.0, .torque_Nm = 0.5, .enabled = 1, .heard_ns = ms, .answers = 1};
+      link.told.motors[i] = {.position_rad = 0.2,
+                             .velocity_rad_per_s = 1.0,
+                             .torque_Nm = 0.5,
+                             .enabled = 1,
+                             .received_ns = ms,
+                             .answers = 1};
     }
     link.told.state = BusState::ready;
     link.told.time_ns = ms;
@@ -260,8 +264,8 @@ TEST(MotorLaw, ADeviceTellsItsMotorsAndStatesTheGainsThatItTakes) {
   DeviceOnALink one(turned());
   const auto told = one.device->read(DeviceOnALink::tick(0));
   EXPECT_DOUBLE_EQ(told[1].position_m, -0.1 + 0.4);
-  EXPECT_DOUBLE_EQ(told[1].motor_tells.velocity_m_per_s, -0.5);
-  EXPECT_DOUBLE_EQ(told[1].motor_tells.force_N, -1.0);
+  EXPECT_DOUBLE_EQ(told[1].motor_report.velocity_m_per_s, -0.5);
+  EXPECT_DOUBLE_EQ(told[1].motor_report.force_N, -1.0);
   EXPECT_EQ(told[1].force_N, 0.0);
   EXPECT_EQ(one.device->limits()[0].stiffness_N_per_m, 40.0);
   EXPECT_EQ(one.device->limits()[0].damping_N_s_per_m, 2.0);
@@ -292,7 +296,7 @@ TEST(MotorLaw, AJointThatMayRunNoneGetsNoneAndTheWallLetsGoOfWhoInsists) {
     guarded.write(command);
     EXPECT_FALSE(one.link.wanted.motors[0].law.acts());
   }
-  EXPECT_EQ(guarded.cause(), station::LetGo::force);
+  EXPECT_EQ(guarded.cause(), station::ReleaseCause::force);
   EXPECT_EQ(one.link.wanted.motors[0].enabled, 0);
 }
 

@@ -184,7 +184,7 @@ TEST(DamiaoBus, AMotorThatIgnoresDisableIsLeftToItsOwnWatchdogAndNeverGetsPowerA
   EXPECT_GT(frames.shortest_late_gap_ns, watchdog_ns);
   EXPECT_EQ(bench.peer->motor(1).status(), 0xd) << "its watchdog";
   EXPECT_FALSE(bench.peer->motor(0).enabled());
-  EXPECT_GT(bench.bus->reading(0).heard_ns, bench.now_ns - 5 * ms) << "the other one is spoken to all the time";
+  EXPECT_GT(bench.bus->reading(0).received_ns, bench.now_ns - 5 * ms) << "the other one is spoken to all the time";
   ASSERT_TRUE(powered(1, bench.bus->reading(1)));
   EXPECT_TRUE(powered(1, bench.bus->reading(1))->off);
   bench.command_all(0.1);
@@ -215,9 +215,9 @@ TEST(DamiaoBus, AMotorThatDoesNotSayThatItIsOffWhenItIsAskedMakesTheBusRefused) 
     bench.command_all(0.3);
     bench.run(500 * ms);
     EXPECT_EQ(bench.bus->state(), BusState::refused);
-    EXPECT_EQ(bench.problem(), "motor 2 (DM4310) was told 5 times to switch off and does not report that it is off (" +
-                                   status_text(status) +
-                                   "): switch off its supply, wait until it stands still, and switch it on again");
+    EXPECT_EQ(bench.problem(),
+              "motor 2 (DM4310) was commanded 5 times to switch off and does not report that it is off (" +
+                  status_text(status) + "): switch off its supply, wait until it is at rest, and switch it on again");
     EXPECT_EQ(bench.peer->motor(1).most_torque_Nm(), 0.0);
   }
 }

@@ -13,7 +13,7 @@ namespace tactus::devices::dynamixel::bus_test {
 TEST(DynamixelBus, ASilentServoCostsNoOtherItsDataButInOneCycle) {
   for (const bool fast : {false, true}) {
     for (std::size_t silent = 0; silent < 7; ++silent) {
-      Rig rig({.fast = fast, .fault = ServoFault::silent, .faulty = silent, .fault_from_ns = 600 * ms});
+      Rig rig({.fast = fast, .fault = ServoFault::silence, .faulty = silent, .fault_from_ns = 600 * ms});
       rig.run(300 * ms);
       rig.command_all(0.01, 1);
       rig.run(290 * ms);
@@ -31,8 +31,8 @@ TEST(DynamixelBus, ASilentServoCostsNoOtherItsDataButInOneCycle) {
         EXPECT_EQ(rig.bus.reading(i).fault, MotorFault::none);
         EXPECT_EQ(rig.bus.reading(i).enabled, 1);
       }
-      EXPECT_EQ(rig.bus.reading(silent).fault, MotorFault::silent);
-      EXPECT_LT(rig.bus.reading(silent).heard_ns, 605 * ms);
+      EXPECT_EQ(rig.bus.reading(silent).fault, MotorFault::not_responding);
+      EXPECT_LT(rig.bus.reading(silent).received_ns, 605 * ms);
       EXPECT_EQ(rig.goal(silent), 0);
     }
   }
@@ -69,7 +69,7 @@ TEST(DynamixelBus, AfterALostAnswerAThousandPlainReadsFollowAndThenFastOnesAgain
   EXPECT_GT(reads.fast, 0);
   EXPECT_EQ(reads.plain, 0);
   wire::join(rig.bus, reads, 590 * ms, 960 * ms);
-  EXPECT_GT(rig.bus.reading(2).heard_ns, 900 * ms);
+  EXPECT_GT(rig.bus.reading(2).received_ns, 900 * ms);
   EXPECT_FALSE(reads.last_was_fast);
   const std::int64_t until_it_was_back = reads.plain;
   wire::join(rig.bus, reads, 960 * ms, 4 * second);
@@ -80,13 +80,13 @@ TEST(DynamixelBus, AfterALostAnswerAThousandPlainReadsFollowAndThenFastOnesAgain
 }
 
 TEST(DynamixelBus, AServoThatIsNotThereIsNamed) {
-  Rig rig({.fault = ServoFault::silent, .faulty = 5});
+  Rig rig({.fault = ServoFault::silence, .faulty = 5});
   rig.command_all(0.05, 1);
   rig.run(500 * ms);
   EXPECT_EQ(rig.bus.state(), BusState::refused);
   EXPECT_EQ(describe(*rig.bus.problem()),
             "servo 6 does not answer at 1000000 bit/s: look at its power, its cable, its id and its bit rate");
-  EXPECT_EQ(rig.bus.reading(5).fault, MotorFault::silent);
+  EXPECT_EQ(rig.bus.reading(5).fault, MotorFault::not_responding);
   for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(rig.peer.largest_current(i), 0);
 }
 
@@ -105,7 +105,7 @@ TEST(DynamixelBus, TwoServosWithOneIdAreToldWhetherTheirAnswersMeetOrNot) {
             0U)
       << describe(*clash.bus.problem());
   // What an adapter sends back of a question is no such bytes.
-  Rig echo({.line = {.echo = 1}, .fault = ServoFault::silent});
+  Rig echo({.line = {.echo = 1}, .fault = ServoFault::silence});
   echo.run(500 * ms);
   EXPECT_EQ(describe(*echo.bus.problem()).find("servo 3 does not answer at 1000000 bit/s"), 0U);
 }
@@ -138,8 +138,8 @@ TEST(DynamixelBus, WhoWasOffGetsNoPowerByItself) {
   rig.run(300 * ms);
   rig.command_all(0.05, 1);
   rig.run(3 * second);
-  EXPECT_EQ(rig.bus.reading(2).fault, MotorFault::silent);
-  EXPECT_GT(rig.bus.reading(2).heard_ns, 3 * second);  // it answers again
+  EXPECT_EQ(rig.bus.reading(2).fault, MotorFault::not_responding);
+  EXPECT_GT(rig.bus.reading(2).received_ns, 3 * second);  // it answers again
   EXPECT_FALSE(rig.torque_on(2));
   EXPECT_EQ(rig.bus.reading(2).enabled, 0);
   // Asked anew it gets it, behind its watchdog and with the goal that is commanded, not that of its own start.
@@ -177,7 +177,7 @@ TEST(DynamixelBus, WhenNothingIsSaidTheServosLetGoAndTheBusSaysWhy) {
 
 TEST(DynamixelBus, WhateverTheLineDoesNoServoGivesMoreThanItWasAskedFor) {
   const auto most = std::lround(0.05 / torque_of_one_Nm);
-  for (const ServoFault fault : {ServoFault::none, ServoFault::silent, ServoFault::power_cycle, ServoFault::hot}) {
+  for (const ServoFault fault : {ServoFault::none, ServoFault::silence, ServoFault::power_cycle, ServoFault::hot}) {
     for (std::int64_t seed = 1; seed <= seeds(25); ++seed) {
       const LineFaults line{.corrupt = seed % 2 == 0 ? 0.01 : 0.0,
                             .garbage = seed % 3 == 0 ? 0.05 : 0.0,
@@ -191,10 +191,10 @@ TEST(DynamixelBus, WhateverTheLineDoesNoServoGivesMoreThanItWasAskedFor) {
       for (std::size_t i = 0; i < 7; ++i) {
         const bool broken = i == 2 && fault != ServoFault::none;
         EXPECT_LE(rig.peer.largest_current(i), most) << seed;
-        EXPECT_EQ(rig.bus.reading(i).enabled, broken && fault != ServoFault::silent ? 0 : 1) << seed << ' ' << i;
+        EXPECT_EQ(rig.bus.reading(i).enabled, broken && fault != ServoFault::silence ? 0 : 1) << seed << ' ' << i;
         const MotorFault expected = !broken                    ? MotorFault::none
                                     : fault == ServoFault::hot ? MotorFault::hot
-                                                               : MotorFault::silent;
+                                                               : MotorFault::not_responding;
         EXPECT_EQ(rig.bus.reading(i).fault, expected) << seed << ' ' << i;
         EXPECT_EQ(rig.goal(i), broken ? 0 : most);
       }

@@ -125,7 +125,7 @@ TEST(DynamixelBus, AnotherModelIsRefusedByItsNameBeforeAnythingHasPower) {
   EXPECT_EQ(rig.bus.state(), BusState::refused);
   ASSERT_TRUE(rig.bus.problem());
   EXPECT_EQ(describe(*rig.bus.problem()),
-            "servo 3 tells model number 1220 (XC330-T288) where XL330-M288 is stated: state the model that is there, "
+            "servo 3 reports model number 1220 (XC330-T288) where XL330-M288 is stated: state the model that is there, "
             "or change the servo");
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_FALSE(rig.torque_on(i));

@@ -156,14 +156,14 @@ TEST(FeetechBus, ItsCyclesTakeTheTimeOfTheirBytesAndHardlyMore) {
 }
 
 TEST(FeetechBus, ASilentServoCostsNoOtherItsData) {
-  Rig rig({.fault = ServoFault::silent, .fault_from_ns = 600 * ms});
+  Rig rig({.fault = ServoFault::silence, .fault_from_ns = 600 * ms});
   rig.run(300 * ms);
   rig.command_all(0.01, 1);
   rig.run(290 * ms);
   const std::int64_t cycles = rig.bus.cycles(), before = rig.bus.reading(3).answers;
   rig.run(2 * second);
   EXPECT_GE(rig.bus.reading(3).answers - before, rig.bus.cycles() - cycles - 1);
-  EXPECT_EQ(rig.bus.reading(2).fault, MotorFault::silent);
+  EXPECT_EQ(rig.bus.reading(2).fault, MotorFault::not_responding);
   EXPECT_EQ(rig.bus.reading(3).fault, MotorFault::none);
   EXPECT_EQ(rig.goal(2), 0);
 }
@@ -209,14 +209,14 @@ TEST(FeetechBus, AnotherModelIsRefusedByItsName) {
   rig.run(500 * ms);
   EXPECT_EQ(rig.bus.state(), BusState::refused);
   EXPECT_EQ(describe(*rig.bus.problem()),
-            "servo 3 tells model number 777 (STS3215) where HLS3625 is stated: state the model that is there, or "
+            "servo 3 reports model number 777 (STS3215) where HLS3625 is stated: state the model that is there, or "
             "change the servo");
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(rig.peer.largest_current(i), 0);
 }
 
 TEST(FeetechBus, WhateverTheLineDoesNoServoGivesMoreThanItWasAskedFor) {
   const auto most = std::lround(0.1 / torque_of_one_Nm);
-  for (const ServoFault fault : {ServoFault::none, ServoFault::silent, ServoFault::power_cycle, ServoFault::hot}) {
+  for (const ServoFault fault : {ServoFault::none, ServoFault::silence, ServoFault::power_cycle, ServoFault::hot}) {
     for (std::int64_t seed = 1; seed <= seeds(25); ++seed) {
       const LineFaults line{.corrupt = seed % 2 == 0 ? 0.01 : 0.0,
                             .garbage = seed % 3 == 0 ? 0.05 : 0.0,
@@ -233,7 +233,7 @@ TEST(FeetechBus, WhateverTheLineDoesNoServoGivesMoreThanItWasAskedFor) {
         EXPECT_EQ(rig.peer.stored(i, 33, 1), 2) << seed;  // also of whom was without power: it was unlocked
         const MotorFault expected = !broken                    ? MotorFault::none
                                     : fault == ServoFault::hot ? MotorFault::hot
-                                                               : MotorFault::silent;
+                                                               : MotorFault::not_responding;
         EXPECT_EQ(rig.bus.reading(i).fault, expected) << seed << ' ' << i;
         EXPECT_EQ(rig.goal(i), broken ? 0 : most) << seed << " " << i;
         EXPECT_EQ(rig.torque_on(i), !broken) << seed << ' ' << i;  // also of whom hears and does not answer

@@ -120,7 +120,7 @@ TEST(Inverse3Link, AnswersThatAreLateMakeItDegradedThenSilent) {
     auto device =
         MotorBusDevice::make(*link, {.joints = Joints<MotorJoint>(3, wide()), .late_s = 0.05, .silence_s = silence_s});
     ASSERT_TRUE(device);
-    const DeviceHealth expected = silence_s > 1.0 ? DeviceHealth::degraded : DeviceHealth::silent;
+    const DeviceHealth expected = silence_s > 1.0 ? DeviceHealth::degraded : DeviceHealth::not_responding;
     EXPECT_TRUE(tick_until(**device, no_power, [&](const auto&) { return (*device)->health() == expected; }));
   }
 }
@@ -134,11 +134,12 @@ TEST(Inverse3Link, AConnectionThatEndsIsMadeAnewAndGivesNoForceByItself) {
   ASSERT_TRUE(device);
   ASSERT_TRUE(tick_until(**device, no_power, [&](const auto&) { return (*device)->health() == DeviceHealth::good; }));
   const Joints<station::DeviceCommand> push(3, {.force_N = 0.1, .enabled = true});
-  ASSERT_TRUE(tick_until(**device, push, [&](const auto&) { return (*device)->health() == DeviceHealth::silent; }));
+  ASSERT_TRUE(
+      tick_until(**device, push, [&](const auto&) { return (*device)->health() == DeviceHealth::not_responding; }));
   const std::int64_t cycles = link->newest()->cycles;
   // It is there again, and stays silent while power is asked for.
   EXPECT_TRUE(tick_until(**device, push, [&](const auto&) { return link->newest()->cycles > cycles + 20; }));
-  EXPECT_EQ((*device)->health(), DeviceHealth::silent);
+  EXPECT_EQ((*device)->health(), DeviceHealth::not_responding);
   EXPECT_TRUE(tick_until(**device, no_power, [&](const auto&) { return (*device)->health() == DeviceHealth::good; }));
 }
 

@@ -79,7 +79,7 @@ TEST(Inverse3Messages, WhatIsWrongIsNamedAndChangesNothing) {
     EXPECT_EQ(devices.all().front().position_m, (Vector{0.01, -0.12, 0.2})) << bad;
   }
   EXPECT_EQ(describe(*devices.take(R"({"inverse3":[{"device_id":"049D","status":{"ready":1}}]})")),
-            "049D.ready: the service tells no true or false");
+            "049D.ready: the service reports no true or false");
 }
 
 TEST(Inverse3Messages, ADeviceIsOffWhereTheLatestMessageSaysSoAndNothingSaysOtherwise) {

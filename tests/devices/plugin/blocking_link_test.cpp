@@ -88,7 +88,7 @@ TEST(BlockingLink, SendsCommandsWithinTheLimitAndStampsReadings) {
   link->command(torque(-7.0));
   EXPECT_TRUE(becomes([&] { return seen->torque_Nm == -2.0; }));
   const std::int64_t before_ns = wire::monotonic_ns();
-  EXPECT_TRUE(becomes([&] { return link->newest()->motors[0].heard_ns >= before_ns; }));
+  EXPECT_TRUE(becomes([&] { return link->newest()->motors[0].received_ns >= before_ns; }));
   EXPECT_EQ(link->newest()->motors[0].position_rad, 0.25);
   EXPECT_EQ(link->sheet(0).torque_limit_Nm, 2.0);
   // What is not a number removes the torque.
@@ -173,7 +173,7 @@ TEST(BlockingLink, ADriverThatBlocksMakesTheDeviceSilent) {
   const auto device = device_on(*link);
   ASSERT_TRUE(becomes([&] { return health_of(*device) == DeviceHealth::good; }));
   seen->blocks = true;
-  EXPECT_TRUE(becomes([&] { return health_of(*device) == DeviceHealth::silent; }));
+  EXPECT_TRUE(becomes([&] { return health_of(*device) == DeviceHealth::not_responding; }));
   seen->blocks = false;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/arm_plants/person.hpp>
+#include <tactus/arm_plants/tool_operator.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/devices/damiao/damiao_bus.hpp>
 #include <tactus/devices/rig/rig_arms.hpp>

@@ -300,7 +300,7 @@ TEST(RigArms, JointsAreThoseOfTheArmByName) {
   EXPECT_NE(
       problem_of(rig_text(stiff, 6), setup)
           .find("rig.toml:1:1: arm.leader: the arm of ../../experiments/arms/openarm-class.urdf has a joint joint_7, "
-                "and the rig has none: write [arm.leader.joint_7]"),
+                "and the rig has no such joint: write [arm.leader.joint_7]"),
       std::string::npos)
       << problem_of(rig_text(stiff, 6), setup);
   EXPECT_NE(
@@ -320,7 +320,7 @@ TEST(RigArms, AFollowerThatIsAnotherArmHasItsOwnJointsAndItsOwnModel) {
   setup.follower.joints[2] = "elbow";
   const std::string stiff = "stiffness_limit_Nm_per_rad = 240.0\n";
   EXPECT_NE(problem_of(rig_text(stiff, 7), setup)
-                .find("arm.follower: the arm of other.urdf has a joint elbow, and the rig has none: write "
+                .find("arm.follower: the arm of other.urdf has a joint elbow, and the rig has no such joint: write "
                       "[arm.follower.elbow]"),
             std::string::npos)
       << problem_of(rig_text(stiff, 7), setup);

@@ -4,7 +4,7 @@
 #include <tactus/experiments/arm_tapping/params.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/signal/random.hpp>
-#include <tactus/station/wall.hpp>
+#include <tactus/station/make_device_guard.hpp>
 
 #include <algorithm>
 #include <cmath>

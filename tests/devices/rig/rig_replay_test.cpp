@@ -71,7 +71,7 @@ TEST_F(RigReplay, TheLogOfTwoArmsReplaysBitForBitAndEveryChangeIsFound) {
 
   const auto row = static_cast<std::size_t>(ticks) - 1200;
   for (const char* signal : {"position_m", "drive_velocity_m_per_s", "motor_force_N", "drive_stiffness_N_per_m",
-                             "drive_damping_N_s_per_m", "law_position_m", "told_position_m"}) {
+                             "drive_damping_N_s_per_m", "law_position_m", "sent_position_m"}) {
     const auto found = replay(tampered(folder / "log", "/master/joint_3", signal, row));
     ASSERT_TRUE(found) << describe(found.error());
     ASSERT_TRUE(found->difference) << signal;
@@ -117,7 +117,7 @@ TEST_F(RigReplay, TheLogOfTwoArmsReplaysBitForBitAndEveryChangeIsFound) {
       if (table.topic == "/slave/joint_4") table.values[0][10] += 1.0;
     }
   });
-  EXPECT_NE(late.find("topic /slave/joint_4: tick 10 is missing"), std::string::npos) << late;
+  EXPECT_NE(late.find("topic /slave/joint_4: control cycle 10 is missing"), std::string::npos) << late;
 }
 
 /// As of a program that was killed: what all topics have is replayed.

@@ -89,9 +89,12 @@ TEST(Rig, EveryMistakeIsToldWithItsLineAndRemedy) {
             "identifier of its own");
   EXPECT_EQ(problem_of(side + one + "lower_red = 1.0\n"),
             "rig.toml:12:1: arm.leader.elbow.lower_red: unknown key: did you mean lower_rad?");
-  EXPECT_EQ(problem_of(side + "bits_per_s = 1000000\n" + one),
-            "rig.toml:4:1: arm.leader.bits_per_s: unknown key: [arm.leader] can have bus, port, framing, patience_s, "
-            "watchdog_s, elbow");
+  EXPECT_EQ(
+      problem_of(side + "bits_per_s = 1000000\n" + one),
+      "rig.toml:4:1: arm.leader.bits_per_s: unknown key: [arm.leader] can have bus, port, framing, reply_timeout_s, "
+      "watchdog_s, elbow");
+  EXPECT_EQ(problem_of(side + "patience_s = 0.002\n" + one),
+            "rig.toml:4:1: arm.leader.patience_s: this key is now called reply_timeout_s");
   EXPECT_EQ(
       problem_of("[arm.leader]\nbus = \"damiau\"\nport = \"/dev/a\"\n" + one),
       "rig.toml:2:7: arm.leader.bus: 'damiau' is not a bus that tactus can drive; write one of damiao, dynamixel, "

@@ -111,7 +111,7 @@ TEST(DynamixelPeer, AnswersAFastReadAsTheEManualsExample) {
 }
 
 TEST(DynamixelPeer, BehindASilentServoAFastReadEndsAndAPlainOneLeavesItsPlaceEmpty) {
-  Bench bench({{.id = 3}, {.id = 7, .fault = ServoFault::silent}, {.id = 4}});
+  Bench bench({{.id = 3}, {.id = 7, .fault = ServoFault::silence}, {.id = 4}});
   const Bytes ids{0x84, 0x00, 0x04, 0x00, 0x03, 0x07, 0x04};
   Bytes fast{0xFF, 0xFF, 0xFD, 0x00, 0xFE, 0x0A, 0x00, 0x8A}, plain{0xFF, 0xFF, 0xFD, 0x00, 0xFE, 0x0A, 0x00, 0x82};
   fast.insert(fast.end(), ids.begin(), ids.end());
@@ -223,7 +223,7 @@ TEST(ServoFaults, AreReadAsTheyAreWritten) {
 }
 
 TEST(DynamixelPeer, AFaultBeginsByTheTimeOfTheFirstByte) {
-  Bench bench(std::vector{DynamixelPeer::Servo{.id = 1, .fault = ServoFault::silent, .fault_from_ns = 10 * ms}});
+  Bench bench(std::vector{DynamixelPeer::Servo{.id = 1, .fault = ServoFault::silence, .fault_from_ns = 10 * ms}});
   bench.now_ns = 5'000'000 * ms;
   EXPECT_EQ(bench.read(132, 4), 0);
   bench.now_ns += 9 * ms;

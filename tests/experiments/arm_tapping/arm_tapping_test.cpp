@@ -234,7 +234,7 @@ TEST(ArmTapping, ALeaderOfHalfTheSizeMovesTheFollowersToolTwiceAsFar) {
 }
 
 TEST(ArmTapping, TheGearedPairSettlesAsRecommendedInEitherHandAndPlainHardly) {
-  for (const char* hand : {"arms/geared-pair.toml", "arms/soft-hand.toml"}) {
+  for (const char* hand : {"arms/geared-pair.toml", "arms/light-grip.toml"}) {
     EXPECT_EQ(share_that_settles(geared(hand), 3), 1.0) << hand;
   }
   ArmTappingParams plain = geared("arms/bare.toml");
@@ -253,7 +253,7 @@ TEST(ArmTapping, AFollowerThatCannotBeCommandedJointByJointIsRefused) {
   params = shipped();
   params.arm.follower.joint_stiffness_N_m_per_rad = 3000.0;
   EXPECT_EQ(problem(params).parameter, "arm.follower.urdf");
-  EXPECT_NE(problem(params).message.find("something is said of it"), std::string::npos);
+  EXPECT_NE(problem(params).message.find("yet it has keys"), std::string::npos);
   params = shipped();  // whose tool this pose moves elsewhere
   params.arm.follower.urdf = "arms/franka-class-follower.urdf";
   EXPECT_NE(problem(params).message.find("outside its range"), std::string::npos) << problem(params).message;
@@ -310,7 +310,7 @@ TEST(ArmTapping, APictureShowsBothArmsOnTheSurface) {
     EXPECT_GT(down ? contact.y[1] - contact.y[0] : contact.x[1] - contact.x[0], 50.0) << "out of the surface";
     EXPECT_NEAR(down ? contact.x[1] - contact.x[0] : contact.y[1] - contact.y[0], 0.0, 1e-9);
     // A link is as long in space as in its picture, or longer.
-    const arm::Vector3 tool = trace.pressing->sight.follower_m;
+    const arm::Vector3 tool = trace.pressing->snapshot.follower_m;
     EXPECT_LE(std::hypot(links.x[8], links.y[8]), 1e3 * tool.norm() + 1e-9);
     EXPECT_NEAR(links.y[8], 1e3 * tool.z(), 1e-9);
     const report::Line& induced = figure.panels[0].lines[2];

@@ -64,14 +64,14 @@ TEST(Handle, FeelsTheForceOnTheToolTimesScaleAndGain) {
       record = pair.step(path_m, path_m);
     }
     ASSERT_GT(record.contact_N, 1.0);
-    const ArmSight sight = pair.sight();
-    EXPECT_NEAR(sight.told_N.z(), record.contact_N, 0.03 * record.contact_N) << "in newtons at the tool";
-    EXPECT_NEAR(sight.displayed_N.z(), 0.4 * scale * record.contact_N, 0.03 * scale * record.contact_N);
+    const ArmSnapshot snapshot = pair.snapshot();
+    EXPECT_NEAR(snapshot.sent_N.z(), record.contact_N, 0.03 * record.contact_N) << "in newtons at the tool";
+    EXPECT_NEAR(snapshot.displayed_N.z(), 0.4 * scale * record.contact_N, 0.03 * scale * record.contact_N);
   }
 }
 
 TEST(Handle, TapsSettleAsRecommendedInEitherHandWherePlainRings) {
-  for (const char* hand : {"arms/inverse3-arm.toml", "arms/soft-hand.toml"}) {
+  for (const char* hand : {"arms/inverse3-arm.toml", "arms/light-grip.toml"}) {
     EXPECT_EQ(share_that_settles(shipped(hand), 3), 1.0) << hand;
     ArmTappingParams plain = shipped(hand);
     plain.control.method = ArmMethod::position_force;

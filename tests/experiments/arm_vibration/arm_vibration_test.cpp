@@ -59,7 +59,7 @@ TEST(ArmVibration, TheReleasedLawIsThatOfItsSource) {
 
 TEST(ArmVibration, ThePairAsReleasedDoesNotVibrateAtEitherRateHeldOrNot) {
   for (const double rate_Hz : {1000.0, 500.0}) {
-    for (const HeldBy held_by : {HeldBy::person, HeldBy::nobody}) {
+    for (const HeldBy held_by : {HeldBy::hand, HeldBy::nobody}) {
       ArmVibrationParams params = shipped();
       params.host.rate_Hz = rate_Hz;
       params.task.held_by = held_by;

@@ -64,7 +64,7 @@ TEST(Sensorless, InAStillContactTheEstimateDiffersFromTheTruthByLessThanFriction
     for (double time_s = 0.0; time_s < 1.5; time_s += teleoperator->tick_s()) {
       last = teleoperator->step(press.position_m(time_s), press.position_m(time_s + teleoperator->tick_s()));
       if (time_s < 1.3) continue;
-      error_sum_N += last.told_force_N - last.contact_force_N;
+      error_sum_N += last.sent_force_N - last.contact_force_N;
       ++counted;
     }
     EXPECT_GT(last.contact_force_N, 5.0 * friction_N);

@@ -17,8 +17,8 @@ using StabilityReport = std::function<Result<experiments::Outcome>(
 
 /// Adds a subcommand of `stability` that reads an experiment file, with the options that all of them share, and prints
 /// what `report` makes of it. `name`, `command` and `status` as in stability.hpp.
-void add_stability_verb(CLI::App& stability, const std::string& verb, const std::string& summary,
-                        const StabilityReport& report, const std::string& name, const std::string& command,
-                        int& status);
+void add_stability_command(CLI::App& stability, const std::string& verb, const std::string& summary,
+                           const StabilityReport& report, const std::string& name, const std::string& command,
+                           int& status);
 
 }  // namespace tactus::cli

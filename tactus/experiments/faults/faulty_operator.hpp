@@ -9,12 +9,12 @@
 
 namespace tactus::experiments {
 
-/// What becomes of the person's hand and buttons. Of a plan that is for something else they do as they are meant to.
-class FaultyPerson {
+/// What becomes of the operator's hand and buttons. Of a plan that is for something else they do as they are meant to.
+class FaultyOperator {
  public:
   enum class Hand { holds, lets_go, is_clamped };
 
-  explicit FaultyPerson(const FaultPlan& plan) : plan_(plan) {}
+  explicit FaultyOperator(const FaultPlan& plan) : plan_(plan) {}
 
   /// What holds the handle. Once a tick. Real-time safe.
   [[nodiscard]] Hand hand(const FaultMoment& moment) const noexcept {
@@ -23,7 +23,7 @@ class FaultyPerson {
     return plan_.kind == FaultKind::handle_clamped ? Hand::is_clamped : Hand::holds;
   }
   /// A handle that moved while the hand was away is taken where it is and led back to the path: what is left, at a
-  /// time, of the `away_m` at `now_s`. A hand does not jump there, and a person does not grip as if it had.
+  /// time, of the `away_m` at `now_s`. A hand does not jump there, and an operator does not grip as if it had.
   [[nodiscard]] static constexpr mechanics::MinimumJerk returns_from(double away_m, double now_s) noexcept {
     return {.start_m = away_m, .end_m = 0.0, .start_time_s = now_s, .duration_s = return_s};
   }
@@ -51,7 +51,7 @@ class FaultyPerson {
         break;
       case FaultKind::both_restarted:
         return presses_while_restarted(pressed, moment);
-      case FaultKind::stale_commands:  // the person notices
+      case FaultKind::stale_commands:  // the operator notices
         if (is_noticed(moment, notices_s)) pressed.dead_man = false;
         break;
       default:
@@ -66,11 +66,11 @@ class FaultyPerson {
   static constexpr double return_s = 0.4;
   static constexpr double notices_s = 0.3;
 
-  /// The dead-man switch sticks while the sites follow, and the person goes away; else from the start of the session.
+  /// The dead-man switch sticks while the sites follow, and the operator goes away; else from the start of the session.
   [[nodiscard]] bool stuck_in_use() const noexcept {
     return plan_.kind == FaultKind::dead_man_stuck && plan_.start_s > 0.0;
   }
-  /// From so long after the fault began until the person sets out to arm again.
+  /// From so long after the fault began until the operator sets out to arm again.
   [[nodiscard]] bool is_noticed(const FaultMoment& moment, double after_s) const noexcept {
     return !moment.before && moment.since_s >= after_s &&
            moment.since_s <= plan_.length_s + fault_schedule::look_after_s + fault_schedule::button_s;

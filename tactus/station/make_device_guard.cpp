@@ -1,5 +1,5 @@
 #include <tactus/control/protective_limits.hpp>
-#include <tactus/station/wall.hpp>
+#include <tactus/station/make_device_guard.hpp>
 
 #include <algorithm>
 #include <string>
@@ -52,8 +52,8 @@ control::ControlParams with_threshold(const control::ControlParams& control, con
 }  // namespace
 
 template <class Reading>
-Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>& device, std::size_t joints,
-                                                              control::SiteRole role) {
+Result<std::unique_ptr<GuardedDeviceOf<Reading>>> make_device_guard(DeviceOf<Reading>& device, std::size_t joints,
+                                                                    control::SiteRole role) {
   const char* site = role == control::SiteRole::master ? "master" : "slave";
   if (auto error = check_limits(device)) return under(site, *std::move(error));
   if (const std::size_t own = joints_of(device.limits()); own != joints) {
@@ -68,11 +68,10 @@ Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>&
 }
 
 template <class Reading>
-Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>& device,
-                                                              const Each<Reading, control::ControlParams>& control,
-                                                              control::SiteRole role) {
-  auto wall = wall_before(device, joints_of(control), role);
-  if (!wall || !*wall) return wall;
+Result<std::unique_ptr<GuardedDeviceOf<Reading>>> make_device_guard(
+    DeviceOf<Reading>& device, const Each<Reading, control::ControlParams>& control, control::SiteRole role) {
+  auto guard = make_device_guard(device, joints_of(control), role);
+  if (!guard || !*guard) return guard;
   const auto allowed = device.limits();
   for (std::size_t joint = 0; joint < joints_of(control); ++joint) {
     const control::ControlParams& own = joint_of(control, joint);
@@ -81,14 +80,16 @@ Result<std::unique_ptr<GuardedDeviceOf<Reading>>> wall_before(DeviceOf<Reading>&
     if (!error) error = control::refuse_unreachable(tightened(own, role, limits), role, senses_force(limits));
     if (error) return under("control", under_joint<Reading>(joint, *std::move(error)));
   }
-  return wall;
+  return guard;
 }
 
-template Result<std::unique_ptr<GuardedDevice>> wall_before(Device&, std::size_t, control::SiteRole);
-template Result<std::unique_ptr<GuardedJointDevice>> wall_before(JointDevice&, std::size_t, control::SiteRole);
-template Result<std::unique_ptr<GuardedDevice>> wall_before(Device&, const control::ControlParams&, control::SiteRole);
-template Result<std::unique_ptr<GuardedJointDevice>> wall_before(JointDevice&, const Joints<control::ControlParams>&,
-                                                                 control::SiteRole);
+template Result<std::unique_ptr<GuardedDevice>> make_device_guard(Device&, std::size_t, control::SiteRole);
+template Result<std::unique_ptr<GuardedJointDevice>> make_device_guard(JointDevice&, std::size_t, control::SiteRole);
+template Result<std::unique_ptr<GuardedDevice>> make_device_guard(Device&, const control::ControlParams&,
+                                                                  control::SiteRole);
+template Result<std::unique_ptr<GuardedJointDevice>> make_device_guard(JointDevice&,
+                                                                       const Joints<control::ControlParams>&,
+                                                                       control::SiteRole);
 
 control::SafetyGate::Params tightened(const control::SafetyGate::Params& gate, const DeviceLimits& device) {
   control::SafetyGate::Params own = gate;

@@ -1,4 +1,4 @@
-#include <tactus/runtime/site_books.hpp>
+#include <tactus/runtime/site_counters.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ constexpr double resuming_s = 1.0;
 
 }  // namespace
 
-void SiteBooks::step(const SiteLogRecord& record, double time_s) noexcept {
+void SiteCounters::step(const SiteLogRecord& record, double time_s) noexcept {
   judge(record);
   measure(record);
   last_ = record;
@@ -20,7 +20,7 @@ void SiteBooks::step(const SiteLogRecord& record, double time_s) noexcept {
   totals_.duration_s = time_s;
 }
 
-void SiteBooks::judge(const SiteLogRecord& record) noexcept {
+void SiteCounters::judge(const SiteLogRecord& record) noexcept {
   using control::SiteState;
   const SiteState before = state(), now = static_cast<SiteState>(record.state);
   ++totals_.ticks_in[now];
@@ -36,9 +36,9 @@ void SiteBooks::judge(const SiteLogRecord& record) noexcept {
   }
 }
 
-void SiteBooks::measure(const SiteLogRecord& record) noexcept {
+void SiteCounters::measure(const SiteLogRecord& record) noexcept {
   const double force_N = record.motor_force_N;
-  if (!std::isfinite(force_N) || !control::is_finite(static_cast<const SiteLogRecord::Told&>(record)))
+  if (!std::isfinite(force_N) || !control::is_finite(static_cast<const SiteLogRecord::Sent&>(record)))
     ++totals_.not_finite;
   const double step_N = std::fabs(force_N - last_.motor_force_N);
   constexpr double round_off = 1e-12;
@@ -52,7 +52,7 @@ void SiteBooks::measure(const SiteLogRecord& record) noexcept {
   }
 }
 
-SiteSecond SiteBooks::end_second() noexcept {
+SiteSecond SiteCounters::end_second() noexcept {
   const SiteSecond second{.role = role_,
                           .time_s = totals_.duration_s,
                           .state = state(),

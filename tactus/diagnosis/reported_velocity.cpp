@@ -1,4 +1,4 @@
-#include <tactus/diagnosis/told_velocity.hpp>
+#include <tactus/diagnosis/reported_velocity.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 namespace tactus::diagnosis {
 
-std::optional<double> told_scale(std::span<const double> position, std::span<const double> velocity, Seconds dt) {
+std::optional<double> reported_scale(std::span<const double> position, std::span<const double> velocity, Seconds dt) {
   constexpr double stretch_s = 0.05, most_left = 0.1;
   const auto stretch = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(stretch_s / dt.value)));
   const std::size_t samples = std::min(position.size(), velocity.size());

@@ -13,25 +13,25 @@
 
 namespace tactus::cli {
 
-/// What a person asks of sites that run: words that come on a descriptor, a line each, and SIGUSR1, which arms. A
+/// What a user asks of sites that run: words that come on a descriptor, a line each, and SIGUSR1, which arms. A
 /// thread that does nothing else passes them on, in their order; it never writes, so no terminal keeps a word from
 /// being heard.
 ///
 /// The dead-man switch is what that descriptor holds: where it ends, is closed or fails, or there is no memory for a
-/// word, nobody is there, and the switch stays let go. Its thread alone takes SIGUSR1, so make it before others. One at
-/// a time.
-class Person {
+/// word, nobody is there, and the switch stays released. Its thread alone takes SIGUSR1, so make it before others. One
+/// at a time.
+class OperatorInput {
  public:
   /// All else must outlive it. A wrong word, and the end at the master, are told on `lines`. Errors: `failed` where the
   /// system gives no thread.
-  static Result<std::unique_ptr<Person>> listen_to(int descriptor, control::SiteRole role,
-                                                   runtime::SiteExchange& exchange, LineWriter& lines);
-  Person(const Person&) = delete;
-  Person& operator=(const Person&) = delete;
-  ~Person();
+  static Result<std::unique_ptr<OperatorInput>> listen_to(int descriptor, control::SiteRole role,
+                                                          runtime::SiteExchange& exchange, LineWriter& lines);
+  OperatorInput(const OperatorInput&) = delete;
+  OperatorInput& operator=(const OperatorInput&) = delete;
+  ~OperatorInput();
 
  private:
-  Person(int descriptor, control::SiteRole role, runtime::SiteExchange& exchange, LineWriter& lines);
+  OperatorInput(int descriptor, control::SiteRole role, runtime::SiteExchange& exchange, LineWriter& lines);
   void listen();
   void pass_on();
   void read_what_waits();

@@ -7,14 +7,15 @@ namespace CLI {  // NOLINT: the name is not ours
 class App;
 }
 
-/// The verbs of the `tactus` command. Each adds its subcommand to `app`; when chosen, it does its work and leaves its
-/// exit status (0 done, 1 the job failed, 2 the request was wrong) in `status`. Messages begin with the name of `app`.
+/// The commands of the `tactus` command. Each adds its subcommand to `app`; when chosen, it does its work and leaves
+/// its exit status (0 done, 1 the job failed, 2 the request was wrong) in `status`. Messages begin with the name of
+/// `app`.
 namespace tactus::cli {
 
-/// `command` is the whole command line as a person would type it again, for the report.
+/// `command` is the whole command line as a user would type it again, for the report.
 void add_run(CLI::App& app, const std::string& command, int& status);
 void add_advise(CLI::App& app, const std::string& command, int& status);
-/// Prints what completes all verbs that `app` has when it is chosen.
+/// Prints what completes all commands that `app` has when it is chosen.
 void add_completion(CLI::App& app);
 void add_device(CLI::App& app, const std::string& command, int& status);
 void add_diagnose(CLI::App& app, const std::string& command, int& status);

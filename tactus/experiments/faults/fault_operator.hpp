@@ -12,12 +12,12 @@
 
 namespace tactus::experiments {
 
-/// The person of a run: where the hand means to be and which buttons are pressed when. Drawn by the plan's seed.
-class FaultPerson {
+/// The operator of a run: where the hand means to be and which buttons are pressed when. Drawn by the plan's seed.
+class FaultOperator {
  public:
   /// `wall_m` is where the slave meets the wall, on the master's side. Who `waits` keeps the hand still while the
   /// motors are tried on arming.
-  FaultPerson(const FaultPlan& plan, double wall_m, bool waits)
+  FaultOperator(const FaultPlan& plan, double wall_m, bool waits)
       : wall_m_(wall_m), waits_(waits), rests_at_s_(plan.start_s + plan.length_s), task_(task_of(plan.kind)) {
     signal::Random random = signal::Random(static_cast<std::uint64_t>(plan.seed)).fork(3);
     phase_cycles_ = random.uniform();

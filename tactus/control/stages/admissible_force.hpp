@@ -22,9 +22,9 @@ namespace tactus::control {
 /// touch.
 ///
 /// Not an element: what it is told and what it is asked come at different moments of a tick. Real-time safe.
-class BearableForce {
+class AdmissibleForce {
  public:
-  explicit BearableForce(double dt_s)
+  explicit AdmissibleForce(double dt_s)
       : slow_share_(-std::expm1(-dt_s * 2.0 * std::numbers::pi * slow_below_Hz)),
         lessened_share_(dt_s / lessened_within_s),
         restored_share_(dt_s / restored_within_s),

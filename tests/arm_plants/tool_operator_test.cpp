@@ -1,4 +1,4 @@
-#include <tactus/arm_plants/person.hpp>
+#include <tactus/arm_plants/tool_operator.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -13,10 +13,10 @@ constexpr double tick_s = 1e-3;
 /// A person who wants the tool to stay, and an arm without weight or friction but the motors' torques.
 struct Held {
   ArmPlant arm;
-  Person person;
+  ToolOperator person;
   Vector3 start_m;
 
-  Held(const Person::Params& params, double viscous_N_m_s_per_rad)
+  Held(const ToolOperator::Params& params, double viscous_N_m_s_per_rad)
       : Held(arm_of(params, viscous_N_m_s_per_rad), params) {}
   void run(double duration_s, const ToolForce& load) {
     for (int tick = 0; tick < static_cast<int>(duration_s / tick_s); ++tick) {
@@ -31,11 +31,11 @@ struct Held {
   }
 
  private:
-  Held(ArmPlant made, const Person::Params& params)
+  Held(ArmPlant made, const ToolOperator::Params& params)
       : arm(std::move(made)),
-        person(*Person::make(params, Seconds{tick_s}, arm.tool())),
+        person(*ToolOperator::make(params, Seconds{tick_s}, arm.tool())),
         start_m(arm.tool().position_m) {}
-  static ArmPlant arm_of(const Person::Params& params, double viscous_N_m_s_per_rad) {
+  static ArmPlant arm_of(const ToolOperator::Params& params, double viscous_N_m_s_per_rad) {
     ArmPlant::Params plant = openarm_class();
     plant.chain.gravity = {0.0, 0.0, 0.0};
     plant.carried_kg = params.hand.mass_kg;
@@ -44,8 +44,8 @@ struct Held {
   }
 };
 
-TEST(Person, YieldsToAForceByWhatTheHandsStiffnessSays) {
-  const Person::Params params{
+TEST(ToolOperator, YieldsToAForceByWhatTheHandsStiffnessSays) {
+  const ToolOperator::Params params{
       .hand = {.mass_kg = 0.4, .stiffness_N_per_m = 400.0, .damping_N_s_per_m = 30.0, .lever_m = 0.1},
       .correction_gain_per_s = 0.0};
   Held held(params, 0.3);
@@ -61,8 +61,8 @@ TEST(Person, YieldsToAForceByWhatTheHandsStiffnessSays) {
   EXPECT_LT((by - moment_N_m / (400.0 * 0.01)).norm(), 1e-3);
 }
 
-TEST(Person, TremblesAlongEachAxisAThirdOfACycleApart) {
-  const Person::Params params{
+TEST(ToolOperator, TremblesAlongEachAxisAThirdOfACycleApart) {
+  const ToolOperator::Params params{
       .hand = {.mass_kg = 0.4, .stiffness_N_per_m = 400.0, .damping_N_s_per_m = 30.0, .lever_m = 0.1},
       .correction_gain_per_s = 0.0,
       .tremor_amplitude_m = 2e-4,
@@ -71,7 +71,7 @@ TEST(Person, TremblesAlongEachAxisAThirdOfACycleApart) {
                         .rotation = arm::Matrix3::Identity(),
                         .velocity_m_per_s = Vector3::Zero(),
                         .turning_rad_per_s = Vector3::Zero()};
-  Person person = *Person::make(params, Seconds{tick_s}, still);
+  ToolOperator person = *ToolOperator::make(params, Seconds{tick_s}, still);
   const double rad_per_s = 2.0 * std::numbers::pi * 9.0;
   for (int tick = 0; tick < 500; ++tick) {
     person.begin_tick(still.position_m, still.position_m, still);
@@ -84,8 +84,8 @@ TEST(Person, TremblesAlongEachAxisAThirdOfACycleApart) {
   }
 }
 
-TEST(Person, CorrectsSlowlyWhatPushesTheToolAway) {
-  const Person::Params params{
+TEST(ToolOperator, CorrectsSlowlyWhatPushesTheToolAway) {
+  const ToolOperator::Params params{
       .hand = {.mass_kg = 0.4, .stiffness_N_per_m = 400.0, .damping_N_s_per_m = 30.0, .lever_m = 0.1}};
   Held held(params, 0.3);
   const ToolForce load{.force_N = Vector3(0.0, 0.0, 4.0)};
@@ -96,7 +96,7 @@ TEST(Person, CorrectsSlowlyWhatPushesTheToolAway) {
   EXPECT_LT(std::fabs(held.arm.tool().position_m.z() - held.start_m.z()), 1e-4);
 }
 
-TEST(Person, AWallPushesAndNeverPulls) {
+TEST(ToolOperator, AWallPushesAndNeverPulls) {
   Wall wall{.point_m = Vector3(0.0, 0.0, 1.0),
             .normal = Vector3::UnitZ(),
             .contact = *mechanics::Environment::make({.stiffness_N_per_m = 1000.0, .damping_N_s_per_m = 10.0},
@@ -146,7 +146,7 @@ double restitution(double dissipation_s_per_m, double exponent, double speed_m_p
   return -point.tool().velocity_m_per_s.z() / before_m_per_s;
 }
 
-TEST(Person, AWallOfHuntAndCrossleyThrowsAPointBackAsItsClosedFormSays) {
+TEST(ToolOperator, AWallOfHuntAndCrossleyThrowsAPointBackAsItsClosedFormSays) {
   // m v dv/dδ = −k δⁿ (1 + c v) separates: G(v) = v/c − ln(1 + c v)/c² is the same on the way in and out, whatever k, n
   // and m. For slow impacts that is Hunt and Crossley's e = 1 − 2/3 c v.
   for (const double exponent : {1.0, 1.5, 2.5}) {
@@ -167,9 +167,9 @@ TEST(Person, AWallOfHuntAndCrossleyThrowsAPointBackAsItsClosedFormSays) {
   }
 }
 
-TEST(Person, RefusesWhatNoPersonIs) {
+TEST(ToolOperator, RefusesWhatNoPersonIs) {
   const ArmPlant arm = *ArmPlant::make(openarm_class(), bent());
-  EXPECT_EQ(Person::make({.correction_gain_per_s = 50.0}, Seconds{tick_s}, arm.tool()).error().parameter,
+  EXPECT_EQ(ToolOperator::make({.correction_gain_per_s = 50.0}, Seconds{tick_s}, arm.tool()).error().parameter,
             "correction_gain_per_s");
 }
 

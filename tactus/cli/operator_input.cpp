@@ -1,4 +1,4 @@
-#include <tactus/cli/person.hpp>
+#include <tactus/cli/operator_input.hpp>
 #include <tactus/cli/quiet_thread.hpp>
 
 #include <array>
@@ -28,16 +28,16 @@ sigset_t arming_signal() {
 
 }  // namespace
 
-Result<std::unique_ptr<Person>> Person::listen_to(int descriptor, control::SiteRole role,
-                                                  runtime::SiteExchange& exchange, LineWriter& lines) {
-  std::unique_ptr<Person> made(new Person(descriptor, role, exchange, lines));
+Result<std::unique_ptr<OperatorInput>> OperatorInput::listen_to(int descriptor, control::SiteRole role,
+                                                                runtime::SiteExchange& exchange, LineWriter& lines) {
+  std::unique_ptr<OperatorInput> made(new OperatorInput(descriptor, role, exchange, lines));
   auto thread = start_quiet_thread([self = made.get()] { self->listen(); });
   if (!thread) return thread.error();
   made->thread_ = *std::move(thread);
   return made;
 }
 
-Person::Person(int descriptor, control::SiteRole role, runtime::SiteExchange& exchange, LineWriter& lines)
+OperatorInput::OperatorInput(int descriptor, control::SiteRole role, runtime::SiteExchange& exchange, LineWriter& lines)
     : descriptor_(descriptor), role_(role), exchange_(&exchange), lines_(&lines) {
   asked_to_arm.store(false, std::memory_order_relaxed);
   const sigset_t set = arming_signal();
@@ -52,7 +52,7 @@ Person::Person(int descriptor, control::SiteRole role, runtime::SiteExchange& ex
   sigaction(SIGUSR1, &note, &action_before_);
 }
 
-Person::~Person() {
+OperatorInput::~OperatorInput() {
   stopping_.store(true, std::memory_order_relaxed);
   if (thread_.joinable()) {
     // It may wait in a read for what another program took from the same terminal.
@@ -66,7 +66,7 @@ Person::~Person() {
   pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
 }
 
-void Person::listen() {
+void OperatorInput::listen() {
   const sigset_t set = arming_signal();
   pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
   while (!stopping_.load(std::memory_order_relaxed)) {
@@ -84,7 +84,7 @@ void Person::listen() {
 }
 
 /// As far as there is room; the rest is passed on later.
-void Person::pass_on() {
+void OperatorInput::pass_on() {
   const bool master = role_ == control::SiteRole::master;
   arm_ = (asked_to_arm.exchange(false, std::memory_order_relaxed) && master) || arm_;
   if (arm_) arm_ = !exchange_->words.try_push(runtime::SiteWord::arm);
@@ -100,7 +100,7 @@ void Person::pass_on() {
 }
 
 /// No more than a line ahead of what was passed on.
-void Person::read_what_waits() {
+void OperatorInput::read_what_waits() {
   const bool wants = open_ && typed_.find('\n') == std::string::npos;
   pollfd input{.fd = wants ? descriptor_ : -1, .events = POLLIN, .revents = 0};
   if (poll(&input, 1, look_up_ms) <= 0 || !wants) return;
@@ -114,7 +114,7 @@ void Person::read_what_waits() {
   }
 }
 
-void Person::lose() {
+void OperatorInput::lose() {
   open_ = false;
   if (!typed_.empty()) typed_ += '\n';
   exchange_->person_lost.store(true, std::memory_order_relaxed);

@@ -147,7 +147,7 @@ TEST_F(Recordings, the_impedance_of_the_hand_is_found_in_a_recording_of_master_a
             "");
   EXPECT_EQ(found["position"], "master_position");
   EXPECT_EQ(found["force"], "hand_force");
-  EXPECT_EQ(found["verdict"], "told");
+  EXPECT_EQ(found["verdict"], "determined");
   const double truth[] = {200.0, 10.0, 0.05};
   const char* const names[] = {"stiffness", "damping", "mass"};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -14,8 +14,8 @@
 
 namespace tactus::arm_plants {
 
-/// A smooth plane that the tool meets: it pushes along its normal by what the law of one axis says of the depth and of
-/// the speed into it. Real-time safe.
+/// A smooth plane that the tool meets: it pushes along its normal by what the law of one axis states of the depth and
+/// of the speed into it. Real-time safe.
 struct Wall {
   Vector3 point_m = Vector3::Zero();
   Vector3 normal = Vector3::UnitZ();  ///< out of it, of length 1
@@ -28,12 +28,12 @@ struct Wall {
   }
 };
 
-/// The person who holds the leader's tool: a hand (`arm::HandImpedance`, whose mass the arm carries) that follows an
-/// intended path, and slow correction. The person sees or feels the tool off the path and shifts the aim, as an
+/// The operator who holds the leader's tool: a hand (`arm::HandImpedance`, whose mass the arm carries) that follows an
+/// intended path, and slow correction. The operator sees or feels the tool off the path and shifts the aim, as an
 /// integrator on the error, low-passed near 5 Hz and a reaction time late. On the path lies physiological tremor, the
 /// same along each axis of the base and a third of a cycle apart. The attitude is held where it was at first. What one
 /// axis has in `mechanics::Operator`, in three.
-class Person {
+class ToolOperator {
  public:
   struct Params {
     arm::HandImpedance hand = {};
@@ -58,17 +58,17 @@ class Person {
   };
 
   /// Who holds a tool that is there, at rest, and wants it there. `tick_s` is the time between calls of `begin_tick`.
-  static Result<Person> make(const Params& params, Seconds tick, const ToolState& tool);
+  static Result<ToolOperator> make(const Params& params, Seconds tick, const ToolState& tool);
 
   /// Once a tick: where the hand wants the tool now and a tick later, and where it is.
   void begin_tick(const Vector3& path_m, const Vector3& path_at_next_tick_m, const ToolState& tool);
   /// Holds on with the spring and the damper of `other`, which gets the own ones: its mass is carried elsewhere.
-  void exchange_hand(Person& other) noexcept { std::swap(hand_, other.hand_); }
+  void exchange_hand(ToolOperator& other) noexcept { std::swap(hand_, other.hand_); }
   /// What the hand does to the tool `since_tick_s` after the tick began.
   [[nodiscard]] ToolForce force(const ToolState& tool, double since_tick_s) const;
 
  private:
-  Person(const Params& params, Seconds tick, const ToolState& tool, const signal::LowPass& low_pass);
+  ToolOperator(const Params& params, Seconds tick, const ToolState& tool, const signal::LowPass& low_pass);
   [[nodiscard]] Vector3 tremor_m(std::int64_t tick) const;
 
   arm::HandImpedance hand_;

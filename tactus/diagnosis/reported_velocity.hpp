@@ -8,8 +8,8 @@
 
 namespace tactus::diagnosis {
 
-/// A velocity that was recorded beside a position, as a drive or its host tells it.
-struct ToldVelocity {
+/// A velocity that was recorded alongside a position, as a drive or its host tells it.
+struct ReportedVelocity {
   std::string name = {};  ///< of its column
   double scale = 1.0;     ///< the told velocity over that with which the position moves, without sign
   /// The told one is another by a tenth or more: whoever reads or commands it has a wrong range for it.
@@ -19,6 +19,6 @@ struct ToldVelocity {
 /// What the integral of the velocity over stretches of 50 ms is over the way that the position went in them, by least
 /// squares, whatever the signal's frequency. None where the position hardly moves or the two do not go together (a
 /// tenth of the velocity's power is left). Position in m or rad, velocity in m/s or rad/s. Not real-time safe.
-std::optional<double> told_scale(std::span<const double> position, std::span<const double> velocity, Seconds dt);
+std::optional<double> reported_scale(std::span<const double> position, std::span<const double> velocity, Seconds dt);
 
 }  // namespace tactus::diagnosis

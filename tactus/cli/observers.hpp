@@ -18,24 +18,24 @@ class App;
 
 namespace tactus::cli {
 
-/// Who looks on at a run at the real clock, beside its log.
-struct OnlookerOptions {
+/// Who looks on at a run at the real clock, alongside its log.
+struct ObserverOptions {
   std::optional<std::string> live;  ///< `[[HOST:]PORT]` of the live page; empty for any free port of the loopback
   bool ros2 = false;
   std::string name_space = "tactus";
   [[nodiscard]] bool any() const { return live || ros2; }
 };
 
-/// Adds `--live`, `--ros2` and `--namespace` to a verb.
-void add_onlooker_options(CLI::App& verb, OnlookerOptions& options);
+/// Adds `--live`, `--ros2` and `--namespace` to a command.
+void add_observer_options(CLI::App& verb, ObserverOptions& options);
 
 /// The live page and the ROS 2 nodes of a run. They read its record streams on threads of their own, as its log does,
 /// so the servo thread waits for none of them; they change nothing.
-class Onlookers {
+class Observers {
  public:
-  /// Opens what is asked for before anything runs; `site` says whose topics go to ROS 2, `joints` how several are
+  /// Opens what is asked for before anything runs; `site` states whose topics go to ROS 2, `joints` how several are
   /// called there. Errors: a place that is none; those of `ros2::Observer::create`.
-  static Result<Onlookers> open(const OnlookerOptions& options, const experiments::Request& request,
+  static Result<Observers> open(const ObserverOptions& options, const experiments::Request& request,
                                 const std::optional<control::SiteRole>& site = {},
                                 const std::vector<std::string>& joints = {});
 
@@ -50,7 +50,7 @@ class Onlookers {
     }
     if (ros2_) ros2_->watch(streams);
   }
-  /// Begins to serve, and says at once where. Errors: those of `live::Server::start` and `ros2::Observer::start`.
+  /// Begins to serve, and states at once where. Errors: those of `live::Server::start` and `ros2::Observer::start`.
   Check begin(const std::function<void(const std::string&)>& say);
   /// Ends it, and tells in a line for each who saw how much; empty where nobody could.
   std::string end();
@@ -58,7 +58,7 @@ class Onlookers {
   [[nodiscard]] bool any() const { return view_ || ros2_; }
 
  private:
-  Onlookers() = default;
+  Observers() = default;
 
   live::ServerOptions where_;
   std::unique_ptr<live::RunView> view_;

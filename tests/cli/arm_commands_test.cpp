@@ -15,7 +15,7 @@ namespace {
 using ArmJson = nlohmann::json;
 
 /// On the recordings of a simulated arm of three joints that come with the project.
-class ArmVerbs : public Command {
+class ArmCommands : public Command {
  protected:
   static std::string example(const std::string& name) {
     return std::string(TACTUS_EXAMPLE_FOLDER "/recordings") + "/" + name;
@@ -41,15 +41,15 @@ class ArmVerbs : public Command {
   static const std::vector<std::string> numbers;
   static const std::vector<std::string> names;
 };
-const std::vector<std::string> ArmVerbs::numbers{"--time",     "1",   "--position", "2:4",
-                                                 "--velocity", "5:7", "--effort",   "8:10"};
-const std::vector<std::string> ArmVerbs::names{"--time",     "time",
-                                               "--position", "shoulder_1_rad,shoulder_2_rad,elbow_rad",
-                                               "--velocity", "shoulder_1_rad_per_s:elbow_rad_per_s",
-                                               "--effort",   "shoulder_1_N_m",
-                                               "--effort",   "shoulder_2_N_m,elbow_N_m"};
+const std::vector<std::string> ArmCommands::numbers{"--time",     "1",   "--position", "2:4",
+                                                    "--velocity", "5:7", "--effort",   "8:10"};
+const std::vector<std::string> ArmCommands::names{"--time",     "time",
+                                                  "--position", "shoulder_1_rad,shoulder_2_rad,elbow_rad",
+                                                  "--velocity", "shoulder_1_rad_per_s:elbow_rad_per_s",
+                                                  "--effort",   "shoulder_1_N_m",
+                                                  "--effort",   "shoulder_2_N_m,elbow_N_m"};
 
-TEST_F(ArmVerbs, an_arm_identified_in_free_motion_tells_when_it_is_pushed) {
+TEST_F(ArmCommands, an_arm_identified_in_free_motion_tells_when_it_is_pushed) {
   const Outcome identified = identify({example("arm-free-motion.csv")}, with(names, {"--json", "--out", "results"}));
   ASSERT_EQ(identified.status, 0) << identified.err;
   const ArmJson model = ArmJson::parse(identified.out);
@@ -83,20 +83,20 @@ TEST_F(ArmVerbs, an_arm_identified_in_free_motion_tells_when_it_is_pushed) {
   EXPECT_TRUE(ArmJson::parse(free.out)["contacts"].empty());
 }
 
-TEST_F(ArmVerbs, what_a_recording_does_not_tell_is_named) {
+TEST_F(ArmCommands, what_a_recording_does_not_tell_is_named) {
   // Two seconds and a half; the first link's mass never moves.
   const std::string text = headless();
   write("short.csv", text.substr(0, text.find("\n2.50,") + 1));
   const Outcome poor = identify({"short.csv"}, numbers);
   ASSERT_EQ(poor.status, 0) << poor.err;
-  const std::size_t at = poor.out.find("Not told, so as the URDF has it");
+  const std::size_t at = poor.out.find("Not determined, so as in the URDF");
   ASSERT_NE(at, std::string::npos) << poor.out;
   const std::string line = poor.out.substr(poor.out.find("shoulder_1", at), 60);
   EXPECT_TRUE(line.starts_with("shoulder_1  mass, ")) << line;
-  EXPECT_NE(poor.out.find("`identify excitation` designs a motion that tells more"), std::string::npos);
+  EXPECT_NE(poor.out.find("`identify excitation` designs a motion that determines more"), std::string::npos);
 }
 
-TEST_F(ArmVerbs, a_motion_that_tells_most_is_left_as_a_table_within_the_limits) {
+TEST_F(ArmCommands, a_motion_that_tells_most_is_left_as_a_table_within_the_limits) {
   const std::vector<std::string> words{"identify",  "excitation", "--urdf",       example("three-joints.urdf"),
                                        "--gravity", "0,-9.81,0",  "--duration-s", "6",
                                        "--rate-Hz", "50"};
@@ -134,18 +134,17 @@ TEST_F(ArmVerbs, a_motion_that_tells_most_is_left_as_a_table_within_the_limits) 
   EXPECT_NE(two.err.find("--noise-N-m: 2 numbers, but the arm has 3 joints"), std::string::npos) << two.err;
 }
 
-TEST_F(ArmVerbs, a_table_wants_its_columns_named_and_a_log_does_not) {
+TEST_F(ArmCommands, a_table_wants_its_columns_named_and_a_log_does_not) {
   const Outcome nameless = identify({example("arm-free-motion.csv")}, {"--time", "1", "--position", "2:4"});
   EXPECT_EQ(nameless.status, 2);
   EXPECT_NE(nameless.err.find("--effort: it is required for a table, as "), std::string::npos) << nameless.err;
   make_folder("log");
   const Outcome named = identify({"log"}, {"--time", "1"});
   EXPECT_EQ(named.status, 2);
-  EXPECT_NE(named.err.find("--time: the log log tells by itself what is what: leave it out"), std::string::npos)
-      << named.err;
+  EXPECT_NE(named.err.find("--time: the log log names its own columns: leave it out"), std::string::npos) << named.err;
 }
 
-TEST_F(ArmVerbs, a_file_without_a_header_and_several_files_are_read_as_one_with_it) {
+TEST_F(ArmCommands, a_file_without_a_header_and_several_files_are_read_as_one_with_it) {
   const Outcome named = identify({example("arm-free-motion.csv")}, with(names, {"--json"}));
   const std::string text = headless();
   write("whole.txt", text);
@@ -167,7 +166,7 @@ TEST_F(ArmVerbs, a_file_without_a_header_and_several_files_are_read_as_one_with_
   for (const ArmJson& joint : joints) EXPECT_LT(joint["relative"].get<double>(), 0.03);
 }
 
-TEST_F(ArmVerbs, wrong_requests_are_answered_with_place_and_remedy) {
+TEST_F(ArmCommands, wrong_requests_are_answered_with_place_and_remedy) {
   write("free.csv", headless());
   const auto expect = [](const Outcome& outcome, const std::vector<std::string>& words) {
     EXPECT_EQ(outcome.status, 2) << outcome.out;

@@ -2,7 +2,7 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/real_between.hpp>
-#include <tactus/cli/stability_verb.hpp>
+#include <tactus/cli/stability_command.hpp>
 #include <tactus/configuration/document.hpp>
 
 #include <filesystem>
@@ -40,24 +40,24 @@ Check run(const StabilityOptions& options, const StabilityReport& report, const 
 
 }  // namespace
 
-void add_stability_verb(CLI::App& stability, const std::string& verb, const std::string& summary,
-                        const StabilityReport& report, const std::string& name, const std::string& command,
-                        int& status) {
+void add_stability_command(CLI::App& stability, const std::string& verb, const std::string& summary,
+                           const StabilityReport& report, const std::string& name, const std::string& command,
+                           int& status) {
   auto options = std::make_shared<StabilityOptions>();
   CLI::App* added = stability.add_subcommand(verb, summary);
   add_experiment_options(*added, options->experiment);
   added
       ->add_option(
           "--friction-speed", options->report.linearisation.friction_speed_m_per_s,
-          "Velocity amplitude of friction's describing function, in m/s, of arms in rad/s; 0 leaves friction out")
+          "Velocity amplitude for the describing function of friction, in m/s, for arms in rad/s; 0: no friction")
       ->check(real_between(0.0, 1e6));
   added
       ->add_option("--linkage-amplitude", options->report.linearisation.linkage_amplitude_m,
-                   "Deflection amplitude whose chord is the linkage's stiffness, in m; 0 is the average stiffness")
+                   "Deflection amplitude whose secant is the stiffness of the linkage, in m; 0: the average stiffness")
       ->check(real_between(0.0, 1e6));
   added
       ->add_option("--preload", options->report.linearisation.preload_N,
-                   "Contact force about which the wall is linear, in N")
+                   "Contact force at which the wall is linearised, in N")
       ->check(real_between(1e-6, 1e6));
   added
       ->add_option("--uncertainty", options->report.uncertainty,

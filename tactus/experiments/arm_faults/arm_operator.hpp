@@ -1,8 +1,8 @@
 #pragma once
 
 #include <tactus/experiments/arm_faults/arm_faults.hpp>
-#include <tactus/experiments/faults/faulty_person.hpp>
-#include <tactus/experiments/faults/person.hpp>
+#include <tactus/experiments/faults/fault_operator.hpp>
+#include <tactus/experiments/faults/faulty_operator.hpp>
 
 #include <algorithm>
 
@@ -21,15 +21,15 @@ struct ArmWay {
   }
 };
 
-/// The person of a run at the leader's tool: the path and the buttons of `FaultPerson`, led by a hand in three
+/// The operator of a run at the leader's tool: the path and the buttons of `FaultOperator`, led by a hand in three
 /// dimensions. While motors are tried the hand stays where it is.
-class ArmFaultPerson {
+class ArmFaultOperator {
  public:
-  ArmFaultPerson(const ArmFaultBench& bench, const FaultPlan& plan)
+  ArmFaultOperator(const ArmFaultBench& bench, const FaultPlan& plan)
       : planned_(plan, wall_from_start_m, true),
         params_(bench.setup.params.person),
         tick_{bench.tick_s()},
-        person_(*arm_plants::Person::make(params_, tick_, bench.leader.plant().tool())),
+        person_(*arm_plants::ToolOperator::make(params_, tick_, bench.leader.plant().tool())),
         outward_(bench.setup.outward),
         scale_(bench.setup.tool_scale),
         rests_(is_wired_so(plan)),
@@ -53,9 +53,9 @@ class ArmFaultPerson {
   void begin_tick(const FaultMoment& moment, double tick_s, bool lets_go, const arm_plants::ToolState& tool) {
     const double now_s = moment.now_s;
     if (!lets_go && away_) {
-      person_ = *arm_plants::Person::make(params_, tick_, tool);
+      person_ = *arm_plants::ToolOperator::make(params_, tick_, tool);
       off_m_ = tool.position_m - meant_m(now_s);
-      returns_ = FaultyPerson::returns_from(1.0, now_s);
+      returns_ = FaultyOperator::returns_from(1.0, now_s);
     }
     away_ = lets_go;
     felt_N_ = away_ ? 0.0 : person_.force(tool, 0.0).force_N.norm();
@@ -72,7 +72,7 @@ class ArmFaultPerson {
   [[nodiscard]] double hand_N() const { return felt_N_; }
 
  private:
-  /// Beyond the deepest that the person goes, so that the tool starts before the wall.
+  /// Beyond the deepest that the operator goes, so that the tool starts before the wall.
   static constexpr double wall_from_start_m = 0.02;
 
   [[nodiscard]] arm::Vector3 leader_at(double path_m) const {
@@ -85,10 +85,10 @@ class ArmFaultPerson {
     return leader_at(rests_ ? began_m_ : planned_.path_m(time_s));
   }
 
-  FaultPerson planned_;
-  arm_plants::Person::Params params_;
+  FaultOperator planned_;
+  arm_plants::ToolOperator::Params params_;
   Seconds tick_;
-  arm_plants::Person person_;
+  arm_plants::ToolOperator person_;
   arm::Vector3 outward_;
   double scale_;
   bool rests_;

@@ -1,4 +1,4 @@
-#include <tactus/arm_plants/person.hpp>
+#include <tactus/arm_plants/tool_operator.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +7,7 @@
 
 namespace tactus::arm_plants {
 
-Person::Person(const Params& params, Seconds tick, const ToolState& tool, const signal::LowPass& low_pass)
+ToolOperator::ToolOperator(const Params& params, Seconds tick, const ToolState& tool, const signal::LowPass& low_pass)
     : hand_(params.hand),
       correction_gain_per_s_(params.correction_gain_per_s),
       tremor_amplitude_m_(params.tremor_amplitude_m),
@@ -18,14 +18,14 @@ Person::Person(const Params& params, Seconds tick, const ToolState& tool, const 
       felt_m_(static_cast<std::size_t>(std::lround(params.reaction_time_s / tick.value)) + 1, Vector3::Zero()),
       aim_m_(tool.position_m) {}
 
-Result<Person> Person::make(const Params& params, Seconds tick, const ToolState& tool) {
+Result<ToolOperator> ToolOperator::make(const Params& params, Seconds tick, const ToolState& tool) {
   if (Check wrong = validate(params)) return *std::move(wrong);
   const auto low_pass = signal::LowPass::make({.cutoff_Hz = params.correction_bandwidth_Hz}, tick);
   if (!low_pass) return under("correction_bandwidth_Hz", low_pass.error());
-  return Person(params, tick, tool, *low_pass);
+  return ToolOperator(params, tick, tool, *low_pass);
 }
 
-Vector3 Person::tremor_m(std::int64_t tick) const {
+Vector3 ToolOperator::tremor_m(std::int64_t tick) const {
   if (tremor_amplitude_m_ == 0.0) return Vector3::Zero();
   Vector3 shakes;
   for (int axis = 0; axis < 3; ++axis) {
@@ -35,7 +35,7 @@ Vector3 Person::tremor_m(std::int64_t tick) const {
   return shakes;
 }
 
-void Person::begin_tick(const Vector3& path_m, const Vector3& path_at_next_tick_m, const ToolState& tool) {
+void ToolOperator::begin_tick(const Vector3& path_m, const Vector3& path_at_next_tick_m, const ToolState& tool) {
   Vector3 felt;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
@@ -50,7 +50,7 @@ void Person::begin_tick(const Vector3& path_m, const Vector3& path_at_next_tick_
   correction_m_ += correction_m_per_s * tick_s_;
 }
 
-ToolForce Person::force(const ToolState& tool, double since_tick_s) const {
+ToolForce ToolOperator::force(const ToolState& tool, double since_tick_s) const {
   // Half of the sum of the axes' cross products: the turn that is missing, for small ones.
   Vector3 turned = Vector3::Zero();
   for (int axis = 0; axis < 3; ++axis) turned += 0.5 * tool.rotation.col(axis).cross(attitude_.col(axis));

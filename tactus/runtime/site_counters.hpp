@@ -49,11 +49,11 @@ struct SiteSecond {
   double peak_force_N = 0.0;  ///< of the motor, either way
 };
 
-/// The books of a site, kept from the record of each tick. A value; real-time safe.
-class SiteBooks {
+/// The counters of a site, kept from the record of each tick. A value; real-time safe.
+class SiteCounters {
  public:
   /// Of a site whose gate lets the force change by `force_step_limit_N` a tick.
-  SiteBooks(control::SiteRole role, double tick_s, double force_step_limit_N) : role_(role), tick_s_(tick_s) {
+  SiteCounters(control::SiteRole role, double tick_s, double force_step_limit_N) : role_(role), tick_s_(tick_s) {
     totals_.force_step_limit_N = force_step_limit_N;
   }
 

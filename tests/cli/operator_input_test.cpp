@@ -1,5 +1,5 @@
 #include <tactus/cli/line_writer.hpp>
-#include <tactus/cli/person.hpp>
+#include <tactus/cli/operator_input.hpp>
 
 #include <array>
 #include <chrono>
@@ -65,10 +65,10 @@ bool eventually(const std::function<bool()>& holds) {
   return false;
 }
 
-class PersonAtASite : public ::testing::Test {
+class OperatorAtASite : public ::testing::Test {
  protected:
   void begin(SiteRole role = SiteRole::master) {
-    auto made = Person::listen_to(typed.ends[0], role, exchange, lines);
+    auto made = OperatorInput::listen_to(typed.ends[0], role, exchange, lines);
     ASSERT_TRUE(made);
     person = *std::move(made);
   }
@@ -82,10 +82,10 @@ class PersonAtASite : public ::testing::Test {
   Pipe typed, terminal;
   SiteExchange exchange;
   LineWriter lines{terminal.ends[1]};
-  std::unique_ptr<Person> person;
+  std::unique_ptr<OperatorInput> person;
 };
 
-TEST_F(PersonAtASite, IsHeardInOrderWhileNobodyReadsTheTerminal) {
+TEST_F(OperatorAtASite, IsHeardInOrderWhileNobodyReadsTheTerminal) {
   terminal.fill();
   begin();
   typed.write("arm\nnonsense\nrelease\n");
@@ -96,7 +96,7 @@ TEST_F(PersonAtASite, IsHeardInOrderWhileNobodyReadsTheTerminal) {
   EXPECT_FALSE(exchange.person_lost);
 }
 
-TEST_F(PersonAtASite, MayTypeAheadOfTheSite) {
+TEST_F(OperatorAtASite, MayTypeAheadOfTheSite) {
   begin();
   std::string many;
   for (int i = 0; i < 50; ++i) many += "press\nrelease\n";
@@ -107,7 +107,7 @@ TEST_F(PersonAtASite, MayTypeAheadOfTheSite) {
   }
 }
 
-TEST_F(PersonAtASite, IsGoneWhereTheInputEndsAfterTheLastWord) {
+TEST_F(OperatorAtASite, IsGoneWhereTheInputEndsAfterTheLastWord) {
   begin();
   typed.write("clutch\nunclutch");
   typed.close_input();
@@ -119,7 +119,7 @@ TEST_F(PersonAtASite, IsGoneWhereTheInputEndsAfterTheLastWord) {
   EXPECT_NE(terminal.read_to_end().find("standard input has ended: that is `release`"), std::string::npos);
 }
 
-TEST_F(PersonAtASite, IsGoneWhereTheInputFails) {
+TEST_F(OperatorAtASite, IsGoneWhereTheInputFails) {
   close(typed.ends[0]);
   typed.ends[0] = open("/dev/null", O_WRONLY);
   begin();

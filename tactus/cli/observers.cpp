@@ -1,4 +1,4 @@
-#include <tactus/cli/onlookers.hpp>
+#include <tactus/cli/observers.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/text.hpp>
 
@@ -38,16 +38,17 @@ Result<live::ServerOptions> place_of(const std::string& text) {
 
 }  // namespace
 
-void add_onlooker_options(CLI::App& verb, OnlookerOptions& options) {
-  constexpr const char* group = "Who looks on, in real time";
-  verb.add_option("--live", options.live,
-                  "Show every tick to Foxglove and PlotJuggler here; without a value, at a free port of the loopback")
+void add_observer_options(CLI::App& verb, ObserverOptions& options) {
+  constexpr const char* group = "Observers, in real time";
+  verb.add_option(
+          "--live", options.live,
+          "Serve every control cycle to Foxglove and PlotJuggler; without a value, on a free port of the loopback")
       ->type_name("[[HOST:]PORT]")
       ->expected(0, 1)
       ->group(group);
   CLI::Option* const ros2 =
       verb.add_flag("--ros2", options.ros2,
-                    "Publish to ROS 2 nodes under CRTK names; alone, run the taps and take operator/servo_jp too")
+                    "Publish to ROS 2 nodes under CRTK names; alone, run the taps and accept operator/servo_jp too")
           ->group(group);
   verb.add_option("--namespace", options.name_space, "Namespace of the ROS 2 topics")
       ->type_name("NAME")
@@ -55,10 +56,10 @@ void add_onlooker_options(CLI::App& verb, OnlookerOptions& options) {
       ->group(group);
 }
 
-Result<Onlookers> Onlookers::open(const OnlookerOptions& options, const experiments::Request& request,
+Result<Observers> Observers::open(const ObserverOptions& options, const experiments::Request& request,
                                   const std::optional<control::SiteRole>& site,
                                   const std::vector<std::string>& joints) {
-  Onlookers made;
+  Observers made;
   if (options.live) {
     const auto where = place_of(*options.live);
     if (!where) return where.error();
@@ -82,7 +83,7 @@ Result<Onlookers> Onlookers::open(const OnlookerOptions& options, const experime
   return made;
 }
 
-Check Onlookers::begin(const std::function<void(const std::string&)>& say) {
+Check Observers::begin(const std::function<void(const std::string&)>& say) {
   if (view_) {
     auto server = live::Server::start(where_, {}, *view_);
     if (!server) {
@@ -96,7 +97,7 @@ Check Onlookers::begin(const std::function<void(const std::string&)>& say) {
   return ros2_ ? ros2_->start() : std::nullopt;
 }
 
-std::string Onlookers::end() {
+std::string Observers::end() {
   std::string told;
   if (server_) {
     const live::ServerCounts counts = server_->counts();

@@ -1,6 +1,6 @@
 #include <tactus/control/agreed_parameters.hpp>
 #include <tactus/link/datagram.hpp>
-#include <tactus/runtime/site_misfit.hpp>
+#include <tactus/runtime/site_mismatch.hpp>
 
 namespace tactus::runtime {
 
@@ -10,15 +10,15 @@ std::string counted(std::size_t joints) { return joints == 1 ? "1 joint" : std::
 
 }  // namespace
 
-std::string describe(const SiteMisfit& misfit, control::SiteRole role) {
-  const auto found = control::first_disagreement(misfit.agreement);
-  return describe(misfit, role, found ? &*found : nullptr, "start both with the same experiment and the same --set");
+std::string describe(const SiteMismatch& mismatch, control::SiteRole role) {
+  const auto found = control::first_disagreement(mismatch.agreement);
+  return describe(mismatch, role, found ? &*found : nullptr, "start both with the same experiment and the same --set");
 }
 
-std::string describe(const SiteMisfit& misfit, control::SiteRole role, const control::Disagreement* found,
+std::string describe(const SiteMismatch& mismatch, control::SiteRole role, const control::Disagreement* found,
                      std::string_view remedy) {
   const std::string other = role == control::SiteRole::master ? "the slave" : "the master";
-  switch (misfit.keys) {
+  switch (mismatch.keys) {
     case KeyTrouble::none:
       break;
     case KeyTrouble::other_key:
@@ -29,12 +29,12 @@ std::string describe(const SiteMisfit& misfit, control::SiteRole role, const con
     case KeyTrouble::own_none:
       return other + " has a key, and this site sends plain text: start both with --key and the same file";
   }
-  if (misfit.other_version != 0) {
-    return other + " speaks version " + std::to_string(misfit.other_version) + " of the wire format and this site " +
+  if (mismatch.other_version != 0) {
+    return other + " speaks version " + std::to_string(mismatch.other_version) + " of the wire format and this site " +
            std::to_string(link::datagram_version) + ": run the same tactus at both";
   }
-  if (misfit.other_joints != 0) {
-    return other + " has " + counted(misfit.other_joints) +
+  if (mismatch.other_joints != 0) {
+    return other + " has " + counted(mismatch.other_joints) +
            ", and this site another number: drive sides with the same joints at both";
   }
   if (found == nullptr) {

@@ -1,4 +1,4 @@
-#include <tactus/diagnosis/told_velocity.hpp>
+#include <tactus/diagnosis/reported_velocity.hpp>
 #include <tactus/signal/random.hpp>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace tactus::diagnosis {
-namespace told_velocity_test {
+namespace reported_velocity_test {
 
 struct Motion {
   std::vector<double> position, velocity;
@@ -26,25 +26,25 @@ Motion motion(double scale, double step_rad_per_s = 0.022) {
   return found;
 }
 
-TEST(ToldVelocity, ItsScaleIsFoundThroughTheStepsOfDrives) {
+TEST(ReportedVelocity, ItsScaleIsFoundThroughTheStepsOfDrives) {
   for (const double scale : {0.22, 1.0, 2.0, 4.5, -1.0}) {
     const Motion told = motion(scale);
-    const auto found = told_scale(told.position, told.velocity, Seconds{1e-3});
+    const auto found = reported_scale(told.position, told.velocity, Seconds{1e-3});
     ASSERT_TRUE(found) << scale;
     EXPECT_NEAR(*found, std::fabs(scale), 0.02 * std::fabs(scale));
-    EXPECT_EQ((ToldVelocity{.scale = *found}.wrong()), std::fabs(scale) != 1.0);
+    EXPECT_EQ((ReportedVelocity{.scale = *found}.wrong()), std::fabs(scale) != 1.0);
   }
 }
 
-TEST(ToldVelocity, NothingIsToldOfAnArmThatRestsOrOfWhatDoesNotGoTogether) {
+TEST(ReportedVelocity, NothingIsToldOfAnArmThatRestsOrOfWhatDoesNotGoTogether) {
   const std::vector<double> rest(4000, 0.3), none(4000, 0.0);
-  EXPECT_FALSE(told_scale(rest, none, Seconds{1e-3}));
-  EXPECT_FALSE(told_scale(motion(1.0).position, none, Seconds{1e-3}));
+  EXPECT_FALSE(reported_scale(rest, none, Seconds{1e-3}));
+  EXPECT_FALSE(reported_scale(motion(1.0).position, none, Seconds{1e-3}));
   signal::Random random(1);
   std::vector<double> noise;
   for (int k = 0; k < 4000; ++k) noise.push_back(random.normal());
-  EXPECT_FALSE(told_scale(motion(1.0).position, noise, Seconds{1e-3}));
+  EXPECT_FALSE(reported_scale(motion(1.0).position, noise, Seconds{1e-3}));
 }
 
-}  // namespace told_velocity_test
+}  // namespace reported_velocity_test
 }  // namespace tactus::diagnosis
