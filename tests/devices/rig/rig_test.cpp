@@ -1,3 +1,4 @@
+#include <tactus/devices/plugin/driver_registry.hpp>
 #include <tactus/devices/rig/rig.hpp>
 
 #include <filesystem>
@@ -95,10 +96,13 @@ TEST(Rig, EveryMistakeIsToldWithItsLineAndRemedy) {
       "watchdog_s, elbow");
   EXPECT_EQ(problem_of(side + "patience_s = 0.002\n" + one),
             "rig.toml:4:1: arm.leader.patience_s: this key is now called reply_timeout_s");
+  std::string registered;  // by other cases of this process
+  for (const DriverKind& driver : driver_kinds()) registered += ", " + driver.name;
   EXPECT_EQ(
       problem_of("[arm.leader]\nbus = \"damiau\"\nport = \"/dev/a\"\n" + one),
       "rig.toml:2:7: arm.leader.bus: 'damiau' is not a bus that tactus can drive; write one of damiao, dynamixel, "
-      "feetech, inverse3, or load the driver with `tactus --plugin FILE.so`");
+      "feetech, inverse3" +
+          registered + ", or load the driver with `tactus --plugin FILE.so`");
   EXPECT_EQ(problem_of("[arm.leader]\nport = \"/dev/a\"\n" + one),
             "rig.toml:1:6: arm.leader.bus: this key is needed: write bus = \"...\" under [arm.leader]");
   EXPECT_EQ(problem_of("[arm.leader]\nbus = \"damiao\"\n" + one),
