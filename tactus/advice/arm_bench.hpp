@@ -44,9 +44,9 @@ struct ArmBench {
   std::optional<double> asked_gain;                   ///< the force gain that was given
 };
 
-/// From a document on which the files of `--with` and the values of `set` stand already. Only `set` holds conditions:
-/// other files describe the pair, and what they recommend is searched again. One hand where `set` has a key of
-/// `operator`, or where the file's own is as soft as `light_grip`; one pose or direction where it has that.
+/// From a document on which the files of `--with` and the values of `set` are already applied. Only `set` holds
+/// conditions: other files describe the pair, and what they recommend is searched again. One hand where `set` has a key
+/// of `operator`, or where the file's own is as soft as `light_grip`; one pose or direction where it has that.
 ///
 /// Errors: those of reading the document and of `ArmTaps::make`, where the document has them.
 Result<ArmBench> make_arm_bench(configuration::Document document, const std::vector<std::string>& set);

@@ -19,7 +19,7 @@ inline constexpr double most_drive_damping_N_m_s_per_rad = 5.0;
 /// follower's share of its stiffness, limits at its tool, and a dead band of its observer. With elastic joints the
 /// observer, and the model that is cancelled with, may take them for elastic or rigid. Every key of a choice is set, so
 /// nothing that a file recommends is left over. What is no coupling's choice but the pair's own (the follower's gains,
-/// feed-forward, the source of torque, the hand that the model believes in) stays as `params` has it.
+/// feed-forward, the source of torque, the hand of the model) stays as `params` has it.
 std::vector<Dimension> arm_dimensions(const experiments::ArmTappingParams& params, std::size_t joints);
 
 /// Whether the joints of the follower, be it like the leader or another arm, are elastic.

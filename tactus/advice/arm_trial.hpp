@@ -13,7 +13,7 @@
 /// Trying configurations of two arms in several hands, poses and directions.
 namespace tactus::advice {
 
-/// A tap: who holds the leader, where the arms stand and the surface lies, and what draws its speed, depth and errors
+/// A tap: who holds the leader, where the arms are and the surface lies, and what draws its speed, depth and errors
 /// of the model.
 struct Situation {
   std::size_t hand = 0;  ///< of the bench

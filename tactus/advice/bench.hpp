@@ -22,8 +22,8 @@ struct Bench {
   std::vector<std::string> set = {};   ///< of what was given, the values that are in no file: `key=value`
 };
 
-/// From a document on which the files of `with` and the values of `set` stand already. What is known comes from the
-/// results.json alongside a file that holds the controller's model; without one, from the document's
+/// From a document on which the files of `with` and the values of `set` are already applied. What is known comes from
+/// the results.json alongside a file that holds the controller's model; without one, from the document's
 /// `task.model_error`, which then counts for the searched rigs and no longer for each tap. Errors: `inconsistent` for
 /// another kind than tapping; those of reading the files.
 Result<Bench> make_bench(configuration::Document document, const std::vector<std::string>& with,

@@ -6,7 +6,7 @@
 namespace tactus::arm {
 
 /// A hand that holds a tool: a spring and a damper from the tool to where the hand wants it, in every direction alike,
-/// and a mass that moves with it. It holds the tool's attitude as two such springs would that stand `lever_m` to either
+/// and a mass that moves with it. It holds the tool's attitude as two such springs would at `lever_m` to either
 /// side of it: by stiffness·lever² in N m/rad, and damped so.
 struct HandImpedance {
   double mass_kg = 0.1;

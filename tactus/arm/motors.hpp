@@ -2,7 +2,7 @@
 
 #include <tactus/arm/chain.hpp>
 
-/// What the motors of an arm tell and are told.
+/// What the motors of an arm report and receive.
 namespace tactus::arm {
 
 /// Of all motors at one instant. Positions count at the motor's side of an elastic joint, in rad of the joint.

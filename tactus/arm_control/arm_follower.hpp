@@ -25,8 +25,8 @@ constexpr auto enumerators(TorqueSource) {
 /// An observer of external torque, of rigid joints or of elastic ones, and what of it is assumed.
 ///
 /// A joint that rests bears any torque within its Coulomb friction, and an observer cannot determine that from one from
-/// outside. A dead band tells only what exceeds it: |r| − share·Coulomb, with the sign of r, or nothing. Without it, a
-/// false torque stands against the hand, times the gain; along a direction in which the tool hardly moves it is a
+/// outside. A dead band passes only what exceeds it: |r| − share·Coulomb, with the sign of r, or nothing. Without it, a
+/// false torque pushes against the hand, times the gain; along a direction in which the tool hardly moves it is a
 /// large force. With it, forces within friction are not felt.
 struct TorqueObserverParams : ExternalTorqueObserver::Params {
   JointModel joints = JointModel::rigid;
@@ -42,10 +42,10 @@ struct TorqueObserverParams : ExternalTorqueObserver::Params {
 };
 
 /// The site of the arm that touches things: its drives pull it to where the leader wants it, by their own law, and it
-/// tells the torque from outside. What their gains come to at the tool beyond its limits is taken away over the bus
+/// sends the external torque. What their gains come to at the tool beyond its limits is taken away over the bus
 /// (`ToolLimit`), with passive ports it may stay behind (`PassiveFollower`), and in free motion the torque of the
 /// wanted motion is added there (`WantedMotion`). What the bus carries saturates at each joint's effort limit, at 100 N
-/// m at most. Gates are behind it (`follower_site`). With the coupling `tool` it receives and tells three numbers,
+/// m at most. Gates are behind it (`follower_site`). With the coupling `tool` it receives and sends three numbers,
 /// those of the leader's handle.
 class ArmFollower {
  public:
@@ -107,7 +107,7 @@ class ArmFollower {
   /// `inconsistent` for it with four-channel, which couples joints.
   static Result<ArmFollower> make(const Params& params, const Arm& arm, Seconds dt);
 
-  /// One tick. `heard` is what the leader told; `sensed` is external torque as sensors in the joints tell it; not
+  /// One tick. `heard` is what the leader sent; `sensed` is external torque as sensors in the joints measure it; not
   /// looked at where an observer is. Real-time safe.
   Output step(const ArmReading& reading, const JointVector& sensed, const ArmMessage& heard) noexcept;
 
@@ -130,7 +130,7 @@ class ArmFollower {
   std::optional<ToolCoupling> tool_coupling_;
   std::optional<FourChannel> four_channel_;
   PassiveFollower passivity_;
-  JointVector told_;  ///< what it told last of torque from outside
+  JointVector told_;  ///< the external torque that it sent last
   JointVector most_;  ///< torque of the bus
   bool observes_;
   JointVector dead_band_;

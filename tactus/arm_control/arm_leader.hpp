@@ -62,7 +62,7 @@ struct DriveDamping {
 ///
 /// of which the second part is displayed and the last is the drives' own. What the last comes to at the tool
 /// beyond a limit is given back over the bus (`ToolLimit`). With `factr` and `feedback_avoidance` it is what their
-/// classes say alongside that, and with passive ports a damper acts alongside it (`PassiveLeader`). With
+/// classes describe in addition, and with passive ports a damper acts alongside it (`PassiveLeader`). With
 /// position-position it is feed-forward and the drives' law, towards the follower; with four-channel what `FourChannel`
 /// adds as well. What the bus carries saturates at each joint's effort limit. Gates are behind it (`leader_site`); the
 /// model of induced motion lives on what `applied` states that they let through. Sources: position-position as

@@ -8,7 +8,7 @@ using arm::ArmCommand;
 using arm::ArmReading;
 using arm::JointVector;
 
-/// What the sites of two arms tell each other, in the leader's joints. The leader reports where the follower shall be;
+/// What the sites of two arms send each other, in the leader's joints. The leader reports where the follower shall be;
 /// the follower where it is and which torque acts on it from outside, positive where it turns the joint up. Both have
 /// those joints, or the follower's site knows what they are to its own (`ToolCoupling`).
 struct ArmMessage {

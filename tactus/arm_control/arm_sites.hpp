@@ -6,9 +6,10 @@
 
 /// The controllers of two arms as sites of several joints, like any other: gates are behind them, supervision around
 /// them, and `station::step` steps them. Of a joint's message the force is the torque from outside that resists it, and
-/// its device reports velocity and torque of its motors and takes a law (`control::DriveLaw`). What the site assumes to
-/// carry the arm is its support: it stays while the coupling comes and goes. Where the leader leads the tool
-/// (`ToolCoupling`) the follower's first three joints carry the messages of the leader's three; its others say nothing.
+/// its device reports velocity and torque of its motors and takes a law (`control::DriveLaw`). The gravity
+/// compensation of the site is its support: it stays while the coupling comes and goes. Where the leader leads the tool
+/// (`ToolCoupling`) the follower's first three joints carry the messages of the leader's three; its others carry
+/// nothing.
 namespace tactus::arm_control {
 
 /// The last limits before the drive of each joint, for an arm in virtual time: as wide as a gate can be, so that
@@ -23,7 +24,7 @@ Result<control::JointMasterSite> leader_site(const ArmLeader::Params& params, co
                                              const Joints<control::SafetyGate::Params>& gates, Seconds dt,
                                              const Joints<DriveGains>& beside = {});
 /// The same of the arm that touches things. What its device reads as force at the tip is taken for what sensors in the
-/// joints tell, where `params.torque` states it.
+/// joints measure, where `params.torque` states it.
 Result<control::JointSlaveSite> follower_site(const ArmFollower::Params& params, const ArmFollower::Arm& arm,
                                               const Joints<control::SafetyGate::Params>& gates, Seconds dt,
                                               const Joints<DriveGains>& beside = {});

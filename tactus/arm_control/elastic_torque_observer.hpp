@@ -19,7 +19,7 @@ namespace tactus::arm_control {
 /// itself where a joint swings, and of the wrong sign beyond. F delays by 2/(2π·cutoff) what is slow, twice as long as
 /// one of first order. A joint with a corner of its own has a row of that filter's, over the signals of all. Damping of
 /// the springs is left out, and c and gravity are taken where the motors are. Positive in the direction in which the
-/// position grows. Starts at rest with nothing from outside, whatever torque the first reading tells: before its first
+/// position grows. Starts at rest with nothing from outside, whatever torque the first reading has: before its first
 /// command a drive reports none, though the arm has weight. Sources: A. De Luca, A. Albu-Schäffer, S. Haddadin, G.
 /// Hirzinger, Collision detection and safe reaction with the DLR-III lightweight robot arm, IROS 2006 (links behind
 /// springs, with sensors of τ_J); M. W. Spong, Modeling and control of elastic joint robots, 1987 (the model).

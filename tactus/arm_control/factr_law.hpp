@@ -8,14 +8,14 @@ namespace tactus::arm_control {
 using arm::ArmReading;
 using arm::JointVector;
 
-/// What FACTR's leader does alongside carrying itself and displaying a share of the follower's torque:
+/// What FACTR's leader does in addition to gravity compensation and to displaying a share of the follower's torque:
 ///
 ///     τ = Coriolis ± dither·|bias| + (I − J⁺J)·(−k_n·(q − q0) − d_n·q̇) + limits − damping·q̇
 ///
 /// - Friction is dithered: below a speed, a share of gravity and Coriolis torque is added and taken in turn, a tick
 ///   each.
 /// - A weak spring and damper act in the null space of J, the tool's motion in all six ways: towards the pose at the
-///   first tick, without moving the tool. Six joints that are not singular have none.
+///   first tick, without moving the tool. Six joints that are not singular have no such motion.
 /// - Within a margin of a joint's limits: −k_l·(q − limit ± margin) − d_l·q̇.
 ///
 /// Gains are as released for a Franka leader of Dynamixel motors; the released null-space target is a pose of that arm.

@@ -31,11 +31,11 @@ constexpr auto enumerators(InertiaModel) {
 /// motion. What the site's own friction feed-forward takes away is not there. It enters as a damper of the size of its
 /// secant, so that the implicit step below holds it whatever it is.
 ///
-/// Slow motion is washed out of what is told (first-order high-pass, `washout_Hz`): the operator corrects it, and a
+/// Slow motion is washed out of the estimate (first-order high-pass, `washout_Hz`): the operator corrects it, and a
 /// model without that correction would let the follower press ever harder. At 0 it is left in.
 ///
 /// Elastic joints have a motor and a link each: the armature turns with w, the rest of M and the hand with the links,
-/// and springs and dampers lie between. Position and velocity told are the motors', which drives measure.
+/// and springs and dampers lie between. Position and velocity are the motors', which drives measure.
 ///
 /// One step of the trapezoidal rule a tick, friction by implicit Euler: stable at any stiffness, without damping of its
 /// own. M and J are those of the measured position. Position and velocity at a tick are the effect of torques up to

@@ -113,7 +113,7 @@ class PassiveFollower {
   PassiveFollower(const PassivityCoupling& coupling, int joints, Seconds dt);
 
   [[nodiscard]] bool counts() const noexcept { return port_ != PassivePort::none; }
-  /// Moves what the leader wants to where the follower may go. `told` is the torque in N m from outside that was told
+  /// Moves what the leader wants to where the follower may go. `told` is the torque in N m from outside that was sent
   /// last. Once a tick. Real-time safe.
   void hold_back(ArmMessage& wanted, const JointVector& told) noexcept;
   /// As of the leader.

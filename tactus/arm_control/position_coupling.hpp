@@ -4,7 +4,7 @@
 
 #include <optional>
 
-/// How old what two arms hear of each other may be, where each is pulled to the other's position by its own drives.
+/// How old the readings of the other arm may be, where each is pulled to the other's position by its own drives.
 ///
 ///     leader:    M₁ q̈₁ + B₁ q̇₁ + K₁ q₁ + Kp (q₁ − q₂(t − T)) + Kd (q̇₁ − σ q̇₂(t − T)) = 0 ,   and the follower alike.
 ///

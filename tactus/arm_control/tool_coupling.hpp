@@ -58,7 +58,7 @@ class ToolCoupling {
   /// Where the follower's joints shall be and how fast, at this tick; the external torque is 0. Of the leader the first
   /// three numbers count. The first call engages, where leader and follower are. Real-time safe.
   ArmMessage wanted(const ArmMessage& leader, const JointVector& position) noexcept;
-  /// What the follower tells in the leader's three joints: where the handle would be for the tool to be where it is, in
+  /// What the follower sends in the leader's three joints: where the handle would be for the tool to be where it is, in
   /// m and m/s, and the force in N. After `wanted`. Real-time safe.
   [[nodiscard]] ArmMessage told(const ArmReading& reading, const JointVector& external_torque) const noexcept;
 

@@ -15,7 +15,7 @@ using arm::JointVector;
 ///
 ///     τ = (1 − s)·(M(q)·a + viscous·v + Coulomb·tanh(v/v1))
 ///
-/// v and a are the velocity that the leader tells and its derivative, both behind a Butterworth low-pass of second
+/// v and a are the velocity that the leader sends and its derivative, both behind a Butterworth low-pass of second
 /// order whose states they are. No part of it is the follower's own motion but the slow M(q), so it closes no loop in
 /// free motion. (Friction that is made good by the measured velocity does, and halves the gain that settles.)
 ///
@@ -48,7 +48,7 @@ class WantedMotion {
                                    Seconds dt);
 
   [[nodiscard]] bool adds() const noexcept { return corner_rad_per_s_ > 0.0; }
-  /// In N m, where it adds any. Once a tick: `wanted` is the velocity that the leader tells, `external` the torque from
+  /// In N m, where it adds any. Once a tick: `wanted` is the velocity that the leader sends, `external` the torque from
   /// outside in N m, without a dead band. Real-time safe.
   JointVector step(const ArmReading& reading, const JointVector& wanted, const JointVector& external) noexcept;
 

@@ -16,7 +16,7 @@ inline constexpr int local_parameters = 7;
 /// What is found for a joint: its body as a logarithm of a Cholesky factor (10), then those of the joint.
 inline constexpr int joint_coordinates = arm::body_parameters + local_parameters;
 
-/// What the data say of one joint's effort, in the sums that least squares needs: effort ≈ scale · (columns ·
+/// What the data contain of one joint's effort, in the sums that least squares needs: effort ≈ scale · (columns ·
 /// parameters), with the bodies of all joints as columns, then the joint's own `local_parameters`.
 struct JointSums {
   Eigen::MatrixXd normal;  ///< columnsᵀ·columns
@@ -66,8 +66,8 @@ struct ConsistentFit {
 /// A body is a heap of masses of any density but negative, however far the data pull: its pseudo-inertia is U·Uᵀ with U
 /// upper triangular and its diagonal exponentials, and everything that cannot be negative is an exponential. Prior
 /// deviations: mass a factor of 4.5, lengths of gyration one of 3.3, centre 1.5 lengths of gyration; armature a factor
-/// of 4.5, friction one of e², the velocity within which it turns round one of 4.5. Where data say nothing the prior
-/// stays, and `covariance` is that of the prior. Levenberg-Marquardt on the sums, in steps of at most one prior
+/// of 4.5, friction one of e², the velocity within which it turns round one of 4.5. Where data contain nothing the
+/// prior stays, and `covariance` is that of the prior. Levenberg-Marquardt on the sums, in steps of at most one prior
 /// deviation: a longer one can make an exponential so small that nothing pulls it back. Deterministic; not real-time
 /// safe. Sources: Rucker and Wensing, Smooth parameterization of rigid-body inertia, IEEE RA-L 7(2), 2022; Traversaro
 /// et al., Identification of fully physical consistent inertial parameters using optimization on manifolds, IROS 2016.

@@ -66,7 +66,7 @@ struct ArmExcitation {
 
 inline constexpr int compared_motions = 9;
 
-/// Finds the motion within limits whose torques tell most of an arm.
+/// Finds the motion within limits whose torques determine most of an arm.
 ///
 /// The criterion is D-optimality as the fit will see it: the log-determinant of 1 + Dᵀ(Σ YᵀWY)D, with Y the regressor
 /// of bodies, armature, Coulomb and viscous friction and offset, W one over the variance of each joint's noise, and D
@@ -74,10 +74,10 @@ inline constexpr int compared_motions = 9;
 /// shows in Y, and each in the unit of its doubt. Starting from several random series it is raised by `minimise` with
 /// analytic slopes but for those of Y, limits as growing penalties, until no limit is left at a hundred instants of the
 /// highest harmonic's period; the best is taken. The same for the same seed. Torques are those of
-/// the URDF with a friction of a tenth of the torques' size where it has none. Bodies that touch one another or
-/// themselves are not looked at, only `points`.
+/// the URDF with a friction of a tenth of the torques' size if the URDF has no friction. Bodies that touch one another
+/// or themselves are not looked at, only `points`.
 ///
-/// `progress` is told the share that is done, from 0 to 1. Takes seconds. Not real-time safe.
+/// `progress` receives the share that is done, from 0 to 1. Takes seconds. Not real-time safe.
 ///
 /// Errors: `missing` for a joint without limits of position (unless it turns without end: then ±π), velocity or effort;
 /// `out_of_bounds` for a number of the request, `inconsistent` for fewer than two harmonics or more than 20, and for

@@ -36,7 +36,7 @@ struct ArmIdentification {
   /// Efforts are of a unit of their own at each joint, such as motor currents: the URDF determines how much of it is a
   /// N m.
   bool scaled_efforts = false;
-  int base_parameters = 0;  ///< combinations that any motion could tell at all
+  int base_parameters = 0;  ///< combinations that any motion could determine at all
   int determined_combinations =
       0;  ///< those that these recordings determine better than the URDF does, friction included
 };
@@ -44,7 +44,7 @@ struct ArmIdentification {
 /// Finds the dynamics of an arm from free motion of all its joints.
 ///
 /// Effort = scale · (rigid bodies + armature + friction). Bodies, armatures and friction are the most probable ones
-/// given the recordings and, where these say nothing, `urdf`; they are such that bodies can have them
+/// given the recordings and, where these determine nothing, `urdf`; they are such that bodies can have them
 /// (`fit_consistently`). Each joint counts by what is left of it, and by how long that stays correlated. The velocity
 /// within which friction turns round is an unknown like the others, so its doubt is in every interval. Whether friction
 /// grows with load or in slow motion is chosen for each joint by cross-validation over four blocks. The scales are 1

@@ -48,7 +48,8 @@ class MotionInformation {
   [[nodiscard]] MotionUse use(const FourierMotion& motion, int instants) const;
   /// Sums of a motion that lasts its period once, for `fit_consistently`; efforts are as the prior has them.
   [[nodiscard]] std::vector<JointSums> sums(const FourierMotion& motion, int instants) const;
-  /// Eigenvalues, least first, of the information over that of the prior: 1 where a motion tells as much as was known.
+  /// Eigenvalues, least first, of the information over that of the prior: 1 where a motion determines as much as was
+  /// known.
   [[nodiscard]] Eigen::VectorXd gains(const FourierMotion& motion, int instants) const;
 
  private:

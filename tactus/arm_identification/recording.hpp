@@ -24,11 +24,11 @@ struct ArmRecording {
   std::filesystem::path file = {};
   std::vector<std::string> position_names = {};
   std::vector<std::string> effort_names = {};
-  std::string effort_unit = {};                    ///< as the file has it, of the first joint; empty where it has none
+  std::string effort_unit = {};                    ///< as the file has it, of the first joint; empty if it has no unit
   double start_s = 0.0;                            ///< what the file states of the first sample
   Seconds sample_time{0.0};                        ///< mean over the file
   std::vector<std::vector<double>> position = {};  ///< [rad], m of joints that slide
-  std::vector<std::vector<double>> velocity = {};  ///< [rad/s]; empty where the file has none
+  std::vector<std::vector<double>> velocity = {};  ///< [rad/s]; empty if the file has no velocity
   std::vector<std::vector<double>> effort = {};    ///< [as in the file]
 
   [[nodiscard]] std::size_t joints() const { return position.size(); }
@@ -50,7 +50,7 @@ Result<ArmRecording> read_arm(const std::filesystem::path& file, const ArmColumn
 /// A pause of so long is bridged, whatever the sampling.
 inline constexpr double longest_pause_s = 0.03;
 
-/// A joint as its drive told it, each value at a time of its own; times rise.
+/// A joint as its drive reported it, each value at a time of its own; times rise.
 struct ToldJoint {
   std::vector<double> time_s = {};
   std::vector<double> position = {};  ///< rad, m of one that slides
@@ -58,9 +58,9 @@ struct ToldJoint {
   std::vector<double> effort = {};    ///< N m, N of one that slides
 };
 
-/// Drives that did not tell at the same time, as a recording at equal steps: what all of them told, on straight lines
-/// between samples. `names` and `joints` go together. Errors: `inconsistent` for joints that have less than two samples
-/// in common, or that tell nothing for longer than ten steps and 30 ms. Not real-time safe.
+/// Drives that did not report at the same time, as a recording at equal steps: what all of them reported, on straight
+/// lines between samples. `names` and `joints` go together. Errors: `inconsistent` for joints that have less than two
+/// samples in common, or that report nothing for longer than ten steps and 30 ms. Not real-time safe.
 Result<ArmRecording> recording_of(const std::filesystem::path& file, const std::vector<ToldJoint>& joints,
                                   const std::vector<std::string>& names, Seconds sample_time);
 

@@ -7,8 +7,8 @@
 
 namespace tactus::arm_plants {
 
-/// A simulated arm behind its bus, as the device of a site: drives that tell velocity and torque and run a law, of
-/// which a command acts from the next tick on. Sensors of torque in its joints, where something `touches` it, tell
+/// A simulated arm behind its bus, as the device of a site: drives that report velocity and torque and run a law, of
+/// which a command acts from the next tick on. Sensors of torque in its joints, where something `touches` it, report
 /// exactly that, as the force that pushes back.
 ///
 /// A value: a copy continues by itself. A tick does not allocate.

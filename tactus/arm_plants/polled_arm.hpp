@@ -18,7 +18,7 @@ struct KnownReading {
 
 /// A simulated arm behind a bus that a host polls: at each tick of the host every drive gets a command, and answers
 /// with what it reads then. The host works on answers of an earlier tick. Of a joint whose frames are lost the drive
-/// continues by the law it has, and the host by the reading it has, as openarm_can does; nobody is told.
+/// continues by the law it has, and the host by the reading it has, as openarm_can does, without a report.
 ///
 /// A value: a copy continues by itself. A tick does not allocate.
 /// Source of the order in a tick: openarm_teleop (Apache-2.0), `bilateral_step`.
@@ -28,9 +28,9 @@ class PolledArm {
     /// Control cycles from a command to the cycle that uses its reply: 1 where the host waits for the answers, 2 where
     /// its time for them ends before they come, more where an adapter holds them back. 1 to 1000.
     int answer_ticks = 1;
-    /// Of each joint, the share of the ticks in which it is not heard, 0 to below 1; none for 0 everywhere.
+    /// Of each joint, the share of the ticks without its reply, 0 to below 1; empty for 0 everywhere.
     Joints<double> lost_share = {};
-    /// How many ticks on end it is not heard, the mean. 1 or more.
+    /// Mean number of consecutive ticks without its reply. 1 or more.
     double outage_ticks = 1.0;
     std::uint64_t seed = 1;
   };

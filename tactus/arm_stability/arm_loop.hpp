@@ -23,7 +23,7 @@ struct ArmLinearisation {
 /// from tick to tick (matrix exponential), sites work at the ticks.
 ///
 /// Left out: contact that breaks, steps of the drives, saturation, the observer's dead band, the operator's slow
-/// correction, the curvature that a steady force adds. Coulomb friction is left out, or stands as a damper in the
+/// correction, the curvature that a steady force adds. Coulomb friction is left out, or replaced by a damper in the
 /// arms, in what observers and feed-forward take for it, and in the model (`ArmLinearisation`).
 class ArmLoop {
  public:

@@ -22,7 +22,7 @@ struct Holding {
 /// of the motors, velocities of the motors, positions of the links, velocities of the links, `joints` of each; of rigid
 /// joints motor and link are one. Of `arm` are taken masses, armature, the mass that the tool carries, stiffness and
 /// damping of the joints, and how the weight changes with the pose; not steps, limits, play and friction, for which
-/// `holding.rubbing` stands. The curvature that a steady contact force adds is left out. Not real-time safe.
+/// `holding.rubbing` is. The curvature that a steady contact force adds is left out. Not real-time safe.
 ///
 /// No part of it is the controller's: `tests/arm_stability` holds it against differences of MuJoCo's arm. Errors: those
 /// of `arm::Chain::make`.

@@ -36,7 +36,7 @@ Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options);
 /// Adds `--urdf`, `--tip` and `--gravity` to a command.
 void add_arm_urdf_options(CLI::App& verb, ArmUrdfOptions& options);
 
-/// A recording with these columns, or the stretches of a log (`read_rig_log`), which tells by itself what is what.
+/// A recording with these columns, or the stretches of a log (`read_rig_log`), which names its own columns.
 /// Errors: those of `arm_identification::read_arm` and `read_rig_log`; `missing` for a table without a role,
 /// `inconsistent` for a log with one.
 Result<std::vector<arm_identification::ArmRecording>> read_recordings(const std::string& file,

@@ -20,7 +20,7 @@ void add_device_zero(CLI::App& device, const CLI::App& app, int& status);
 void add_device_limits(CLI::App& device, const CLI::App& app, int& status);
 void add_device_guard(CLI::App& device, const CLI::App& app, int& status);
 
-/// Says an error and sets the exit status; where `well` is false, 1.
+/// Prints an error and sets the exit status; where `well` is false, 1.
 void end_command(const CLI::App& app, const Result<bool>& well, int& status);
 
 }  // namespace tactus::cli

@@ -8,7 +8,7 @@
 
 namespace tactus::cli {
 
-/// What a program that drives motors and the guard process of these motors tell each other, in memory that both map.
+/// What a program that drives motors and the guard process of these motors exchange, in memory that both map.
 /// Each counter has one writer. Real-time safe.
 struct GuardPage {
   std::atomic<std::uint64_t> program_beats{0};  ///< counts while the servo thread ticks and the bus ends cycles

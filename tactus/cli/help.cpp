@@ -118,7 +118,10 @@ void add_examples(CLI::App& app) {
     CLI::App* at = &app;
     for (std::string_view words = example.command; at != nullptr && !words.empty();) {
       const std::size_t end = std::min(words.find(' '), words.size());
-      at = at->get_subcommand_no_throw(std::string(words.substr(0, end)));
+      const std::vector<CLI::App*> below = at->get_subcommands({});
+      const auto named = [name = words.substr(0, end)](const CLI::App* one) { return one->get_name() == name; };
+      const auto found = std::find_if(below.begin(), below.end(), named);
+      at = found == below.end() ? nullptr : *found;
       words.remove_prefix(std::min(end + 1, words.size()));
     }
     if (at == nullptr) continue;

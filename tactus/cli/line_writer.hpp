@@ -10,8 +10,8 @@
 namespace tactus::cli {
 
 /// Lines on their way to a terminal, a pipe or a file. A thread of its own writes them and waits for whoever does not
-/// read; those who say them never wait. They are shown as `printable_lines` states. At most `most_waiting` lines wait;
-/// those that come then are dropped and counted.
+/// read; those who print them never wait. They are shown as `printable_lines` states. At most `most_waiting` lines
+/// wait; those that come then are dropped and counted.
 class LineWriter {
  public:
   static constexpr std::size_t most_waiting = 256;

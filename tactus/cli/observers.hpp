@@ -18,7 +18,7 @@ class App;
 
 namespace tactus::cli {
 
-/// Who looks on at a run at the real clock, alongside its log.
+/// Observers of a run in real time, in addition to its log.
 struct ObserverOptions {
   std::optional<std::string> live;  ///< `[[HOST:]PORT]` of the live page; empty for any free port of the loopback
   bool ros2 = false;
@@ -34,7 +34,7 @@ void add_observer_options(CLI::App& verb, ObserverOptions& options);
 class Observers {
  public:
   /// Opens what is asked for before anything runs; `site` states whose topics go to ROS 2, `joints` how several are
-  /// called there. Errors: a place that is none; those of `ros2::Observer::create`.
+  /// called there. Errors: an invalid place; those of `ros2::Observer::create`.
   static Result<Observers> open(const ObserverOptions& options, const experiments::Request& request,
                                 const std::optional<control::SiteRole>& site = {},
                                 const std::vector<std::string>& joints = {});
@@ -52,7 +52,7 @@ class Observers {
   }
   /// Begins to serve, and states at once where. Errors: those of `live::Server::start` and `ros2::Observer::start`.
   Check begin(const std::function<void(const std::string&)>& say);
-  /// Ends it, and tells in a line for each who saw how much; empty where nobody could.
+  /// Ends it, and reports in a line for each how much it received; empty without observers.
   std::string end();
 
   [[nodiscard]] bool any() const { return view_ || ros2_; }

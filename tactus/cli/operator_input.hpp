@@ -15,15 +15,15 @@ namespace tactus::cli {
 
 /// What a user asks of sites that run: words that come on a descriptor, a line each, and SIGUSR1, which arms. A
 /// thread that does nothing else passes them on, in their order; it never writes, so no terminal keeps a word from
-/// being heard.
+/// being received.
 ///
 /// The dead-man switch is what that descriptor holds: where it ends, is closed or fails, or there is no memory for a
 /// word, nobody is there, and the switch stays released. Its thread alone takes SIGUSR1, so make it before others. One
 /// at a time.
 class OperatorInput {
  public:
-  /// All else must outlive it. A wrong word, and the end at the master, are told on `lines`. Errors: `failed` where the
-  /// system gives no thread.
+  /// All else must outlive it. A wrong word, and the end at the master, are reported on `lines`. Errors: `failed` where
+  /// the system gives no thread.
   static Result<std::unique_ptr<OperatorInput>> listen_to(int descriptor, control::SiteRole role,
                                                           runtime::SiteExchange& exchange, LineWriter& lines);
   OperatorInput(const OperatorInput&) = delete;

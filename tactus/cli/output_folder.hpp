@@ -53,7 +53,7 @@ class OutputFolder {
   Check begin();
   /// Writes a file, all or nothing, after `begin`.
   Check write(const std::string& name, std::string_view content);
-  /// Says where the report is, in a line.
+  /// Prints where the report is, in a line.
   [[nodiscard]] std::string report_line() const;
   /// The same of the log, of which `removed` records went for its limit.
   [[nodiscard]] std::string log_line(std::uint64_t removed = 0) const;

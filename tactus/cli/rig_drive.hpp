@@ -24,7 +24,7 @@ struct RigDrive {
   devices::RigPair pair;
   double rate_Hz;
   std::string configuration;
-  runtime::LogMetadata about;  ///< what else a log has to say, so that it can be replayed
+  runtime::LogMetadata about;  ///< what else a log needs, so that it can be replayed
   /// What a servo thread steps where both sides are here, before devices that outlive it. Errors are those of the
   /// experiment's file.
   std::function<Result<devices::RigLoop>(runtime::SiteExchange&, devices::MotorBusDevice& leader,

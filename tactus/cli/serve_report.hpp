@@ -11,7 +11,7 @@
 
 namespace tactus::cli {
 
-/// What there is to tell of a session of `tactus serve` when it is over.
+/// The report of a session of `tactus serve` when it is over.
 struct ServeSession {
   double duration_s = 0.0;  ///< of the loops
   live::ServerCounts server;

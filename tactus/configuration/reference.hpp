@@ -8,9 +8,9 @@
 
 namespace tactus::configuration {
 
-/// Another page, whose keys a page need not say again.
+/// Another page, whose keys a page need not repeat.
 struct OtherPage {
-  std::string_view kind;  ///< it stands alongside the page, as `kind`.md
+  std::string_view kind;  ///< it is next to the page, as `kind`.md
   std::span<const Binding> bindings;
 };
 

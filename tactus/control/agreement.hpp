@@ -23,7 +23,7 @@ class Agreement {
   static constexpr std::size_t most_cells = 512;
 
   Agreement() = default;
-  /// The one that gave this digest and these cells, at most `most_cells`; it tells and decides what that did.
+  /// The one that gave this digest and these cells, at most `most_cells`; it sends and decides the same.
   Agreement(std::uint64_t digest, std::span<const std::uint64_t> cells) noexcept : digest_(digest) {
     for (const std::uint64_t value : cells) {
       if (size_ < most_cells) cells_[size_++] = value;
@@ -41,7 +41,8 @@ class Agreement {
     for (const char letter : text) fold(static_cast<unsigned char>(letter));
   }
 
-  /// Of all that was added, in order: FNV-1, 64 bits wide. It tells mistakes apart, not forgeries: the link does those.
+  /// Of all that was added, in order: FNV-1, 64 bits wide. It distinguishes mistakes, not forgeries: the link does
+  /// those.
   [[nodiscard]] std::uint64_t digest() const noexcept { return digest_; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::uint64_t operator[](std::size_t cell) const noexcept { return cells_[cell]; }
@@ -84,7 +85,7 @@ class AgreementCheck {
 
   /// Whether the other site was received and works by other parameters.
   [[nodiscard]] bool disagrees() const noexcept { return session_ != 0 && digest_ != own_.digest(); }
-  /// Whether all that it can say of that was received.
+  /// Whether all of its cells were received.
   [[nodiscard]] bool complete() const noexcept { return count_ == own_.size(); }
   /// Number of the first cell known to differ, from 1; 0 for none.
   [[nodiscard]] std::size_t first_difference() const noexcept { return first_; }
@@ -97,7 +98,7 @@ class AgreementCheck {
   Agreement own_;
   std::int64_t session_ = 0;
   std::uint64_t digest_ = 0;
-  std::size_t count_ = 0;  ///< of the cells that were told
+  std::size_t count_ = 0;  ///< of the cells that were sent
   std::size_t first_ = 0;
   std::array<bool, Agreement::most_cells> told_{};
   std::array<std::uint64_t, Agreement::most_cells> other_{};

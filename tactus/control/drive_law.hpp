@@ -5,11 +5,11 @@
 namespace tactus::control {
 
 /// The law that a drive runs by itself, much faster than its bus and without its delay ("MIT mode" of Damiao's and many
-/// others' motors), alongside the force that it is told:
+/// others' motors), in addition to the commanded force:
 ///
 ///     stiffness·(position − its own) + damping·(velocity − its own)
 ///
-/// Where both gains are 0 there is none. In the joint's unit, as all of a site.
+/// Where both gains are 0 there is no law. In the joint's unit, as all of a site.
 struct DriveLaw {
   double position_m = 0.0;
   double velocity_m_per_s = 0.0;
@@ -60,7 +60,7 @@ inline void keep_part(double& force_N, DriveLaw& law, double wanted_N, double pa
   }
 }
 
-/// What a drive tells of its motor alongside its position; zeros where it reports nothing.
+/// What a drive reports of its motor in addition to its position; zeros where it reports nothing.
 struct DriveReport {
   double velocity_m_per_s = 0.0;
   double force_N = 0.0;  ///< that the motor gives to the joint, as the drive assumes, from its current

@@ -21,7 +21,7 @@ constexpr auto enumerators(EncoderFault) {
 /// Whether a measured position can be true.
 ///
 /// A jump: |x(k) − x(k−1)| > v_max · t, t being the time between the two measurements. A spike is one, a counter that
-/// wraps is one, and so is the way back. A freeze: for `frozen_after_s` without a break there was a force that must
+/// wraps is one, and so is the return. A freeze: for `frozen_after_s` without a break there was a force that must
 /// move the device, and not one count came. A device may go and come back between two readings, so a long gap between
 /// them counts for at most half of that time. Such a force is
 ///

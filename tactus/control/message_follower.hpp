@@ -11,14 +11,14 @@
 
 namespace tactus::control {
 
-/// What a site takes the other to say, while messages fail and when they come again.
+/// What a site assumes of the other, while messages fail and when they come again.
 ///
 /// - A message that is fresh every tick passes unchanged, bit for bit.
 /// - In silence a position continues at its estimated velocity for `extrapolation_s`; then velocity, force and wave
 /// decay
 ///   with the time constant `decay_s`, so a position goes no farther than v·(extrapolation + decay).
 /// - Where the site does not follow, the position stays where it was and all else fades to zero at the rate below.
-/// - What then comes again differs from what stands. The difference is kept and closed at a bounded rate, so neither
+/// - What then comes again differs from what is given. The difference is kept and closed at a bounded rate, so neither
 ///   the end of a silence or of a stall nor the start of following makes a step.
 ///
 /// The running total of energy counts only what was sent while following, so a restarted site, which counts from zero,
@@ -55,11 +55,11 @@ class MessageFollower {
 
   /// Once a tick. Real-time safe.
   Arrival step(const Input& input) noexcept;
-  /// Stands at `position_m`, everything else zero.
+  /// Is at `position_m`, everything else zero.
   void settle(double position_m) noexcept;
   void reset() noexcept { settle(0.0); }
 
-  /// How far the position that is given differs from what was told.
+  /// How far the position that is given differs from what was sent.
   [[nodiscard]] double gap_m() const noexcept { return gap_.position_m; }
 
  private:
@@ -75,10 +75,10 @@ class MessageFollower {
   double decay_;  ///< in a tick
   Message told_;
   Message out_;
-  Message gap_;  ///< of what is given over what is told; its energy is not used
+  Message gap_;  ///< of what is given over what is sent; its energy is not used
   double velocity_m_per_s_ = 0.0;
   double ahead_m_ = 0.0;  ///< extrapolated so far
-  double share_ = 0.0;    ///< of what was told last that still counts
+  double share_ = 0.0;    ///< of what was sent last that still counts
   double silence_s_ = 0.0;
   double last_energy_J_ = 0.0;
   bool follows_ = false;

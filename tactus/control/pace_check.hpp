@@ -18,7 +18,7 @@ namespace tactus::control {
 ///
 /// The slack is for what may be on its way or lost at the end, the tolerance for ticks that the other may miss and for
 /// crystals, which differ by 1e-4 at most. A clock that runs at the share 1 − m shows after slack/(m − tolerance),
-/// however long it was right before. Both sites were told the same rate, so one of them filters, derives and counts in
+/// however long it was right before. Both sites have the same rate, so one of them filters, derives and counts in
 /// a wrong time. Lost packets do not matter.
 class PaceCheck {
  public:

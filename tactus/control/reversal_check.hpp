@@ -16,7 +16,7 @@ namespace tactus::control {
 ///
 /// It is reversed where that force, F_motor − F_resisting, has opposed the motion with `force_N` or more for
 /// `lasting_s`, and the speed then rises by `gained_m_per_s` above its lowest since. What the amplifier, the sensors
-/// and the low-pass of the velocity still tell of the time before is over by then.
+/// and the low-pass of the velocity still show the time before is over by then.
 ///
 /// A hand may well push its handle against the displayed force, and a wall throws a slave back. Where no sensor
 /// measures that (the tip's at a slave, the hand's at a master), only thresholds that neither can reach mean anything.

@@ -102,7 +102,7 @@ class SafetyGate {
   }
 
   /// Looks at a reading, before the controller does: the position in m to assume, which is the last good one where
-  /// this is none. `elapsed_ticks` is more than 1 after a stall: all checks count the time that really passed.
+  /// this one is not. `elapsed_ticks` is more than 1 after a stall: all checks count the time that really passed.
   /// `resisting_N` is what a sensor states that pushes back against the motor: at a slave what is at its tip, at a
   /// master the hand. `age_s` is how old the position is at this tick, negative where it is younger. Speed and jump are
   /// judged over the time between two measurements, which is not that between two ticks where a bus has a cycle of its
@@ -140,7 +140,7 @@ class SafetyGate {
   void brake() noexcept { released_ = brakes_ = true; }
 
   [[nodiscard]] GateFault fault() const noexcept { return fault_ != GateFault::none ? fault_ : force_.fault(); }
-  /// Whether no command passes any more, for a fault or because it was commanded to let go.
+  /// Whether no command passes any more, for a fault or because it was commanded to release the force.
   [[nodiscard]] bool has_released() const noexcept { return released_ || fault() != GateFault::none; }
   [[nodiscard]] ActiveLimit limit() const noexcept { return limit_; }
   /// Of the reading that is assumed, low-passed.

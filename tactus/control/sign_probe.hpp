@@ -24,7 +24,7 @@ constexpr auto enumerators(ProbeVerdict) {
 
 /// Gives a motor a small known force and looks where the device goes, before anybody relies on it. The force has lobes
 /// of one length, (1 − cos)/2 in shape, with the signs + − 0 − +: out and back, a pause, and the same the other way.
-/// The impulse of each half is zero, so a free mass m stands again after it, F·T²/(50 m) away after the first, T being
+/// The impulse of each half is zero, so a free mass m is at rest after it, F·T²/(50 m) away after the first, T being
 /// `duration_s`, and at home after the second.
 ///
 /// In each half the device must go `least_m` the right way before it goes as far the wrong way. Whatever it is that is

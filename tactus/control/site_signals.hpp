@@ -6,12 +6,12 @@
 
 #include <cmath>
 
-/// What the two sites of a teleoperator measure, command and tell one another, and what a controller of a site is. Of
+/// What the two sites of a teleoperator measure, command and send one another, and what a controller of a site is. Of
 /// one axis each, or, as `Joints` of the same, of a device of several; positions and forces are positive toward the
 /// environment unless stated otherwise.
 namespace tactus::control {
 
-/// What one site tells the other at a tick. Each architecture fills the members that it uses; the rest stay zero.
+/// What one site sends the other in a tick. Each architecture fills the members that it uses; the rest stay zero.
 ///
 /// Its one description: what is checked, corrected and sent over a network follows from it, in this order.
 struct Message {
@@ -45,7 +45,7 @@ struct MasterInput {
   double motor_position_m = 0.0;
   double hand_force_N = 0.0;  ///< of the hand on the handle, positive when it pushes toward the environment
   Arrival arrival;
-  double grip = 1.0;         ///< how firmly the operator holds, over nominal, where a sensor tells; 1 without one
+  double grip = 1.0;         ///< how firmly the operator holds, over nominal, if a sensor measures it; 1 without one
   double motor_age_s = 0.0;  ///< of the position at this tick; negative where it is younger
   DriveReport motor_report = {};
 };
@@ -67,7 +67,7 @@ struct HandEstimate {
   }
 };
 
-/// What the master commands and tells, and what its stages made of it, for the log.
+/// What the master commands and sends, and what its stages made of it, for the log.
 struct MasterOutput {
   double motor_force_N = 0.0;   ///< positive toward the environment; a force that pushes the hand back is negative
   double handle_force_N = 0.0;  ///< of a second, vibrotactile actuator on the handle, same sign; zero without one
@@ -88,7 +88,7 @@ struct SlaveInput {
   DriveReport motor_report = {};
 };
 
-/// What the slave commands and tells.
+/// What the slave commands and sends.
 struct SlaveOutput {
   double motor_force_N = 0.0;  ///< positive toward the environment
   Message message;

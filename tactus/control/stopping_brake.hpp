@@ -9,9 +9,9 @@
 namespace tactus::control {
 
 /// Brings a device that nobody holds to rest by its motor, which may be what is wrong: F = −b·v until the device
-/// stands, and no force from then on. Once it is faster by `gained_m_per_s` than when the brake began, this is none,
-/// and there is no force either, until `reset`. So a motor or an encoder that works the wrong way adds about as much to
-/// the speed and no more; one that gives nothing or sticks is left to whatever else stops it.
+/// is at rest, and no force from then on. Once it is faster by `gained_m_per_s` than when the brake began, this is no
+/// brake, and there is no force either, until `reset`. So a motor or an encoder that works the wrong way adds about as
+/// much to the speed and no more; one that gives nothing or sticks is left to whatever else stops it.
 class StoppingBrake {
  public:
   struct Params {
@@ -25,7 +25,7 @@ class StoppingBrake {
   using Output = double;  ///< force in N, in the direction of the velocity
 
   static constexpr double gained_m_per_s = 0.1;
-  /// What is slower stands.
+  /// What is slower is at rest.
   static constexpr double stands_m_per_s = 0.005;
 
   static Result<StoppingBrake> make(const Params& params, Seconds dt) {

@@ -5,13 +5,13 @@
 
 #include <cstdint>
 
-/// A site as it runs on a machine: the controller behind its gate, told what to assume of the other site, and brought
+/// A site as it runs on a machine: the controller behind its gate, with its assumptions of the other site, and brought
 /// in and out without a bump.
 namespace tactus::control {
 
-/// The master. An operator arms it and presses the dead-man switch; then it tells the slave where the hand means to be
+/// The master. An operator arms it and presses the dead-man switch; then it sends the slave where the hand means to be
 /// and displays what the slave reports. While the clutch is pressed, and in every state but `active`, it reports the
-/// position that it told last and gives no force: what the hand moved meanwhile becomes the workspace offset.
+/// position that it sent last and gives no force: what the hand moved meanwhile becomes the workspace offset.
 template <class Gated>
 class SupervisedMasterOf {
  public:
@@ -20,7 +20,7 @@ class SupervisedMasterOf {
   using Packet = PacketOf<Payload>;
   using Request = SiteRequests;
   struct Input {
-    Sensors sensors{};  ///< its arrival is not used: packets say what came
+    Sensors sensors{};  ///< its arrival is not used: packets show what came
     SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;  ///< since the step before; more after a stall
     bool device_silent = false;      ///< what the sensors read is too old to act on
@@ -71,7 +71,7 @@ class SupervisedSlaveOf {
   using Packet = PacketOf<Payload>;
   using Request = SiteRequests;
   struct Input {
-    Sensors sensors{};  ///< its arrival is not used: packets say what came
+    Sensors sensors{};  ///< its arrival is not used: packets show what came
     SiteRequests requests{};
     std::int64_t elapsed_ticks = 1;
     bool device_silent = false;  ///< what the sensors read is too old to act on

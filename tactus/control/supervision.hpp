@@ -105,7 +105,7 @@ inline constexpr Legend limit_legend = legend<ActiveLimit>("What changes the for
 inline constexpr Legend fault_legend = legend<GateFault>("What the gate latched: ");
 
 /// What supervision shows of a tick. State, cause, limit and fault are four different things: what the site does, why
-/// it does not follow, what changes the force right now, and what made the gate let go.
+/// it does not follow, what changes the force right now, and what made the gate release.
 struct SiteRecord {
   std::int64_t state = 0;
   std::int64_t cause = 0;
@@ -187,7 +187,8 @@ class SupervisionOf {
   }
   /// The state for this tick. Real-time safe.
   SiteState decide(const Snapshot& snapshot) noexcept;
-  /// What the controller shall take the other site to say, its positions moved by `-offset_m`. Once, after `decide`.
+  /// What the controller shall take as the message of the other site, its positions moved by `-offset_m`. Once, after
+  /// `decide`.
   Each<Payload, Arrival> arrival(const Lengths& offset_m) noexcept;
   /// The force in N to add to the controller's while the motor is tried: from when the controller's has gone, none
   /// passes to the motor any more (`force_passes`), `position_m` being measured. `sinks` where something carries the
@@ -197,10 +198,10 @@ class SupervisionOf {
   /// Whether the site is armed and its motor not yet tried: the controller's force must go.
   [[nodiscard]] bool probes() const noexcept { return state() == SiteState::armed && !proved_; }
   /// The share of the controller's force, on its way to 1 or 0; in `fault`, and at a master whose dead-man switch was
-  /// let go, 0 at once, for the gate to ramp. Once, after `decide`.
+  /// released, 0 at once, for the gate to ramp. Once, after `decide`.
   double blend(bool in) noexcept;
-  /// The share of what carries the device: on its way to 1 wherever the site has power and does not let go, to 0 in
-  /// `configure`; where it lets go 0 at once, for the gate to ramp. Once, after `decide`.
+  /// The share of gravity compensation: rises to 1 wherever the site has power and is not released, falls to 0 in
+  /// `configure`; where it releases 0 at once, for the gate to ramp. Once, after `decide`.
   double carry(const Lengths& at_m) noexcept;
   /// The share of the law that holds the device while its support comes in. Once, after `blend` and `carry`.
   double hold() noexcept { return support_.hold(share_); }
@@ -222,8 +223,8 @@ class SupervisionOf {
   [[nodiscard]] SiteState state() const noexcept { return supervisor_.state(); }
   [[nodiscard]] SiteCause cause() const noexcept { return supervisor_.cause(); }
   /// Whether the motor must get no force any more: in `fault`, and in a `hold` in which the site misses too many ticks
-  /// to close a loop, or does not hear its device, or because its support moved it, or because motor and force sensor
-  /// contradict one another, when either may be wrong.
+  /// to close a loop, or receives no reading of its device, or because its support moved it, or because motor and force
+  /// sensor contradict one another, when either may be wrong.
   [[nodiscard]] bool lets_go() const noexcept { return state() == SiteState::fault || cannot_hold_ || contradicted(); }
   /// Whether that is because motor and force sensor contradict one another.
   [[nodiscard]] bool contradicted() const noexcept {
@@ -305,7 +306,7 @@ class SupervisionOf {
   std::int64_t elapsed_ticks_ = 1;
   std::int64_t refused_ = 0;
   std::int64_t awaited_arming_ = 0;
-  std::int64_t answered_arming_ = 0;  ///< that packets tell: a slave's only once its motor was tried
+  std::int64_t answered_arming_ = 0;  ///< that packets carry: a slave's only once its motor was tried
   bool proved_ = false;               ///< the motor was tried since the site was armed, or need not be
   bool probing_ = false;              ///< the trial is under way
   bool cannot_hold_ = false;          ///< too many ticks were missed in this hold, its device did not respond or moved

@@ -28,9 +28,9 @@ constexpr auto enumerators(SupportFault) {
 ///
 ///     m·a = s·G(x) − W(x) + R − friction − K·(x − x0) − B·v,
 ///
-/// s being the share of the support G that has come in, W the true weight and R what a hand or a stand bears. While s
+/// s being the share of the support G that has come in, W the true weight and R what a hand or a rest bears. While s
 /// rises slowly against B/K and sqrt(m/K), what is left is quasi-static: E = K·(x − x0) + B·v is the force that support
-/// and stand have too much. It is 0 for a right support of a joint that rests, hangs or is held, whatever s: R yields.
+/// and rest have too much. It is 0 for a right support of a joint that rests, hangs or is held, whatever s: R yields.
 /// A wrong one shows as E long before the joint leaps, at a speed of (dE/dt)/K. Friction that breaks away lets the
 /// joint go as far as E/K at once, and no farther.
 ///

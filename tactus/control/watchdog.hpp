@@ -9,7 +9,7 @@
 namespace tactus::control {
 
 /// Barks when nothing was received for a time, and does not stop when something is: a bark is latched until `reset`. It
-/// counts the ticks that it is told have passed, so a stall counts in full. No time-out switches it off: zero, infinity
+/// counts the ticks that its caller reports, so a stall counts in full. No time-out switches it off: zero, infinity
 /// and all above the bound are refused.
 class Watchdog {
  public:
@@ -39,7 +39,7 @@ class Watchdog {
     barks_ = barks_ || silence_s_ > timeout_s_ - 0.5 * dt_s_;
     return barks_;
   }
-  /// Quiet, as if something had been heard now.
+  /// Quiet, as if something had been received now.
   void reset() noexcept {
     silence_s_ = 0.0;
     barks_ = false;

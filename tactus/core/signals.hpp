@@ -97,7 +97,7 @@ struct PartOf {
 }  // namespace detail
 
 /// The signals of `T` as a part of a record that derives from it, each name after `prefix`. So a record may hold two
-/// parts of one type: what a site heard and what it told. Its members are those of `T`, whatever these are called.
+/// parts of one type: what a site received and what it sent. Its members are those of `T`, whatever these are called.
 template <class T, FixedText prefix>
 struct Part : T {
   static constexpr auto signals() {

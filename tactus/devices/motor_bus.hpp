@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-/// Motors and handles that people own: what is said to them, and what their answers mean.
+/// Motors and handles : commands to them, and the meaning of their replies.
 namespace tactus::devices {
 
 /// What is between a motor and a force.
@@ -20,7 +20,7 @@ enum class MotorFault : std::int64_t {
   voltage,         ///< too high or too low
   current,         ///< too high
   hot,             ///< the drive or the winding
-  lost_master,     ///< the motor's own watchdog: it did not hear from us
+  lost_master,     ///< the motor's own watchdog: it received no command
   overload,        ///< too much torque for too long, or a shock
   encoder,         ///< it does not know where it is
   refused,         ///< it refused what was asked of it
@@ -40,14 +40,14 @@ constexpr auto enumerators(MotorFault) {
 /// The status of a motor that has not reported one.
 inline constexpr std::int64_t no_status = -1;
 
-/// What a motor said last, in its own sense of turning, at the output of its gear. Positions continue where the wire's
-/// number wraps. Trivially copyable: it crosses from the bus thread to the tick.
+/// What a motor reported last, in its own sense of turning, at the output of its gear. Positions continue where the
+/// wire's number wraps. Trivially copyable: it crosses from the bus thread to the tick.
 struct MotorReading {
   double position_rad = 0.0;
   double velocity_rad_per_s = 0.0;
   double torque_Nm = 0.0;  ///< from the current; not of a sensor
   double temperature_C =
-      std::numeric_limits<double>::quiet_NaN();  ///< the hotter of those that it tells; NaN: not reported
+      std::numeric_limits<double>::quiet_NaN();  ///< the hotter of those that it reports; NaN: not reported
   MotorFault fault = MotorFault::none;
   std::int64_t enabled = 0;         ///< 1 where the drive has power, or a status that is not known
   std::int64_t off = 0;             ///< 1 once it has reported that it has no power, since it was last to have any
@@ -56,7 +56,7 @@ struct MotorReading {
   std::int64_t answers = 0;         ///< good ones, since the start
 };
 
-/// The law that a motor runs by itself alongside the torque that it is told, at the rate of its current loop and
+/// The law that a motor runs by itself in addition to the commanded torque, at the rate of its current loop and
 /// without the bus's delay, in its own sense of turning, at the output of its gear:
 ///
 ///     stiffness·(position − its own) + damping·(velocity − its own)
@@ -79,9 +79,9 @@ struct MotorCommand {
   MotorLaw law = {};         ///< comes to the torque
 };
 
-/// What a motor said of itself when it was asked, for a user. Empty: not reported.
+/// What a motor reported of itself when it was asked, for a user. Empty: not reported.
 struct MotorSheet {
-  std::string model;             ///< what it must be by what it told, where that is not what was stated
+  std::string model;             ///< what it must be by its report, where that is not what was stated
   std::string scales;            ///< of its numbers
   std::string firmware;          ///< its version
   double torque_limit_Nm = 0.0;  ///< the largest that it is sent, at its output; 0: it gives no force
@@ -99,11 +99,11 @@ constexpr auto enumerators(BusState) {
                     Enumerator{BusState::refused, "refused"}};
 }
 
-/// The driver of all motors behind one wire. As soon as it is driven, it asks who is there and checks what they say,
+/// The driver of all motors behind one wire. As soon as it is driven, it asks who is there and checks their replies,
 /// then it runs cycles: commands to all motors at once, answers collected until all are there or a deadline passed, and
 /// the next. A motor that does not respond costs no other its data.
 ///
-/// A motor that is to have no power is told so in every cycle until it has reported that it has none (`OffWatch`):
+/// A motor that is to have no power is commanded so in every cycle until it has reported that it is off (`OffWatch`):
 /// before it is asked anything, without a command that enables it, with a fault, and while the thread ends.
 ///
 /// Real-time safe but for `problem` and `sheet`. Thread: that of the wire; `tactus/devices/bus_thread.hpp` exchanges

@@ -22,7 +22,7 @@ enum class Trouble : std::int64_t {
   velocity,        ///< it is faster than it may be
   temperature,     ///< its motor is hotter than it may be
   motor_fault,     ///< its motor reports that something is wrong
-  no_power,        ///< its motor was asked to have power and has none
+  no_power,        ///< its motor was asked to have power and is off
   guard_gone,      ///< the guard process of its motors is gone, see `GuardState`
   guard_acted      ///< this program was stopped, and the guard process has switched its motors off
 };
@@ -52,7 +52,7 @@ struct DeviceTrouble {
 };
 
 /// Motors behind a bus as the joints of a device, in the order that they have there; forces are torques in Nm,
-/// positions rad, both of the joint. A motor's torque is told from its current, so it is no reading of a hand: the
+/// positions rad, both of the joint. A motor's torque is computed from its current, so it is no reading of a hand: the
 /// force that is read is 0, and torque and velocity are what the motor reports (`motor_report`).
 ///
 /// Where a joint has limits for it, its motor runs the law of the command by itself. Torque and law together are held
@@ -63,8 +63,8 @@ struct DeviceTrouble {
 /// `good` while every motor has answered within `late`, `degraded` when the oldest answer is older, `not_responding`
 /// when it is older than `silence`, `lost` when the bus ended or refused its motors, or when a joint that is to have
 /// power is where, as fast or as hot as it may not be, has a motor with a fault, or has no power a quarter of a second
-/// after it was asked for. Silent and lost stay until a command enables nothing: then it is judged again. A motor that
-/// gives no force gets no power, and is judged by its age alone. Wait-free but for `limits`.
+/// after it was asked for. Not responding and lost stay until a command enables nothing: then it is judged again. A
+/// motor that gives no force gets no power, and is judged by its age alone. Wait-free but for `limits`.
 class MotorBusDevice final : public station::JointDevice {
  public:
   struct Params {

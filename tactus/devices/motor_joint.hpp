@@ -104,7 +104,7 @@ struct MotorJoint {
             .stiffness_Nm_per_rad = of_joint.stiffness_N_per_m / (gear * gear),
             .damping_Nms_per_rad = of_joint.damping_N_s_per_m / (gear * gear)};
   }
-  /// What its motor is told so that the joint gets that force and law, at this reading within the torque limit. It
+  /// The command of its motor with which the joint gets that force and law, at this reading within the torque limit. It
   /// reports nothing of power. Real-time safe.
   [[nodiscard]] MotorCommand motor_command(const station::DeviceCommand& of_joint, const station::DeviceReading& at,
                                            double turns_rad) const noexcept {
@@ -120,15 +120,15 @@ struct MotorJoint {
   [[nodiscard]] bool contains(double position_rad) const noexcept {
     return position_rad >= lower_rad && position_rad <= upper_rad;
   }
-  /// Whether it may have power at the speed that its motor tells.
+  /// Whether it may have power at the speed that its motor reports.
   [[nodiscard]] bool allows_speed(const MotorReading& motor) const noexcept {
     return std::fabs(velocity_rad_per_s(motor.velocity_rad_per_s)) <= velocity_limit_rad_per_s;
   }
-  /// Whether it may have power while its motor is so warm. What a motor does not tell counts for it.
+  /// Whether it may have power while its motor is so warm. What a motor does not report counts for it.
   [[nodiscard]] bool allows_warmth(const MotorReading& motor) const noexcept {
     return !(motor.temperature_C > temperature_limit_C);
   }
-  /// As its device states them. A motor that gives no force has next to none, so that nobody believes in more.
+  /// As its device states them. A motor that gives no force has next to none, so that nobody assumes more.
   [[nodiscard]] station::DeviceLimits limits() const noexcept {
     constexpr double no_force_N = 1e-9, no_rate_N_per_s = 1.0;
     return {.force_N = gives_force ? torque_limit_Nm : no_force_N,

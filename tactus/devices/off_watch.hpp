@@ -4,11 +4,11 @@
 
 namespace tactus::devices {
 
-/// A motor that is to have no power is told so in every cycle of its bus. One that has not reported for this long that
-/// it has none counts as one that stays on.
+/// A motor that is to have no power is commanded so in every cycle of its bus. One that has not reported for this long
+/// that it is off counts as one that stays on.
 inline constexpr std::int64_t off_within_ns = 100'000'000;
 
-/// Whether a motor that is to have no power has reported, after it was told, that it has none. A report that is missing
+/// Whether a motor that is to have no power has reported, after the command, that it is off. A report that is missing
 /// or not known counts as power. Trivially copyable, real-time safe.
 class OffWatch {
  public:
@@ -24,7 +24,7 @@ class OffWatch {
     ++told_;
     last_told_ns_ = now_ns;
   }
-  /// The motor reported whether it is off. What it reports before it was told is no answer to that.
+  /// The motor reported whether it is off. What it reports before the command is no reply to it.
   void reported(bool off) noexcept {
     if (!off && confirmed()) start_over();
     if (told_ == 0) return;
@@ -32,11 +32,11 @@ class OffWatch {
     if (!off) ++on_reports_;
   }
   [[nodiscard]] bool confirmed() const noexcept { return off_reports_ >= enough_reports_; }
-  /// It was told for `off_within_ns`, it answered, and it is not off.
+  /// It was commanded for `off_within_ns`, it answered, and it is not off.
   [[nodiscard]] bool stays_on(std::int64_t now_ns) const noexcept {
     return late(now_ns) && on_reports_ >= enough_to_blame;
   }
-  /// Whether to tell it (again) now: in each cycle at first. A motor that does not switch off is left in peace for
+  /// Whether to command it (again) now: in each cycle at first. A motor that does not switch off is left in peace for
   /// `rest_ns` after that, longer than its own watchdog waits, for whatever it is sent feeds that watchdog.
   [[nodiscard]] bool due(std::int64_t now_ns, std::int64_t rest_ns) const noexcept {
     return confirmed() || !late(now_ns) || now_ns - last_told_ns_ >= rest_ns;

@@ -32,7 +32,7 @@ struct BagChannels {
 
 /// Reads a ROS 2 bag. Leader and follower are the topics of joint states that are called so; joints go together by
 /// name, or by place where no name is in both. Errors: those of `telemetry::read_bag`; `missing` for a bag whose topics
-/// tell no leader and no follower, for a name or a joint that it does not have; `inconsistent` for joints that go
+/// identify no leader and no follower, for a name or a joint that it does not have; `inconsistent` for joints that go
 /// together in no way, for signals that share no time, for a pause of more than ten steps and 30 ms, and for a value
 /// that is not finite. Not real-time safe.
 Result<BagChannels> read_bag_channels(const SignalRoles& roles);

@@ -18,7 +18,7 @@ enum class Mechanism {
   slave_servo,     ///< the slave's own loop: too stiff for its delay, filter or damping
   delay,           ///< two devices that are coupled by position, over a delay
   quantisation,    ///< to and fro between neighbouring counts
-  stick_slip,      ///< friction that holds and lets go
+  stick_slip,      ///< friction that sticks and slips
   tremor,          ///< the hand's own
   unknown,         ///< these signals do not determine
 };
@@ -41,7 +41,7 @@ struct Decision {
   Mechanism mechanism = Mechanism::unknown;
   double confidence = 0;              ///< 0 to 1: the weakest piece of its evidence, less what the runner-up has
   std::vector<std::string> evidence;  ///< sentences with numbers
-  std::vector<Role> missing;          ///< signals that were not recorded and would tell
+  std::vector<Role> missing;          ///< signals that were not recorded and would show it
   std::vector<Mechanism> possible;    ///< where it is unknown: what is not refuted
   /// The hand moves the master on purpose and the slave follows it: no fault.
   bool led = false;

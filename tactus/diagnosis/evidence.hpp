@@ -22,7 +22,7 @@ struct Evidence {
   std::optional<double> slave_behind_rad;
   /// Peak to peak within a period, in steps of the position's own column; the median over the blocks.
   std::optional<double> master_steps, slave_steps;
-  /// Share of the time in which the slave stands: slower than a tenth of what it reaches.
+  /// Share of the time in which the slave is at rest: slower than a tenth of what it reaches.
   std::optional<double> standstill;
   /// -1 to 1: how well a force is in line with the velocity of what it drives; positive: it gives energy at this
   /// frequency. Of the master's actuator on the master, of the hand on the master, of the slave's actuator on the
@@ -31,7 +31,7 @@ struct Evidence {
   /// 0 to 1: tip force over the force of the slave's motor at this frequency (where that is missing, over ten steps of
   /// the sensor), coherence with the motion counted in.
   std::optional<double> contact;
-  /// Transport delay on the way to the slave and on the way back, where a coupling by position explains the force.
+  /// Transport delay to the slave and back, where a coupling by position explains the force.
   std::optional<double> delay_there_s, delay_back_s;
   /// 0 to 1: share of the master's power above half of the frequency that is in the line; the median over stretches of
   /// six periods.

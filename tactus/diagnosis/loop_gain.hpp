@@ -22,7 +22,7 @@ double describing_gain(double below, double above);
 ///
 /// `force` is that of the oscillation alone. With `one_sided` its lower end is where it is zero (a contact that is
 /// lost), else the other limit. Empty where it stays less than 3 % of the time at either end: nothing of this force
-/// limits the motion. The interval is that of 95 % from a jackknife over eight blocks; it tells the scatter, not that
+/// limits the motion. The interval is that of 95 % from a jackknife over eight blocks; it shows the scatter, not that
 /// impacts are no sine.
 std::optional<identification::Estimate> loop_gain(std::span<const double> force, bool one_sided);
 

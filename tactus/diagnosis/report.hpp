@@ -19,7 +19,7 @@ std::string to_json(const Signals& signals, const Diagnosis& diagnosis, const st
 /// The power of a signal over time and frequency, in decades below its largest.
 report::HeatMap spectrogram_of(const Signals& signals, const Diagnosis& diagnosis);
 
-/// The signals over a dozen periods of the strongest oscillation; none where there is none.
+/// The signals over a dozen periods of the strongest oscillation; none without an oscillation.
 std::optional<report::Figure> periods_of(const Signals& signals, const Diagnosis& diagnosis);
 
 /// The loop as lines of text: what goes round, with amplitude and phase of each signal.

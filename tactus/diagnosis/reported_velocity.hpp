@@ -8,11 +8,11 @@
 
 namespace tactus::diagnosis {
 
-/// A velocity that was recorded alongside a position, as a drive or its host tells it.
+/// A velocity that was recorded alongside a position, as a drive or its host reports it.
 struct ReportedVelocity {
   std::string name = {};  ///< of its column
-  double scale = 1.0;     ///< the told velocity over that with which the position moves, without sign
-  /// The told one is another by a tenth or more: whoever reads or commands it has a wrong range for it.
+  double scale = 1.0;     ///< the reported velocity over that with which the position moves, without sign
+  /// The reported one differs by a tenth or more: whoever reads or commands it has a wrong range for it.
   [[nodiscard]] bool wrong() const { return scale > 1.1 || scale < 1.0 / 1.1; }
 };
 

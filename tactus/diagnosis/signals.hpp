@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-/// Why a teleoperator shakes, told from a recording of it.
+/// Why a teleoperator shakes, computed from a recording of it.
 namespace tactus::diagnosis {
 
 /// What a column of a recording can be. Positions are positive toward the environment.
@@ -36,7 +36,7 @@ std::string_view words_of(Role role);
 std::string option_of(Role role);
 
 /// Which columns of a recording are what. Whatever is not named is looked for by names and units; what is not found is
-/// missing, which only limits what can be told. As `recording::Source` names them; in a MATLAB file `:COLUMN` may
+/// missing, which only limits what can be determined. As `recording::Source` names them; in a MATLAB file `:COLUMN` may
 /// follow.
 struct SignalRoles {
   std::filesystem::path file = {};

@@ -16,9 +16,9 @@ namespace tactus::emulation {
 /// An arm with its weight behind emulated motors, motor 1 at the joint of its base: links, rotors and friction in
 /// MuJoCo (`arm_plants::ArmPlant`), which is other code than the controller's model of an arm. Without torque it falls.
 ///
-/// It begins at rest where it hangs; or where a hand holds it, which lets go, once and for good, when the motors carry
-/// the arm: when no joint would move by more than its friction allows. A hand that waits for ever reports that whoever
-/// drives the motors believes in another arm.
+/// It begins at rest where it hangs; or where a hand holds it, which releases it for good once the motors compensate
+/// gravity: when no joint would move by more than its friction allows. A hand that waits for ever reports that whoever
+/// drives the motors has the model of another arm.
 ///
 /// It may then be led: a hand that pulls each joint like a spring, with a damper, to a path of two sines about where
 /// the arm was held, other frequencies at each joint (0.2 to 0.5 Hz, and 2.3 times that).
@@ -27,7 +27,7 @@ class EmulatedArm final : public damiao::Mechanism {
   /// The hand that leads it.
   struct Led {
     double reach_rad = 0.3;  ///< of the path, either way, at each joint
-    double after_s = 0.0;    ///< since the motors carry the arm; until then it is not felt, and comes in over 2 s
+    double after_s = 0.0;    ///< since the motors compensate gravity; until then it is not felt, and comes in over 2 s
   };
   struct Settings {
     /// Links, armature, Coulomb and viscous friction, gravity.

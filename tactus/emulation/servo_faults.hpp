@@ -14,7 +14,7 @@ enum class ServoFault : std::int64_t {
   none,
   silence,         ///< it receives and does not reply
   power_cycle,     ///< it is off for 0.3 s, and restarts
-  hot,             ///< it tells so, and takes its own torque away
+  hot,             ///< it reports it, and takes its own torque away
   wrong_model,     ///< it is another one than its owner assumes
   low_limit,       ///< it was set to a tenth of its current
   twin,            ///< another servo has its id and answers behind it

@@ -11,7 +11,7 @@
 
 namespace tactus::emulation {
 
-/// The way back from emulated servos, with what may be wrong with it. Allocates when made only.
+/// The replies of emulated servos, with what may be wrong with it. Allocates when made only.
 class ServoLine {
  public:
   ServoLine(const LineFaults& faults, std::uint64_t seed) : faults_(faults), random_(seed), outbox_(1 << 14) {}

@@ -52,7 +52,7 @@ struct AxisRecording {
   std::vector<std::string> notes = {};
 };
 
-/// Does a file hold the struct `scope` of a teleoperator that `AxisRoles` tells of?
+/// Does a file hold the struct `scope` of a teleoperator that `AxisRoles` describes?
 bool is_teleoperator_scope(const std::vector<recording::Entry>& entries);
 
 /// Reads one axis. Errors: those of `recording::read`; `missing` when a role is neither named nor found, or found more

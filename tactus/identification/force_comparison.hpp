@@ -8,7 +8,7 @@
 
 namespace tactus::identification {
 
-/// How an estimated force stands to a measured one.
+/// How an estimated force compares with a measured one.
 struct ForceComparison {
   double rmse = 0;         ///< root mean square of the difference [unit of the forces]
   double mean_error = 0;   ///< estimate less measurement, mean [unit of the forces]

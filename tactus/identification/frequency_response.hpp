@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-/// Frequency responses from recorded input and output, with bands that say how far to trust them.
+/// Frequency responses from recorded input and output, with bands that show how far to trust them.
 namespace tactus::identification {
 
 /// One experiment: input and output at the same instants, as many samples of each.
@@ -115,7 +115,7 @@ struct Linearity {
 };
 
 /// Compares responses on the same lines between `lower_Hz` and `upper_Hz`, both included. Lines where one of them does
-/// not rise above its band are left out: they tell of noise alone.
+/// not rise above its band are left out: they show noise alone.
 /// Errors: `inconsistent` for fewer than two responses, different lines, or no line to compare. Not real-time safe.
 Result<Linearity> judge_linearity(std::span<const FrequencyResponse> responses, double lower_Hz, double upper_Hz);
 

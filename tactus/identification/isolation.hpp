@@ -34,7 +34,7 @@ struct Isolation {
   BenchParams found;
 };
 
-/// Told of each step of work: what is being done, and the share that is done already, from 0 to 1.
+/// Receives each step of work: what is being done, and the share that is done already, from 0 to 1.
 using IsolationProgress = std::function<void(const std::string& what, double done)>;
 
 /// Runs the whole recipe. Errors: those of the rig, and `inconsistent` where a stage's data do not determine its

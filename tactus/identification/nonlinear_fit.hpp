@@ -42,7 +42,7 @@ struct NonlinearFit {
 /// a variable of which the data determine nothing stays as uncertain as it was.
 ///
 /// Errors: `inconsistent` for residuals that are not finite at the start, or that do not determine the variables apart,
-/// with the index of one that cannot be told as the parameter. Not real-time safe. Sources: J. Moré, The
+/// with the index of one that cannot be determined as the parameter. Not real-time safe. Sources: J. Moré, The
 /// Levenberg–Marquardt algorithm, 1978; K.-Y. Liang and S. Zeger, Longitudinal data analysis using generalized linear
 /// models, 1986.
 Result<NonlinearFit> fit_nonlinear(const NonlinearProblem& problem);

@@ -8,7 +8,7 @@
 
 namespace tactus::identification {
 
-/// What the data say of the hand in a stretch of time.
+/// What the data show of the hand in a stretch of time.
 enum class ImpedanceVerdict {
   determined,    ///< motion explains the hand's force; each parameter as far as its interval states
   still,         ///< the device hardly moves in the band: less than a step of its encoder

@@ -59,7 +59,7 @@ inline std::size_t length(const MotorProgram& program) {
   return std::max(program.force_N.size(), program.reference_m.size());
 }
 
-/// A number that tells programs apart: FNV-1a over the bits of all that they hold.
+/// A number that distinguishes programs: FNV-1a over the bits of all that they hold.
 std::uint64_t fingerprint(const MotorProgram& program);
 
 /// An error for a program that is empty, holds a number that is not finite, or leaves the limits by itself.

@@ -13,7 +13,7 @@ namespace tactus::link {
 
 using control::SiteRole;
 
-/// One packet on the network, with what tells whose it is and how old. Times are nanoseconds of the monotonic clock of
+/// One packet on the network, with its sender and its age. Times are nanoseconds of the monotonic clock of
 /// the host that wrote them and mean nothing to another host; `PeerClock` makes sense of them.
 template <class Payload>
 struct DatagramOf {
@@ -66,7 +66,7 @@ JointDatagramBytes encode(const JointDatagram& datagram) noexcept;
 inline std::span<const std::byte> bytes_of(const DatagramBytes& bytes) noexcept { return bytes; }
 inline std::span<const std::byte> bytes_of(const JointDatagramBytes& bytes) noexcept { return bytes.bytes(); }
 
-/// What bytes from anywhere say, of as many joints as the packet of `datagram` has. `datagram` is filled where the
+/// What bytes from anywhere contain, of as many joints as the packet of `datagram` has. `datagram` is filled where the
 /// result is `none` and untouched otherwise. Every input is answered: nothing else can happen. Whether the message
 /// makes sense is for `control::PacketJudge`. Real-time safe.
 template <class Payload>

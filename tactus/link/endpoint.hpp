@@ -60,14 +60,14 @@ class EndpointOf {
   using Counters = LinkCounters;
 
   /// Opens the socket and starts to shake hands. Errors: an address that cannot be used; `inconsistent` for plain text
-  /// that would leave the loopback; `out_of_bounds` for a number of joints that is none, 1 to `most_joints`. One axis
+  /// that would leave the loopback; `out_of_bounds` for a number of joints outside of 1 to `most_joints`. One axis
   /// has one.
   static Result<EndpointOf> make(const Settings& settings, std::size_t joints = 1);
 
   /// The packets that have come, in the order in which they came and each with its age, at `now_ns` of the monotonic
   /// clock. At most `packets_a_tick` datagrams are looked at. Good until the next call. Real-time safe.
   std::span<const Packet> receive(std::int64_t now_ns) noexcept;
-  /// Sends one packet, whose session is `session()`, with as many joints as `make` was told. Real-time safe.
+  /// Sends one packet, whose session is `session()`, with as many joints as `make` was given. Real-time safe.
   void send(const Packet& packet, std::int64_t now_ns) noexcept;
   /// Real-time safe.
   [[nodiscard]] Condition condition(std::int64_t now_ns) const noexcept;

@@ -21,7 +21,7 @@ struct HandshakeFrame {
   std::uint64_t number = 0;              ///< from 1, one more for each frame of the sender
   std::span<const std::byte> records{};  ///< of DTLS
   std::uint16_t version = datagram_version;
-  std::uint8_t joints = 1;  ///< that the sender has: told by `read`
+  std::uint8_t joints = 1;  ///< that the sender has: set by `read`
 };
 
 inline constexpr std::size_t frame_head_bytes = 32;
@@ -61,7 +61,7 @@ class FrameTags {
     joints,   ///< made with the key, by a site of another number of joints
     genuine,
   };
-  /// What bytes from anywhere say, for the price of one tag at most. `frame` is filled where it is genuine or of
+  /// What bytes from anywhere contain, for the price of one tag at most. `frame` is filled where it is genuine or of
   /// another number of joints, its records being among the bytes; of one of another version only that. Real-time safe.
   Verdict read(std::span<const std::byte> bytes, HandshakeFrame& frame) noexcept;
 

@@ -20,7 +20,7 @@ class Inbound {
  public:
   enum class Verdict : std::uint8_t {
     counted,    ///< the other site's, answering this one: a packet to be judged
-    greeting,   ///< of a session that has not heard the own one yet: to be answered, not to be used
+    greeting,   ///< of a session that has not received the own one yet: to be answered, not to be used
     repeated,   ///< was here before
     reflected,  ///< of the own kind of site
     foreign,    ///< answers another session than the own one, or is of one that was left
@@ -34,7 +34,7 @@ class Inbound {
   /// `own_session` is not 0.
   Inbound(SiteRole own_site, std::int64_t own_session) : own_site_(own_site), own_session_(own_session) {}
 
-  /// Where the verdict is `counted`, the datagram's packet is given its age: infinite as long as no echo has told.
+  /// Where the verdict is `counted`, the datagram's packet is given its age: infinite as long as no echo has arrived.
   template <class Payload>
   Verdict take(DatagramOf<Payload>& datagram, std::int64_t now_ns) noexcept;
 

@@ -14,7 +14,7 @@ namespace tactus::link {
 ///
 /// The offset is that of the shortest round trip of the last one to two seconds: what waited least in queues errs
 /// least. Its error is at most half of that round trip, and reaches it where one way takes all of the time: two clocks
-/// cannot determine an asymmetric way from an offset. In two seconds, clocks that differ by 50 ppm drift by 0.1 ms.
+/// cannot distinguish an asymmetric link from an offset. In two seconds, clocks that differ by 50 ppm drift by 0.1 ms.
 /// Times in ns. Real-time safe.
 class PeerClock {
  public:

@@ -4,8 +4,8 @@
 
 namespace tactus::link {
 
-/// Tells for each sequence number whether it is newer than all before, late, or was seen already: the sliding window of
-/// RFC 6347, Sec. 4.1.2.6, 64 numbers wide. What is older than the window counts as seen. Real-time safe.
+/// Determines for each sequence number whether it is newer than all before, late, or was seen already: the sliding
+/// window of RFC 6347, Sec. 4.1.2.6, 64 numbers wide. What is older than the window counts as seen. Real-time safe.
 class ReplayWindow {
  public:
   enum class Verdict { newest, late, repeated };

@@ -40,7 +40,7 @@ struct Status {
   std::string message;
 };
 
-/// A client, for as long as it is connected. No number is used twice.
+/// A client, for as long as it is connected. Each number is used once.
 using ClientId = std::uint64_t;
 
 /// The bytes of one message, shared by all who wait to send it.
@@ -60,13 +60,13 @@ class Application {
 
   /// What there is to see. Fixed for the life of the application.
   [[nodiscard]] virtual const std::vector<Topic>& topics() const = 0;
-  /// What a client is told about the server before all else.
+  /// What a client receives about the server before all else.
   [[nodiscard]] virtual std::map<std::string, std::string> metadata() const = 0;
   /// All parameters as they are now.
   [[nodiscard]] virtual std::vector<Parameter> parameters() const = 0;
   /// Changes parameters, in this order. What is refused keeps its value; the answer states why.
   virtual std::vector<Status> set_parameters(const std::vector<Parameter>& wanted) = 0;
-  /// A message that a client published: what it said about topic and encoding, and the bytes. All of it may be
+  /// A message that a client published: what it declared about topic and encoding, and the bytes. All of it may be
   /// nonsense.
   virtual std::optional<Status> receive(ClientId client, std::string_view topic, std::string_view encoding,
                                         std::string_view bytes) = 0;

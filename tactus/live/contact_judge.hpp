@@ -37,7 +37,7 @@ class ContactJudge {
   [[nodiscard]] bool has_begun() const { return has_begun_; }
   /// From the touch, or from what began again, to the last time that the force was loud.
   [[nodiscard]] double settling_time_s() const { return static_cast<double>(loud_until_ - onset_) * dt_s_; }
-  /// Why, in one sentence; empty while there is nothing to say.
+  /// Why, in one sentence; empty while there is nothing to report.
   [[nodiscard]] std::string cause() const;
 
  private:

@@ -39,7 +39,7 @@ class Conversation {
   /// Greets the client: server information and topics.
   Conversation(ClientId client, Application& application, const ConversationLimits& limits);
 
-  /// A text frame. True where parameters may have changed: everyone who asked for that must be told.
+  /// A text frame. True where parameters may have changed: everyone who asked for that must be informed.
   [[nodiscard]] bool take_text(std::string_view text);
   void take_binary(std::string_view bytes);
 

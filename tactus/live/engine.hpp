@@ -30,7 +30,7 @@ struct Change {
   std::optional<ScriptedTap> tap;
 };
 
-/// What both loops did in one tick, on its way from their thread to all that watch.
+/// What both loops did in one tick, from their thread to all that watch.
 struct EngineTick {
   std::array<LoopTick, loops> loop;
   std::array<bool, loops> ran{};  ///< of each loop, whether it runs
@@ -68,9 +68,9 @@ class Engine {
   /// One tick of both loops, for who paces it otherwise. The loop's thread.
   void step() noexcept;
 
-  /// Where the hand shall go, from rest. False where the loop has not taken what was said before. View's thread.
+  /// Where the hand shall go, from rest. False where the loop has not taken the request before. View's thread.
   bool aim(const HandPoint& target) noexcept;
-  /// View's thread. False, and `change` is lost, where the loop has not taken what was said before.
+  /// View's thread. False, and `change` is lost, where the loop has not taken the request before.
   bool change(std::unique_ptr<Change> change);
   /// Shows every tick from now on. Before anybody asks for that, a tick is not copied. Any thread.
   [[nodiscard]] Ticks::Reader watch();

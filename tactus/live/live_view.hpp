@@ -24,7 +24,7 @@ namespace tactus::live {
 /// `teleoperator`, the record of every tick as in the log, and of arms `arms`, with `state`. A client publishes JSON to
 /// `/operator/hand` (`{"position_m": x, "engaged": true}`; of arms x may be three numbers, toward the wall and across)
 /// and `/operator/command` (`{"command": "tap"}` or `"reset"`). The first client that engages holds the handle until it
-/// lets go or leaves; then the hand goes to rest.
+/// releases it or leaves; then the hand goes to rest.
 class LiveView final : public Application {
  public:
   struct Options {

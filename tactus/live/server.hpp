@@ -39,7 +39,7 @@ struct ServerCounts {
 ///
 /// One thread does all. It shares nothing with a loop but what the application shares. No client can take more of the
 /// thread than its share: subscriptions a client are limited, and a turn has room for so many bytes of samples, shared
-/// out equally among those who want any; who wants more loses its own, which is counted and told. Between two turns
+/// out equally among those who want any; who wants more loses its own, which is counted and reported. Between two turns
 /// each client reads or writes one message before any does the next. A request is answered only where its `Host` is the
 /// address that the server was asked to listen on, or a name of the loopback, with the port; and where it has an
 /// `Origin`, that is the server's own: a page of another site, or a name that was bound to this address later, reaches

@@ -54,7 +54,7 @@ struct BoucWenMotion {
 /// `stiffness_N_per_m` is the tip-to-tip slope K of a closed loop of amplitude A = `reference_deflection_m`, in which z
 /// swings between ±Z: K = K₀ (1 − h + h·Z/A), where Z = d·(1 − exp(−(2A − Z)/d)) is solved once in `make`. The loop's
 /// area is 2 h K₀ (2d (A − Z) − Z²/2). With d = 0.65 times the elasto-slip spring's slip deflection, as the defaults
-/// stand, the two loops have the same area and lie within 1 % of the peak force of each other.
+/// are, the two loops have the same area and lie within 1 % of the peak force of each other.
 ///
 /// Its known fault, and why it is not the default: a small ripple on a constant force ratchets, because a minor loop
 /// does not close.

@@ -36,7 +36,7 @@ bool only_numbers(const std::vector<CsvField>& fields);
 struct CsvLayout {
   std::vector<std::string> heads = {};  ///< as written; empty where there is no header
   std::size_t columns = 0;
-  std::string_view first_line = {};  ///< the header, or the first sample where there is none
+  std::string_view first_line = {};  ///< the header, or the first sample without a header
   std::size_t first_line_number = 0;
   std::size_t data_start = 0;  ///< offset of the first sample in the text
   std::size_t data_line = 0;   ///< its line, from 1

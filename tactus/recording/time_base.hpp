@@ -14,7 +14,7 @@ namespace tactus::recording {
 ///
 /// `time_s` are finite times in seconds, at least two. They must increase strictly, and none may lie further than a
 /// tenth of the sample time from the uniform grid through the first and the last: enough for the rounding of printed
-/// times, too little for a lost or a doubled sample. `place_of(row)` states where a sample stands, for the error.
+/// times, too little for a lost or a doubled sample. `place_of(row)` states where a sample is, for the error.
 Result<double> uniform_sample_time(std::span<const double> time_s,
                                    const std::function<std::string(std::size_t)>& place_of);
 
@@ -28,7 +28,7 @@ std::optional<double> jitter_of(std::span<const double> time_s);
 Check check_step(double sample_time_s, bool unit_stated);
 
 /// By how much too long a step is, as a power of ten (1000 for times in ms that are taken for seconds, 1e-3 for the
-/// reverse), which a velocity shows that was measured alongside the position. None where they agree or tell nothing.
+/// reverse), which a velocity shows that was measured alongside the position. None where they agree or show nothing.
 std::optional<double> step_is_too_long_by(std::span<const double> position, std::span<const double> velocity,
                                           double sample_time_s);
 

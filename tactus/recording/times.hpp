@@ -13,7 +13,7 @@
 
 namespace tactus::recording {
 
-/// A moment as a date and a time of day tell it, or a time of day alone.
+/// A moment as a date and a time of day, or a time of day alone.
 struct Instant {
   std::int64_t seconds = 0;  ///< since 1970-01-01T00:00:00 UTC, or since midnight
   double fraction_s = 0.0;

@@ -10,6 +10,6 @@ namespace tactus::recording {
 std::string unit_of(std::string_view text);
 
 /// Whether a unit can be that of the quantity that a column is called after, such as `x`, `theta`, `F` or `time`. True
-/// for a name that tells no quantity.
+/// for a name that names no quantity.
 bool unit_fits_name(std::string_view name, std::string_view unit);
 }  // namespace tactus::recording

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// Where everything in a figure stands, before anything is drawn. Lengths in px.
+/// Where everything in a figure is, before anything is drawn. Lengths in px.
 namespace tactus::report {
 
 /// Sizes of type and spacing that layout and drawing agree on.
@@ -35,7 +35,7 @@ struct PlacedAxis {
   bool labelled;      ///< whether tick labels and the name are at this panel
   std::string name;   ///< with the unit, and the power of ten taken out of the tick labels
 
-  /// The coordinate of a value. NaN where a logarithmic axis has none.
+  /// The coordinate of a value. NaN where a logarithmic axis has no place for it.
   [[nodiscard]] double operator()(double value) const;
 };
 

@@ -29,7 +29,7 @@ struct Limits {
   double lower, upper;
 };
 
-/// Limits of an axis that shows `data`, or nothing when there is none: a set limit wins over the data; the free ends
+/// Limits of an axis that shows `data`, or nothing without data: a set limit wins over the data; the free ends
 /// get `margin` times the span of air. Equal or missing ends are spread, so that always `lower` < `upper`, both finite
 /// and, on a logarithmic axis, positive. A set limit that is not finite, or not positive on a logarithmic axis, is
 /// ignored; so are two that leave nothing between them. Magnitudes end at 1e300.

@@ -29,12 +29,12 @@ struct JointSnapshot {
   double hand_force_N = 0.0;              ///< measured, of the hand on the handle
   double slave_position_m = 0.0;          ///< measured, at the motor
   double slave_command_m = 0.0;           ///< position command as it left the master
-  double environment_force_N = 0.0;       ///< as the slave told it, positive when the environment pushes it back
+  double environment_force_N = 0.0;       ///< as the slave sent it, positive when the environment pushes it back
   double estimated_grip = 1.0;            ///< how firmly the operator holds, over identified
   double estimated_grip_deviation = 0.0;  ///< standard deviation of that; 0 where nothing is estimated
 };
 
-/// What the other programs are told about one tick of a teleoperator.
+/// What the other programs receive of one tick of a teleoperator.
 struct Snapshot {
   std::int64_t stamp_ns = 0;  ///< since 1970
   Joints<JointSnapshot> joints{1};

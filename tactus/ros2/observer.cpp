@@ -147,7 +147,7 @@ class JointsReader {
       for (std::size_t joint = 0; joint < count_; ++joint) {
         const auto& record = joints_[site * count_ + joint].entry.record;
         tell_of(snapshot.joints[joint], record, roles_[site]);
-        if (roles_.front() == SiteRole::slave) snapshot.joints[joint].slave_command_m = record.Heard::position_m;
+        if (roles_.front() == SiteRole::slave) snapshot.joints[joint].slave_command_m = record.Received::position_m;
       }
     }
     bridge.publish(snapshot);
@@ -181,7 +181,7 @@ Snapshot snapshot_of(const simulation::Teleoperator::Record& record, std::int64_
 Snapshot snapshot_of(const SiteLogRecord& record, SiteRole role, std::int64_t stamp_ns) {
   Snapshot snapshot{.stamp_ns = stamp_ns, .state = state_of(record)};
   tell_of(snapshot.joints[0], record, role);
-  snapshot.joints[0].slave_command_m = role == SiteRole::slave ? record.Heard::position_m : 0.0;
+  snapshot.joints[0].slave_command_m = role == SiteRole::slave ? record.Received::position_m : 0.0;
   return snapshot;
 }
 

@@ -12,7 +12,7 @@ namespace tactus::runtime {
 /// What a finding means for a loop with a deadline.
 enum class Fitness {
   good,
-  unknown,  ///< the system does not tell
+  unknown,  ///< the system does not report it
   poor,     ///< the loop runs, later or less surely than it could
   bad       ///< ticks will be late
 };

@@ -10,12 +10,12 @@
 
 namespace tactus::runtime {
 
-/// What can be read of a machine that is to keep time; empty where the system does not tell.
+/// What can be read of a machine that is to keep time; empty where the system does not report it.
 struct MachineFacts {
   Right real_time;                             ///< SCHED_FIFO, as tried
   std::optional<std::int64_t> priority_limit;  ///< `ulimit -r`
   bool superuser = false;
-  std::optional<std::int64_t> locked_limit_bytes;  ///< `ulimit -l`; −1 is none
+  std::optional<std::int64_t> locked_limit_bytes;  ///< `ulimit -l`; −1: no limit
   std::string group;                               ///< control group that has the budget
   std::optional<std::int64_t> group_budget_us;     ///< real-time budget of the control group
   std::optional<std::int64_t> budget_us;           ///< of all real-time threads in each period; −1 is no limit

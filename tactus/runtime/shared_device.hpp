@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-/// A device that another process owns: what the two processes tell each other in shared memory, and both sides of it.
+/// A device that another process owns: what the two processes exchange in shared memory, and both sides of it.
 namespace tactus::runtime {
 
 /// Owner to controller.
@@ -37,7 +37,7 @@ struct DeviceSlots {
 /// The controller's side: the device as a servo thread sees it.
 ///
 /// `good` with a reading that is newer than the last, `degraded` with none, and `lost` for the rest of the session once
-/// the owner did not respond for too long (or has another clock), told a number that is not finite, or obeys no more.
+/// the owner did not respond for too long (or has another clock), sent a number that is not finite, or obeys no more.
 /// Then the reading stays the last good one. All but `limits` is wait-free and calls no system.
 class SharedDevice final : public station::Device {
  public:
@@ -75,10 +75,10 @@ class SharedDevice final : public station::Device {
 /// `command` to the motor, `publish` what the sensors read. Both are wait-free and call no system.
 ///
 /// Commands are obeyed that belong to the session begun last, as far as the device's limits go. Once they have been
-/// silent for too long, or the guard has released its force, the motor's force ends for the rest of the session, and
-/// the controller is told: a force that comes back by itself would surprise both the operator and the controller. A
-/// command whose tick does not grow is silence, whatever its time: so is one that something repeats which does not
-/// control any more.
+/// not responding for too long, or the guard has released its force, the motor's force ends for the rest of the
+/// session, and the controller is informed: a force that comes back by itself would surprise both the operator and the
+/// controller. A command whose tick does not grow is silence, whatever its time: so is one that something repeats which
+/// does not control any more.
 class DeviceServer {
  public:
   /// On slots that outlive it. `silence` is how old a command may be, by its time against that of the tick.

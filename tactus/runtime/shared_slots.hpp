@@ -17,7 +17,7 @@ namespace tactus::runtime {
 ///
 /// A ring of slots, each a seqlock: the number of its value is taken away before the value is written and put back
 /// after it. With more than one slot the producer writes where nobody reads: a reader finds a value in motion only if
-/// the producer went once around the ring meanwhile, and is told so. The words are atomics, stored with `release` and
+/// the producer went once around the ring meanwhile, and detects it. The words are atomics, stored with `release` and
 /// loaded with `acquire`, so that whoever saw a word of a new value also sees that the old number is gone; no fence is
 /// needed, and thread sanitizers understand it.
 ///
@@ -56,7 +56,7 @@ class SharedSlots {
     return std::bit_cast<Value>(words);
   }
 
-  /// The latest value; none where there is none yet, or where the producer went around the ring twice during the call.
+  /// The latest value; none before the first, or where the producer went around the ring twice during the call.
   /// Any thread.
   [[nodiscard]] std::optional<Value> newest() const noexcept {
     for (int attempt = 0; attempt < 2; ++attempt) {

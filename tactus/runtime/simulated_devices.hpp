@@ -90,7 +90,7 @@ class SimulatedSlave final : public station::Device {
   /// Advances by one tick under the command that holds. Real-time safe.
   void advance() noexcept;
   [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
-  /// What no sensor tells: the contact in the tick that `advance` has advanced by, and where the tip is.
+  /// What no sensor measures: the contact in the tick that `advance` has advanced by, and where the tip is.
   [[nodiscard]] const simulation::SlavePlant& plant() const noexcept { return plant_; }
 
  private:

@@ -11,14 +11,14 @@
 
 namespace tactus::runtime {
 
-/// What a tap in real time runs through: both devices, and what happened at them that no sensor tells.
+/// What a tap in real time runs through: both devices, and what happened at them that no sensor measures.
 class TapPlant {
  public:
   virtual ~TapPlant() = default;
   virtual station::Device& master() noexcept = 0;
   virtual station::Device& slave() noexcept = 0;
   /// The next tick of the plant, after those that were given already, that has ended by this tick of the servo; none
-  /// where there is none. Real-time safe.
+  /// without one. Real-time safe.
   virtual std::optional<SimulatedTruth> next(const station::Tick& tick) noexcept = 0;
   /// Of the slave, true, after the ticks that were given. Real-time safe.
   [[nodiscard]] virtual double tip_position_m() const noexcept = 0;

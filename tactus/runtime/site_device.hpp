@@ -10,7 +10,8 @@
 
 namespace tactus::runtime {
 
-/// The way a person taps on and on: there, press, back, rest, with the mean speed and depth of an experiment's taps.
+/// How an operator taps again and again: there, press, back, rest, with the mean speed and depth of an experiment's
+/// taps.
 class RepeatedTaps {
  public:
   explicit RepeatedTaps(const experiments::TappingParams& params);

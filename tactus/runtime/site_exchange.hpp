@@ -10,7 +10,7 @@
 
 namespace tactus::runtime {
 
-/// What running sites and the rest of their program tell one another. No locks.
+/// What running sites and the rest of their program exchange. No locks.
 struct SiteExchange {
   telemetry::Ring<SiteWord, 16> words;   ///< of the operator
   std::atomic<bool> person_lost{false};  ///< nobody holds the dead-man switch any more

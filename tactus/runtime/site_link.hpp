@@ -66,7 +66,7 @@ class SiteLinkOf {
 
   /// What came since the second before. Once a second.
   LinkSecond end_second() noexcept;
-  /// Tells once why the sites that receive packets of each other cannot work together. Once a second.
+  /// Reports once why the sites that receive packets of each other cannot work together. Once a second.
   void report_mismatch(const control::AgreementCheck& agreement, SiteExchange& exchange) noexcept;
   /// After the last tick.
   [[nodiscard]] LinkTotals totals() const;

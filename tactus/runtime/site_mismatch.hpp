@@ -19,7 +19,7 @@ enum class KeyTrouble : std::uint8_t {
   none,
   other_key,   ///< what comes was made with another key
   other_none,  ///< what comes is plain text, and this site has a key
-  own_none     ///< what comes is of a site with a key, and this one has none
+  own_none     ///< what comes is of a site with a key, and this one has no key
 };
 
 /// Why two sites that receive packets of each other cannot work together.

@@ -44,7 +44,7 @@ struct DelayedSlaveParams {
 /// Measured position over command at `s` in 1/s.
 std::complex<double> transfer(const DelayedSlaveParams& params, std::complex<double> s);
 
-/// Phase margin in degrees of the closed position loop at its highest gain crossover; 180 where there is none.
+/// Phase margin in degrees of the closed position loop at its highest gain crossover; 180 without a crossover.
 double phase_margin_deg(const DelayedSlaveParams& params);
 
 /// A path of the master and its rate.

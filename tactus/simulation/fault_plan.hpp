@@ -29,9 +29,9 @@ enum class FaultKind {
   suspend,                ///< the machine sleeps, and its clock with it
   rate_drift,             ///< a site's clock runs fast or slow
   motor_reversed,         ///< a motor pushes the other way
-  torque_constant,        ///< it gives more or less than it is told
+  torque_constant,        ///< it gives more or less than commanded
   actuator_dead,          ///< it gives nothing
-  actuator_stuck,         ///< it keeps a force whatever it is told
+  actuator_stuck,         ///< it keeps a force whatever is commanded
   actuator_saturated,     ///< it gives no more than a part of its limit
   actuator_hot,           ///< its winding is cooled no more
   encoder_reversed,       ///< the encoder counts the other way

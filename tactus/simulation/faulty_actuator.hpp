@@ -20,7 +20,7 @@ class FaultyActuator {
   FaultyActuator(const FaultPlan& plan, FaultSite site, double tick_s)
       : plan_(plan), here_(plan.site == site), cools_(std::exp(-tick_s / winding_s)) {}
 
-  /// The force in N that the drive is made to give, from the one that it is told; none where it is not `enabled`. Once
+  /// The force in N that the drive is made to give, from the commanded one; none where it is not `enabled`. Once
   /// a tick. Real-time safe.
   double step(double commanded_N, bool enabled, const FaultMoment& moment) noexcept {
     if (!moment.during) last_N_ = commanded_N;
@@ -63,7 +63,7 @@ class FaultyActuator {
 
   FaultPlan plan_;
   bool here_;
-  double last_N_ = 0.0;  ///< told before the fault
+  double last_N_ = 0.0;  ///< commanded before the fault
   double cools_;         ///< in a tick
   double warmth_ = 0.0;
 };

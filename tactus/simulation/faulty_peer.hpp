@@ -62,7 +62,7 @@ class FaultyPeer {
   FaultPlan plan_;
   bool here_;
   signal::Random random_;
-  control::Packet last_;  ///< said before the fault
+  control::Packet last_;  ///< sent before the fault
 };
 
 }  // namespace tactus::simulation

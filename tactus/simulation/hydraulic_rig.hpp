@@ -12,7 +12,7 @@
 /// Paper B's rig: a servo-hydraulic slave under position control, and the inverse model of it (Sec. 5).
 namespace tactus::simulation {
 
-/// What the inverse model is told; the rest of it is identified on a run of the rig.
+/// What the inverse model is given; the rest of it is identified on a run of the rig.
 struct ValveCurrentModelParams {
   double actuator_gain_N_per_mA = 1320.0;
   double mass_kg = 6.8;
@@ -94,7 +94,7 @@ struct FittedInverseModel {
 ///
 /// Least squares of the current on σ(v / 1 mm/s) − ½, v, |v| v, acceleration and 1, all behind the same zero-phase
 /// low-pass at 30 Hz. The acceleration takes up the lags of valve and sensors, so that they do not flatten the damping;
-/// in the model stands the mass as weighed, for the lags are prediction's to make up for. Errors: those of the fit;
+/// in the model is the mass as weighed, for the lags are prediction's to make up for. Errors: those of the fit;
 /// `inconsistent` for a run from which no damping follows that grows with velocity.
 Result<FittedInverseModel> fit_inverse_model(const ValveCurrentModelParams& params,
                                              const std::vector<HydraulicRig::Sample>& run);

@@ -16,7 +16,8 @@ namespace tactus::stability {
 enum class Analysis { linear, lanes };
 
 /// Finds nothing where `analysis` knows the loop of `control`. Else an error, `inconsistent`, that names the key, with
-/// its section, and the remedy: an architecture or a stage that does not fit, or that has not said how it stands.
+/// its section, and the remedy: an architecture or a stage that does not fit, or that has not declared how it is
+/// treated.
 Check check_declared(const control::ControlParams& control, Analysis analysis);
 
 /// The same of one stage with the parameters `own`; `key_of` makes the key in a file of that of the stage, which is

@@ -37,7 +37,7 @@ std::size_t lane_room(const LanePoint* points, std::size_t count, std::size_t la
 /// Runs `lanes` points at once. `points` and `results` have that many entries; entries of `points` may repeat. The mean
 /// contact force of lane i at tick n is left in `force_N[n * lanes + i]`, `longest()` ticks of room; `lines` is memory
 /// for the delays, `lane_room` numbers, aligned to 64 bytes.
-/// Denormals are flushed to zero on the way. Real-time safe but for its length.
+/// Denormals are flushed to zero. Real-time safe but for its length.
 struct LaneRunner {
   const char* name;  ///< of the instruction set
   std::size_t lanes;

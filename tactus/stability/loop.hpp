@@ -49,7 +49,7 @@ enum SiteOutput : Eigen::Index { motor_force_out, message_out, handle_force_out,
 
 /// The controllers of both sites, without plants and delays.
 struct LinearSites {
-  StateSpace master;    ///< as `SiteInput` and `SiteOutput` say
+  StateSpace master;    ///< as in `SiteInput` and `SiteOutput`
   StateSpace slave;     ///< from the error of the position, in m, to the motor force, in N
   StateSpace modelled;  ///< Ĝ_i, from the motor force in N to the motor position in m
 };

@@ -16,7 +16,7 @@ namespace tactus::stability {
 
 enum class MapPrecision {
   lanes_of_double,  ///< every point in double
-  lanes_of_float,   ///< in float, and again in double until no verdict in float stands alongside another one
+  lanes_of_float,   ///< in float, and again in double until no verdict in float is next to a different one
 };
 
 /// A share of the work: process `rank` of `ranks`, which all write to one folder.

@@ -24,7 +24,7 @@ bool has_planes(const MapResult& map);
 /// The planes in the order of their points.
 std::vector<MapPlane> planes_of(const MapResult& map);
 
-/// What an axis is called in a picture, for instance `environment stiffness`; its unit stands apart.
+/// What an axis is called in a picture, for instance `environment stiffness`; its unit is apart.
 std::string label_of(const MapAxis& axis);
 
 struct MapPicture {

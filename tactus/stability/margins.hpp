@@ -59,7 +59,7 @@ struct DiskMargin {
 };
 DiskMargin disk_margin(const LoopCurve& curve);
 
-/// Poles of the closed loop outside the unit circle, for an open loop that has none: how often L turns around −1, by
+/// Poles of the closed loop outside the unit circle, for an open loop without any: how often L turns around −1, by
 /// the argument principle. Exact for any delay.
 int unstable_poles(const LoopCurve& curve);
 

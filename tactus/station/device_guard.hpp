@@ -24,7 +24,7 @@ constexpr auto enumerators(ReleaseCause) {
 /// In words, as the rest of a sentence: `commands stopped coming`. For any number that was read somewhere.
 const char* in_words(ReleaseCause cause);
 
-/// The longest silence of the other process that a side puts up with, unless told otherwise.
+/// The longest silence of the other process that a side puts up with, unless set otherwise.
 inline constexpr Seconds usual_silence{0.02};
 /// What a silence may be set to.
 inline constexpr Bounds silence_bounds = between(0.001, 10.0);
@@ -32,7 +32,7 @@ inline constexpr Bounds silence_bounds = between(0.001, 10.0);
 /// What may reach a motor, from the limits of its device alone.
 ///
 /// A command beyond `force_N` or faster than `rate_N_per_s` is held back to it; one that insists for longer than
-/// `timeout` is no slip, and latches. A number that is none, and a device beyond `velocity_m_per_s` or `position_m`,
+/// `timeout` is no slip, and latches. An invalid number, and a device beyond `velocity_m_per_s` or `position_m`,
 /// latch at once. From then on the force falls to zero, then the drive is switched off, and stays so until `rearm`. A
 /// limit of 0: none, and without a rate limit the force falls at once.
 ///
@@ -67,7 +67,7 @@ class DeviceGuard {
  private:
   static constexpr std::int64_t speed_window_ns = 5'000'000;
 
-  DeviceLimits limits_;  ///< infinite where there is none
+  DeviceLimits limits_;  ///< infinite without one
   std::int64_t timeout_ns_;
   ReleaseCause cause_ = ReleaseCause::none;
   [[nodiscard]] control::DriveLaw allowed(const control::DriveLaw& wanted) const noexcept;
@@ -105,7 +105,7 @@ class GuardedDeviceOf final : public DeviceOf<Reading> {
 
   [[nodiscard]] Each<Reading, DeviceLimits> limits() const override { return device_->limits(); }
   [[nodiscard]] bool simulated() const noexcept override { return device_->simulated(); }
-  /// Lets go as well where nothing was written for longer than `timeout`.
+  /// Releases as well where nothing was written for longer than `timeout`.
   Reading read(const Tick& tick) noexcept override;
   void write(const Command& command) noexcept override;
   [[nodiscard]] DeviceHealth health() const noexcept override {

@@ -21,8 +21,8 @@ concept Drivable = requires(D& device, const Tick& tick,
   noexcept;
 };
 
-/// A site that takes packets and is asked things by an operator. One without supervision receives messages, and is told
-/// which share of its controller's force to let in.
+/// A site that takes packets and is asked things by an operator. One without supervision receives messages, and is
+/// given which share of its controller's force to let in.
 template <class Site>
 concept Supervised = requires(Site& site, const typename Site::Packet& packet) {
   { site.take(packet) }
@@ -79,8 +79,8 @@ auto read(Device& device, const Tick& tick, DeviceHealth& health) noexcept {
   return reading;
 }
 
-/// The tick of a site where it stands; whatever the clock, all that runs a site runs this:
-/// device → what came on the way → site, its gate last → device → way.
+/// Runs one control cycle of a site. Every run mode, real-time or simulated, calls this function:
+/// device → received packets → site, its gate last → device → transport.
 ///
 /// A way of a supervised site has `receive(tick, take)`, which hands each packet that has come to `take`, and
 /// `send(packet, tick)`; one of a site without supervision has `hear(sensors)`, which puts what has come there, and

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-/// Where the controllers of a teleoperator stand: what reads and drives motors, what carries messages, and the tick
+/// What surrounds the controllers of a teleoperator: what reads and drives motors, what carries messages, and the tick
 /// that puts them together, whatever clock it runs on.
 namespace tactus::station {
 
@@ -29,7 +29,7 @@ constexpr auto enumerators(LateCause) {
                     Enumerator{LateCause::stalled, "stalled"}};
 }
 
-/// A tick, as the step is told of it. Times in ns of CLOCK_MONOTONIC.
+/// A tick, as the step receives it. Times in ns of CLOCK_MONOTONIC.
 struct Tick {
   std::int64_t number = 0;                ///< of its deadline, from 0, missed ones counted
   std::int64_t missed = 0;                ///< deadlines between the tick before and this one that no step answered

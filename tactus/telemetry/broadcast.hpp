@@ -12,7 +12,7 @@
 
 namespace tactus::telemetry {
 
-/// From one producer thread to any number of consumers, each of which sees every value: one copy, whoever looks on. The
+/// From one producer thread to any number of consumers, each of which sees every value: one copy for all observers. The
 /// producer never waits and never looks at a consumer. Fixed capacity, no allocation after it was made.
 ///
 /// A consumer that falls behind by more than the capacity finds the oldest values overwritten: it continues with the
@@ -33,7 +33,7 @@ class Broadcast {
     explicit Reader(std::shared_ptr<const Broadcast> source)
         : source_(std::move(source)), next_(source_->done_.load(std::memory_order_acquire)) {}
 
-    /// The oldest value that was not read yet and is still there; false where there is none.
+    /// The oldest value that was not read yet and is still there; false without one.
     bool next(T& value) noexcept {
       while (next_ != source_->done_.load(std::memory_order_acquire)) {
         const Slot& slot = source_->slots_[next_ & (Capacity - 1)];

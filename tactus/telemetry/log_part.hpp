@@ -65,7 +65,7 @@ class LogPart {
   /// How many channels there are by now.
   void declare(std::size_t channels) { written_.resize(channels); }
   Check put_metadata(std::string_view name, std::string_view record);
-  /// A chunk with its message indexes, and the record that tells of it at the end of the file. `messages`: how many of
+  /// A chunk with its message indexes, and the record that describes it at the end of the file. `messages`: how many of
   /// each channel.
   Check put_chunk(std::string_view bytes, std::string_view index, const TimeSpan& span,
                   const std::vector<std::uint64_t>& messages);

@@ -35,7 +35,7 @@ struct Bag {
 };
 
 /// Reads all `sensor_msgs/msg/JointState` and `geometry_msgs/msg/WrenchStamped` of a bag: an `.mcap` file, or the
-/// folder that holds one. Joints are told apart by their names, so messages may hold them in any order, or some of
+/// folder that holds one. Joints are distinguished by their names, so messages may hold them in any order, or some of
 /// them.
 ///
 /// Errors: those of `scan_log`; `syntax` for a message that is not what its type states, with topic and number;

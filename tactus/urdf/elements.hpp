@@ -56,7 +56,7 @@ struct Robot {
   std::map<std::string, std::size_t> link_by_name;
 };
 
-/// Reads the elements of the text; `read` in urdf.hpp tells the errors, which name `file`. A joint's links are known to
+/// Reads the elements of the text; `read` in urdf.hpp lists the errors, which name `file`. A joint's links are known to
 /// be there.
 Result<Robot> read_elements(const std::string& text, const std::filesystem::path& file);
 

@@ -6,9 +6,9 @@
 
 namespace tactus::wire {
 
-/// Lets two ends hear one another in virtual time, from `from_ns` to before `to_ns`; the next call continues from
+/// Lets two ends receive one another in virtual time, from `from_ns` to before `to_ns`; the next call continues from
 /// there. No time passes on the wire: put `Paced` around one end where it should. Ends that answer one another at once
-/// do so a nanosecond later, so that time continues whatever they say. Deterministic. Real-time safe where the ends
+/// do so a nanosecond later, so that time continues whatever they send. Deterministic. Real-time safe where the ends
 /// are.
 void join(WireEnd& a, WireEnd& b, std::int64_t from_ns, std::int64_t to_ns) noexcept;
 

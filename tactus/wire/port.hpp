@@ -35,9 +35,9 @@ class Port {
   Port& operator=(Port&& other) noexcept;
   ~Port();
 
-  /// What a user opens, or is told of.
+  /// What a user opens, or reads of.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  /// Of a terminal, as whoever opened it has set it; 0 where it is none. One system call.
+  /// Of a terminal, as whoever opened it has set it; 0 if it is no terminal. One system call.
   [[nodiscard]] std::int64_t bits_per_s() const noexcept;
   [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
   /// How many of the bytes it had room for. Real-time safe: one system call.

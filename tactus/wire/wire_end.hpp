@@ -20,7 +20,7 @@ class WireEnd {
   virtual ~WireEnd() = default;
   /// Bytes that arrived, in pieces of any size: a packet may be cut anywhere, and garbage may be between two.
   virtual void hear(std::span<const std::uint8_t> bytes, std::int64_t now_ns) noexcept = 0;
-  /// The next packet that it reports at this time, whole; empty where there is none. It is valid until the next call of
+  /// The next packet that it reports at this time, whole; empty without one. It is valid until the next call of
   /// any member. Whoever drives the end calls this until it is empty.
   virtual std::span<const std::uint8_t> say(std::int64_t now_ns) noexcept = 0;
   /// When it wants `say` called again where nothing arrives before: a deadline, or the time of an answer. `never_ns`

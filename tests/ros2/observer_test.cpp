@@ -31,7 +31,7 @@ SiteLogRecord record_of(SiteState state, double position_m) {
   record.position_m = position_m;
   record.read_force_N = 0.5;
   record.motor_force_N = -0.25;
-  record.Told::position_m = 0.75;
+  record.Sent::position_m = 0.75;
   return record;
 }
 

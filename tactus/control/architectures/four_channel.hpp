@@ -7,7 +7,7 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/signal/filtered_derivative.hpp>
 
-/// Four-channel control with local force loops: each site tells the other its position and its force.
+/// Four-channel control with local force loops: each site sends the other its position and its force.
 ///
 ///     F_cm = −C_m x_m − C_4 x_s − C_2 F_e + C_6 F_h     on the master's motor
 ///     F_cs = −C_s x_s + C_1 x_m − C_5 F_e + C_3 F_h     on the slave's motor
@@ -120,7 +120,7 @@ class FourChannelMaster {
   FilteredAcceleration slave_acceleration_;
 };
 
-/// The slave site. The positions that it is told are in its own scale.
+/// The slave site. The positions that it receives are in its own scale.
 class FourChannelSlave {
  public:
   struct Params {
@@ -170,7 +170,7 @@ class FourChannelSlave {
 ///     C_1 = λ C_s,   C_2 = μ,   C_5 = −C_1 C_2 Ĝ,   Ĝ = 1 / (D̂_m + D̂_h): the model of master and hand, N to m
 ///
 /// The slave knows what force it sent and so what the master displays a tick later; it runs the model on that and takes
-/// the induced motion out of the position that it is told. Its command then equals that of the cancelling master to
+/// the induced motion out of the position that it receives. Its command then equals that of the cancelling master to
 /// round-off, nonlinear model or not, as long as the way forth and back takes one tick and no gate intervenes. With
 /// more delay it subtracts the right motion at the wrong time, and `PositionForceMaster` is the one to use.
 class CancellingSlave {
@@ -186,7 +186,7 @@ class CancellingSlave {
   using Input = SlaveInput;
   using Output = SlaveOutput;
 
-  /// `master.cancellation` has no say: this slave cancels.
+  /// `master.cancellation` has no effect: this slave cancels.
   static Result<CancellingSlave> make(const Params& params, Seconds dt);
 
   /// Real-time safe.

@@ -45,10 +45,10 @@ struct MasterStages {
 ///
 /// Filters, crossover and damping are the paper's rivals of cancellation (Sec. IV, eq. 4 to 6). Each is off unless
 /// asked for, and what is off changes no bit. Damping acts on the measured position and counts as displayed force, so
-/// it drives the model of cancellation too; so does what compensation of the way from motor to hand makes of the force.
-/// That takes the force saturated, for the hand should get no more than the limit. What the actuator on the handle does
-/// is no part of the model. An online estimate of the hand lessens the force before damping (`AdmissibleForce`). With
-/// cancellation off the model still runs alongside the loop, so that its estimate can be
+/// it drives the model of cancellation too; so does what compensation of the path from motor to hand makes of the
+/// force. That takes the force saturated, for the hand should get no more than the limit. What the actuator on the
+/// handle does is no part of the model. An online estimate of the hand lessens the force before damping
+/// (`AdmissibleForce`). With cancellation off the model still runs alongside the loop, so that its estimate can be
 /// looked at.
 class PositionForceMaster {
  public:
@@ -99,7 +99,7 @@ class PositionForceMaster {
   static Result<PositionForceMaster> make(const Params& params, Seconds dt);
 
   /// Each stage as `make.operator()<Stage>(name, own)` has it, with its own parameters `own`, in the order of
-  /// `MasterStages`. `site_key` tells their keys by `name`.
+  /// `MasterStages`. `site_key` has their keys by `name`.
   template <template <class> class As, class Make>
   static MasterStages<As> each_stage(const Params& params, const Make& make) {
     auto force_filter = make.template operator()<ShapingFilter>("force_filter", params.force_filter);

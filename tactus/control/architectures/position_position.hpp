@@ -16,9 +16,9 @@ namespace tactus::control {
 /// is felt as drag: at steady speed v, with a slave that keeps up, F_e = k_p λ v d.
 ///
 /// e holds the measured position, cancellation or not: the hand feels where the slave is, not where it was commanded to
-/// be. Before the slave has been heard there is no error and no force; while it does not respond its last position
-/// stands. Source: Lawrence, Stability and transparency in bilateral teleoperation, 1993 (position-position as the case
-/// of his general architecture that has position channels alone).
+/// be. Before the first packet of the slave there is no error and no force; while it does not respond, its last
+/// position counts. Source: Lawrence, Stability and transparency in bilateral teleoperation, 1993 (position-position as
+/// the case of his general architecture that has position channels alone).
 class PositionPositionMaster {
  public:
   struct Params {

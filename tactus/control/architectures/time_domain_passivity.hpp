@@ -11,7 +11,7 @@
 /// dampers that remove what there is too much of.
 ///
 /// Each site counts the energy that flowed into the line at its port and the energy that flowed out of it, apart, both
-/// only growing. It tells the other site what flowed in so far. What a site may give out is what the other's newest
+/// only growing. It sends the other site what flowed in so far. What a site may give out is what the other's newest
 /// message states went in:
 ///
 ///     W(k) = E_in of the other site, as arrived − E_out(k) + E_PC(k−1) ≥ 0

@@ -48,7 +48,7 @@ struct WaveParams {
 ///
 /// - A tick without a fresh message takes a zero wave. Holding the last one would make energy.
 /// - The wave then goes through the low-pass y += α (u − y), whose gain is nowhere above 1.
-/// - Lost waves are lost displacement, so the slave would drift. Each message therefore also tells the displacement
+/// - Lost waves are lost displacement, so the slave would drift. Each message therefore also carries the displacement
 ///   √(2/b) ∫u dt that all waves up to it carry, and the energy that was sent in all. What is missing of the
 ///   displacement is added over the correction time, as long as the energy that was sent and not yet given out pays
 ///   for it. (Integral and energy of the wave: G. Niemeyer and J.-J. E. Slotine, Towards force-reflecting
@@ -105,7 +105,7 @@ class WaveMaster {
   static Result<WaveMaster> make(const Params& params, Seconds dt);
 
   /// Force, and the wave that leaves: u = √(2b) λẋ − v. A force that saturates takes less from the hand than that wave
-  /// would carry, so the energy that is told is what is really there, v²/2 + F λẋ/μ, and the receiver gives out no
+  /// would carry, so the energy that is sent is what is really there, v²/2 + F λẋ/μ, and the receiver gives out no
   /// more. Real-time safe.
   Output respond(const Input& input) noexcept;
   Output step(const Input& input) noexcept { return respond(input); }

@@ -17,7 +17,7 @@ namespace tactus::control {
 ///
 /// with B a Butterworth low-pass of second order at `cutoff_Hz`. All three terms pass the one filter, so a known motor
 /// force that moves the mass is not taken for a hand, at no frequency: with the second difference of the position
-/// stands the mean of the forces of its two ticks, which is exact for a rigid mass and held forces. A velocity and a
+/// is the mean of the forces of its two ticks, which is exact for a rigid mass and held forces. A velocity and a
 /// filter of its own for each term, the usual form, would leave the difference of their lags as false force.
 ///
 /// Good below the first mode of the device (75 Hz for the default master), so keep the cutoff below that. A position

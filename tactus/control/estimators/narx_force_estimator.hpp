@@ -13,7 +13,7 @@
 namespace tactus::control {
 
 /// What a term of a NARX model can be a product of, by number: 0 the one; 1 to 6 the difference of the positions i − 1
-/// and i lags old, over its scale; 7 to 9 the model's own output i − 6 lags before, over its limit. Differences tell
+/// and i lags old, over its scale; 7 to 9 the model's own output i − 6 lags before, over its limit. Differences show
 /// lagged positions apart far better than positions do, and hold wherever the slave is; a slave with a spring of its
 /// own needs another model.
 struct NarxVariables {

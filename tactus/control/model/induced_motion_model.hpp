@@ -20,7 +20,7 @@ constexpr auto enumerators(CancellationStep) {
   return std::array{Enumerator{CancellationStep::euler, "euler"}, Enumerator{CancellationStep::exact, "exact"}};
 }
 
-/// How much of the mechanism the model tells apart (paper A, Sec. VI and VII-A). The lower ones take links as rigid;
+/// How much of the mechanism the model distinguishes (paper A, Sec. VI and VII-A). The lower ones take links as rigid;
 /// all but the last are linear.
 enum class ModelFidelity {
   second_order,        ///< motor, drum and handle are one mass on the hand

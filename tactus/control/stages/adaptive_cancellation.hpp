@@ -28,7 +28,7 @@ namespace tactus::control {
 /// had had the new θ all the while, from the tick after on and as fast only as moves the command by one step of the
 /// encoder, 10 µm, a tick.
 /// The tangents forget slow motion (their common translation leaks away at 80 /s), so that a change of estimate
-/// corrects the impact that told it and not the centimetres that a hand was pushed before.
+/// corrects the impact that showed it and not the centimetres that a hand was pushed before.
 ///
 /// *Slow motion.* Instead of the quintic spring, which depends on size, a filter of frequency decides how much of the
 /// modelled motion stays in the command (docs/theory/changing-grip.md derives the numbers):

@@ -21,7 +21,7 @@ namespace tactus::control {
 /// above 40 Hz and u₀ = 50 µm; it comes back within a second. A model that fits leaves less than that 20 ms after a
 /// touch.
 ///
-/// Not an element: what it is told and what it is asked come at different moments of a tick. Real-time safe.
+/// Not an element: its inputs and requests come at different moments of a tick. Real-time safe.
 class AdmissibleForce {
  public:
   explicit AdmissibleForce(double dt_s)

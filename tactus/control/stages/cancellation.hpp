@@ -12,7 +12,7 @@ namespace tactus::control {
 ///
 /// The model's position at a tick comes from the forces displayed up to that tick, so it is subtracted from the sample
 /// of the same instant, before the new force acts: one tick of misalignment costs about half of what 10 % error in
-/// stiffness does. It needs neither the network nor the slave, so it stands delay untouched. After the sample arrives
+/// stiffness does. It uses no signal from the slave, so delay does not affect it. After the sample arrives
 /// there is one subtraction to do; the model's own step comes after it.
 class Cancellation {
  public:

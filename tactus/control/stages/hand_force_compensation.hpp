@@ -15,7 +15,7 @@ namespace tactus::control {
 /// above. Real where linkage and hand damp everything. Cold.
 std::complex<double> linkage_mode(const MasterModel& master);
 
-/// Undoes what the master does to a force on its way from motor to hand, so that the hand gets what the slave felt:
+/// Undoes what the master does to a force between motor and hand, so that the hand gets what the slave felt:
 /// paper A's future work (Kuchenbecker and Niemeyer, "Induced Master Motion in Force-Reflecting Teleoperation", Sec.
 /// IX).
 ///

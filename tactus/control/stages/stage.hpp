@@ -2,8 +2,8 @@
 
 #include <optional>
 
-/// How a stage of a site stands to those who judge the loop without running it: linear analysis, and lanes, which run
-/// many loops at once by arithmetic of their own.
+/// How a stage of a site is treated by those that judge the loop without running it: linear analysis, and lanes, which
+/// run many loops at once by arithmetic of their own.
 ///
 /// Each stage declares it alongside its parameters, and what declares nothing is refused there by name, on or off:
 ///
@@ -20,14 +20,14 @@ struct Unfit {
   const char* remedy;  ///< what to write there
 };
 
-/// Whether a stage states how it stands to linear analysis.
+/// Whether a stage states how linear analysis treats it.
 template <class Stage>
 concept DeclaredLinear = requires {
   Stage::linear_states;
 }
 || requires(const typename Stage::Params& params) { Stage::not_linear(params); };
 
-/// Whether a stage states how it stands to lanes.
+/// Whether a stage states how lanes treat it.
 template <class Stage>
 concept DeclaredOnLanes = requires(const typename Stage::Params& params) {
   Stage::not_on_lanes(params);

@@ -37,7 +37,7 @@ struct DamiaoBusParams {
 /// Damiao motors behind one adapter, driven by torque and by the law that each runs by itself.
 ///
 /// At first each motor is switched off and asked: identifier of its feedback, scales, firmware, mode, watchdog. One
-/// that is not what the parameters say makes the bus `refused`. Then each cycle sends one frame to every motor at once,
+/// that differs from the parameters makes the bus `refused`. Then each cycle sends one frame to every motor at once,
 /// each of which is answered by feedback, and ends when all have answered or the next one keeps it waiting too long.
 ///
 /// Power: a motor gets it when its command asks for it again; a fault from before is cleared first. A fault or a status
@@ -74,7 +74,7 @@ class DamiaoBus final : public MotorBus {
   void command(std::size_t motor, const MotorCommand& wanted) noexcept override;
   [[nodiscard]] std::int64_t cycles() const noexcept override { return cycles_; }
 
-  /// What a motor said of itself; complete unless the bus is still `asking`.
+  /// What a motor reported of itself; complete unless the bus is still `asking`.
   [[nodiscard]] const MotorFacts& facts(std::size_t motor) const noexcept { return motors_[motor].questions.facts(); }
 
  private:

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-/// What Damiao's motors are told and what they answer, in frames of CAN. Source: the maker's protocol, as openarm_can,
+/// Commands to Damiao's motors and their replies, in frames of CAN. Source: the maker's protocol, as openarm_can,
 /// i2rt, lerobot and python-damiao-driver speak it. Real-time safe.
 namespace tactus::devices::damiao {
 
@@ -57,7 +57,7 @@ CanFrame read_frame(std::uint16_t motor, Register which) noexcept;
 /// Until the motor loses its power; `value` as the bits of it.
 CanFrame write_frame(std::uint16_t motor, Register which, std::uint32_t value) noexcept;
 
-/// What a motor tells after every frame to it.
+/// What a motor reports after every frame to it.
 struct Feedback {
   std::uint8_t status = 0;
   std::uint8_t motor = 0;  ///< the low four bits of its identifier
@@ -86,7 +86,8 @@ struct RegisterAnswer {
   std::uint32_t value = 0;  ///< the bits of it
 };
 /// None where it cannot be one. It has the identifier of feedback, and feedback of a motor without power can look like
-/// it, where position and velocity are near the end of their scale; a register that no motor has tells most of those.
+/// it, where position and velocity are near the end of their scale; a register that no motor has excludes most of
+/// those.
 std::optional<RegisterAnswer> register_answer_of(const CanFrame& frame) noexcept;
 
 }  // namespace tactus::devices::damiao

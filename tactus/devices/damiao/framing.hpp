@@ -31,7 +31,7 @@ struct Wrapped {
   [[nodiscard]] std::span<const std::uint8_t> view() const noexcept { return {bytes.data(), size}; }
 };
 Wrapped wrap(Framing framing, const CanFrame& frame) noexcept;
-/// What an adapter must be told before frames pass; may be empty.
+/// What an adapter must receive before frames pass; may be empty.
 Wrapped opening(Framing framing) noexcept;
 
 /// Finds frames of 11-bit identifiers in what comes. Bytes of serial framings may be cut anywhere, and garbage may

@@ -18,7 +18,7 @@ struct MotorParams {
   Model model = Model::dm4310;
 };
 
-/// What a motor said of itself. NaN and negative numbers: not reported.
+/// What a motor reported of itself. NaN and negative numbers: not reported.
 struct MotorFacts {
   std::int64_t feedback_id = -1;
   double position_scale_rad = std::numeric_limits<double>::quiet_NaN();
@@ -45,8 +45,8 @@ class Questions {
   bool take(const CanFrame& frame) noexcept;
 
   [[nodiscard]] const MotorFacts& facts() const noexcept { return facts_; }
-  /// The models with the scales that it told, where the stated one is not one of them; empty where it is, and where no
-  /// model has them. Not real-time safe.
+  /// The models with the scales that it reported, where the stated one is not one of them; empty where it is, and where
+  /// no model has them. Not real-time safe.
   [[nodiscard]] std::string model_told() const;
   /// The first thing that is wrong, with the remedy. Not real-time safe.
   [[nodiscard]] Check problem() const;

@@ -34,8 +34,9 @@ const ServoModel& servo_model(DynamixelModel model) noexcept;
 /// Each is read for model number and current limit, loses its torque, and gets return delay 0 and current mode where it
 /// has another (both are in memory that wears out). One that is given power gets bus watchdog 5 first: 100 ms without
 /// any packet, and it releases its force by itself, whatever became of this program. A cycle is a sync write of goal
-/// currents and a fast sync read of current, velocity and position. In a fast read those behind a silent servo stay
-/// silent too; so after one that was not whole, plain sync reads follow, until all answered a thousand times in a row.
+/// currents and a fast sync read of current, velocity and position. In a fast read those behind a servo without a reply
+/// do not reply either; so after one that was not whole, plain sync reads follow, until all answered a thousand times
+/// in a row.
 ///
 /// A servo drops a goal beyond its limit without a word. So the limit is read from it and kept to here. Not tried on
 /// hardware.

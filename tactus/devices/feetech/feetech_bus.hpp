@@ -44,7 +44,7 @@ class FeetechBus final : public ServoBus {
   struct Motor {
     std::int64_t id = 1;
     FeetechModel model = FeetechModel::sts3215;
-    double torque_Nm_per_A = 0.0;  ///< of an HLS: no page tells it. Measure it, or stall torque over stall current
+    double torque_Nm_per_A = 0.0;  ///< of an HLS: no page states it. Measure it, or stall torque over stall current
   };
   struct Params {
     std::vector<Motor> motors;

@@ -22,7 +22,7 @@ std::uint8_t checksum(std::span<const std::uint8_t> bytes) noexcept;
 ServoPacket encode(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters) noexcept;
 
 /// How packets are found among bytes: by header, length and checksum. A status packet has an error where others have an
-/// instruction, and nothing else tells them apart.
+/// instruction, and nothing else distinguishes them.
 struct PacketFormat {
   /// The echo of a command to sixteen servos.
   static constexpr std::size_t most = 64;

@@ -14,7 +14,7 @@ namespace tactus::devices::inverse3 {
 
 struct LinkParams {
   std::string address = "127.0.0.1:10001";
-  std::string device;              ///< its identifier, as 049D; empty: the first that the service tells
+  std::string device;              ///< its identifier, as 049D; empty: the first that the service reports
   std::vector<std::int64_t> axes;  ///< of each joint: 1 is x, 2 is y, 3 is z
   double shortest_cycle_s = 0.001;
   double silence_s = 0.05;  ///< of the servo tick, until the force ends
@@ -33,7 +33,7 @@ Check check(const LinkParams& params);
 ///
 /// There is no force before the device is calibrated. The service ends a force by itself when messages stop, so a
 /// program that was killed leaves none. Where the connection ends, it is made again, for ever; meanwhile readings grow
-/// old. A message that is none is left out. Not tried on hardware.
+/// old. An invalid message is left out. Not tried on hardware.
 class Inverse3Link final : public MotorLink {
  public:
   /// Errors: those of `check`; `failed` where the system gives no thread.

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-/// Haply's Inverse3 as its Inverse Service tells of it and takes commands for it, in JSON. Source: Haply, Inverse SDK
+/// Haply's Inverse3 as its Inverse Service reports it and takes commands for it, in JSON. Source: Haply, Inverse SDK
 /// 3.5, pages of the WebSocket protocol and of the migration to 3.5. No connection is made here. Not real-time safe.
 namespace tactus::devices::inverse3 {
 
@@ -27,16 +27,16 @@ constexpr auto enumerators(Dialect) {
   return std::array{Enumerator{Dialect::values, "values"}, Enumerator{Dialect::named, "named"}};
 }
 /// That of a service which answers so to GET /version. No page shows the answer in full, so the first number of the
-/// form 3.5 in it counts. Errors: `syntax` where there is none.
+/// form 3.5 in it counts. Errors: `syntax` without a version.
 Result<Dialect> dialect_of(std::string_view answer);
 
-/// The message of a tick: so much force at the cursor, newtons, on this device. A force that is not a number is none.
+/// The message of a tick: so much force at the cursor, newtons, on this device. A force that is not a number is zero.
 /// It asks for a fresh state too, and what is not sent again ends: the service keeps no command.
 std::string force_message(std::string_view device_id, const Vector& force_N, Dialect dialect);
 /// The message of a tick without force, which keeps states fresh.
 std::string probe_message(std::string_view device_id);
 
-/// A device as it was told so far.
+/// A device as it was reported so far.
 struct Device {
   std::string id;
   Vector position_m{}, velocity_m_per_s{};
@@ -45,25 +45,25 @@ struct Device {
   bool ready = false;
   bool supplied = true;     ///< false only where the service reports that it has no supply of power
   bool told_force = false;  ///< in the latest message
-  std::string mode;         ///< what drives it, as `idle` or `force`; empty where the latest message does not say
-  /// Filters of the service in the way of the force; empty where nothing was told of them. What is not 0 belongs to the
-  /// model or has to be switched off.
+  std::string mode;         ///< what drives it, as `idle` or `force`; empty if the latest message lacks it
+  /// Filters of the service in the way of the force; empty if nothing was reported of them. What is not 0 belongs to
+  /// the model or has to be switched off.
   std::optional<double> force_gate, damping;
 };
 
-/// Whether it reports, in the latest message, that it gives no force: its mode is `idle`, or, where the service tells
+/// Whether it reports, in the latest message, that it gives no force: its mode is `idle`, or, where the service reports
 /// no mode, its force is. A mode that is not known counts as a force.
 bool reports_off(const Device& device) noexcept;
-/// The first seven letters of a mode as a number (`MotorReading::status`); `no_status` where there is none.
+/// The first seven letters of a mode as a number (`MotorReading::status`); `no_status` without a mode.
 std::int64_t status_of(const Device& device) noexcept;
 /// `mode 'force'`, for a user; `no mode` where that is negative. Not real-time safe.
 std::string status_text(std::int64_t status);
 
-/// All devices of a service. The first message tells all, later ones what changed: what one leaves out stays as it was.
+/// All devices of a service. The first message has all, later ones what changed: what one leaves out stays as it was.
 class Devices {
  public:
   /// Takes a message. Errors: `syntax` for what is not JSON, or no list of devices; `wrong_type` for a number, a flag
-  /// or a name that is none. Then nothing changed.
+  /// or an unknown name. Then nothing changed.
   Check take(std::string_view message);
   [[nodiscard]] const std::vector<Device>& all() const noexcept { return devices_; }
 

@@ -16,7 +16,7 @@ struct MotorAbility {
   /// Step in which it reports a velocity of its own, not derived from the position. Position and velocity are then
   /// compared (`control::MotionCheck`), and thresholds of the gate follow from the joint's limits. 0: it reports none.
   double velocity_step_rad_per_s = 0.0;
-  /// Farthest position of a joint, either way from the motor's zero; infinite: not known.
+  /// Farthest position of a joint, in either direction from the motor's zero; infinite: not known.
   double position_rad = std::numeric_limits<double>::infinity();
   /// Largest gains of the law that it runs by itself; both 0: it runs none.
   double stiffness_Nm_per_rad = 0.0, damping_Nms_per_rad = 0.0;

@@ -37,8 +37,9 @@ struct StatedBus {
   std::string port;                 ///< of Haply's service HOST:PORT
   std::string device = {};          ///< which one of that service; empty: the first
   std::string framing = "usb2can";  ///< of CAN
-  double reply_timeout_s = 0.002;   ///< of Damiao, for an answer; three times in a row make a motor silent
-  double watchdog_s = 0.05;  ///< a motor that is unheard for so long is lost; of Damiao it releases its force by itself
+  double reply_timeout_s =
+      0.002;  ///< of Damiao, for an answer; a motor that exceeds it three times in a row is not responding
+  double watchdog_s = 0.05;  ///< a motor without a reply for so long is lost; of Damiao it releases its force by itself
   std::int64_t bits_per_s = 1'000'000;  ///< of servos
   std::vector<StatedMotor> motors;
   std::string driver = {};                              ///< name of the registered driver, where `kind` is `plugged`

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// What motors say of themselves when they are asked, and what is wrong with that. No motor gets power.
+/// What motors report of themselves when they are asked, and what is wrong with that. No motor gets power.
 namespace tactus::devices {
 
 /// What is wrong with a motor that answers, and what fixes it; empty where it is well.
@@ -15,7 +15,7 @@ const char* remedy_of(MotorFault fault);
 
 struct MotorFinding {
   MotorSheet sheet;
-  MotorReading reading;  ///< as last told; meaningless unless the bus was `heard`
+  MotorReading reading;  ///< as last reported; meaningless unless the bus was `heard`
   double age_s = 0.0;    ///< of that
   std::vector<Error> problems;
 };

@@ -13,7 +13,7 @@ namespace tactus::devices {
 /// A port as Linux shows it. Nothing was opened.
 struct FoundPort {
   std::string path;    ///< `/dev/ttyUSB0`; the name of an interface of CAN
-  std::string name;    ///< by which it stays the same: in `/dev/serial/by-id`; empty where there is none
+  std::string name;    ///< by which it stays the same: in `/dev/serial/by-id`; empty without such a name
   std::string remark;  ///< what is wrong with it, such as a slow latency timer
 };
 /// Serial adapters and interfaces of CAN. `device` and `system` are where Linux shows them.

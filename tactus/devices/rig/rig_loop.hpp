@@ -16,9 +16,9 @@ namespace tactus::devices {
 
 /// A leader and a follower of several joints on one computer, supervised: the step of a servo thread. No motor has
 /// power until somebody arms, and nobody can while a joint of the follower is farther from its leader than it may be.
-/// Then both stand, try the sign of each motor, the coupling comes in over `blend_s`, and the follower goes to where
-/// its leader is at no more than `silence.catch_up_m_per_s`. Does not allocate, lock or block, as far as the devices do
-/// not.
+/// Then both hold still, test the sign of each motor, the coupling comes in over `blend_s`, and the follower goes to
+/// where its leader is at no more than `silence.catch_up_m_per_s`. Does not allocate, lock or block, as far as the
+/// devices do not.
 class RigLoop {
  public:
   struct Params {

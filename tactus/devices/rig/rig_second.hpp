@@ -21,7 +21,7 @@ struct RigSecond {
   control::SiteCause cause =
       control::SiteCause::started;  ///< of the leader, or of the follower where that stopped by itself
   station::DeviceHealth leader_health = station::DeviceHealth::good, follower_health = station::DeviceHealth::good;
-  DeviceTrouble leader_trouble, follower_trouble;       ///< the worst of the second, or since they stand
+  DeviceTrouble leader_trouble, follower_trouble;       ///< the worst of the second, or of the present hold
   control::GateFault fault = control::GateFault::none;  ///< what a gate latched, of the leader first
   bool fault_of_leader = false;
   std::size_t fault_joint = 0;
@@ -42,7 +42,7 @@ struct RigTotals {
   std::int64_t late_ticks = 0, not_responding_ticks = 0, lost_ticks = 0;  ///< of the worse device
 };
 
-/// Seconds on their way from the servo thread to one other.
+/// Seconds from the servo thread to one other.
 using RigSeconds = telemetry::Ring<RigSecond, 64>;
 inline std::optional<RigSecond> next_of(RigSeconds& seconds) noexcept {
   RigSecond second;
@@ -84,7 +84,7 @@ void note_support(RigSecond& second, const Site& site, bool of_leader) noexcept 
   second.support = site.support().found();
   second.support_of_leader = of_leader;
 }
-/// Begins again what a second gathers. What stopped the sites is told until they are armed again.
+/// Begins again what a second gathers. What stopped the sites is reported until they are armed again.
 inline void begin_anew(RigSecond& second, bool stands) noexcept {
   second.most_torque = 0.0;
   if (!stands) second.leader_trouble = second.follower_trouble = {};

@@ -19,9 +19,9 @@ bool tells_its_place(const Joints<control::ControlParams>& control, Seconds tick
 /// One side of a pair on this computer, the other side being elsewhere: the link, a supervised site of several joints
 /// and its motors. The step of a servo thread. Does not allocate, lock or block, as far as the device does not.
 ///
-/// It arms as `RigLoop` does. No motor has power until somebody arms at the leader's; that is not heard while the
-/// follower tells of a joint that is farther from its leader than it may be, is not heard itself, or works by other
-/// parameters. The leader then stands and arms; the follower, which sees it do so, stands and follows the arming, but
+/// It arms as `RigLoop` does. No motor has power until somebody arms at the leader's; that has no effect while the
+/// follower reports a joint that is farther from its leader than it may be, does not respond, or works by other
+/// parameters. The leader then holds still and arms; the follower detects that, holds still and follows the arming, but
 /// not from a place that is farther from where it is commanded to be than it may be.
 class RigSiteLoop {
  public:

@@ -15,7 +15,7 @@ namespace tactus::devices {
 /// A servo as its maker built it.
 struct ServoModel {
   const char* name;
-  std::int64_t number;         ///< that it tells of itself; 0 where no page reports it, and then it is not compared
+  std::int64_t number;         ///< that it reports of itself; 0 where no page reports it, and then it is not compared
   double current_unit_A;       ///< of its goal and its present current
   std::int64_t current_limit;  ///< the largest goal that it can be set to take, in units; 0: it takes no current
   double torque_Nm_per_A;      ///< at the output; friction of the gear is not in it
@@ -50,7 +50,7 @@ struct ServoTable {
   std::int64_t steps_per_turn;
   std::int64_t steps_until_wrap;  ///< of the position on the wire
   std::int64_t silence_ns;        ///< after that long without an answer a servo does not respond
-  std::int64_t rest_ns;           ///< longer than the servo's own watchdog waits for any packet; 0: it has none
+  std::int64_t rest_ns;           ///< longer than the servo's own watchdog waits for any packet; 0: no watchdog
 };
 
 /// The status of a servo in one number (`MotorReading::status`): the error byte of its last answer, its error register
@@ -68,16 +68,16 @@ struct ServoStatus {
 std::string servo_status_text(std::int64_t status);
 
 /// The bus of servos on one half-duplex line: what is the same whatever their make. A cycle is one packet with the
-/// goals of all, one that asks all for their state, and their answers; now and then one question to one servo stands
+/// goals of all, one that asks all for their state, and their answers; now and then one question to one servo is
 /// between two cycles. A make gives its packets and its table.
 ///
 /// A fault takes the power of its servo until a command asks for none and the cause is gone; it does not come back by
 /// itself. An error byte or an error register that no page explains is a fault (`unknown_status`).
 ///
-/// A servo that is to have no power is told so in every cycle, in one packet for all of them, whether it answers or
-/// not, until its register of power reads 0. One that does not within 0.1 s has the fault `stays_on` for good; where no
-/// servo is to have power and servos have a watchdog, the bus then falls silent for longer than that waits, again and
-/// again.
+/// A servo that is to have no power is commanded so in every cycle, in one packet for all of them, whether it answers
+/// or not, until its register of power reads 0. One that does not within 0.1 s has the fault `stays_on` for good; where
+/// no servo is to have power and servos have a watchdog, the bus then sends nothing for longer than that waits, again
+/// and again.
 ///
 /// Real-time safe but for `problem` and `sheet`.
 class ServoBus : public MotorBus {
@@ -116,7 +116,7 @@ class ServoBus : public MotorBus {
   enum class Wrong : std::uint8_t { nothing, silent, garbled, twice, model, limit, refused, stays_on };
 
   ServoBus(const ServoTable& table, std::int64_t bits_per_s) : table_(table), bits_per_s_(bits_per_s) {}
-  /// Before anything is said, with what it is asked before the bus is ready. At most `most_servos`.
+  /// Before anything is sent, with what it is asked before the bus is ready. At most `most_servos`.
   void add(std::uint8_t id, const ServoModel& model, std::span<const ServoStep> asking);
 
   [[nodiscard]] const ServoModel& model(std::size_t motor) const noexcept { return servos_[motor].model; }
@@ -134,7 +134,7 @@ class ServoBus : public MotorBus {
     servos_[motor].status.condition = static_cast<std::uint8_t>(value);
   }
   void set_firmware(std::size_t motor, std::int64_t version) noexcept { servos_[motor].firmware = version; }
-  /// Whether it said that it has.
+  /// Whether it reported that it has.
   [[nodiscard]] bool has_power(std::size_t motor) const noexcept { return servos_[motor].reading.enabled != 0; }
   void heard(const Answer& answer) noexcept;
 
@@ -165,7 +165,7 @@ class ServoBus : public MotorBus {
   virtual Wrong check(std::size_t motor, Register place, std::int64_t value) noexcept = 0;
   /// What a look showed.
   virtual void looked(std::size_t motor, Register place, std::int64_t value) noexcept = 0;
-  /// The name of the model that tells this number, empty where no page reports it.
+  /// The name of the model that reports this number, empty where no page reports it.
   [[nodiscard]] virtual std::string model_named(std::int64_t number) const = 0;
 
  private:
@@ -183,7 +183,7 @@ class ServoBus : public MotorBus {
     bool alert = false;                                   ///< of its last answer
     int empty_looks = 0;                                  ///< that gave no reason for its alert, in a row
     bool asked = false, heard = false, answered = false;  ///< in this cycle
-    bool spoke = false;                                   ///< in this cycle, whatever it said
+    bool spoke = false;                                   ///< in this cycle, whatever it reported
     std::size_t owed = 0;                                 ///< answers to cycles before, which may still come
     std::size_t missed = 0;                               ///< cycles in a row
     MotorFault ails = MotorFault::none;

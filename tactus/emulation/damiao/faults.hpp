@@ -12,7 +12,7 @@ namespace tactus::emulation::damiao {
 enum class FaultKind : std::int64_t {
   silence,       ///< receives nothing and reports nothing
   wrong_scale,   ///< VMAX half as large again as the type has; from the start
-  over_voltage,  ///< these: a status that stays, whatever the motor is told
+  over_voltage,  ///< these: a status that stays, whatever the motor receives
   under_voltage,
   over_current,
   hot_drive,

@@ -123,7 +123,7 @@ class Motor {
   std::uint8_t status_ = 0;
   bool alone_ = true;
   double zero_rad_ = 0.0;  ///< of one that turns with others
-  bool stays_ = false;     ///< its fault, whatever it is told
+  bool stays_ = false;     ///< its fault, whatever it receives
   bool ignores_disable_ = false;
   std::optional<std::uint8_t> reported_;          ///< in place of its status
   std::int64_t now_ns_ = -1, spoken_to_ns_ = -1;  ///< negative: not yet

@@ -16,8 +16,8 @@ namespace tactus::emulation::dynamixel {
 /// Emulated Dynamixel servos of the X series behind one line, Protocol 2.0: a control table each, memory that is locked
 /// while torque is on, answers after the return delay, the bus watchdog, errors of range, length and access, the alert
 /// bit. Current mode moves a simulated joint; in other modes the joint turns freely. In a sync read the place of a
-/// silent servo stays empty; in a fast one nobody answers behind it. Every run of the same bytes, times and seed is the
-/// same. It takes no time for its bytes: put `wire::Paced` around it.
+/// servo without a reply stays empty; in a fast one nobody answers behind it. Every run of the same bytes, times and
+/// seed is the same. It takes no time for its bytes: put `wire::Paced` around it.
 ///
 /// Source: ROBOTIS e-Manual, "DYNAMIXEL Protocol 2.0" and control tables of XL330, XC330 and XM430.
 class DynamixelPeer final : public wire::WireEnd {
@@ -34,7 +34,7 @@ class DynamixelPeer final : public wire::WireEnd {
   };
   struct Params {
     std::vector<Servo> servos{{.id = 1}, {.id = 2}};
-    std::int64_t bits_per_s = 1'000'000;  ///< for the place that a silent servo leaves empty
+    std::int64_t bits_per_s = 1'000'000;  ///< for the place that a servo without a reply leaves empty
     bool knows_fast_sync_read = true;     ///< as new firmware does
     LineFaults line;
     std::int64_t seed = 1;
@@ -52,7 +52,8 @@ class DynamixelPeer final : public wire::WireEnd {
   [[nodiscard]] std::int64_t stored(std::size_t servo, std::size_t address, std::size_t bytes) const noexcept;
   [[nodiscard]] const ServoJoint& joint(std::size_t servo) const noexcept { return servos_[servo].joint; }
   ServoJoint& joint(std::size_t servo) noexcept { return servos_[servo].joint; }
-  /// The largest current that it ever gave, in its units; and how often it refused a goal without being able to say so.
+  /// The largest current that it ever gave, in its units; and how often it refused a goal without being able to report
+  /// it.
   [[nodiscard]] std::int64_t largest_current(std::size_t servo) const noexcept { return servos_[servo].largest; }
   [[nodiscard]] std::int64_t lost_goals() const noexcept { return lost_goals_; }
   /// Lets time pass where nothing is received, for who looks at the truth.

@@ -21,7 +21,7 @@ constexpr auto enumerators(Make) {
 
 /// Emulated Feetech servos behind one line: a memory table each, whose lasting part is locked by register 55, numbers
 /// with a sign bit, answers to single questions and sync reads. An HLS in mode 2 moves a simulated joint by its
-/// current, keeps its last one for ever, and lets go where that is beyond its protection current. In other modes, and
+/// current, keeps its last one for ever, and releases where that is beyond its protection current. In other modes, and
 /// with an STS, the joint turns freely. It takes no time for its bytes: put `wire::Paced` around it.
 ///
 /// Source: Feetech, memory tables of STS3215 and HLS.
@@ -39,7 +39,7 @@ class FeetechPeer final : public wire::WireEnd {
   };
   struct Params {
     std::vector<Servo> servos{{.id = 1}, {.id = 2}};
-    std::int64_t bits_per_s = 1'000'000;  ///< for the place that a silent servo leaves empty
+    std::int64_t bits_per_s = 1'000'000;  ///< for the place that a servo without a reply leaves empty
     LineFaults line;
     std::int64_t seed = 1;
   };

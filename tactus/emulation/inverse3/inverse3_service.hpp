@@ -23,10 +23,10 @@ constexpr auto enumerators(Dialect) {
 /// then exactly one state for each message, whatever that holds; a device's state is fresh only where something was
 /// asked of it. Each device is a free mass in three axes, pushed by `set_cursor_force`, which acts until the next
 /// message and at most for `silence_ns`, 10 N an axis at most. Where it is not calibrated there is no force. Commands
-/// of positions and angles are taken and do nothing; so do the filters, which are told. Times never go back.
+/// of positions and angles are taken and do nothing; so do the filters, which are reported. Times never go back.
 ///
 /// Source: Haply, Inverse SDK pages of the WebSocket protocol and of the migration to 3.5. What the service reports to
-/// JSON that is none is on no page: here it reports its state.
+/// invalid JSON is on no page: here it reports its state.
 class Inverse3Service {
  public:
   struct Params {
@@ -39,7 +39,7 @@ class Inverse3Service {
     double garbage = 0.0;                  ///< share of answers that are cut off
     std::int64_t closes_after = 0;         ///< closes in place of that answer; 0: never
     bool keeps_force = false;              ///< a message without a command does not end a force
-    std::string mode = {};                 ///< that each state tells in place of its own; empty: its own
+    std::string mode = {};                 ///< that each state reports in place of its own; empty: its own
     std::int64_t seed = 1;
   };
   /// `out_of_bounds` for a number of devices outside 1 to 4.
@@ -50,7 +50,7 @@ class Inverse3Service {
     std::int64_t after_ns = 0;
     bool closes = false;
   };
-  /// What a client is told when it has connected.
+  /// What a client receives when it has connected.
   [[nodiscard]] std::string snapshot(std::int64_t now_ns);
   Answer answer(std::string_view message, std::int64_t now_ns);
   /// The body of the answer to an HTTP request, and whether it went well.

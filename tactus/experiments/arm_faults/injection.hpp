@@ -49,7 +49,7 @@ class ArmFaultInjection {
   [[nodiscard]] bool is_without_power(FaultSite site) const noexcept {
     return plan_.kind == FaultKind::power_lost && plan_.site == site && moment_.during;
   }
-  /// Puts what the host is told of the drives in place of what is true. Once a tick.
+  /// Puts what the host receives of the drives in place of what is true. Once a tick.
   void misread(FaultSite site, Joints<station::DeviceReading>& reading) noexcept {
     station::DeviceReading& joint = reading[joint_];
     joint.position_m = at(site).encoder.step(joint.position_m, moment_);

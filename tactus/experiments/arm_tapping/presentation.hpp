@@ -18,7 +18,7 @@ struct ArmTappingRun {
   ArmTappingMetrics metrics;
 };
 
-/// A row for each run; there may be none.
+/// A row for each run; there may be no row.
 report::Table arm_table(const std::vector<ArmTappingRun>& runs);
 
 /// Which runs settle, in a sentence.

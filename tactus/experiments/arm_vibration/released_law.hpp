@@ -32,7 +32,7 @@ struct ReleasedJoint {
   }
 };
 
-/// What openarm_teleop tells the drives of an arm, leader or follower alike:
+/// What openarm_teleop commands the drives of an arm, leader or follower alike:
 ///
 ///     stiffness·(other's position − q) + damping·(σ·other's velocity − q̇) + gravity(q) + Fc·tanh(0.1 k v) + Fv·v + Fo
 ///

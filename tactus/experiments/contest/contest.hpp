@@ -77,7 +77,7 @@ struct GainScore {
   /// and saturated at the force limit, and the force that the hand feels, from 5 ms before first touch to the end of
   /// the observation. None where no tap touched.
   std::optional<double> spectral_error;
-  /// Median over the taps that touched of the RMS difference between the force that the slave told and the contact
+  /// Median over the taps that touched of the RMS difference between the force that the slave sent and the contact
   /// force of the tick before, from first touch to the end of the observation. None where no tap touched.
   std::optional<double> sent_force_error_N;
 };
@@ -104,11 +104,11 @@ struct MethodScore {
 TappingParams tapping_of(const simulation::Teleoperator::Params& teleoperator, const TapSeries& taps);
 /// With a display that saturates at `force_limit_N`.
 TappingParams with_display(TappingParams params, double force_limit_N);
-/// In a hand that holds `factor` times as firmly, from the start of the run on, so that a grip sensor tells it and an
-/// estimate has the approach to learn it.
+/// In a hand that holds `factor` times as firmly, from the start of the run on, so that a grip sensor measures it and
+/// an estimate has the approach to learn it.
 TappingParams with_grip(TappingParams params, double factor);
 /// With this delay in both directions, and five round trips longer observed, for a contact over a delay takes that long
-/// to tell whether it calms down.
+/// to determine whether it calms down.
 TappingParams with_delay(TappingParams params, double each_way_s);
 
 /// Whether a gain settles: at least 95 % of the taps settle, and the median within 100 ms plus two round trips of

@@ -26,7 +26,7 @@ struct FaultDuty {
   double lasts_s = std::numeric_limits<double>::infinity();  ///< what shows it
   double needs_s = 0.0;  ///< for so long, by the clock of the site that is to see it
   Seen seen = Seen::at_its_own;
-  bool by_packets = false;  ///< what comes, or comes no more, tells of it
+  bool by_packets = false;  ///< what comes, or comes no more, shows it
 };
 
 /// What must come of a fault that comes alone, to sites that are supervised so and stepped so often.

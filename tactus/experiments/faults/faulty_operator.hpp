@@ -62,7 +62,7 @@ class FaultyOperator {
 
  private:
   static constexpr double push_s = 0.3;
-  /// How long the way back takes: a reach without haste.
+  /// How long the return takes: a reach without haste.
   static constexpr double return_s = 0.4;
   static constexpr double notices_s = 0.3;
 

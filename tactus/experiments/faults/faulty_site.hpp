@@ -26,8 +26,8 @@ struct FaultySite {
   SupervisedSite site;
   std::vector<SupervisedSite> restarted;  ///< what a process that is started again runs, the next one last
   FaultProcess process;
-  simulation::PacketRelay inbox;  ///< the way from the other site
-  PacketWitness sent;             ///< what this site told, and what the other applied of it
+  simulation::PacketRelay inbox;  ///< the link from the other site
+  PacketWitness sent;             ///< what this site sent, and what the other applied of it
   Forces forces{};
   station::DeviceReading sensed{};  ///< at this tick, faults included
 

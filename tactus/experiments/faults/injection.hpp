@@ -61,7 +61,7 @@ class FaultInjection {
   [[nodiscard]] bool cuts() const noexcept {
     return sleeps() || (plan_.kind == FaultKind::cut && moment_.during) || is_prelude(control::SiteState::hold);
   }
-  /// What share of its impairment of the network there is now on the way to `site`.
+  /// What share of its impairment of the network there is now on the link to `site`.
   [[nodiscard]] double impaired_share(FaultSite site) const noexcept {
     if (!moment_.during) return 0.0;
     if (plan_.kind == FaultKind::delay_asymmetric) {

@@ -9,7 +9,7 @@
 namespace tactus::experiments {
 
 /// What a fault did at one site to whoever holds the handle or is at the tool, from its first tick until the operator
-/// clears it. Truths, whatever the sensors say.
+/// clears it. Truths, whatever the sensors report.
 struct SiteHarm {
   double given_J = 0.0;
   double speed_m_per_s = 0.0;

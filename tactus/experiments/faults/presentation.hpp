@@ -8,7 +8,7 @@
 
 namespace tactus::experiments {
 
-/// What readers are told of the runs alongside what came of them.
+/// What reports state of the runs in addition to their results.
 struct FaultsShown {
   std::string kind;                 ///< of the experiment
   std::string subject;              ///< a paragraph: what was run, and who judged it

@@ -17,7 +17,7 @@ using FaultRule = std::string_view (*)(const FaultPlan&, const FaultOutcome&, co
 struct FaultControl {
   std::string_view off;  ///< what is switched off, or as loose as its bounds allow; empty where a row has no control
   void (*switch_off)(simulation::Teleoperator::Params&, FaultPlan&) = nullptr;
-  /// Which plans can show it; all where there is none.
+  /// Which plans can show it; all without a condition.
   bool (*shows)(const FaultPlan&, const FaultsParams&) = nullptr;
 };
 

@@ -19,7 +19,7 @@ class FaultRun {
   FaultRun& operator=(FaultRun&&) noexcept;
   ~FaultRun();
 
-  /// One tick; false once there is none left. Before it the machine missed so many: devices, operator and packets
+  /// One tick; false once no tick is left. Before it the machine missed so many: devices, operator and packets
   /// continued and neither site was stepped. Real-time safe.
   bool step(std::int64_t missed = 0) noexcept;
   [[nodiscard]] const FaultOutcome& outcome() const;

@@ -114,7 +114,7 @@ class EnergyWitness {
   double rise_J_ = 0.0;
 };
 
-/// What is true at a site at a tick, whatever its sensors say. Positions and forces are positive toward the
+/// What is true at a site at a tick, whatever its sensors report. Positions and forces are positive toward the
 /// environment.
 struct SiteTruth {
   double drive_N = 0.0;  ///< what the motor is made to give from now on
@@ -145,7 +145,8 @@ class Lasting {
 /// Measures what a fault does to the operator and to what the slave touches, from its first tick on.
 class HarmWitness {
  public:
-  /// `range_m` is how far to either side of `middle_m` the operator leads the tip, `released_N` a force that is none.
+  /// `range_m` is how far to either side of `middle_m` the operator leads the tip, `released_N` a force that counts as
+  /// zero.
   HarmWitness(double middle_m, double range_m, double released_N, double tick_s)
       : middle_m_(middle_m), range_m_(range_m), released_N_(released_N), pressing_(0.1, tick_s) {}
 
@@ -165,7 +166,8 @@ class HarmWitness {
 
  private:
   /// A force against the motion, as that of the damper which a passivity monitor leaves on: it takes energy from who
-  /// moves the device, and ends with the motion. What only presses is at rest and is none, what pushes goes along.
+  /// moves the device, and ends with the motion. What only presses is at rest and does not count, what pushes goes
+  /// along.
   static bool brakes(const SiteTruth& truth) {
     return std::fabs(truth.motor_m_per_s) > at_rest_m_per_s && truth.drive_N * truth.motor_m_per_s < 0.0;
   }

@@ -82,7 +82,7 @@ struct RigidContactRun {
   std::string name;
   std::int64_t blocks = 0;
   double time_constant_s = 0.0;
-  double false_force_N = 0.0;  ///< RMS at the master on the way to the first touch
+  double false_force_N = 0.0;  ///< RMS at the master before the first touch
   std::array<RigidContact, 2> contacts;
   std::vector<double> time_s, master_m, slave_m;
   std::vector<double> fed_back_N;        ///< at the master, positive when it pushes back

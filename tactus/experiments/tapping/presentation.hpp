@@ -10,7 +10,7 @@
 /// Taps for every reader, whatever clock they ran on.
 namespace tactus::experiments {
 
-/// A row for each run; there may be none.
+/// A row for each run; there may be no row.
 report::Table tapping_table(const std::vector<TappingRun>& runs);
 
 /// Which runs settle, in a sentence.
