@@ -69,6 +69,10 @@ struct TappingParams : simulation::Teleoperator::Params {
   }
 };
 
+/// What its sites compute with: `task.mismatch` is in the controllers' model. A `TappingParams` is a
+/// `station::TeleoperatorParams` too, without it.
+station::TeleoperatorParams sites_of(const TappingParams& params);
+
 /// For what runs these sites without supervision, which `who` tells, as "the live page": refuses others.
 Check refuse_supervised(const TappingParams& params, const std::string& who);
 
