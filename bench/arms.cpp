@@ -3,10 +3,12 @@
 // joint and as two arms.
 
 #include <tactus/configuration/document.hpp>
-#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
+#include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/mechanics/minimum_jerk.hpp>
 #include <tactus/runtime/site_parts.hpp>
 #include <tactus/station/local_teleoperator.hpp>
+#include <tactus/station/supervised_arms.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -138,10 +140,10 @@ void measure_pairs() {
   const Seconds tick{1.0 / by_arm->servo.rate_Hz};
   std::printf("A rig's pair of %zu joints\n", joints);
   Told leader(joints), follower(joints);
-  const Joints<control::ControlParams> control(joints, runtime::control_of(*by_joint));
+  const Joints<control::ControlParams> control(joints, experiments::sites_of(*by_joint).control);
   report_pair("a tick, joint by joint",
               station::JointLocalTeleoperator::make(control, {}, tick, Joints<double>(joints, 0.0), leader, follower));
-  auto sites = experiments::arm_sites(*setup, leader.limits(), follower.limits());
+  auto sites = station::arm_sites(*by_arm, *setup, leader.limits(), follower.limits());
   if (!sites) return static_cast<void>(std::fprintf(stderr, "%s\n", describe(sites.error()).c_str()));
   report_pair("a tick, as two arms", station::JointLocalTeleoperator::around(*std::move(sites), leader, follower));
 }

@@ -1,5 +1,5 @@
 #include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/runtime/real_time_tap.hpp>
+#include <tactus/real_time/real_time_tap.hpp>
 
 #include <filesystem>
 #include <system_error>
@@ -14,9 +14,9 @@ namespace {
 /// One tap in real time.
 runtime::ServoReport run_tap(const experiments::TappingEnsemble& ensemble, std::size_t tap,
                              const runtime::RealTimeStreams& streams) {
-  auto made = runtime::RealTimeTap::make(ensemble.tap(tap), 0.35, streams);
+  auto made = real_time::RealTimeTap::make(ensemble.tap(tap), 0.35, streams);
   if (!made) return {};
-  runtime::RealTimeTap& running = **made;
+  real_time::RealTimeTap& running = **made;
   auto report = runtime::run_servo({.rate_Hz = ensemble.tap(tap).params.servo.rate_Hz},
                                    [&running](const station::Tick& tick) noexcept { return running.step(tick); });
   return report ? *report : runtime::ServoReport{};

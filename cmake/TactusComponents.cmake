@@ -2,25 +2,25 @@
 # finds the libraries of its own modules alone. `kernel` needs Eigen and no operating system. scripts/install-deps names
 # the packages of each.
 
-set(TACTUS_ALL_COMPONENTS kernel data identification simulation analysis runtime hardware interfaces)
+set(TACTUS_ALL_COMPONENTS kernel data runtime hardware identification simulation analysis interfaces)
 
 set(TACTUS_COMPONENT_kernel core signal mechanics arm control arm_control station)
 set(TACTUS_COMPONENT_data recording configuration report urdf telemetry)
 set(TACTUS_COMPONENT_identification identification arm_identification diagnosis)
-set(TACTUS_COMPONENT_simulation arm_plants simulation experiments)
+set(TACTUS_COMPONENT_simulation arm_plants simulation experiments real_time)
 set(TACTUS_COMPONENT_analysis stability arm_stability advice)
-set(TACTUS_COMPONENT_runtime live link runtime ros2)
+set(TACTUS_COMPONENT_runtime link runtime ros2)
 set(TACTUS_COMPONENT_hardware wire emulation devices)
-set(TACTUS_COMPONENT_interfaces cli)
+set(TACTUS_COMPONENT_interfaces live cli)
 
 set(TACTUS_COMPONENT_kernel_NEEDS)
 set(TACTUS_COMPONENT_data_NEEDS kernel)
 set(TACTUS_COMPONENT_identification_NEEDS data)
-set(TACTUS_COMPONENT_simulation_NEEDS identification)
+set(TACTUS_COMPONENT_simulation_NEEDS identification hardware)
 set(TACTUS_COMPONENT_analysis_NEEDS simulation)
-set(TACTUS_COMPONENT_runtime_NEEDS simulation)
+set(TACTUS_COMPONENT_runtime_NEEDS data)
 set(TACTUS_COMPONENT_hardware_NEEDS runtime)
-set(TACTUS_COMPONENT_interfaces_NEEDS analysis hardware)
+set(TACTUS_COMPONENT_interfaces_NEEDS analysis)
 
 # Leaves in OUT the components WANTED and all on which they build, those that others build on first.
 function(tactus_close_components out)

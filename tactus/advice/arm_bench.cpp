@@ -47,7 +47,7 @@ Result<ArmBench> make_arm_bench(configuration::Document document, const std::vec
   for (const std::string& assignment : set) {
     bench.given.emplace(configuration::trimmed(std::string_view(assignment).substr(0, assignment.find('='))));
   }
-  if (Check wrong = experiments::refuse_tool_coupling(*params, "tactus advise")) {
+  if (Check wrong = station::refuse_tool_coupling(*params, "tactus advise")) {
     return bench.document.locate(*std::move(wrong));
   }
   params->task.taps = 1;

@@ -188,7 +188,7 @@ Result<ArmLoop> ArmLoop::make(const ArmPairSetup& setup, const experiments::ArmM
   const experiments::ArmTappingParams& params = setup.params;
   const auto& control = params.control;
   if (Check refused = refuse_what_is_not_linear(control)) return *std::move(refused);
-  if (Check refused = experiments::refuse_tool_coupling(params, "tactus stability")) return *std::move(refused);
+  if (Check refused = station::refuse_tool_coupling(params, "tactus stability")) return *std::move(refused);
   const auto wall = linear_wall(params.wall, linearisation.preload_N);
   if (!wall) return wall.error();
   const auto chain = arm::Chain::make(setup.leader.arm.chain);

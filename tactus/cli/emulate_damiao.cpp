@@ -1,7 +1,7 @@
 #include <tactus/cli/emulate.hpp>
 #include <tactus/cli/real_between.hpp>
 #include <tactus/emulation/damiao/damiao_peer.hpp>
-#include <tactus/emulation/emulated_arm.hpp>
+#include <tactus/real_time/emulated_arm.hpp>
 #include <tactus/urdf/urdf.hpp>
 #include <tactus/wire/paced.hpp>
 
@@ -38,11 +38,11 @@ Error wrong(const char* option, std::string message) {
 }
 
 /// The arm that its motors move; null where each moves a joint of its own.
-Result<std::unique_ptr<emulation::EmulatedArm>> make_arm(const DamiaoOptions& options) {
-  if (options.arm.empty()) return std::unique_ptr<emulation::EmulatedArm>();
+Result<std::unique_ptr<real_time::EmulatedArm>> make_arm(const DamiaoOptions& options) {
+  if (options.arm.empty()) return std::unique_ptr<real_time::EmulatedArm>();
   auto read = urdf::read(options.arm, options.tip);
   if (!read) return read.error();
-  emulation::EmulatedArm::Settings settings{.chain = std::move(read->params)};
+  real_time::EmulatedArm::Settings settings{.chain = std::move(read->params)};
   const std::size_t joints = settings.chain.joints.size();
   if (options.armature_kg_m2.size() > joints) {
     return wrong("--armature", std::to_string(options.armature_kg_m2.size()) + " numbers for an arm of " +
@@ -65,7 +65,7 @@ Result<std::unique_ptr<emulation::EmulatedArm>> make_arm(const DamiaoOptions& op
                               rounded_number(farthest_rad) + " rad: name less");
   }
   if (!options.led.empty()) settings.led = {.reach_rad = options.led[0], .after_s = options.led[1]};
-  return emulation::EmulatedArm::make(settings);
+  return real_time::EmulatedArm::make(settings);
 }
 
 Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {

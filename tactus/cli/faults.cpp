@@ -7,7 +7,7 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/experiments/faults/experiment.hpp>
-#include <tactus/runtime/real_time_faults.hpp>
+#include <tactus/real_time/real_time_faults.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -72,7 +72,7 @@ Check run(const FaultsOptions& options, const std::string& command, int& status)
     ProgressLine line(request.name);
     const auto progress = [&line](double done) { line.update(done); };
     if (of_arms) return experiments::arm_faults(request, progress);
-    return options.real_time ? runtime::run_faults_in_real_time(request, options.servo, progress, listen)
+    return options.real_time ? real_time::run_faults_in_real_time(request, options.servo, progress, listen)
                              : experiments::faults_experiment()->run(request, progress);
   }();
   if (!outcome) return outcome.error();

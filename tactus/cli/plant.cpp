@@ -5,10 +5,10 @@
 #include <tactus/cli/line_writer.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/real_time/plant_server.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/runtime/plant_server.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 
 #include <chrono>
@@ -25,7 +25,7 @@ namespace tactus::cli {
 
 namespace {
 
-using runtime::PlantStatus;
+using real_time::PlantStatus;
 
 struct PlantOptions {
   ExperimentOptions experiment;
@@ -93,9 +93,9 @@ Check own_plant(const PlantOptions& options) {
   if (auto error = check_duration(options.duration_s)) return error;
   const auto params = params_of(options);
   if (!params) return params.error();
-  const auto plant = runtime::PlantServer::make(options.name, *params, Seconds{options.silence_s});
+  const auto plant = real_time::PlantServer::make(options.name, *params, Seconds{options.silence_s});
   if (!plant) return plant.error();
-  runtime::PlantServer& server = **plant;
+  real_time::PlantServer& server = **plant;
   runtime::ServoThreadParams keep = options.servo;
   keep.rate_Hz = params->servo.rate_Hz;
 

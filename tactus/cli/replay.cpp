@@ -2,9 +2,9 @@
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/core/version.hpp>
+#include <tactus/real_time/replay.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/text.hpp>
-#include <tactus/runtime/replay.hpp>
 
 #include <array>
 #include <cstdio>
@@ -73,7 +73,7 @@ void add_replay(CLI::App& app, const std::string& command, int& status) {
   verb->add_flag("--check", options->check, "Exit with status 1 if anything differs from the log");
   add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
-    const auto replayed = runtime::replay(options->log);
+    const auto replayed = real_time::replay(options->log);
     if (!replayed) {
       std::cerr << app.get_name() << ": " << describe(replayed.error()) << "\n";
       status = exit_status(replayed.error());

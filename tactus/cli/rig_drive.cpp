@@ -2,10 +2,10 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/devices/rig/rig_arms.hpp>
-#include <tactus/experiments/arm_tapping/params.hpp>
-#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
+#include <tactus/experiments/arm_tapping/arm_pair.hpp>
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/site_parts.hpp>
+#include <tactus/station/supervised_arms.hpp>
 
 #include <filesystem>
 
@@ -48,7 +48,7 @@ Result<RigDrive> joint_by_joint(const experiments::Request& request, const RigPa
   const auto params = request.document.read<experiments::TappingParams>();
   if (!params) return params.error();
   const RigSide& side = side_of(pair, only.value_or(SiteRole::master));
-  const Joints<control::ControlParams> joints(side.joints.size(), runtime::control_of(*params));
+  const Joints<control::ControlParams> joints(side.joints.size(), experiments::sites_of(*params).control);
   const Seconds tick{1.0 / params->servo.rate_Hz};
   const control::SupervisionParams& supervision = joints[0].supervision;
   settings.listen_before_arming_s = supervision.watchdog.timeout_s;
@@ -77,7 +77,7 @@ Result<RigDrive> joint_by_joint(const experiments::Request& request, const RigPa
                     .longest_age_s = supervision.packets.longest_age_s,
                     .timeout_s = supervision.watchdog.timeout_s};
   drive.control = joints;
-  drive.site = [params = *params, limits = limits_of(side), role = *only,
+  drive.site = [params = experiments::sites_of(*params), limits = limits_of(side), role = *only,
                 agreement = drive.agreement->agreement()](std::int64_t session) {
     return runtime::make_supervised_site(params, role, limits, session, agreement);
   };
@@ -88,13 +88,13 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
                              RigLoop::Params settings, std::optional<SiteRole> only) {
   const auto params = request.document.read<experiments::ArmTappingParams>();
   if (!params) return params.error();
-  if (Check wrong = experiments::refuse_tool_coupling(*params, "a rig of two arms")) {
+  if (Check wrong = station::refuse_tool_coupling(*params, "a rig of two arms")) {
     return request.document.locate(*std::move(wrong));
   }
   const std::filesystem::path folder = std::filesystem::path(request.document.name()).parent_path();
   const auto setup = experiments::set_up_arm_pair(*params, folder);
   if (!setup) return request.document.locate(setup.error());
-  auto arms = devices::as_arms(pair, *setup);
+  auto arms = devices::as_arms(pair, *params, *setup);
   if (!arms) return rig.locate(arms.error());
   const control::SupervisionParams& supervision = params->rig.supervision;
   settings.listen_before_arming_s = supervision.watchdog.timeout_s;
@@ -102,7 +102,7 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
   tell_devices(drive, only);
   drive.about["urdf"] = runtime::urdfs_of(*setup);
   if (!only) {
-    auto sites = experiments::arm_sites(*setup, limits_of(*drive.pair.leader), limits_of(*drive.pair.follower));
+    auto sites = station::arm_sites(*params, *setup, limits_of(*drive.pair.leader), limits_of(*drive.pair.follower));
     if (!sites) return request.document.locate(sites.error());
     drive.loop = [settings, sites = *std::move(sites), tick = Seconds{1.0 / params->servo.rate_Hz}](
                      auto& exchange, auto& leader, auto& follower) {
@@ -111,7 +111,7 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
     return drive;
   }
   const RigSide& side = side_of(drive.pair, *only);
-  drive.agreement = devices::RigAgreement::of(side, *setup);
+  drive.agreement = devices::RigAgreement::of(side, *params, *setup);
   tell_agreement(drive);
   drive.settings = {.pair = settings,
                     .scales = Joints<double>(side.joints.size(), 1.0),
@@ -119,7 +119,7 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
                     .timeout_s = supervision.watchdog.timeout_s};
   drive.site = [setup = *setup, limits = limits_of(side), role = *only,
                 agreement = drive.agreement->agreement()](std::int64_t session) {
-    return runtime::make_supervised_site(setup, role, limits, session, agreement);
+    return runtime::make_supervised_site(setup.params, setup, role, limits, session, agreement);
   };
   return drive;
 }

@@ -3,13 +3,13 @@
 #include <tactus/cli/run_log.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/experiments/presentation.hpp>
+#include <tactus/real_time/hand_session.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/ros2/bridge.hpp>
-#include <tactus/ros2/hand_session.hpp>
 #include <tactus/runtime/servo_presentation.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
@@ -21,7 +21,7 @@ namespace tactus::cli {
 
 namespace {
 
-using ros2::HandSession;
+using real_time::HandSession;
 
 std::string json_of(const experiments::Request& request, const Ros2Options& options, const HandSession& session,
                     const ros2::Bridge::Counts& counts, const runtime::ServoReport& servo) {

@@ -11,8 +11,8 @@
 #include <tactus/cli/standard_output.hpp>
 #include <tactus/cli/supervised_run.hpp>
 #include <tactus/experiments/experiment.hpp>
-#include <tactus/runtime/real_time_arm_tap.hpp>
-#include <tactus/runtime/real_time_tapping.hpp>
+#include <tactus/real_time/real_time_arm_tap.hpp>
+#include <tactus/real_time/real_time_tapping.hpp>
 
 #include <array>
 #include <cstdint>
@@ -68,14 +68,14 @@ Check run_in_real_time(const RunOptions& options, const experiments::Request& re
   runtime::EndRequest end;
   const auto interruption = Interruption::start(end);
   if (!interruption) return interruption.error();
-  runtime::RealTimeOptions real_time{
+  real_time::RealTimeOptions settings{
       .servo = options.servo, .log = {}, .log_limit_bytes = options.log_limit, .about = log_origin(), .end = &end};
   if (options.plant) {
-    real_time.plant = runtime::PlantChoice{.name = *options.plant, .silence = Seconds{options.plant_silence_s}};
+    settings.plant = real_time::PlantChoice{.name = *options.plant, .silence = Seconds{options.plant_silence_s}};
   }
   if (output.wanted()) {
-    real_time.log = output.log_folder() / "log.mcap";
-    real_time.before_log = [&output] { return output.begin(); };
+    settings.log = output.log_folder() / "log.mcap";
+    settings.before_log = [&output] { return output.begin(); };
   }
   const auto say = [&output](const std::string& line) {
     if (!line.empty()) (output.json() ? std::cerr : std::cout) << line << std::flush;
@@ -87,22 +87,22 @@ Check run_in_real_time(const RunOptions& options, const experiments::Request& re
     observers.emplace(*std::move(opened));
     return std::nullopt;
   };
-  if (options.observers.any()) {
-    real_time.look_on = [&](const std::vector<runtime::RealTimeStreams>& all) -> Check {
-      if (auto error = open_observers({})) return error;
-      for (const runtime::RealTimeStreams& streams : all) observers->watch(streams);
-      return observers->begin(say);
+  if (options.onlookers.any()) {
+    settings.look_on = [&](const std::vector<runtime::RealTimeStreams>& all) -> Check {
+      if (auto error = open_onlookers({})) return error;
+      for (const runtime::RealTimeStreams& streams : all) onlookers->watch(streams);
+      return onlookers->begin(say);
     };
-    real_time.look_on_arms = [&](const runtime::ArmTapStreams& streams,
-                                 const std::vector<std::string>& joints) -> Check {
-      if (auto error = open_observers(joints)) return error;
-      observers->watch(streams);
-      return observers->begin(say);
+    settings.look_on_arms = [&](const real_time::ArmTapStreams& streams,
+                                const std::vector<std::string>& joints) -> Check {
+      if (auto error = open_onlookers(joints)) return error;
+      onlookers->watch(streams);
+      return onlookers->begin(say);
     };
   }
   const auto done = [&] {
     ProgressLine line(request.name);
-    return runtime::run_in_real_time(request, real_time, [&line](double share) { line.update(share); });
+    return real_time::run_in_real_time(request, settings, [&line](double share) { line.update(share); });
   }();
   if (observers) say(observers->end());
   if (!done) return done.error();

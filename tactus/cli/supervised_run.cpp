@@ -8,6 +8,7 @@
 #include <tactus/cli/supervised_run.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/experiment.hpp>
+#include <tactus/real_time/repeated_taps.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/runtime/local_loop.hpp>
 #include <tactus/runtime/site_loop.hpp>
@@ -111,7 +112,7 @@ Result<Devices> open_devices(const DeviceNames& names, const SitesHere& here, co
     const std::string& name = names[static_cast<std::size_t>(role)];
     SiteDevice& device = devices[static_cast<std::size_t>(role)];
     if (name.empty()) {
-      auto simulated = runtime::simulated_device(params, role);
+      auto simulated = real_time::simulated_device(params, role);
       if (!simulated) return simulated.error();
       device = *std::move(simulated);
     } else {
@@ -300,13 +301,14 @@ Check run_supervised(const SupervisedOptions& options, const ObserverOptions& ob
   run.here = here;
   auto& [master, slave] = *devices;
   if (!here.one) {
-    auto loop = runtime::LocalLoop::make(*params, {.duration_s = options.duration_s, .arm_at_once = options.arm},
-                                         exchange, std::move(master), std::move(slave));
+    auto loop = runtime::LocalLoop::make(experiments::sites_of(*params),
+                                         {.duration_s = options.duration_s, .arm_at_once = options.arm}, exchange,
+                                         std::move(master), std::move(slave));
     return loop ? run_loop(*std::move(loop), run, around) : document.locate(loop.error());
   }
-  auto loop =
-      runtime::SiteLoop::make(*params, {.link = *link, .duration_s = options.duration_s, .arm_at_once = options.arm},
-                              exchange, std::move(*here.one == SiteRole::master ? master : slave));
+  auto loop = runtime::SiteLoop::make(experiments::sites_of(*params),
+                                      {.link = *link, .duration_s = options.duration_s, .arm_at_once = options.arm},
+                                      exchange, std::move(*here.one == SiteRole::master ? master : slave));
   return loop ? run_loop(*std::move(loop), run, around) : document.locate(loop.error());
 }
 

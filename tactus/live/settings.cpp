@@ -87,7 +87,7 @@ Check Settings::take_axis() {
 Check Settings::take_arms() {
   const auto params = document_.read<experiments::ArmTappingParams>();
   if (!params) return params.error();
-  if (Check wrong = experiments::refuse_tool_coupling(*params, "tactus serve")) return *std::move(wrong);
+  if (Check wrong = station::refuse_tool_coupling(*params, "tactus serve")) return *std::move(wrong);
   auto arms = experiments::set_up_arm_pair(*params, std::filesystem::path(document_.name()).parent_path());
   if (!arms) return arms.error();
   arms_ = *std::move(arms);

@@ -165,7 +165,7 @@ class JointsReader {
 
 }  // namespace
 
-Snapshot snapshot_of(const simulation::Teleoperator::Record& record, std::int64_t stamp_ns, OperatingState state) {
+Snapshot snapshot_of(const station::TeleoperatorRecord& record, std::int64_t stamp_ns, OperatingState state) {
   Snapshot snapshot{.stamp_ns = stamp_ns, .state = state};
   snapshot.joints[0] = {.master_position_m = record.master_position_m,
                         .master_force_N = -record.displayed_force_N,

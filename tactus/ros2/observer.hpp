@@ -3,9 +3,8 @@
 #include <tactus/core/result.hpp>
 #include <tactus/ros2/bridge.hpp>
 #include <tactus/runtime/joint_streams.hpp>
-#include <tactus/runtime/real_time_tap.hpp>
+#include <tactus/runtime/real_time_streams.hpp>
 #include <tactus/runtime/site_log.hpp>
-#include <tactus/simulation/teleoperator.hpp>
 
 #include <atomic>
 #include <cstdint>
@@ -17,7 +16,7 @@
 namespace tactus::ros2 {
 
 /// What ROS 2 nodes see of a tick. The motor is commanded the opposite of the displayed force.
-Snapshot snapshot_of(const simulation::Teleoperator::Record& record, std::int64_t stamp_ns, OperatingState state);
+Snapshot snapshot_of(const station::TeleoperatorRecord& record, std::int64_t stamp_ns, OperatingState state);
 /// Of a site; what the other one does is left at 0. A slave's command is what it was told last.
 Snapshot snapshot_of(const runtime::SiteLogRecord& record, control::SiteRole role, std::int64_t stamp_ns);
 /// Of both sites on one computer, from their records of one tick.

@@ -8,15 +8,15 @@ namespace tactus::runtime {
 using control::SiteRole;
 using control::SiteState;
 
-Result<LocalLoop> LocalLoop::make(const experiments::TappingParams& params, const Settings& settings,
+Result<LocalLoop> LocalLoop::make(const station::TeleoperatorParams& params, const Settings& settings,
                                   SiteExchange& exchange, SiteDevice master, SiteDevice slave) {
   if (auto error = validate(params)) return *std::move(error);
   const double tick_s = 1.0 / params.servo.rate_Hz;
   const auto counters_of = [&](SiteRole role, const SiteDevice& device) {
     return SiteCounters(role, tick_s, force_step_limit_N(params, role, device.device->limits()));
   };
-  const std::array counters{counters_of(SiteRole::master, master), counters_of(SiteRole::slave, slave)};
-  auto pair = station::LocalTeleoperator::make(control_of(params), params.channel, Seconds{tick_s}, 0.0, *master.device,
+  const std::array books{books_of(SiteRole::master, master), books_of(SiteRole::slave, slave)};
+  auto pair = station::LocalTeleoperator::make(params.control, params.channel, Seconds{tick_s}, 0.0, *master.device,
                                                *slave.device);
   if (!pair) return pair.error();
   const SiteConsole console({.duration_s = settings.duration_s,

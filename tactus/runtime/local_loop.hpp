@@ -20,7 +20,7 @@ class LocalLoop {
 
   /// `exchange` must outlive the loop. A device that is not simulated stands behind a wall, and needs limits that
   /// somebody chose. Errors: what is wrong with the parameters or the devices.
-  static Result<LocalLoop> make(const experiments::TappingParams& params, const Settings& settings,
+  static Result<LocalLoop> make(const station::TeleoperatorParams& params, const Settings& settings,
                                 SiteExchange& exchange, SiteDevice master, SiteDevice slave);
 
   /// Every tick from now on goes there too. Before the first tick.

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <tactus/core/result.hpp>
+#include <tactus/station/arm_teleoperator_params.hpp>
+#include <tactus/station/described_arms.hpp>
+#include <tactus/station/teleoperator_params.hpp>
+#include <tactus/telemetry/log_reader.hpp>
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -28,14 +31,22 @@ struct Replay {
   std::string version;  ///< of the program that wrote the log; another build may round otherwise
 };
 
-/// Steps the sites of a run in real time once more on what its log says that they read and were asked, and on what came
-/// over the link, with the configuration that the log carries, and compares all that they give bit for bit. The first
-/// difference ends it. The run is one of taps, of one site over a network, or of both sites, of one axis or of several
-/// joints. Of a log that was cut, as by a program that was killed, what all its topics have is replayed.
+/// Steps the sites of a run at the real clock once more on what its log says that they read and were asked, and on what
+/// came over the link, and compares all that they give bit for bit. The first difference ends it. Of a log that was
+/// cut, as by a program that was killed, what all its topics have is replayed. Call it with denormals flushed, as the
+/// sites ran (`FlushedDenormals`). `real_time::replay` does all this for logs of experiments, whose configuration it
+/// reads.
 ///
-/// Errors: those of reading a log; `missing` where it has none of the topics `/sites`, `/site`, `/master/site` and
-/// `/slave/site`, or lacks what a later version replays with; `inconsistent` where steps are missing in it or its
-/// signals are others; `out_of_bounds` and others where its configuration makes no teleoperator.
-Result<Replay> replay(const std::filesystem::path& log);
+/// The log is of one site, or of both under supervision, of one axis or of joints that are driven each by itself; false
+/// where it is no such log. `params` are those of the run.
+///
+/// Errors: `missing` for what a later version replays with; `inconsistent` where steps are missing in the log or its
+/// signals are others; those of sites that cannot be made.
+Result<bool> replay_sites(const telemetry::LogContent& content, const station::TeleoperatorParams& params,
+                          Replay& replay);
+
+/// The same of two arms of a rig.
+Result<bool> replay_arms(const telemetry::LogContent& content, const station::ArmTeleoperatorParams& params,
+                         const station::DescribedArms& arms, Replay& replay);
 
 }  // namespace tactus::runtime

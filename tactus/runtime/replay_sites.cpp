@@ -1,4 +1,4 @@
-#include <tactus/runtime/internal/replay_sites.hpp>
+#include <tactus/runtime/replay_sites.hpp>
 #include <tactus/runtime/site_parts.hpp>
 
 #include <set>

@@ -1,56 +1,28 @@
 #pragma once
 
-#include <tactus/control/site_supervisor.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/mechanics/minimum_jerk.hpp>
-#include <tactus/runtime/simulated_devices.hpp>
 #include <tactus/station/device.hpp>
 
 #include <memory>
 
 namespace tactus::runtime {
 
-/// How an operator taps again and again: there, press, back, rest, with the mean speed and depth of an experiment's
-/// taps.
-class RepeatedTaps {
+/// The simulated operator at a simulated master, where there is one.
+class SimulatedOperator {
  public:
-  explicit RepeatedTaps(const experiments::TappingParams& params);
-  [[nodiscard]] double position_m(double time_s) const noexcept;
-  [[nodiscard]] double start_m() const noexcept { return there_.start_m; }
+  /// Whether the site is coupled from now on. Once a cycle, on the servo thread; real-time safe.
+  virtual void follow(bool follows) noexcept = 0;
 
- private:
-  mechanics::MinimumJerk there_;
-  mechanics::MinimumJerk back_;
-  double period_s_;
-};
-
-/// Who taps on and on, and waits where the hand is while the site does not follow it.
-class PatientOperator {
- public:
-  PatientOperator(const RepeatedTaps& path, double tick_s) : path_(path), tick_s_(tick_s) {}
-  /// Once a tick. Real-time safe.
-  Intent step() noexcept {
-    const double now_s = path_s_;
-    if (follows_) path_s_ += tick_s_;
-    return {.now_m = path_.position_m(now_s), .at_next_tick_m = path_.position_m(path_s_)};
-  }
-  /// Whether the site follows from now on.
-  void follow(bool follows) noexcept { follows_ = follows; }
-
- private:
-  RepeatedTaps path_;
-  double tick_s_;
-  double path_s_ = 0.0;
-  bool follows_ = false;
+ protected:
+  SimulatedOperator() = default;
+  SimulatedOperator(const SimulatedOperator&) = default;
+  SimulatedOperator& operator=(const SimulatedOperator&) = default;
+  ~SimulatedOperator() = default;  ///< owned by the device
 };
 
 /// What a site drives.
 struct SiteDevice {
   std::unique_ptr<station::Device> device;
-  PatientOperator* person = nullptr;  ///< who holds a simulated master; part of the device
+  SimulatedOperator* person = nullptr;  ///< who holds a simulated master; part of the device
 };
-
-/// The device of a site as an experiment describes it, at rest where the taps begin. Errors: those of clock and plant.
-Result<SiteDevice> simulated_device(const experiments::TappingParams& params, control::SiteRole role);
 
 }  // namespace tactus::runtime

@@ -6,7 +6,7 @@
 
 namespace tactus::runtime {
 
-Result<SiteLoop> SiteLoop::make(const experiments::TappingParams& params, const Settings& settings,
+Result<SiteLoop> SiteLoop::make(const station::TeleoperatorParams& params, const Settings& settings,
                                 SiteExchange& exchange, SiteDevice device) {
   if (auto error = validate(params)) return *std::move(error);
   const control::SiteRole role = settings.link.site;

@@ -23,7 +23,7 @@ class SiteLoop {
 
   /// `exchange` must outlive the loop. A device that is not simulated stands behind a guard, and needs limits that
   /// somebody chose. Errors: what is wrong with the parameters, the device or the link.
-  static Result<SiteLoop> make(const experiments::TappingParams& params, const Settings& settings,
+  static Result<SiteLoop> make(const station::TeleoperatorParams& params, const Settings& settings,
                                SiteExchange& exchange, SiteDevice device);
 
   /// Every tick from now on goes there too. Before the first tick.

@@ -1,5 +1,4 @@
 #include <tactus/control/agreed_parameters.hpp>
-#include <tactus/experiments/model_mismatch.hpp>
 #include <tactus/runtime/site_parts.hpp>
 #include <tactus/station/make_device_guard.hpp>
 
@@ -47,10 +46,10 @@ Result<Sites> as_site(Result<Site> made, const char* group) {
 
 /// `Limits` of one axis or of several joints.
 template <class Sites, class Limits>
-Result<Sites> make_site(const experiments::TappingParams& params, control::SiteRole role, const Limits& limits,
+Result<Sites> make_site(const station::TeleoperatorParams& params, control::SiteRole role, const Limits& limits,
                         std::int64_t session, const control::Agreement& agreement) {
   const Seconds tick{1.0 / params.servo.rate_Hz};
-  const auto own = station::tightened(same_for_each(limits, control_of(params)), role, limits);
+  const auto own = station::tightened(same_for_each(limits, params.control), role, limits);
   return role == control::SiteRole::master
              ? as_site<Sites>(control::make_supervised_master(own, session, tick, agreement), "control")
              : as_site<Sites>(control::make_supervised_slave(own, session, tick, agreement), "control");
@@ -58,34 +57,29 @@ Result<Sites> make_site(const experiments::TappingParams& params, control::SiteR
 
 }  // namespace
 
-control::ControlParams control_of(const experiments::TappingParams& params) {
-  control::ControlParams control = params.control;
-  control.model = experiments::mismatched(control.model, params.task.mismatch);
-  return control;
-}
-
-Result<SupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
+Result<SupervisedSite> make_supervised_site(const station::TeleoperatorParams& params, control::SiteRole role,
                                             const DeviceLimits& limits, std::int64_t session) {
   const Seconds tick{1.0 / params.servo.rate_Hz};
-  return make_site<SupervisedSite>(params, role, limits, session, control::agreement_of(control_of(params), tick));
+  return make_site<SupervisedSite>(params, role, limits, session, control::agreement_of(params.control, tick));
 }
 
-Result<JointSupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
+Result<JointSupervisedSite> make_supervised_site(const station::TeleoperatorParams& params, control::SiteRole role,
                                                  const Joints<DeviceLimits>& limits, std::int64_t session,
                                                  const control::Agreement& agreement) {
   return make_site<JointSupervisedSite>(params, role, limits, session, agreement);
 }
 
-Result<JointSupervisedSite> make_supervised_site(const experiments::ArmPairSetup& setup, control::SiteRole role,
+Result<JointSupervisedSite> make_supervised_site(const station::ArmTeleoperatorParams& params,
+                                                 const station::DescribedArms& arms, control::SiteRole role,
                                                  const Joints<DeviceLimits>& limits, std::int64_t session,
                                                  const control::Agreement& agreement) {
-  const experiments::ArmSiteStart start{.session = session, .agreement = agreement};
+  const station::ArmSiteStart start{.session = session, .agreement = agreement};
   return role == control::SiteRole::master
-             ? as_site<JointSupervisedSite>(experiments::arm_leader_site(setup, limits, start), "")
-             : as_site<JointSupervisedSite>(experiments::arm_follower_site(setup, limits, start), "");
+             ? as_site<JointSupervisedSite>(station::arm_leader_site(params, arms, limits, start), "")
+             : as_site<JointSupervisedSite>(station::arm_follower_site(params, arms, limits, start), "");
 }
 
-double force_step_limit_N(const experiments::TappingParams& params, control::SiteRole role,
+double force_step_limit_N(const station::TeleoperatorParams& params, control::SiteRole role,
                           const DeviceLimits& limits) {
   const control::ControlParams own = station::tightened(params.control, role, limits);
   const auto& gate = role == control::SiteRole::master ? own.gate : own.slave_gate;
@@ -149,14 +143,14 @@ std::optional<control::Agreement> agreement_from(const std::string& text) {
   return control::Agreement(numbers[0], std::span(numbers).subspan(1));
 }
 
-Words urdfs_of(const experiments::ArmPairSetup& setup) {
-  return {{setup.leader.urdf, setup.leader.urdf_text}, {setup.follower.urdf, setup.follower.urdf_text}};
+Words urdfs_of(const station::DescribedArms& arms) {
+  return {{arms.leader.urdf, arms.leader.urdf_text}, {arms.follower.urdf, arms.follower.urdf_text}};
 }
 
-experiments::Urdfs urdfs_in(const Words& words) {
-  return [words](const std::string& name) -> Result<experiments::UrdfText> {
+urdf::Urdfs urdfs_in(const Words& words) {
+  return [words](const std::string& name) -> Result<urdf::UrdfText> {
     const auto found = words.find(name);
-    if (found != words.end()) return experiments::UrdfText{found->second, name};
+    if (found != words.end()) return urdf::UrdfText{found->second, name};
     return Error{.code = ErrorCode::missing, .parameter = {}, .message = "is not in the log", .place = name};
   };
 }

@@ -2,9 +2,10 @@
 
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/core/result.hpp>
-#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/station/device.hpp>
+#include <tactus/station/supervised_arms.hpp>
+#include <tactus/station/teleoperator_params.hpp>
+#include <tactus/urdf/described_arms.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -20,24 +21,22 @@ using SupervisedSite = std::variant<control::SupervisedMaster, control::Supervis
 /// Of several joints.
 using JointSupervisedSite = std::variant<control::JointSupervisedMaster, control::JointSupervisedSlave>;
 
-/// What the controllers of an experiment work by, the mismatch of its task included.
-control::ControlParams control_of(const experiments::TappingParams& params);
-
-/// One site of the experiment before a device with these limits; `session` as in `control::make_supervised_master`.
+/// One site of a teleoperator before a device with these limits; `session` as in `control::make_supervised_master`.
 /// What the device allows is this site's own affair and no part of its agreement with the other. Errors name `control`.
-Result<SupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
+Result<SupervisedSite> make_supervised_site(const station::TeleoperatorParams& params, control::SiteRole role,
                                             const station::DeviceLimits& limits, std::int64_t session);
 /// The same of joints that are driven each by itself, and of an arm. `agreement` as in
-/// `control::make_supervised_master`. Errors of an arm are those of `experiments::arm_leader_site`.
-Result<JointSupervisedSite> make_supervised_site(const experiments::TappingParams& params, control::SiteRole role,
+/// `control::make_supervised_master`. Errors of an arm are those of `station::arm_leader_site`.
+Result<JointSupervisedSite> make_supervised_site(const station::TeleoperatorParams& params, control::SiteRole role,
                                                  const Joints<station::DeviceLimits>& limits, std::int64_t session,
                                                  const control::Agreement& agreement);
-Result<JointSupervisedSite> make_supervised_site(const experiments::ArmPairSetup& setup, control::SiteRole role,
+Result<JointSupervisedSite> make_supervised_site(const station::ArmTeleoperatorParams& params,
+                                                 const station::DescribedArms& arms, control::SiteRole role,
                                                  const Joints<station::DeviceLimits>& limits, std::int64_t session,
                                                  const control::Agreement& agreement);
 
 /// The force step that the gate of a site allows in a tick, in N.
-double force_step_limit_N(const experiments::TappingParams& params, control::SiteRole role,
+double force_step_limit_N(const station::TeleoperatorParams& params, control::SiteRole role,
                           const station::DeviceLimits& limits);
 
 /// What a log says of a thing: values by their keys.
@@ -56,8 +55,8 @@ std::string text_of(const control::Agreement& agreement);
 std::optional<control::Agreement> agreement_from(const std::string& text);
 
 /// The URDFs of arms by their names, as a log carries them, so that it replays wherever the files are by then.
-Words urdfs_of(const experiments::ArmPairSetup& setup);
+Words urdfs_of(const station::DescribedArms& arms);
 /// And back. Errors: `missing` for one that is not among them.
-experiments::Urdfs urdfs_in(const Words& words);
+urdf::Urdfs urdfs_in(const Words& words);
 
 }  // namespace tactus::runtime

@@ -1,4 +1,4 @@
-#include <tactus/runtime/internal/replay_sites.hpp>
+#include <tactus/runtime/replay_sites.hpp>
 #include <tactus/runtime/site_parts.hpp>
 
 namespace tactus::runtime {
@@ -11,10 +11,10 @@ namespace {
 
 /// Both sites, of one axis or of joints that are driven each by itself.
 template <class Reading, class Pair>
-Check both(const LogContent& content, std::size_t joints, const experiments::TappingParams& params, Replay& replay) {
+Check both(const LogContent& content, std::size_t joints, const station::TeleoperatorParams& params, Replay& replay) {
   return replay_both<Reading>(content, joints, replay, [&](auto& master, auto& slave) {
     const auto limits = master.limits();
-    return station::DevicePair<Pair>::make(same_for_each(limits, control_of(params)), params.channel,
+    return station::DevicePair<Pair>::make(same_for_each(limits, params.control), params.channel,
                                            Seconds{1.0 / params.servo.rate_Hz}, same_for_each(limits, 0.0), master,
                                            slave);
   });
@@ -23,7 +23,7 @@ Check both(const LogContent& content, std::size_t joints, const experiments::Tap
 // Its number is told to the other site only.
 constexpr std::int64_t own_session = 1;
 
-Check alone(const LogContent& content, SiteRole role, const experiments::TappingParams& params, Replay& replay) {
+Check alone(const LogContent& content, SiteRole role, const station::TeleoperatorParams& params, Replay& replay) {
   return replay_one<DeviceReading>(content, role, {}, 0, replay, [&](const station::DeviceLimits& limits) {
     return make_supervised_site(params, role, limits, own_session);
   });
@@ -56,7 +56,7 @@ Check replay_joints(const LogContent& content, Replay& replay, const JointMakers
       [&](const Joints<station::DeviceLimits>& limits) { return makers.one(role, limits, own_session, *agreement); });
 }
 
-Result<bool> replay_sites(const LogContent& content, const experiments::TappingParams& params, Replay& replay) {
+Result<bool> replay_sites(const LogContent& content, const station::TeleoperatorParams& params, Replay& replay) {
   Check failed;
   if (is_of_joints(content)) {
     failed = replay_joints(content, replay,

@@ -23,8 +23,8 @@ set(finds_data nlohmann_json_DIR TACTUS_MATIO_LIBRARY TACTUS_HDF5_LIBRARY TACTUS
 set(finds_identification)
 set(finds_simulation TACTUS_MUJOCO_LIBRARY)
 set(finds_analysis)
-set(finds_runtime Boost_DIR OPENSSL_SSL_LIBRARY TACTUS_CYCLONEDDS_INCLUDE_DIR)
-set(finds_hardware)
+set(finds_runtime OPENSSL_SSL_LIBRARY TACTUS_CYCLONEDDS_INCLUDE_DIR)
+set(finds_hardware Boost_DIR)
 set(finds_interfaces CLI11_DIR)
 
 # Configures with the components WANTED, and compares what was built and found with what their closure names.
@@ -81,7 +81,7 @@ if(NOT output MATCHES "libeigen3-dev" OR output MATCHES "libmatio-dev|libgtest-d
   message(FATAL_ERROR "the packages of the kernel are not its own:\n${output}")
 endif()
 run(sh ${SOURCE}/scripts/install-deps --component hardware --list)
-if(NOT output MATCHES "libeigen3-dev.*libmatio-dev.*libssl-dev" OR output MATCHES "libcli11-dev|libgtest-dev")
+if(NOT output MATCHES "libeigen3-dev.*libmatio-dev.*libssl-dev.*libboost-dev" OR output MATCHES "libmujoco-dev|libcli11-dev|libgtest-dev")
   message(FATAL_ERROR "the packages of the hardware are not its own:\n${output}")
 endif()
 

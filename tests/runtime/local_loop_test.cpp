@@ -1,6 +1,7 @@
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/real_time/repeated_taps.hpp>
+#include <tactus/real_time/replay.hpp>
 #include <tactus/runtime/local_loop.hpp>
-#include <tactus/runtime/replay.hpp>
 #include <tactus/runtime/rights.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
@@ -32,8 +33,9 @@ class LocalSites : public ::testing::Test {
   ~LocalSites() override { std::filesystem::remove_all(folder); }
 
   void open(const LocalLoop::Settings& settings = {}) {
-    auto made = LocalLoop::make(params, settings, exchange, simulated_device(params, SiteRole::master).value(),
-                                simulated_device(params, SiteRole::slave).value());
+    auto made =
+        LocalLoop::make(params, settings, exchange, real_time::simulated_device(params, SiteRole::master).value(),
+                        real_time::simulated_device(params, SiteRole::slave).value());
     ASSERT_TRUE(made) << describe(made.error());
     loop.emplace(*std::move(made));
     SiteStreams streams = SiteStreams::of_both();
@@ -157,7 +159,7 @@ TEST_F(LocalSites, ReplayBitForBitFromTheirLog) {
   run(1000);
   loop->finish();
   ASSERT_FALSE(log->close());
-  const auto replayed = replay(folder);
+  const auto replayed = real_time::replay(folder);
   ASSERT_TRUE(replayed) << describe(replayed.error());
   EXPECT_EQ(replayed->of, "both sites");
   EXPECT_EQ(replayed->ticks, tick);
@@ -199,7 +201,8 @@ class Hardware final : public station::Device {
 TEST_F(LocalSites, HardwareIsRefusedWithoutLimitsThatSomebodyChose) {
   const auto with = [this](const station::DeviceLimits& limits) {
     SiteDevice master{.device = std::make_unique<Hardware>(limits), .person = nullptr};
-    return LocalLoop::make(params, {}, exchange, std::move(master), simulated_device(params, SiteRole::slave).value());
+    return LocalLoop::make(params, {}, exchange, std::move(master),
+                           real_time::simulated_device(params, SiteRole::slave).value());
   };
   const auto without_rate = with({.force_N = 2.0, .velocity_m_per_s = 1.0, .position_m = 0.1});
   ASSERT_FALSE(without_rate);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <tactus/configuration/toml_writer.hpp>
+#include <tactus/real_time/repeated_taps.hpp>
 #include <tactus/runtime/rights.hpp>
 #include <tactus/runtime/site_loop.hpp>
 #include <tactus/telemetry/log_reader.hpp>
@@ -59,7 +60,7 @@ class Sites : public ::testing::Test {
                                            .listen = link::testing::loopback(own),
                                            .key = std::nullopt},
                                   .arm_at_once = arm_at_once && role == SiteRole::master},
-                                 site.exchange, simulated_device(params, role).value());
+                                 site.exchange, real_time::simulated_device(params, role).value());
       ASSERT_TRUE(made) << describe(made.error());
       site.loop.emplace(*std::move(made));
       SiteStreams streams = SiteStreams::of_one(role);

@@ -1,4 +1,4 @@
-#include <tactus/runtime/replay.hpp>
+#include <tactus/real_time/replay.hpp>
 
 #include <cstdint>
 #include <string>
@@ -31,7 +31,7 @@ TEST_F(Sites, TheLogOfEitherReplaysBitForBit) {
   close(slave, SiteRole::slave);
   for (const Site* site : {&master, &slave}) {
     const std::string name = site == &master ? "master" : "slave";
-    const auto replayed = replay(folder / name);
+    const auto replayed = real_time::replay(folder / name);
     ASSERT_TRUE(replayed) << describe(replayed.error());
     EXPECT_EQ(replayed->of, "the " + name);
     EXPECT_EQ(replayed->ticks, site->loop->totals().ticks);
@@ -40,7 +40,7 @@ TEST_F(Sites, TheLogOfEitherReplaysBitForBit) {
   }
   // Each input counts: what was read, what was pressed, what came.
   const auto differs = [this](const std::string& topic, const std::string& signal, std::size_t row) {
-    const auto replayed = replay(tampered(folder / "slave", topic, signal, row));
+    const auto replayed = real_time::replay(tampered(folder / "slave", topic, signal, row));
     ASSERT_TRUE(replayed) << describe(replayed.error());
     ASSERT_TRUE(replayed->difference) << topic << " " << signal;
     EXPECT_GE(replayed->difference->tick, static_cast<std::int64_t>(row) - 2);
@@ -48,7 +48,7 @@ TEST_F(Sites, TheLogOfEitherReplaysBitForBit) {
   differs("/site", "motor_force_N", 5000);
   differs("/site", "position_m", 5000);
   differs("/packets", "position_m", 5000);
-  const auto lacking = replay(tampered(folder / "slave", "/packets", "tick", 5000));
+  const auto lacking = real_time::replay(tampered(folder / "slave", "/packets", "tick", 5000));
   ASSERT_FALSE(lacking);
   EXPECT_NE(lacking.error().message.find("/packets lacks"), std::string::npos) << lacking.error().message;
 }

@@ -17,11 +17,11 @@ constexpr const char* remedy = "start both with the same experiment, the same --
 /// Of both arms' sites.
 struct AgreedArms {
   std::string leader, follower;  ///< digests of what is believed of the arms
-  experiments::ToolPoint leader_tool, follower_tool;
+  station::ToolPoint leader_tool, follower_tool;
   double rate_Hz = 0.0;
-  experiments::ArmControlParams control;
+  station::ArmControlParams control;
   control::SafetyGate::Params leader_gate, follower_gate;
-  experiments::GripperParams gripper;
+  station::GripperParams gripper;
   control::PacketJudgeParams packets;
   control::MessageFollower::Params silence;
   control::Watchdog::Params watchdog;
@@ -92,17 +92,18 @@ RigAgreement RigAgreement::of(const RigSide& side, const control::ControlParams&
   return RigAgreement(std::make_shared<const Values>("tapping", side, control::agreed_params(control, tick)));
 }
 
-RigAgreement RigAgreement::of(const RigSide& side, const experiments::ArmPairSetup& setup) {
-  const experiments::ArmRigParams& rig = setup.params.rig;
-  const experiments::ArmPairParams& arms = setup.params.arm;
+RigAgreement RigAgreement::of(const RigSide& side, const station::ArmTeleoperatorParams& params,
+                              const station::DescribedArms& arms) {
+  const station::ArmRigParams& rig = params.rig;
+  const station::ArmPairParams& pair = params.arm;
   return RigAgreement(
       std::make_shared<const Values>("arm-tapping", side,
-                                     AgreedArms{.leader = digest_of(setup.leader.arm.chain),
-                                                .follower = digest_of(setup.follower.arm.chain),
-                                                .leader_tool = arms.tool,
-                                                .follower_tool = differs(arms) ? arms.follower.tool : arms.tool,
-                                                .rate_Hz = setup.params.servo.rate_Hz,
-                                                .control = setup.params.control,
+                                     AgreedArms{.leader = digest_of(arms.leader.arm.chain),
+                                                .follower = digest_of(arms.follower.arm.chain),
+                                                .leader_tool = pair.tool,
+                                                .follower_tool = differs(pair) ? pair.follower.tool : pair.tool,
+                                                .rate_Hz = params.servo.rate_Hz,
+                                                .control = params.control,
                                                 .leader_gate = rig.leader_gate,
                                                 .follower_gate = rig.follower_gate,
                                                 .gripper = rig.gripper,

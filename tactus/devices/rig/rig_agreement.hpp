@@ -4,8 +4,9 @@
 #include <tactus/control/architecture.hpp>
 #include <tactus/core/units.hpp>
 #include <tactus/devices/rig/rig.hpp>
-#include <tactus/experiments/arm_tapping/arm_pair.hpp>
-#include <tactus/runtime/site_mismatch.hpp>
+#include <tactus/runtime/site_misfit.hpp>
+#include <tactus/station/arm_teleoperator_params.hpp>
+#include <tactus/station/described_arms.hpp>
 
 #include <memory>
 #include <string>
@@ -21,7 +22,8 @@ class RigAgreement {
   static RigAgreement of(const RigSide& side, const control::ControlParams& control, Seconds tick);
   /// Of two arms: with them the rate, all of `[control]`, the gates, both arms' dynamics, and what the sites do in
   /// silence.
-  static RigAgreement of(const RigSide& side, const experiments::ArmPairSetup& setup);
+  static RigAgreement of(const RigSide& side, const station::ArmTeleoperatorParams& params,
+                         const station::DescribedArms& arms);
 
   [[nodiscard]] control::Agreement agreement() const;
   /// What a person at the site of this role has to know of a mismatch, in one sentence with the remedy.

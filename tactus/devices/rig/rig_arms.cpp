@@ -1,7 +1,7 @@
 #include <tactus/control/protective_limits.hpp>
 #include <tactus/devices/rig/rig_arms.hpp>
-#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
-#include <tactus/station/make_device_guard.hpp>
+#include <tactus/station/supervised_arms.hpp>
+#include <tactus/station/wall.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,8 @@ namespace {
 
 using arm_control::ArmMethod;
 using arm_control::DriveGains;
-using experiments::ArmPairSetup;
+using station::ArmTeleoperatorParams;
+using station::DescribedArms;
 
 Error problem_at(const std::string& parameter, ErrorCode code, std::string message) {
   return {.code = code, .parameter = parameter, .message = std::move(message), .place = {}};
@@ -29,9 +30,8 @@ std::string listed(const std::vector<std::string>& names) {
 }
 
 /// The most that the sites ask of each drive's law.
-Joints<DriveGains> asked_of_leader(const ArmPairSetup& setup) {
-  const auto& sites = setup.params.control;
-  const std::size_t joints = setup.leader.joints.size();
+Joints<DriveGains> asked_of_leader(const ArmTeleoperatorParams& params, std::size_t joints) {
+  const auto& sites = params.control;
   Joints<DriveGains> asked = sites.follower.gains.of(joints);
   const auto damping = sites.drive_damping.of(joints);
   const bool pulls = sites.method == ArmMethod::position_position;
@@ -42,9 +42,9 @@ Joints<DriveGains> asked_of_leader(const ArmPairSetup& setup) {
   }
   return asked;
 }
-Joints<DriveGains> asked_of_follower(const ArmPairSetup& setup) {
-  Joints<DriveGains> asked = setup.params.control.follower.gains.of(setup.follower.joints.size());
-  for (DriveGains& gains : asked) gains.stiffness_N_m_per_rad *= setup.params.control.follower.stiffness_share;
+Joints<DriveGains> asked_of_follower(const ArmTeleoperatorParams& params, std::size_t joints) {
+  Joints<DriveGains> asked = params.control.follower.gains.of(joints);
+  for (DriveGains& gains : asked) gains.stiffness_N_m_per_rad *= params.control.follower.stiffness_share;
   return asked;
 }
 
@@ -95,9 +95,9 @@ Check check_limits(const RigJoint& joint, const arm::JointLimits& can_be, const 
 }
 
 /// The side with its joints in the arm's order, then the others.
-Result<RigSide> in_order(const RigSide& side, const experiments::DescribedArm& arm,
-                         const experiments::GripperParams& gripper, const Joints<DriveGains>& asked,
-                         const DriveGains& beside, const control::SafetyGate::Params& gate, const std::string& name) {
+Result<RigSide> in_order(const RigSide& side, const station::DescribedArm& arm, const station::GripperParams& gripper,
+                         const Joints<DriveGains>& asked, const DriveGains& beside,
+                         const control::SafetyGate::Params& gate, const std::string& name) {
   RigSide ordered = side;
   ordered.joints.clear();
   ordered.bus.motors.clear();
@@ -134,23 +134,23 @@ Result<RigSide> in_order(const RigSide& side, const experiments::DescribedArm& a
 
 }  // namespace
 
-Result<RigPair> as_arms(const RigPair& pair, const ArmPairSetup& setup) {
-  const experiments::GripperParams& gripper = setup.params.rig.gripper;
-  RigPair arms{.name = pair.name, .leader = {}, .follower = {}};
+Result<RigPair> as_arms(const RigPair& pair, const ArmTeleoperatorParams& params, const DescribedArms& arms) {
+  const station::GripperParams& gripper = params.rig.gripper;
+  RigPair ordered{.name = pair.name, .leader = {}, .follower = {}};
   if (pair.leader) {
-    auto leader = in_order(*pair.leader, setup.leader, gripper, asked_of_leader(setup),
-                           experiments::beside_the_arm(setup, true), setup.params.rig.leader_gate, "rig.leader_gate");
+    auto leader = in_order(*pair.leader, arms.leader, gripper, asked_of_leader(params, arms.leader.joints.size()),
+                           station::beside_the_arm(params, true), params.rig.leader_gate, "rig.leader_gate");
     if (!leader) return leader.error();
-    arms.leader = *std::move(leader);
+    ordered.leader = *std::move(leader);
   }
   if (pair.follower) {
     auto follower =
-        in_order(*pair.follower, setup.follower, gripper, asked_of_follower(setup),
-                 experiments::beside_the_arm(setup, false), setup.params.rig.follower_gate, "rig.follower_gate");
+        in_order(*pair.follower, arms.follower, gripper, asked_of_follower(params, arms.follower.joints.size()),
+                 station::beside_the_arm(params, false), params.rig.follower_gate, "rig.follower_gate");
     if (!follower) return follower.error();
-    arms.follower = *std::move(follower);
+    ordered.follower = *std::move(follower);
   }
-  return arms;
+  return ordered;
 }
 
 }  // namespace tactus::devices

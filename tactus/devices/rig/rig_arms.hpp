@@ -1,10 +1,11 @@
 #pragma once
 
 #include <tactus/devices/rig/rig.hpp>
-#include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/station/arm_teleoperator_params.hpp>
+#include <tactus/station/described_arms.hpp>
 
 /// A pair of a rig as two arms, each driven by a site that knows all its joints (`tactus/arm_control/arm_sites.hpp`).
-/// What is believed of the arms is what `arm-tapping` simulates. Nothing here is real-time safe.
+/// `params` and `arms` are those that the sites are made of. Nothing here is real-time safe.
 namespace tactus::devices {
 
 /// The pair, or the one side of it that the file has, with its joints in the order of the arm's, from the base on, then
@@ -13,6 +14,7 @@ namespace tactus::devices {
 /// Errors, whose parameters are those of the rig's file: `inconsistent` for a joint that the arm does not have where
 /// the experiment has no gains for it (`rig.gripper`), one that slides or gives no force, and limits below the gains
 /// that the sites ask of a drive; `missing` for a joint of the arm that the rig does not have.
-Result<RigPair> as_arms(const RigPair& pair, const experiments::ArmPairSetup& setup);
+Result<RigPair> as_arms(const RigPair& pair, const station::ArmTeleoperatorParams& params,
+                        const station::DescribedArms& arms);
 
 }  // namespace tactus::devices

@@ -2,9 +2,9 @@
 
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/arm_faults/plan.hpp>
-#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
 #include <tactus/experiments/experiment.hpp>
 #include <tactus/experiments/faults/table.hpp>
+#include <tactus/station/supervised_arms.hpp>
 
 #include <filesystem>
 #include <string_view>

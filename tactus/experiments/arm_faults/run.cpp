@@ -26,7 +26,8 @@ constexpr double joint_coasting = 1.1;
 /// One plan, tick by tick.
 class ArmFaultRun {
  public:
-  ArmFaultRun(const ArmFaultBench& bench, const FaultPlan& plan, SupervisedArms first, SupervisedArms again)
+  ArmFaultRun(const ArmFaultBench& bench, const FaultPlan& plan, station::SupervisedArms first,
+              station::SupervisedArms again)
       : rig_(bench.setup.params.rig),
         held_leader_(bench.held_leader()),
         follower_arm_(bench.setup.follower.arm),
@@ -163,11 +164,11 @@ class ArmFaultRun {
 
 FaultOutcome run_arm_fault(const ArmFaultBench& bench, const FaultPlan& plan) {
   const auto started = [&](std::int64_t session) {
-    return *supervise_arms(bench.setup, bench.leader_limits, bench.follower_limits,
-                           {.leader_session = session,
-                            .follower_session = session + 1,
-                            .tries_motors = is_wired_so(plan),
-                            .judges_support = false});
+    return *station::supervise_arms(bench.setup.params, bench.setup, bench.leader_limits, bench.follower_limits,
+                                    {.leader_session = session,
+                                     .follower_session = session + 1,
+                                     .tries_motors = is_wired_so(plan),
+                                     .judges_support = false});
   };
   return ArmFaultRun(bench, plan, started(1), started(3)).run();
 }

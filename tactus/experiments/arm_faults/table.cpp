@@ -55,7 +55,9 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
   const Joints<station::DeviceLimits> leader_limits = limits_of(setup->leader),
                                       follower_limits = limits_of(setup->follower);
   // What can be made once can be made always: a plan changes no parameter of the parts.
-  if (const auto sites = supervise_arms(*setup, leader_limits, follower_limits, {.judges_support = false}); !sites) {
+  if (const auto sites =
+          station::supervise_arms(params, *setup, leader_limits, follower_limits, {.judges_support = false});
+      !sites) {
     return sites.error();
   }
   arm_plants::ArmPlant::Params held = setup->leader.arm;
@@ -63,7 +65,7 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
   auto leader = arm_plants::ArmPlant::make(held, setup->leader.start);
   if (!leader) return under("arm", leader.error());
   auto follower = arm_plants::ArmPlant::make(setup->follower.arm, setup->follower.start);
-  if (!follower) return under(differs(params.arm) ? "arm.follower" : "arm", follower.error());
+  if (!follower) return under(station::differs(params.arm) ? "arm.follower" : "arm", follower.error());
   const Seconds tick{1.0 / params.servo.rate_Hz};
   if (const auto contact = mechanics::Environment::make(params.wall.environment(), tick); !contact) {
     return under("wall", contact.error());

@@ -75,21 +75,6 @@ bool leads_joints(const ArmTappingParams& params) {
   return params.control.follower.coupling == arm_control::Coupling::joints;
 }
 
-/// A handle that leads the tool hears the follower's force and tells where it is: what else there is couples joints.
-Check refuse_method(const ArmTappingParams& params) {
-  using arm_control::ArmMethod;
-  const ArmMethod method = params.control.method;
-  if (leads_joints(params) || method == ArmMethod::position_force || method == ArmMethod::cancellation) {
-    return std::nullopt;
-  }
-  return Error{.code = ErrorCode::inconsistent,
-               .parameter = "control.method",
-               .message = std::string(name_of(method)) +
-                          " couples each joint with its own, and with control.follower.coupling = \"tool\" there are "
-                          "none: write position-force or cancellation",
-               .place = {}};
-}
-
 /// Puts the start of `setup` at the pose and the surface in the direction that its task asks for.
 Check take_pose(ArmPairSetup& setup) {
   constexpr double within_rad = 0.6;
@@ -147,31 +132,20 @@ Result<double> tool_scale(const ArmPairSetup& setup) {
 }  // namespace
 
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder) {
-  return set_up_arm_pair(params, urdfs_below(folder));
+  return set_up_arm_pair(params, urdf::urdfs_below(folder));
 }
 
-Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const Urdfs& urdfs) {
-  if (Check wrong = refuse_method(params)) return *std::move(wrong);
-  auto described = describe_pair(params.arm, params.control.follower.coupling, urdfs);
+Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const urdf::Urdfs& urdfs) {
+  auto described = urdf::describe_arms(params, urdfs);
   if (!described) return described.error();
-  ArmPairSetup setup{.params = params,
-                     .leader = std::move(described->leader),
-                     .follower = std::move(described->follower),
-                     .exact = {}};
+  ArmPairSetup setup{*std::move(described), params};
   for (DescribedArm* arm : {&setup.leader, &setup.follower}) {
-    if (const auto chain = arm::Chain::make(arm->arm.chain); !chain) return under("arm", chain.error());
     arm->arm.step_s = 1.0 / (params.servo.rate_Hz * steps_in_a_tick(params.servo));
   }
-  setup.exact = {.induced = {.chain = setup.leader.arm.chain,
-                             .tool_m = setup.leader.arm.tool_m,
-                             .joint_stiffness_N_m_per_rad = setup.leader.joint_stiffness_N_m_per_rad(),
-                             .joint_damping_N_m_s_per_rad = setup.leader.joint_damping_N_m_s_per_rad()},
-                 .hand = params.control.model.hand,
-                 .follower_joint_stiffness_N_m_per_rad = setup.follower.joint_stiffness_N_m_per_rad()};
   if (Check wrong = take_pose(setup)) return *std::move(wrong);
   if (!leads_joints(params)) {
     setup.tool_scale = params.control.follower.tool_scale;
-  } else if (differs(params.arm)) {
+  } else if (station::differs(params.arm)) {
     const auto scale = tool_scale(setup);
     if (!scale) return scale.error();
     setup.tool_scale = *scale;
@@ -247,8 +221,8 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmModelParams& m
   auto leader = ArmPlant::make(held, setup.leader.start);
   if (!leader) return under("arm", leader.error());
   auto follower = ArmPlant::make(follows, setup.follower.start);
-  if (!follower) return under(differs(params.arm) ? "arm.follower" : "arm", follower.error());
-  auto person = arm_plants::ToolOperator::make(params.person, tick, leader->tool());
+  if (!follower) return under(station::differs(params.arm) ? "arm.follower" : "arm", follower.error());
+  auto person = arm_plants::Person::make(params.person, tick, leader->tool());
   if (!person) return under("operator", person.error());
   auto sites = bare_arm_sites(setup, model_params);
   if (!sites) return sites.error();
@@ -259,7 +233,7 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmModelParams& m
   const auto leader_chain = arm::Chain::make(leads.chain);
   if (!leader_chain) return under("arm", leader_chain.error());
   std::optional<arm::Chain> other_follower;
-  if (differs(params.arm)) other_follower = *arm::Chain::make(follows.chain);
+  if (station::differs(params.arm)) other_follower = *arm::Chain::make(follows.chain);
   return ArmPair(setup, *leader_chain, {*std::move(leader), no_limits}, {*std::move(follower), no_follower_limits},
                  other_follower, *std::move(person), *std::move(sites), wall_m, *contact);
 }
@@ -341,5 +315,10 @@ void ArmPair::exchange(ArmPair& made, const Parts& parts) noexcept {
 }
 
 bool ArmPair::healthy() const { return leader_.plant().healthy() && follower_.plant().healthy(); }
+
+bool is_of_arms(const configuration::Document& document) {
+  const auto kind = document.text_at("task.kind");
+  return kind && *kind == name_of(ArmTappingKind::arm_tapping);
+}
 
 }  // namespace tactus::experiments

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <tactus/arm_plants/arm_device.hpp>
+#include <tactus/configuration/document.hpp>
 #include <tactus/core/signals.hpp>
-#include <tactus/experiments/arm_tapping/described_arm.hpp>
+#include <tactus/experiments/arm_tapping/params.hpp>
+#include <tactus/station/described_arms.hpp>
 #include <tactus/station/site_pair.hpp>
+#include <tactus/urdf/described_arms.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -11,19 +14,12 @@
 
 namespace tactus::experiments {
 
-/// Parameters of arms and hand that the models of the sites have, as far as a tap draws errors of them.
-struct ArmModelParams {
-  arm_control::InducedMotion::Arm induced;                ///< the leader, for the model of induced motion
-  arm::HandImpedance hand;                                ///< that holds it, for the same
-  arm::JointVector follower_joint_stiffness_N_m_per_rad;  ///< for an observer of elastic joints
-};
+using station::ArmBeliefs;
+using station::DescribedArm;
 
-/// All that a pair is made of, read and checked. Gravity compensation and friction compensation of the sites are exact.
-struct ArmPairSetup {
+/// All that a simulated pair is made of, read and checked.
+struct ArmPairSetup : station::DescribedArms {
   ArmTappingParams params;
-  DescribedArm leader;
-  DescribedArm follower;  ///< the same as the leader, or another arm (`differs`)
-  ArmModelParams exact;   ///< model_params without error, but that the hand is control.model.hand
   arm::Vector3 outward = arm::Vector3::UnitZ();  ///< of the surface, along the axes of both bases
   /// How far the follower's tool goes where the leader's goes outward, over that, at the start: 1 where they are alike,
   /// 2 for a leader of half the follower's size; of a handle that leads the tool it is control.follower.tool_scale. The
@@ -31,11 +27,14 @@ struct ArmPairSetup {
   double tool_scale = 1.0;
 };
 
-/// Reads the URDFs, from `folder` on. Errors: those of `describe_pair` and of the parts; `inconsistent` for a follower
+/// Whether a document asks for two arms: its kind is arm-tapping.
+bool is_of_arms(const configuration::Document& document);
+
+/// Reads the URDFs, from `folder` on. Errors: those of `urdf::describe_arms`; `inconsistent` for a follower
 /// whose tool does not go where the leader's goes, and for a method that couples joints where a handle leads the tool.
 Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const std::filesystem::path& folder);
 /// The same of URDFs that are elsewhere.
-Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const Urdfs& urdfs);
+Result<ArmPairSetup> set_up_arm_pair(const ArmTappingParams& params, const urdf::Urdfs& urdfs);
 
 /// The sites of a tap, without supervision, behind the widest gates. Errors: those of the controllers, under `control`.
 Result<station::JointBarePair> bare_arm_sites(const ArmPairSetup& setup, const ArmModelParams& model_params);

@@ -89,10 +89,10 @@ ArmTapResult judge_arm_tap(const ArmContact& contact, bool diverged, const ArmCo
 }
 
 Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const std::filesystem::path& folder) {
-  return make(params, urdfs_below(folder));
+  return make(params, urdf::urdfs_below(folder));
 }
 
-Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const Urdfs& urdfs) {
+Result<ArmTaps> ArmTaps::make(const ArmTappingParams& params, const urdf::Urdfs& urdfs) {
   const ArmTappingTask& task = params.task;
   if (auto error = check_range(task.slowest_m_per_s, task.fastest_m_per_s, "slowest_m_per_s", "fastest_m_per_s")) {
     return *std::move(error);

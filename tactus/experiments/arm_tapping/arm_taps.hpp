@@ -67,7 +67,7 @@ class ArmTaps {
  public:
   /// Errors: those of `set_up_arm_pair`; `inconsistent` for empty ranges; what a pair refuses.
   static Result<ArmTaps> make(const ArmTappingParams& params, const std::filesystem::path& folder);
-  static Result<ArmTaps> make(const ArmTappingParams& params, const Urdfs& urdfs);
+  static Result<ArmTaps> make(const ArmTappingParams& params, const urdf::Urdfs& urdfs);
 
   [[nodiscard]] std::size_t size() const { return taps_.size(); }
   [[nodiscard]] double tick_s() const { return 1.0 / setup_.params.servo.rate_Hz; }

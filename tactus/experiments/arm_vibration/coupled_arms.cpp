@@ -143,7 +143,7 @@ double push_N(const ArmVibrationTask& task, double now_s) {
 }  // namespace
 
 Result<CoupledArmsSetup> set_up_coupled_arms(const ArmVibrationParams& params, const std::filesystem::path& folder) {
-  auto described = describe_arm(params.arm, urdfs_below(folder));
+  auto described = urdf::describe_arm(params.arm, urdf::urdfs_below(folder));
   if (!described) return described.error();
   const auto chain = arm::Chain::make(described->arm.chain);
   if (!chain) return under("arm", chain.error());

@@ -2,9 +2,9 @@
 
 #include <tactus/arm_control/position_coupling.hpp>
 #include <tactus/arm_plants/polled_arm.hpp>
-#include <tactus/experiments/arm_tapping/described_arm.hpp>
 #include <tactus/experiments/arm_vibration/params.hpp>
 #include <tactus/experiments/arm_vibration/shaking.hpp>
+#include <tactus/urdf/described_arms.hpp>
 
 #include <cstddef>
 #include <filesystem>
@@ -23,7 +23,7 @@ struct CoupledArmsSetup {
   arm::Vector3 direction = arm::Vector3::UnitZ();  ///< in which that joint moves the tool
 };
 
-/// Errors: those of `describe_arm` and of the parts; `out_of_bounds` for a joint that the arm does not have.
+/// Errors: those of `urdf::describe_arm` and of the parts; `out_of_bounds` for a joint that the arm does not have.
 Result<CoupledArmsSetup> set_up_coupled_arms(const ArmVibrationParams& params, const std::filesystem::path& folder);
 
 /// What a host that reads both arms each millisecond has of the joint that is looked at, in rad, rad/s and N m.

@@ -43,6 +43,12 @@ Check check(const Tap& tap, bool supervised) {
 
 }  // namespace
 
+station::TeleoperatorParams sites_of(const TappingParams& params) {
+  station::TeleoperatorParams sites = params;
+  sites.control.model = mismatched(sites.control.model, params.task.mismatch);
+  return sites;
+}
+
 Check refuse_supervised(const TappingParams& params, const std::string& who) {
   if (!params.task.supervised) return std::nullopt;
   return Error{.code = ErrorCode::inconsistent,

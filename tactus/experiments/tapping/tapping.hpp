@@ -69,7 +69,11 @@ struct TappingParams : simulation::Teleoperator::Params {
   }
 };
 
-/// For what runs these sites without supervision, which `who` names, as "the live page": refuses others.
+/// What its sites compute with: `task.mismatch` is in the controllers' model. A `TappingParams` is a
+/// `station::TeleoperatorParams` too, without it.
+station::TeleoperatorParams sites_of(const TappingParams& params);
+
+/// For what runs these sites without supervision, which `who` tells, as "the live page": refuses others.
 Check refuse_supervised(const TappingParams& params, const std::string& who);
 
 enum class Verdict { settled, ringing, limit_cycle, diverged, stopped };

@@ -6,8 +6,9 @@
 #include <tactus/devices/rig/rig_arms.hpp>
 #include <tactus/devices/rig/rig_loop.hpp>
 #include <tactus/emulation/damiao/damiao_peer.hpp>
-#include <tactus/emulation/emulated_arm.hpp>
-#include <tactus/experiments/arm_tapping/supervised_arms.hpp>
+#include <tactus/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/real_time/emulated_arm.hpp>
+#include <tactus/station/supervised_arms.hpp>
 #include <tactus/wire/join.hpp>
 
 #include <cmath>
@@ -26,9 +27,9 @@ namespace rig_arms_test {
 using arm_plants::ToolForce;
 using arm_plants::ToolState;
 using control::SiteState;
-using emulation::EmulatedArm;
 using emulation::damiao::DamiaoPeer;
 using experiments::ArmPairSetup;
+using real_time::EmulatedArm;
 
 inline constexpr std::int64_t ms = 1'000'000, tick_ns = 2 * ms;
 inline constexpr std::size_t joints = 7;
@@ -126,7 +127,7 @@ class VirtualLink final : public MotorLink {
 struct Bench {
   Faults faults;  ///< of the follower
   ArmPairSetup setup = setup_of();
-  RigPair pair = *as_arms(pair_of(), setup);
+  RigPair pair = *as_arms(pair_of(), setup.params, setup);
   double apart_rad = 0.15;                ///< of joint 4, leader and follower
   std::optional<arm::Vector3> hand_at_m;  ///< where a hand holds the leader's tool, on a spring
   std::optional<arm_plants::Wall> wall;   ///< in the follower's way
@@ -157,7 +158,7 @@ struct Bench {
     advance(400 * ms);
     ArmPairSetup of_sites = setup;
     if (believed) of_sites.leader.arm.chain = of_sites.follower.arm.chain = *believed;
-    auto sites = arm_sites(of_sites, leader->limits(), follower->limits());
+    auto sites = arm_sites(of_sites.params, of_sites, leader->limits(), follower->limits());
     EXPECT_TRUE(sites) << describe(sites.error());
     auto made = RigLoop::around(*std::move(sites), Seconds{1e-9 * tick_ns},
                                 {.listen_before_arming_s = 0.1, .arm_at_once = true}, exchange, *leader, *follower);

@@ -32,6 +32,11 @@ RigPair pair_of() {
   return rig->pairs()[0];
 }
 
+RigAgreement agreement_of(const RigPair& pair, const std::vector<std::string>& more = {}) {
+  const experiments::ArmPairSetup setup = setup_of(more);
+  return RigAgreement::of(*pair.leader, setup.params, setup);
+}
+
 /// What a site says after it has heard all packets of the other.
 std::string said(const RigAgreement& own, const RigAgreement& other) {
   const Agreement told = other.agreement();
@@ -44,7 +49,7 @@ std::string said(const RigAgreement& own, const RigAgreement& other) {
 
 TEST(RigAgreement, OfTwoArmsNamesEachKeyThatDiffersWithBothValues) {
   const RigPair pair = pair_of();
-  const RigAgreement plain = RigAgreement::of(*pair.leader, setup_of());
+  const RigAgreement plain = agreement_of(pair);
   EXPECT_EQ(said(plain, plain), "");
   const std::pair<const char*, const char*> sets[]{{"rig.leader_gate.force_limit_N", "3.25"},
                                                    {"rig.follower_gate.force_limit_N", "3.25"},
@@ -58,7 +63,7 @@ TEST(RigAgreement, OfTwoArmsNamesEachKeyThatDiffersWithBothValues) {
                                                    {"arm.tool.z_m", "0.1875"}};
   for (const auto& [key, value] : sets) {
     const std::string set = std::string(key) + "=" + value;
-    const RigAgreement other = RigAgreement::of(*pair.leader, setup_of({set}));
+    const RigAgreement other = agreement_of(pair, {set});
     const std::string here = said(plain, other), there = said(other, plain);
     EXPECT_NE(here.find(std::string(key) + " is "), std::string::npos) << here;
     EXPECT_NE(there.find(std::string(key) + " is "), std::string::npos) << there;
@@ -71,7 +76,7 @@ TEST(RigAgreement, OfTwoArmsNamesEachKeyThatDiffersWithBothValues) {
 
 TEST(RigAgreement, OfTwoArmsHasACellForEveryValue) {
   const RigPair pair = pair_of();
-  EXPECT_LT(RigAgreement::of(*pair.leader, setup_of()).agreement().size(), Agreement::most_cells);
+  EXPECT_LT(agreement_of(pair).agreement().size(), Agreement::most_cells);
 }
 
 }  // namespace rig_agreement_test

@@ -250,7 +250,7 @@ TEST(RigArms, ATickDoesNotAllocate) {
 std::string problem_of(const std::string& rig_text, const ArmPairSetup& setup) {
   const auto rig = Rig::parse(rig_text, "rig.toml");
   if (!rig) return describe(rig.error());
-  const auto arms = as_arms(rig->pairs()[0], setup);
+  const auto arms = as_arms(rig->pairs()[0], setup.params, setup);
   return arms ? std::string() : describe(rig->locate(arms.error()));
 }
 
@@ -292,11 +292,11 @@ TEST(RigArms, JointsAreThoseOfTheArmByName) {
   const ArmPairSetup setup = setup_of();
   const std::string stiff = "stiffness_limit_Nm_per_rad = 240.0\n";
   EXPECT_EQ(problem_of(rig_text(stiff, 7), setup), "");
-  const RigPair pair = *as_arms(Rig::parse(rig_text(stiff, 7), "rig.toml")->pairs()[0], setup);
+  const RigPair pair = *as_arms(Rig::parse(rig_text(stiff, 7), "rig.toml")->pairs()[0], setup.params, setup);
   EXPECT_EQ(pair.follower->joints[0].path, "arm.follower.joint_1");
   EXPECT_EQ(pair.follower->bus.motors[6].id, 7);
   // A joint beside the arm's comes last, whatever it is called.
-  EXPECT_EQ(as_arms(pair_of(), setup)->leader->joints[7].path, "arm.leader.gripper");
+  EXPECT_EQ(as_arms(pair_of(), setup.params, setup)->leader->joints[7].path, "arm.leader.gripper");
   EXPECT_NE(
       problem_of(rig_text(stiff, 6), setup)
           .find("rig.toml:1:1: arm.leader: the arm of ../../experiments/arms/openarm-class.urdf has a joint joint_7, "
@@ -331,7 +331,7 @@ TEST(RigArms, AFollowerThatIsAnotherArmHasItsOwnJointsAndItsOwnModel) {
     for (std::size_t i = 0; i < joints; ++i) found[i] = pair_of().leader->joints[i].joint.limits();
     return found;
   }();
-  const auto sites = arm_sites(setup, limits, limits);
+  const auto sites = arm_sites(setup.params, setup, limits, limits);
   ASSERT_FALSE(sites);
   EXPECT_TRUE(sites.error().parameter.starts_with("control.follower")) << describe(sites.error());
 }
@@ -348,11 +348,12 @@ TEST(RigArms, ALawBeyondWhatTheRigAllowsIsRefusedBeforeAnythingMoves) {
       problem_of(rig_text("stiffness_limit_Nm_per_rad = 500.0\n", 7), setup_of({"control.method=position-position"}))
           .find("arm.leader.joint_1.stiffness_limit_Nm_per_rad: 0 N m/rad is less than the 120 N m/rad"),
       std::string::npos);
-  const RigPair pair = *as_arms(pair_of(), setup);
+  const RigPair pair = *as_arms(pair_of(), setup.params, setup);
   Joints<station::DeviceLimits> limits(joints);
   for (std::size_t i = 0; i < joints; ++i) limits[i] = pair.leader->joints[i].joint.limits();
   const auto refusal = [&](const std::string& key) {
-    const auto sites = arm_sites(setup_of({key}), limits, limits);
+    const ArmPairSetup changed = setup_of({key});
+    const auto sites = arm_sites(changed.params, changed, limits, limits);
     return sites ? std::string() : describe(sites.error());
   };
   EXPECT_EQ(refusal("rig.follower_gate.force_limit_N=15"), "");

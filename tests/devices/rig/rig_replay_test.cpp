@@ -15,8 +15,8 @@
 namespace tactus::devices {
 namespace rig_arms_test {
 
+using real_time::replay;
 using runtime::changed_log;
-using runtime::replay;
 using runtime::tampered;
 
 /// The arms of the bench leave a log, through all that changes a state.

@@ -109,7 +109,7 @@ TEST(Handle, WhatCouplesJointsOrHasNoHandleIsRefusedByItsKey) {
   params.arm.follower.urdf = params.arm.urdf;
   params.arm.follower.joints.joint_1.start_rad = 0.3;
   EXPECT_EQ(problem(params).parameter, "arm.follower.joints") << "led joint by joint it begins where the leader does";
-  EXPECT_EQ(refuse_tool_coupling(params, "tactus faults"), std::nullopt);
+  EXPECT_EQ(station::refuse_tool_coupling(params, "tactus faults"), std::nullopt);
   EXPECT_EQ(make_arm_fault_bench(shipped(), folder).error().parameter, "control.follower.coupling");
 }
 

@@ -396,5 +396,19 @@ TEST(Tapping, WhatRunsBareRefusesSupervisedSites) {
   EXPECT_EQ(refuse_supervised(params, "it")->parameter, "task.supervised");
 }
 
+TEST(Tapping, TheSitesThatDriveADeviceComputeWithTheMismatchOfTheTask) {
+  TappingParams params = default_params();
+  params.servo.rate_Hz = 2500.0;
+  params.channel.to_slave.delay_s = 0.02;
+  params.task.mismatch = {.mass = 2.0, .linkage_stiffness = 0.5, .operator_damping = 3.0};
+  const station::TeleoperatorParams sites = sites_of(params);
+  EXPECT_EQ(sites.servo.rate_Hz, 2500.0);
+  EXPECT_EQ(sites.channel.to_slave.delay_s, 0.02);
+  const control::MasterModel &right = params.control.model, &wrong = sites.control.model;
+  EXPECT_DOUBLE_EQ(wrong.motor.mass_kg, 2.0 * right.motor.mass_kg);
+  EXPECT_DOUBLE_EQ(wrong.linkage.stiffness_N_per_m, 0.5 * right.linkage.stiffness_N_per_m);
+  EXPECT_DOUBLE_EQ(wrong.hand.damping_N_s_per_m, 3.0 * right.hand.damping_N_s_per_m);
+}
+
 }  // namespace tapping_test
 }  // namespace tactus::experiments

@@ -1,0 +1,4 @@
+#pragma once
+
+#include <tactus/core/upward.hpp>
+#include <tactus/simulation/plant.hpp>
