@@ -87,17 +87,17 @@ Check run_in_real_time(const RunOptions& options, const experiments::Request& re
     observers.emplace(*std::move(opened));
     return std::nullopt;
   };
-  if (options.onlookers.any()) {
+  if (options.observers.any()) {
     settings.look_on = [&](const std::vector<runtime::RealTimeStreams>& all) -> Check {
-      if (auto error = open_onlookers({})) return error;
-      for (const runtime::RealTimeStreams& streams : all) onlookers->watch(streams);
-      return onlookers->begin(say);
+      if (auto error = open_observers({})) return error;
+      for (const runtime::RealTimeStreams& streams : all) observers->watch(streams);
+      return observers->begin(say);
     };
     settings.look_on_arms = [&](const real_time::ArmTapStreams& streams,
                                 const std::vector<std::string>& joints) -> Check {
-      if (auto error = open_onlookers(joints)) return error;
-      onlookers->watch(streams);
-      return onlookers->begin(say);
+      if (auto error = open_observers(joints)) return error;
+      observers->watch(streams);
+      return observers->begin(say);
     };
   }
   const auto done = [&] {

@@ -44,7 +44,7 @@ Check replay_arm_taps(const LogContent& content, const experiments::ArmTappingPa
           if (number >= taps->size()) {
             return runtime::refuse_replay(ErrorCode::inconsistent, "the log has a tap that its configuration has not");
           }
-          auto made = experiments::bare_arm_sites(taps->setup(), taps->tap(number).beliefs);
+          auto made = experiments::bare_arm_sites(taps->setup(), taps->tap(number).model_params);
           if (!made) return made.error();
           sites.emplace(*std::move(made));
         }

@@ -43,9 +43,9 @@ Result<runtime::SiteDevice> simulated_device(const experiments::TappingParams& p
   }
   const auto plant = simulation::MasterPlant::make(params.master, params.person, *clock, path.start_m());
   if (!plant) return plant.error();
-  auto device = std::make_unique<SimulatedMasterOf<PatientPerson>>(*plant, *clock, PatientPerson(path, clock->tick_s),
-                                                                   station::DeviceLimits{});
-  PatientPerson* const person = &device->person();
+  auto device = std::make_unique<SimulatedMasterOf<PatientOperator>>(
+      *plant, *clock, PatientOperator(path, clock->tick_s), station::DeviceLimits{});
+  PatientOperator* const person = &device->person();
   return runtime::SiteDevice{.device = std::move(device), .person = person};
 }
 

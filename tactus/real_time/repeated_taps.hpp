@@ -25,9 +25,9 @@ class RepeatedTaps {
 };
 
 /// Who taps on and on, and waits where the hand is while the site does not follow it.
-class PatientPerson final : public runtime::SimulatedOperator {
+class PatientOperator final : public runtime::SimulatedOperator {
  public:
-  PatientPerson(const RepeatedTaps& path, double tick_s) : path_(path), tick_s_(tick_s) {}
+  PatientOperator(const RepeatedTaps& path, double tick_s) : path_(path), tick_s_(tick_s) {}
   /// Once a tick. Real-time safe.
   Intent step() noexcept {
     const double now_s = path_s_;

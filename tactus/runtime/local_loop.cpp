@@ -15,7 +15,7 @@ Result<LocalLoop> LocalLoop::make(const station::TeleoperatorParams& params, con
   const auto counters_of = [&](SiteRole role, const SiteDevice& device) {
     return SiteCounters(role, tick_s, force_step_limit_N(params, role, device.device->limits()));
   };
-  const std::array books{books_of(SiteRole::master, master), books_of(SiteRole::slave, slave)};
+  const std::array counters{counters_of(SiteRole::master, master), counters_of(SiteRole::slave, slave)};
   auto pair = station::LocalTeleoperator::make(params.control, params.channel, Seconds{tick_s}, 0.0, *master.device,
                                                *slave.device);
   if (!pair) return pair.error();

@@ -23,7 +23,7 @@ struct DescribedArm {
 };
 
 /// The models that the sites of two arms compute with, as far as an experiment draws errors of them.
-struct ArmBeliefs {
+struct ArmModelParams {
   arm_control::InducedMotion::Arm induced;                ///< the leader, for the model of induced motion
   arm::HandImpedance hand;                                ///< that holds it, for the same
   arm::JointVector follower_joint_stiffness_N_m_per_rad;  ///< for an observer of elastic joints
@@ -33,8 +33,8 @@ struct ArmBeliefs {
 struct DescribedArms {
   DescribedArm leader;
   DescribedArm
-      follower;      ///< the same as the leader, or another arm; led joint by joint, it begins where the leader does
-  ArmBeliefs exact;  ///< models without error, but that the hand is control.model.hand
+      follower;  ///< the same as the leader, or another arm; led joint by joint, it begins where the leader does
+  ArmModelParams exact;  ///< models without error, but that the hand is control.model.hand
 };
 
 }  // namespace tactus::station

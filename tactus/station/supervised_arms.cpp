@@ -1,8 +1,8 @@
 #include <tactus/arm_control/arm_sites.hpp>
 #include <tactus/control/protective_limits.hpp>
 #include <tactus/control/support_law.hpp>
+#include <tactus/station/make_device_guard.hpp>
 #include <tactus/station/supervised_arms.hpp>
-#include <tactus/station/wall.hpp>
 
 #include <algorithm>
 #include <string>

@@ -104,7 +104,7 @@ TEST(RealTimeArmTap, ItLeavesWhatBothSitesHeardToldAndReadOfEachJoint) {
   while (tap->step(arm_tick(ticks - 1))) ++ticks;
   runtime::JointStreams::Joint::Entry of_master, of_slave;
   runtime::JointStreams::Site::Entry of_site;
-  double slave_told_N = 0.0, moved_rad = 0.0;
+  double slave_sent_N = 0.0, moved_rad = 0.0;
   for (std::int64_t number = 0; number < ticks; ++number) {
     ASSERT_TRUE(master.next(of_master));
     ASSERT_TRUE(slave.next(of_slave));

@@ -4,7 +4,7 @@
 #include <tactus/control/architecture.hpp>
 #include <tactus/core/units.hpp>
 #include <tactus/devices/rig/rig.hpp>
-#include <tactus/runtime/site_misfit.hpp>
+#include <tactus/runtime/site_mismatch.hpp>
 #include <tactus/station/arm_teleoperator_params.hpp>
 #include <tactus/station/described_arms.hpp>
 

@@ -1,7 +1,7 @@
 #include <tactus/control/protective_limits.hpp>
 #include <tactus/devices/rig/rig_arms.hpp>
+#include <tactus/station/make_device_guard.hpp>
 #include <tactus/station/supervised_arms.hpp>
-#include <tactus/station/wall.hpp>
 
 #include <algorithm>
 #include <cmath>

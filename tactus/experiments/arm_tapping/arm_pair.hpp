@@ -14,7 +14,7 @@
 
 namespace tactus::experiments {
 
-using station::ArmBeliefs;
+using station::ArmModelParams;
 using station::DescribedArm;
 
 /// All that a simulated pair is made of, read and checked.
