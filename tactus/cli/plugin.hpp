@@ -6,9 +6,9 @@
 
 namespace tactus::cli {
 
-/// Loads a shared object and adds the drivers that it brings (`tactus/devices/plugin/plugin.hpp`). It stays loaded.
-/// Errors: `missing` for a file that cannot be loaded, `inconsistent` for one that is no plug-in or was compiled
-/// against another version of tactus; what the plug-in refuses.
+/// Loads a shared object and adds the drivers that it brings (`tactus/devices/plugin/plugin.hpp`). It stays
+/// loaded. Errors: `missing` for a file that cannot be loaded, `inconsistent` for one that is no plug-in or was
+/// compiled against another version of tactus; what the plug-in refuses.
 Check load_plugin(const std::string& file);
 
 }  // namespace tactus::cli

@@ -106,8 +106,8 @@ constexpr auto enumerators(BusState) {
 /// A motor that is to have no power is commanded so in every cycle until it has reported that it is off (`OffWatch`):
 /// before it is asked anything, without a command that enables it, with a fault, and while the thread ends.
 ///
-/// Real-time safe but for `problem` and `sheet`. Thread: that of the wire; `tactus/devices/bus_thread.hpp` exchanges
-/// with a tick.
+/// Real-time safe but for `problem` and `sheet`. Thread: that of the wire; `tactus/devices/bus_thread.hpp`
+/// exchanges with a tick.
 class MotorBus : public wire::WireEnd {
  public:
   [[nodiscard]] virtual std::size_t motors() const noexcept = 0;

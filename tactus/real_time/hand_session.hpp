@@ -41,7 +41,7 @@ class HandSession {
   /// Errors: those of the experiment.
   static Result<HandSession> make(const experiments::TappingParams& params);
 
-  /// Whom it tells and hears, where its ticks go, and who may end it; all of it outlives it. Before the first tick.
+  /// Its peers, where its ticks go, and who may end it; all of it outlives it. Before the first tick.
   void begin(ros2::Bridge& bridge, const runtime::RealTimeStreams& streams, const runtime::EndRequest& end);
   /// False once it is over.
   bool operator()(const station::Tick& tick) noexcept;

@@ -3,6 +3,7 @@
 #include <tactus/experiments/tapping/tap_observer.hpp>
 #include <tactus/real_time/simulated_plant.hpp>
 #include <tactus/runtime/end_request.hpp>
+#include <tactus/runtime/real_time_streams.hpp>
 #include <tactus/runtime/servo_record.hpp>
 #include <tactus/runtime/sites_record.hpp>
 #include <tactus/station/local_teleoperator.hpp>

@@ -11,7 +11,8 @@
 
 namespace tactus::real_time {
 
-/// The way a person taps on and on: there, press, back, rest, with the mean speed and depth of an experiment's taps.
+/// How an operator taps again and again: there, press, back, rest, with the mean speed and depth of an experiment's
+/// taps.
 class RepeatedTaps {
  public:
   explicit RepeatedTaps(const experiments::TappingParams& params);

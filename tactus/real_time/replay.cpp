@@ -74,7 +74,7 @@ Check replay_run(const LogTable& table, const TappingParams& params, Replay& rep
     }
     if (recorded_step.tick != next + recorded_step.missed) {
       return refuse_replay(ErrorCode::inconsistent, "topic " + table.topic + ", tap " + std::to_string(number) +
-                                                        ": tick " + std::to_string(next) + " is missing");
+                                                        ": control cycle " + std::to_string(next) + " is missing");
     }
     next = recorded_step.tick + 1;
     tap->master.reading = {.position_m = recorded_step.master_position_m,
@@ -114,7 +114,7 @@ Result<bool> replay_pair(const telemetry::LogContent& content, const experiments
   if (words == content.summary.metadata.end()) {
     return refuse_replay(ErrorCode::missing,
                          "the log does not have the URDF of its arms (urdf): it is of an earlier version, which did "
-                         "not leave it, so it is not replayed; record it anew");
+                         "not leave it, so it is not replayed; record it again");
   }
   const urdf::Urdfs urdfs = runtime::urdfs_in(words->second);
   if (about(content, "tactus", "rig").empty()) {

@@ -7,8 +7,8 @@
 #include <cstdint>
 
 /// Devices that are simulated in real time, on the thread that reads them: before a reading the plant is advanced to
-/// the tick, under the command that holds. So it goes on while ticks are missed, as hardware does, and with none missed
-/// it does bit for bit what it does in virtual time.
+/// the tick, under the command that holds. So it continues while ticks are missed, as hardware does, and with none
+/// missed it does bit for bit what it does in virtual time.
 namespace tactus::real_time {
 
 /// Where a hand means to be at a tick, and at the next.

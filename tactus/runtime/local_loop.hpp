@@ -4,6 +4,7 @@
 #include <tactus/runtime/site_device.hpp>
 #include <tactus/runtime/site_log.hpp>
 #include <tactus/station/local_teleoperator.hpp>
+#include <tactus/station/teleoperator_params.hpp>
 
 #include <array>
 
@@ -18,7 +19,7 @@ class LocalLoop {
     bool arm_at_once = false;  ///< without waiting for a person to do it
   };
 
-  /// `exchange` must outlive the loop. A device that is not simulated stands behind a wall, and needs limits that
+  /// `exchange` must outlive the loop. A device that is not simulated stands behind a guard, and needs limits that
   /// somebody chose. Errors: what is wrong with the parameters or the devices.
   static Result<LocalLoop> make(const station::TeleoperatorParams& params, const Settings& settings,
                                 SiteExchange& exchange, SiteDevice master, SiteDevice slave);

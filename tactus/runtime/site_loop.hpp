@@ -6,6 +6,7 @@
 #include <tactus/runtime/site_log.hpp>
 #include <tactus/runtime/site_parts.hpp>
 #include <tactus/station/device_guard.hpp>
+#include <tactus/station/teleoperator_params.hpp>
 
 #include <memory>
 

@@ -25,8 +25,8 @@ struct TeleoperatorParams : station::TeleoperatorParams {
     constexpr auto sites = station::TeleoperatorParams::fields();  // channel, servo, control
     return List{field("master", &TeleoperatorParams::master, "The master device."),
                 field("slave", &TeleoperatorParams::slave, "The slave device."),
-                field("environment", &TeleoperatorParams::environment, "The wall before the slave."),
-                field("operator", &TeleoperatorParams::person, "The person at the master."),
+                field("environment", &TeleoperatorParams::environment, "The wall in front of the slave."),
+                field("operator", &TeleoperatorParams::person, "The operator at the master."),
                 at<0>(sites),
                 at<1>(sites),
                 field("plant", &TeleoperatorParams::plant, "The clock of the simulated plants."),

@@ -31,11 +31,11 @@ struct ArmJoint {
                 field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
                       "Stiffness of an elastic joint over joint_stiffness_N_m_per_rad of its arm."),
                 field("position_step_rad", &J::position_step_rad, u::radian, between(0.0, 0.1),
-                      "Step in which the drive tells position; 0 is exact."),
+                      "Step of the position that the drive reports; 0: exact."),
                 field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
-                      "Step in which it tells velocity."),
+                      "Step of the velocity that it reports."),
                 field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
-                      "Step in which it tells torque.")};
+                      "Step of the torque that it reports.")};
   }
 };
 
@@ -59,16 +59,16 @@ struct ArmParams {
   arm_control::EachJoint<ArmJoint> joints;
   static constexpr auto fields() {
     using A = ArmParams;
-    return List{
-        field("urdf", &A::urdf,
-              "URDF of the arm, z up; its path counts from the experiment's file. Effort limits bound "
-              "the motors, damping and friction rub at them."),
-        field("tool", &A::tool, "The point that the person holds, or that touches."),
-        field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
-              between(0.0, 1e6), "Of the transmission between motor and link; 0 is rigid."),
-        field("joint_damping_N_m_s_per_rad", &A::joint_damping_N_m_s_per_rad,
-              arm::units::newton_metre_second_per_radian, between(0.0, 100.0), "Damping beside that stiffness."),
-        field("joints", &A::joints, "What the URDF does not say of each joint.")};
+    return List{field("urdf", &A::urdf,
+                      "URDF of the arm, z up; its path counts from the experiment's file. Effort limits bound "
+                      "the motors, damping and friction rub at them."),
+                field("tool", &A::tool, "The point that the operator holds, or that touches."),
+                field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
+                      between(0.0, 1e6), "Of the transmission between motor and link; 0 is rigid."),
+                field("joint_damping_N_m_s_per_rad", &A::joint_damping_N_m_s_per_rad,
+                      arm::units::newton_metre_second_per_radian, between(0.0, 100.0),
+                      "Damping in parallel with that stiffness."),
+                field("joints", &A::joints, "What the URDF does not state of each joint.")};
   }
 };
 
@@ -80,7 +80,7 @@ struct ArmPairParams : ArmParams {
   static constexpr auto fields() {
     return joined(ArmParams::fields(),
                   List{field("follower", &ArmPairParams::follower,
-                             "The follower where it is another arm than the leader: then all of it stands here. "
+                             "The follower, if it differs from the leader: then all of it is described here. "
                              "Without a urdf here it is like the leader. Joint i of the leader, counted from the base, "
                              "commands joint i of the follower, angle for angle, unless control.follower.coupling "
                              "says tool.")});
@@ -100,9 +100,9 @@ struct ArmClockParams {
   double plant_step_s = 1e-4;
   static constexpr auto fields() {
     return List{field("rate_Hz", &ArmClockParams::rate_Hz, units::hertz, between(100.0, 10000.0),
-                      "Ticks per second; a command acts from the next tick on."),
+                      "Control cycles per second; a command acts from the next control cycle on."),
                 field("plant_step_s", &ArmClockParams::plant_step_s, units::second, between(1e-6, 5e-4),
-                      "Step of the simulated arms, rounded so that a tick is a whole number of them.")};
+                      "Step of the simulated arms, rounded so that a control cycle is a whole number of them.")};
   }
 };
 
@@ -158,7 +158,7 @@ struct ArmRigParams {
     using P = ArmRigParams;
     return List{
         field("leader_gate", &P::leader_gate,
-              "The safety gate of each of the leader's joints; what the rig file allows a joint holds beside it."),
+              "The safety gate of each of the leader's joints; the limits of the rig file apply as well."),
         field("follower_gate", &P::follower_gate, "The same of the follower's."),
         field("supervision", &P::supervision, "What the sites make of one another and of their own state."),
         field("support", &P::support, "How gravity compensation comes in on arming, and how it is judged."),
@@ -176,13 +176,11 @@ struct ArmTeleoperatorParams {
   ArmRigParams rig;
   static constexpr auto fields() {
     using P = ArmTeleoperatorParams;
-    return List{
-        field("arm", &P::arm, "The leader; and the follower, which is like it unless arm.follower says otherwise."),
-        field("control", &P::control, "The sites of both arms."), field("servo", &P::servo, "The clocks."),
-        field("rig", &P::rig,
-              "With --device and tactus faults alone: what stands between the sites and the motors of a rig. Where a "
-              "key says N, m "
-              "or m/s, N m, rad or rad/s are meant.")};
+    return List{field("arm", &P::arm, "The leader; and the follower, which is like it unless arm.follower differs."),
+                field("control", &P::control, "The sites of both arms."), field("servo", &P::servo, "The clocks."),
+                field("rig", &P::rig,
+                      "With --device and tactus faults only: gates and supervision between the sites and the motors of "
+                      "a rig. If a key has N, m or m/s, N m, rad or rad/s are meant.")};
   }
 };
 

@@ -10,8 +10,8 @@
 namespace tactus::station {
 
 /// What a device can do, and what is never asked of it: `DeviceGuard` keeps it to that, whoever commands. 0: not
-/// stated. Positions and forces as in `tactus/control/site.hpp`: positive toward the environment, translated to the
-/// point where the operator, or the environment, touches it.
+/// stated. Positions and forces as in `tactus/control/site.hpp`: positive toward the environment, translated to
+/// the point where the operator, or the environment, touches it.
 struct DeviceLimits {
   double force_N = 0.0;           ///< largest force of the motor, either way
   double handle_force_N = 0.0;    ///< of a second actuator on the handle; 0 without one

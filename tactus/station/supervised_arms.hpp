@@ -12,7 +12,7 @@
 /// The sites of two arms as they run before motors: gates and supervision of `[rig]` around the controllers.
 namespace tactus::station {
 
-/// How a joint that the arm does not have is driven, as `[rig.gripper]` says.
+/// How a joint that the arm does not have is driven, as `[rig.gripper]` states.
 arm_control::DriveGains beside_the_arm(const ArmTeleoperatorParams& params, bool leads);
 
 /// The gates of a site's joints: those of the file, within what each joint of its device allows.

@@ -14,10 +14,10 @@ struct ServoParams {
   double computation_delay_s = 20e-6;
   static constexpr auto fields() {
     return List{field("rate_Hz", &ServoParams::rate_Hz, units::hertz, between(500.0, 20000.0),
-                      "Ticks per second (paper A: 5000)."),
+                      "Control cycles per second (paper A: 5000)."),
                 field("computation_delay_s", &ServoParams::computation_delay_s, units::second, between(0.0, 0.002),
                       "From a sample to the change of the command that follows from it, rounded to whole plant "
-                      "steps, less than a tick.")};
+                      "steps, less than a control cycle.")};
   }
 };
 

@@ -105,23 +105,23 @@ void* __libc_memalign(std::size_t alignment, std::size_t size);
 void __libc_free(void* memory);
 
 void* malloc(std::size_t size) {
-  tactus::runtime::note_allocation();
+  tactus::real_time::note_allocation();
   return __libc_malloc(size);
 }
 void* calloc(std::size_t number, std::size_t size) {
-  tactus::runtime::note_allocation();
+  tactus::real_time::note_allocation();
   return __libc_calloc(number, size);
 }
 void* realloc(void* memory, std::size_t size) {
-  tactus::runtime::note_allocation();
+  tactus::real_time::note_allocation();
   return __libc_realloc(memory, size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  tactus::runtime::note_allocation();
+  tactus::real_time::note_allocation();
   return __libc_memalign(alignment, size);
 }
 void free(void* memory) {
-  tactus::runtime::note_allocation();
+  tactus::real_time::note_allocation();
   __libc_free(memory);
 }
 }
@@ -136,7 +136,7 @@ Function next(Function, const char* name) {
 #define TACTUS_COUNT_LOCK(name, type)                \
   extern "C" int name(type* object) {                \
     static const auto original = next(&name, #name); \
-    tactus::runtime::note_lock();                    \
+    tactus::real_time::note_lock();                  \
     return original(object);                         \
   }
 TACTUS_COUNT_LOCK(pthread_mutex_lock, pthread_mutex_t)

@@ -4,8 +4,9 @@
 #include <tactus/station/arm_teleoperator_params.hpp>
 #include <tactus/station/described_arms.hpp>
 
-/// A pair of a rig as two arms, each driven by a site that knows all its joints (`tactus/arm_control/arm_sites.hpp`).
-/// `params` and `arms` are those that the sites are made of. Nothing here is real-time safe.
+/// A pair of a rig as two arms, each driven by a site that knows all its joints
+/// (`tactus/arm_control/arm_sites.hpp`). `params` and `arms` are those that the sites are made of. Nothing here
+/// is real-time safe.
 namespace tactus::devices {
 
 /// The pair, or the one side of it that the file has, with its joints in the order of the arm's, from the base on, then

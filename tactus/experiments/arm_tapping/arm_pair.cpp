@@ -222,7 +222,7 @@ Result<ArmPair> ArmPair::make(const ArmPairSetup& setup, const ArmModelParams& m
   if (!leader) return under("arm", leader.error());
   auto follower = ArmPlant::make(follows, setup.follower.start);
   if (!follower) return under(station::differs(params.arm) ? "arm.follower" : "arm", follower.error());
-  auto person = arm_plants::Person::make(params.person, tick, leader->tool());
+  auto person = arm_plants::ToolOperator::make(params.person, tick, leader->tool());
   if (!person) return under("operator", person.error());
   auto sites = bare_arm_sites(setup, model_params);
   if (!sites) return sites.error();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/arm_plants/person.hpp>
+#include <tactus/arm_plants/tool_operator.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/experiments/faults/harm_bounds.hpp>
 #include <tactus/mechanics/environment.hpp>
@@ -140,7 +140,7 @@ struct ArmTappingTask {
 
 struct ArmTappingParams : station::ArmTeleoperatorParams {
   ArmTappingTask task;
-  arm_plants::Person::Params person;
+  arm_plants::ToolOperator::Params person;
   ArmWallParams wall;
   ArmFaultsParams faults;
   static constexpr auto fields() {
@@ -148,7 +148,7 @@ struct ArmTappingParams : station::ArmTeleoperatorParams {
     constexpr auto sites = station::ArmTeleoperatorParams::fields();  // arm, control, servo, rig
     return List{field("task", &P::task, "The taps."),
                 at<0>(sites),
-                field("operator", &P::person, "The person who holds the leader's tool."),
+                field("operator", &P::person, "The operator who holds the leader's tool."),
                 at<1>(sites),
                 field("wall", &P::wall, "What the follower's tool meets."),
                 at<2>(sites),

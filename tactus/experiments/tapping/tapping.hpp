@@ -73,7 +73,7 @@ struct TappingParams : simulation::Teleoperator::Params {
 /// `station::TeleoperatorParams` too, without it.
 station::TeleoperatorParams sites_of(const TappingParams& params);
 
-/// For what runs these sites without supervision, which `who` tells, as "the live page": refuses others.
+/// For what runs these sites without supervision, which `who` names, as "the live page": refuses others.
 Check refuse_supervised(const TappingParams& params, const std::string& who);
 
 enum class Verdict { settled, ringing, limit_cycle, diverged, stopped };
