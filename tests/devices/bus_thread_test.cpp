@@ -64,7 +64,7 @@ class Motors {
 std::unique_ptr<BusThread> bus_at(const Motors& motors, double silence_s = 5.0) {
   damiao::DamiaoBusParams params;
   params.watchdog_s = 1.0;
-  params.timeout_s = 0.05;
+  params.reply_timeout_s = 0.05;
   params.motors = {{.id = 1, .feedback_id = 0x11}, {.id = 2, .feedback_id = 0x12}};
   auto port = wire::Port::serial(motors.path(), 921'600);
   EXPECT_TRUE(port.ok());
