@@ -62,7 +62,8 @@ void add_diagnose(CLI::App& app, const std::string& command, int& status) {
         ->type_name("SIGN")
         ->check(CLI::IsMember({-1.0, 1.0}));
   }
-  verb->add_option("--joint", options->roles.joint, "Joint of a ROS 2 bag; without it, the one that moves most roughly")
+  verb->add_option("--joint", options->roles.joint,
+                   "Joint of a ROS 2 bag or of a rig's log; without it, the one that moves most roughly")
       ->type_name("NAME");
   verb->add_option("--time", options->roles.time, "Column of the times, or two as sec,nanosec")->type_name("NAME");
   verb->add_option("--time-unit", options->roles.time_unit, "Unit of the times, where the file does not state it")
