@@ -17,12 +17,10 @@ using identification::central_difference;
 using identification::inconsistent;
 using identification::zero_phase_low_pass;
 
-constexpr double shortest_periods = 10.0;
 constexpr double fast_factor = 4.0;         ///< of the cutoff: what friction's turning round is seen with
 constexpr double fast_rate_factor = 16.0;   ///< of the cutoff: rate at which that is kept
 constexpr Eigen::Index window_rows = 4096;  ///< of a law of the whole motion, for its memory
 constexpr double window_margin = 3.0;       ///< periods of the cutoff, in which a filter forgets how it began
-constexpr double slowest_rad_per_s = 0.01;  ///< rms below which a joint tells nothing
 constexpr double most_disagreement = 0.5;   ///< of a velocity with the slope of its position
 
 std::string short_number(double value) {
@@ -92,17 +90,17 @@ Error wrong_velocity(const ArmRecording& recording, std::size_t joint, const std
 }  // namespace
 
 Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_Hz, double rows_per_s,
-                                  const std::vector<std::string>& joints) {
+                                  const std::vector<std::string>& joints, JointsThatMove moving) {
   const Seconds dt = recording.sample_time;
   const auto fail = [&](Error error) {
     if (error.place.empty()) error.place = recording.file.string();
     return error;
   };
   const double duration_s = dt.value * static_cast<double>(recording.samples());
-  if (duration_s < shortest_periods / cutoff_Hz || recording.samples() < 50) {
+  if (duration_s < shortest_motion_s(cutoff_Hz) || recording.samples() < 50) {
     return fail(inconsistent("lasts " + short_number(duration_s) + " s with " + std::to_string(recording.samples()) +
                              " samples, too short for motion below " + rounded_number(cutoff_Hz) +
-                             " Hz; record at least " + short_number(shortest_periods / cutoff_Hz) + " s"));
+                             " Hz; record at least " + short_number(shortest_motion_s(cutoff_Hz)) + " s"));
   }
   if (cutoff_Hz * dt.value > 0.2) {
     return fail(inconsistent("cutoff_Hz", "a cutoff of " + rounded_number(cutoff_Hz) + " Hz is too high for " +
@@ -125,7 +123,7 @@ Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_H
     const auto smooth = zero_phase_low_pass(recording.position[j], cutoff_Hz, dt);
     if (!smooth) return fail(smooth.error());
     slopes.push_back(central_difference(*smooth, dt));
-    if (rms(slopes.back()) < slowest_rad_per_s) {
+    if (moving == JointsThatMove::all && rms(slopes.back()) < slowest_rad_per_s) {
       return fail(inconsistent("position", "joint '" + joints[j] + "' (column '" + recording.position_names[j] +
                                                "') hardly moves: " + short_number(rms(slopes.back())) +
                                                " rad/s rms; record motion of all joints"));
@@ -143,7 +141,9 @@ Result<ArmMotion> ArmMotion::make(const ArmRecording& recording, double cutoff_H
     by_velocity.push_back(use_velocity);
   }
   for (std::size_t j = 0; j < recording.joints(); ++j) {
-    if (!measured.empty() && disagreement(measured[j], slopes[j]) > most_disagreement) {
+    // The slope of one that stands is noise.
+    const bool moves = rms(slopes[j]) >= slowest_rad_per_s;
+    if (moves && !measured.empty() && disagreement(measured[j], slopes[j]) > most_disagreement) {
       return fail(wrong_velocity(recording, j, joints[j], measured[j], slopes));
     }
     // The fast cutoff is less than half of the rate, so the filter takes it.

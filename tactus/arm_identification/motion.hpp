@@ -14,6 +14,16 @@ namespace tactus::arm_identification {
 /// Below this frequency arms move and their motors push; what is above is noise and the links' own ringing.
 inline constexpr double default_arm_cutoff_Hz = 10.0;
 
+/// A joint whose speed, as its root mean square, is below this tells nothing about its inertia and its friction
+/// [rad/s].
+inline constexpr double slowest_rad_per_s = 0.01;
+
+/// A recording must last so long, in seconds, for motion below the cutoff.
+constexpr double shortest_motion_s(double cutoff_Hz) { return 10.0 / cutoff_Hz; }
+
+/// Which joints of a recording must move: all, as to identify them, or none, as to apply a model.
+enum class JointsThatMove { all, any };
+
 /// How an arm moved in a recording, thinned out to rows: everything through the same zero-phase low-passes, so that
 /// what a law says of the motion and what was measured of the efforts can be compared.
 ///
@@ -29,10 +39,10 @@ class ArmMotion {
   /// `rows_per_s`: at most as many, and at least 2 of them for each period of the cutoff.
   ///
   /// Errors: those of the filter; `inconsistent` for a recording shorter than ten periods of the cutoff, for a joint
-  /// that hardly moves, and for a velocity that is not the slope of its position, saying which it fits. `joints` names
-  /// joints in errors. Not real-time safe.
+  /// that hardly moves where all must, and for a velocity of a joint that moves that is not the slope of its position,
+  /// saying which it fits. `joints` names joints in errors. Not real-time safe.
   static Result<ArmMotion> make(const ArmRecording& recording, double cutoff_Hz, double rows_per_s,
-                                const std::vector<std::string>& joints);
+                                const std::vector<std::string>& joints, JointsThatMove moving = JointsThatMove::all);
 
   [[nodiscard]] Eigen::Index rows() const { return effort.rows(); }
   [[nodiscard]] int joints() const { return static_cast<int>(effort.cols()); }

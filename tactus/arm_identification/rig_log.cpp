@@ -76,15 +76,22 @@ std::vector<Interval> common(const std::vector<Interval>& one, const std::vector
 /// what it tells is its least; what moved the arm is the mean, which is more by half of that. (Untold, 144 N m/rad
 /// and 3 ms hide 0.23 N m s/rad of viscous friction.)
 Result<ToldJoint> told_in(const LogTable& table, const std::string& file) {
-  std::array<const std::vector<double>*, 5> found{};
-  constexpr std::array names{"position_m", "position_age_s", "drive_velocity_m_per_s", "drive_force_N",
-                             "drive_stiffness_N_per_m"};
+  struct Names {
+    const char *slides, *turns;
+  };
+  // Logs of earlier versions call the signals of every joint as if it slid.
+  constexpr std::array names{Names{"position_m", "position_rad"}, Names{"position_age_s", "position_age_s"},
+                             Names{"drive_velocity_m_per_s", "drive_velocity_rad_per_s"},
+                             Names{"drive_force_N", "drive_torque_N_m"},
+                             Names{"drive_stiffness_N_per_m", "drive_stiffness_N_m_per_rad"}};
+  std::array<const std::vector<double>*, names.size()> found{};
   for (std::size_t i = 0; i < names.size(); ++i) {
-    found[i] = column(table, names[i]);
+    found[i] = column(table, names[i].turns);
+    if (found[i] == nullptr) found[i] = column(table, names[i].slides);
     if (found[i] != nullptr) continue;
     return wrong(
         ErrorCode::missing,
-        "topic " + table.topic + " has no " + names[i] +
+        "topic " + table.topic + " has no " + names[i].turns +
             ": the log is not of a rig's joints, or of an earlier version, which did not leave it; record it again",
         file);
   }

@@ -63,7 +63,7 @@ void add_diagnose(CLI::App& app, const std::string& command, int& status) {
         ->check(CLI::IsMember({-1.0, 1.0}));
   }
   verb->add_option("--joint", options->roles.joint,
-                   "Joint of a ROS 2 bag; by default the joint with the roughest motion")
+                   "Joint of a ROS 2 bag or of a rig's log; by default the joint with the roughest motion")
       ->type_name("NAME");
   verb->add_option("--time", options->roles.time, "Time column, or two as sec,nanosec")->type_name("NAME");
   verb->add_option("--time-unit", options->roles.time_unit, "Unit of the times, if the file does not state it")

@@ -290,17 +290,19 @@ report::Figure seconds_figure(const RigRun& run, const RigPair& pair) {
 }  // namespace
 
 experiments::Outcome rig_outcome(const RigRun& run, const RigPair& pair, const experiments::Request& request,
-                                 std::string_view configuration) {
+                                 std::string_view configuration, const std::optional<report::Figure>& joints) {
   const std::string summary = summary_of(run, pair);
-  const std::vector<report::Figure> figures{seconds_figure(run, pair), runtime::timing_figure(run.servo)};
+  std::vector<report::Figure> figures{seconds_figure(run, pair), runtime::timing_figure(run.servo)};
   report::Page page(request.name + ": " + pair.name +
                     (!run.only                                ? ", leader and follower"
                      : *run.only == control::SiteRole::master ? ", leader"
                                                               : ", follower"));
   page.paragraph(summary);
   page.figure(figures[0]);
+  if (joints) page.figure(*joints);
   runtime::add_timing(page, run.servo, figures[1]);
   experiments::add_provenance(page, request, configuration);
+  if (joints) figures.push_back(*joints);
   std::string text = summary + "\n";
   if (run.log_dropped) text += std::to_string(*run.log_dropped) + " records of the log dropped.\n";
   return {.text = std::move(text),

@@ -3,6 +3,7 @@
 #include <tactus/devices/rig/rig.hpp>
 #include <tactus/devices/rig/rig_loop.hpp>
 #include <tactus/experiments/experiment.hpp>
+#include <tactus/report/figure.hpp>
 #include <tactus/runtime/servo_thread.hpp>
 
 #include <cstdint>
@@ -33,8 +34,9 @@ std::string line_of(const devices::RigSecond& second, const devices::RigPair& pa
 /// How a run ended in a fault: the site, the cause and the joint. Empty where it did not.
 std::string fault_of(const RigRun& run, const devices::RigPair& pair);
 
-/// The run for every reader, a fault at its end first. `configuration` is TOML.
+/// The run for every reader, a fault at its end first. `configuration` is TOML; `joints` is a figure of what the joints
+/// did, where there is a log.
 experiments::Outcome rig_outcome(const RigRun& run, const devices::RigPair& pair, const experiments::Request& request,
-                                 std::string_view configuration);
+                                 std::string_view configuration, const std::optional<report::Figure>& joints);
 
 }  // namespace tactus::cli

@@ -4,6 +4,7 @@
 #include <tactus/cli/operator_input.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/rig_drive.hpp>
+#include <tactus/cli/rig_figures.hpp>
 #include <tactus/cli/rig_guard.hpp>
 #include <tactus/cli/rig_report.hpp>
 #include <tactus/cli/rig_run.hpp>
@@ -184,7 +185,8 @@ struct RigSurroundings {
   Observers& observers;
   LineWriter& output;
   LineWriter& errors;
-  const std::vector<std::string>& names;  ///< of the joints
+  const std::vector<std::string>& names;               ///< of the joints
+  const std::vector<runtime::StreamedJoint>& for_log;  ///< the same
   std::span<std::optional<Driven>> driven;
 };
 
@@ -198,7 +200,7 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
   const RigPair& pair = around.drive.pair;
   const std::vector<std::string>& names = around.names;
   LineWriter& lines = folder.json() ? around.errors : around.output;
-  runtime::JointStreams streams(names.size(), around.only);
+  runtime::JointStreams streams(around.for_log, around.only);
   if (folder.wanted() || around.observers.any()) loop.leave_in(streams);
   std::optional<runtime::SiteLog> log;
   if (folder.wanted()) {
@@ -255,7 +257,8 @@ Check run_rig_loop(Loop loop, const RigSurroundings& around) {
     log_error = log->close();
     run.log_dropped = log->dropped();
   }
-  Check unwritten = leave_outcome(rig_outcome(run, pair, around.request, around.drive.configuration), folder,
+  const auto joints = log ? joints_figure(folder.log_folder(), pair) : std::nullopt;
+  Check unwritten = leave_outcome(rig_outcome(run, pair, around.request, around.drive.configuration, joints), folder,
                                   std::move(log_error), log ? log->removed() : 0, around.output, around.errors);
   const std::string fault = fault_of(run, pair);
   return fault.empty() ? unwritten : ended_in_a_fault(fault, std::move(unwritten), around.errors);
@@ -291,7 +294,11 @@ Check run_rig(const SupervisedOptions& options, const ObserverOptions& observer_
     if (!only || *only == driving(leads)) sides.push_back(&side_of(pair, driving(leads)));
   }
   std::vector<std::string> names;
-  for (const devices::RigJoint& joint : sides.front()->joints) names.emplace_back(joint.name());
+  std::vector<runtime::StreamedJoint> for_log;
+  for (const devices::RigJoint& joint : sides.front()->joints) {
+    names.emplace_back(joint.name());
+    for_log.push_back({.name = names.back(), .turns = !joint.slides});
+  }
 
   runtime::SiteExchange exchange;
   const auto interruption = Interruption::start(exchange.end, Interrupted::site);
@@ -332,6 +339,7 @@ Check run_rig(const SupervisedOptions& options, const ObserverOptions& observer_
                                .output = output,
                                .errors = errors,
                                .names = names,
+                               .for_log = for_log,
                                .driven = driven};
   Check wrong;
   if (only) {

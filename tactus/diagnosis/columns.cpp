@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstddef>
 
 namespace tactus::diagnosis {
 
@@ -77,6 +78,29 @@ std::string the_one_like(const std::vector<Words>& groups, const Words& unlike, 
 }
 
 }  // namespace
+
+std::string_view words_of(Role role) {
+  constexpr std::array<std::string_view, role_count> words{"master position", "slave position", "displayed force",
+                                                           "tip force",       "hand force",     "slave force"};
+  return words[index_of(role)];
+}
+
+std::string option_of(Role role) {
+  std::string option = "--" + std::string(words_of(role));
+  std::replace(option.begin(), option.end(), ' ', '-');
+  return option;
+}
+
+double step_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  if (values.size() < 2) return 0.0;
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
+  const auto small = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 10);
+  std::nth_element(steps.begin(), small, steps.end());
+  return *small;
+}
 
 std::string lower(std::string_view text) {
   std::string result(text);

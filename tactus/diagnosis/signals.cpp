@@ -1,6 +1,7 @@
 #include <tactus/core/parameters.hpp>
 #include <tactus/diagnosis/bag_signals.hpp>
 #include <tactus/diagnosis/columns.hpp>
+#include <tactus/diagnosis/rig_signals.hpp>
 #include <tactus/diagnosis/signals.hpp>
 #include <tactus/identification/axis_recording.hpp>
 #include <tactus/identification/axis_units.hpp>
@@ -227,7 +228,47 @@ Result<Found> read_bag(const SignalRoles& roles) {
   return found;
 }
 
+/// Times of messages as steps: their mean, and how far they lie from it where the steps are not equal, in which case
+/// the channels are resampled. Errors: times that do not rise.
+Check take_times(Found& found, const std::vector<double>& times_s, const std::string& file, const std::string& topic) {
+  if (times_s.size() < 2) return std::nullopt;
+  auto sample_time_s = recording::uniform_sample_time(
+      times_s, [&](std::size_t row) { return file + ", message " + std::to_string(row + 1) + " of " + topic; });
+  if (!sample_time_s) {
+    found.jitter_s = recording::jitter_of(times_s);
+    if (!found.jitter_s) return sample_time_s.error();
+    sample_time_s = (times_s.back() - times_s.front()) / static_cast<double>(times_s.size() - 1);
+    for (auto& channel : found.signals.channels) {
+      if (channel) channel->values = recording::at_equal_steps(times_s, channel->values);
+    }
+  }
+  found.sample_time_s = *sample_time_s;
+  return std::nullopt;
+}
+
+/// The log of a rig of several joints; none where it is another log.
+Result<std::optional<Found>> read_rig(const SignalRoles& roles) {
+  auto rig = read_rig_channels(roles);
+  if (!rig) return rig.error();
+  if (!*rig) return std::optional<Found>();
+  Found found;
+  for (RigChannel& channel : (*rig)->channels) {
+    if (auto error = take(found, roles, channel.role, channel.name, channel.unit, std::move(channel.values))) {
+      return *std::move(error);
+    }
+  }
+  if (auto error = take_times(found, (*rig)->time_s, roles.file.string(), "its sites")) return *std::move(error);
+  found.signals.notes = std::move((*rig)->notes);
+  return std::optional(std::move(found));
+}
+
 Result<Found> read_log(const SignalRoles& wanted) {
+  const bool names_a_column = std::ranges::any_of(wanted.names, [](const std::string& name) { return !name.empty(); });
+  if (!names_a_column) {
+    auto rig = read_rig(wanted);
+    if (rig && *rig) return **std::move(rig);
+    if (!rig && rig.error().code != ErrorCode::wrong_type) return rig.error();
+  }
   const auto content = telemetry::read_log(wanted.file);
   if (!content) {
     Error error = content.error();
@@ -284,20 +325,7 @@ Result<Found> read_log(const SignalRoles& wanted) {
     times_s.push_back(own != entries.end() ? best->values[static_cast<std::size_t>(own - entries.begin())][i]
                                            : 1e-9 * static_cast<double>(best->times_ns[i] - best->times_ns[0]));
   }
-  if (times_s.size() > 1) {
-    auto sample_time_s = recording::uniform_sample_time(times_s, [&](std::size_t row) {
-      return wanted.file.string() + ", message " + std::to_string(row + 1) + " of " + best->topic;
-    });
-    if (!sample_time_s) {
-      found.jitter_s = recording::jitter_of(times_s);
-      if (!found.jitter_s) return sample_time_s.error();
-      sample_time_s = (times_s.back() - times_s.front()) / static_cast<double>(times_s.size() - 1);
-      for (auto& channel : found.signals.channels) {
-        if (channel) channel->values = recording::at_equal_steps(times_s, channel->values);
-      }
-    }
-    found.sample_time_s = *sample_time_s;
-  }
+  if (auto error = take_times(found, times_s, wanted.file.string(), best->topic)) return *std::move(error);
   return found;
 }
 
@@ -322,29 +350,6 @@ Check doubt_sign(const SignalRoles& roles, const Signals& signals) {
 }
 
 }  // namespace
-
-std::string_view words_of(Role role) {
-  constexpr std::array<std::string_view, role_count> words{"master position", "slave position", "displayed force",
-                                                           "tip force",       "hand force",     "slave force"};
-  return words[index_of(role)];
-}
-
-std::string option_of(Role role) {
-  std::string option = "--" + std::string(words_of(role));
-  std::replace(option.begin(), option.end(), ' ', '-');
-  return option;
-}
-
-double step_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-  if (values.size() < 2) return 0.0;
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < values.size(); ++i) steps.push_back(values[i] - values[i - 1]);
-  const auto small = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 10);
-  std::nth_element(steps.begin(), small, steps.end());
-  return *small;
-}
 
 Result<Signals> read_signals(const SignalRoles& roles) {
   constexpr std::size_t fewest_samples = 200;

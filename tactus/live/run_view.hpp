@@ -24,7 +24,7 @@ class RunView final : public Application {
   template <Recordable Record, std::size_t Capacity>
   void add(const std::string& topic, const std::string& type_name,
            const telemetry::RecordStream<Record, Capacity>& stream) {
-    topics_.push_back({topic, type_name, telemetry::ros2msg(telemetry::columns_of<Record>())});
+    topics_.push_back({topic, type_name, telemetry::ros2msg(stream.columns())});
     sources_.push_back(std::make_unique<SourceOf<Record, Capacity>>(stream));
   }
   /// Records that were overwritten before they could be shown. Any thread.

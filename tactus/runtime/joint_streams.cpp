@@ -1,29 +1,53 @@
 #include <tactus/runtime/joint_streams.hpp>
-#include <tactus/runtime/servo_thread.hpp>
+
+#include <map>
+#include <string>
+#include <utility>
 
 namespace tactus::runtime {
 
-JointStreams::JointStreams(std::size_t joints, std::optional<control::SiteRole> only)
-    : joints_(joints), servo_(std::make_shared<telemetry::RecordStream<ServoRecord>>()), origin_ns_(monotonic_ns()) {
+namespace {
+
+/// A stream of a joint's records, in its units and with its name.
+template <Recordable Record>
+std::shared_ptr<telemetry::RecordStream<Record>> stream_of(const StreamedJoint& joint) {
+  std::vector<telemetry::Column> columns = telemetry::columns_of<Record>();
+  if (joint.turns) {
+    for (telemetry::Column& column : columns) column = telemetry::of_turning_joint(std::move(column));
+  }
+  std::map<std::string, std::string> about;
+  if (!joint.name.empty()) about["joint"] = joint.name;
+  return std::make_shared<telemetry::RecordStream<Record>>(std::move(columns), std::move(about));
+}
+
+}  // namespace
+
+JointStreams::JointStreams(const std::vector<StreamedJoint>& joints, std::optional<control::SiteRole> only)
+    : joints_(joints),
+      servo_(std::make_shared<telemetry::RecordStream<ServoRecord>>()),
+      marks_(std::make_shared<telemetry::RecordStream<EpisodeMarkRecord>>()),
+      start_(LogStart::now()) {
   for (const auto& [role, name] : enumerators(control::SiteRole{})) {
     if (only && *only != role) continue;
     OfSite& site = sites_[static_cast<std::size_t>(role)];
     site.ticks = std::make_shared<Site>();
-    for (std::size_t joint = 0; joint < joints; ++joint) {
-      site.joints.push_back(std::make_shared<Joint>());
-    }
+    for (const StreamedJoint& joint : joints_) site.joints.push_back(stream_of<JointLogRecord>(joint));
   }
   if (!only) return;
   packets_ = std::make_shared<telemetry::RecordStream<PacketHeadRecord>>();
-  for (std::size_t joint = 0; joint < joints; ++joint) {
-    joint_packets_.push_back(std::make_shared<telemetry::RecordStream<PacketJointRecord>>());
-  }
+  for (const StreamedJoint& joint : joints_) joint_packets_.push_back(stream_of<PacketJointRecord>(joint));
+}
+
+void JointStreams::push(const station::Tick& tick, std::optional<EpisodeMark> mark) noexcept {
+  if (!mark) return;
+  marks_->push(static_cast<std::uint64_t>(tick.deadline_ns - origin_ns()),
+               {.tick = tick.number, .mark = static_cast<std::int64_t>(*mark)});
 }
 
 void JointStreams::push(const station::Tick& tick, const control::JointPacket& packet) noexcept {
-  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns_);
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns());
   packets_->push(due_ns, recorded(tick, packet));
-  for (std::size_t joint = 0; joint < joints_; ++joint) {
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
     joint_packets_[joint]->push(due_ns, {packet.message[joint], tick.number});
   }
 }
@@ -40,7 +64,7 @@ void JointStreams::OfSite::push(std::uint64_t due_ns, const station::Tick& tick,
 void JointStreams::push(const station::Tick& tick, const control::SiteRequests& pressed,
                         const station::JointLocalTeleoperator& sites,
                         const station::JointLocalTeleoperator::Output& done) noexcept {
-  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns_);
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns());
   const auto& [master, slave] = sites_;
   const auto push_of = [&](const OfSite& to, const auto& site, const auto& step) noexcept {
     to.push(due_ns, tick, recorded(tick, pressed, site, step), site, step);
@@ -53,11 +77,11 @@ void JointStreams::push(const station::Tick& tick, const control::SiteRequests& 
 void JointStreams::push(const station::Tick& tick, const station::JointBarePair& sites,
                         const station::JointBarePair::Output& done,
                         const Joints<control::Message>& master_heard) noexcept {
-  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns_);
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns());
   const auto& [master, slave] = sites_;
   master.ticks->push(due_ns, recorded_bare(tick, sites.master(), done.master));
   slave.ticks->push(due_ns, recorded_bare(tick, sites.slave(), done.slave));
-  for (std::size_t joint = 0; joint < joints_; ++joint) {
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
     master.joints[joint]->push(due_ns, recorded_bare(tick, joint, sites.master(), done.master, master_heard[joint]));
     slave.joints[joint]->push(due_ns,
                               recorded_bare(tick, joint, sites.slave(), done.slave, done.master.output[joint].message));
@@ -69,7 +93,7 @@ template <class Supervised>
 void JointStreams::push(const station::Tick& tick, const control::SiteRequests& pressed, const Supervised& site,
                         const station::Step<Supervised>& done, const link::LinkCondition& condition,
                         std::int64_t arrivals) noexcept {
-  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns_);
+  const auto due_ns = static_cast<std::uint64_t>(tick.deadline_ns - origin_ns());
   SiteTickRecord record = recorded(tick, pressed, site, done);
   record.arrivals = arrivals;
   record.round_trip_s = condition.round_trip_s;

@@ -42,10 +42,17 @@ inline Error refuse_replay(ErrorCode code, std::string message) {
 /// That the table has the signals of the record, and no record is missing.
 template <Recordable Record>
 Check check_table(const telemetry::LogTable& table) {
-  const auto expected = telemetry::columns_of<Record>();
+  auto expected = telemetry::columns_of<Record>();
+  const auto has = [&table](const telemetry::Column& column) {
+    return std::ranges::find(table.columns, column.name, &telemetry::Column::name) != table.columns.end();
+  };
+  // The log of a joint that turns calls its signals by their units.
+  auto turning = expected;
+  for (telemetry::Column& column : turning) column = telemetry::of_turning_joint(std::move(column));
+  if (!std::ranges::all_of(expected, has) && std::ranges::all_of(turning, has)) expected = std::move(turning);
   std::string lacking;
   for (const telemetry::Column& column : expected) {
-    if (std::ranges::find(table.columns, column.name, &telemetry::Column::name) != table.columns.end()) continue;
+    if (has(column)) continue;
     lacking += (lacking.empty() ? "" : ", ") + column.name;
   }
   if (!lacking.empty()) {
@@ -85,7 +92,9 @@ template <Recordable Record>
 std::optional<ReplayDifference> compare(const telemetry::LogTable& table, std::int64_t tap, const Record& recorded,
                                         const Record& replayed) {
   std::optional<ReplayDifference> found;
+  std::size_t column = 0;
   for_each_signal<Record>([&](const auto& signal) {
+    const std::size_t own = column++;
     const auto left = recorded.*signal.member, right = replayed.*signal.member;
     bool same = false;
     if constexpr (std::is_same_v<decltype(left), const double>) {
@@ -98,7 +107,7 @@ std::optional<ReplayDifference> compare(const telemetry::LogTable& table, std::i
                              .joint = {},
                              .tap = tap,
                              .tick = recorded.tick,
-                             .signal = signal.name,
+                             .signal = table.columns[own].name,
                              .recorded = static_cast<double>(left),
                              .replayed = static_cast<double>(right)};
   });

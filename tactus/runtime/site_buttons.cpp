@@ -50,6 +50,10 @@ void SiteButtons::take(SiteWord word) noexcept {
       next_.emergency_stop = false;
       next_.clear = true;
       break;
+    case SiteWord::start:
+    case SiteWord::keep:
+    case SiteWord::discard:
+      break;
   }
 }
 

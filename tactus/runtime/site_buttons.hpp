@@ -4,6 +4,7 @@
 #include <tactus/core/result.hpp>
 
 #include <array>
+#include <optional>
 #include <string_view>
 
 namespace tactus::runtime {
@@ -17,12 +18,37 @@ enum class SiteWord {
   unclutch,  ///< from now on the slave follows again
   stop,      ///< emergency stop of this site: no force, until `clear`
   clear,     ///< leaves a fault
+  start,     ///< starts an episode of the log here
+  keep,      ///< ends the episode that runs
+  discard,   ///< ends it, or takes the last one, and discards it
 };
 constexpr auto enumerators(SiteWord) {
   return std::array{Enumerator{SiteWord::arm, "arm"},           Enumerator{SiteWord::press, "press"},
                     Enumerator{SiteWord::release, "release"},   Enumerator{SiteWord::clutch, "clutch"},
                     Enumerator{SiteWord::unclutch, "unclutch"}, Enumerator{SiteWord::stop, "stop"},
-                    Enumerator{SiteWord::clear, "clear"}};
+                    Enumerator{SiteWord::clear, "clear"},       Enumerator{SiteWord::start, "start"},
+                    Enumerator{SiteWord::keep, "keep"},         Enumerator{SiteWord::discard, "discard"}};
+}
+
+/// What an operator marks in the log.
+enum class EpisodeMark { start, keep, discard };
+constexpr auto enumerators(EpisodeMark) {
+  return std::array{Enumerator{EpisodeMark::start, "start"}, Enumerator{EpisodeMark::keep, "keep"},
+                    Enumerator{EpisodeMark::discard, "discard"}};
+}
+
+/// The mark that a word makes; none for a word that presses a button.
+constexpr std::optional<EpisodeMark> mark_of(SiteWord word) noexcept {
+  switch (word) {
+    case SiteWord::start:
+      return EpisodeMark::start;
+    case SiteWord::keep:
+      return EpisodeMark::keep;
+    case SiteWord::discard:
+      return EpisodeMark::discard;
+    default:
+      return std::nullopt;
+  }
 }
 
 /// A line that was typed, spaces around it left out. At the slave only `stop` and `clear` have a meaning: all else is
@@ -36,7 +62,7 @@ class SiteButtons {
  public:
   /// Whether a word can be taken: a button that was pushed is let go for a tick first.
   [[nodiscard]] bool ready() const noexcept { return !pushed_; }
-  /// For the next `step`.
+  /// For the next `step`. A word that marks an episode presses nothing.
   void take(SiteWord word) noexcept;
   /// Nobody is there any more: the dead-man switch stays let go, whatever is taken.
   void lose_person() noexcept { lost_ = true; }

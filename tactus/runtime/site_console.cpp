@@ -20,12 +20,14 @@ control::SiteRequests SiteConsole::step(const station::Tick& tick, control::Site
   if (exchange_->end.asked()) leaving_ = true;
   if (exchange_->person_lost.load(std::memory_order_relaxed)) buttons_.lose_person();
   if (heard) heard_s_ += settings_.tick_s;
+  mark_.reset();
   if (buttons_.ready()) {
     SiteWord word{};
     if (settings_.arm_at_once && heard_s_ > settings_.listen_before_arming_s) {
       settings_.arm_at_once = false;
       buttons_.take(SiteWord::arm);
     } else if (exchange_->words.try_pop(word)) {
+      mark_ = mark_of(word);
       buttons_.take(word);
     }
   }

@@ -4,6 +4,7 @@
 #include <tactus/station/tick.hpp>
 
 #include <cstdint>
+#include <optional>
 
 namespace tactus::runtime {
 
@@ -26,6 +27,8 @@ class SiteConsole {
   /// What is pressed at this tick. `state` is that of the site at which the person is, after the tick before; `heard`
   /// whether the other one was heard by then.
   control::SiteRequests step(const station::Tick& tick, control::SiteState state, bool heard) noexcept;
+  /// What the operator marked at this tick, after `step`.
+  [[nodiscard]] std::optional<EpisodeMark> mark() const noexcept { return mark_; }
   /// Whether a second is over with this tick. Once, after `step`.
   bool ends_second() noexcept;
   /// Whether it is all over: sites that are about to end do not work any more, and give no force or took too long to
@@ -42,6 +45,7 @@ class SiteConsole {
   Settings settings_;
   SiteExchange* exchange_;
   SiteButtons buttons_;
+  std::optional<EpisodeMark> mark_;
   bool begun_ = false;
   std::int64_t start_ns_ = 0;
   std::int64_t now_ns_ = 0;

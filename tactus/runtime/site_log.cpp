@@ -7,19 +7,25 @@
 namespace tactus::runtime {
 
 SiteStreams SiteStreams::of_one(control::SiteRole role) {
+  const LogStart start = LogStart::now();
   SiteStreams streams{.site = {},
                       .packets = std::make_shared<Packets>(),
                       .servo = std::make_shared<Servo>(),
-                      .origin_ns = monotonic_ns()};
+                      .marks = std::make_shared<EpisodeMarks>(),
+                      .origin_ns = start.monotonic_ns,
+                      .start_unix_ns = start.unix_ns};
   streams.site[static_cast<std::size_t>(role)] = std::make_shared<Site>();
   return streams;
 }
 
 SiteStreams SiteStreams::of_both() {
+  const LogStart start = LogStart::now();
   return {.site = {std::make_shared<Site>(), std::make_shared<Site>()},
           .packets = nullptr,
           .servo = std::make_shared<Servo>(),
-          .origin_ns = monotonic_ns()};
+          .marks = std::make_shared<EpisodeMarks>(),
+          .origin_ns = start.monotonic_ns,
+          .start_unix_ns = start.unix_ns};
 }
 
 Result<SiteLog> SiteLog::open(const std::filesystem::path& folder, const LogMetadata& about, std::uint64_t most_bytes) {

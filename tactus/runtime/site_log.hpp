@@ -2,8 +2,10 @@
 
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/core/result.hpp>
+#include <tactus/runtime/log_start.hpp>
 #include <tactus/runtime/servo_record.hpp>
 #include <tactus/runtime/site_record.hpp>
+#include <tactus/telemetry/episodes.hpp>
 #include <tactus/telemetry/recorder.hpp>
 
 #include <array>
@@ -11,6 +13,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace tactus::runtime {
@@ -21,10 +24,13 @@ struct SiteStreams {
   using Site = telemetry::RecordStream<SiteLogRecord>;
   using Packets = telemetry::RecordStream<PacketRecord>;
   using Servo = telemetry::RecordStream<ServoRecord>;
+  using EpisodeMarks = telemetry::RecordStream<EpisodeMarkRecord>;
   std::array<std::shared_ptr<Site>, 2> site;  ///< by role
   std::shared_ptr<Packets> packets;           ///< of a site that is alone: what came over the link
   std::shared_ptr<Servo> servo;
-  std::int64_t origin_ns = 0;  ///< of the times, on CLOCK_MONOTONIC
+  std::shared_ptr<EpisodeMarks> marks;
+  std::int64_t origin_ns = 0;      ///< of the times, on CLOCK_MONOTONIC
+  std::int64_t start_unix_ns = 0;  ///< the same instant by the wall clock; 0: not stated
 
   /// Of one site; of both. Times count from now.
   static SiteStreams of_one(control::SiteRole role);
@@ -34,6 +40,13 @@ struct SiteStreams {
   /// A time of the servo's clock as the records carry it. Real-time safe.
   [[nodiscard]] std::uint64_t time_ns(std::int64_t monotonic_ns) const noexcept {
     return static_cast<std::uint64_t>(monotonic_ns - origin_ns);
+  }
+  [[nodiscard]] LogStart log_start() const noexcept { return {.monotonic_ns = origin_ns, .unix_ns = start_unix_ns}; }
+  /// What the operator marked at this tick, if anything. Real-time safe.
+  void push(const station::Tick& tick, std::optional<EpisodeMark> mark) const noexcept {
+    if (marks && mark) {
+      marks->push(time_ns(tick.deadline_ns), {.tick = tick.number, .mark = static_cast<std::int64_t>(*mark)});
+    }
   }
   /// Calls `visit(topic, type_name, stream)` for each stream there is.
   template <class Visit>
@@ -46,6 +59,7 @@ struct SiteStreams {
     }
     if (packets) visit(std::string("/packets"), "tactus_msgs/msg/PacketRecord", *packets);
     if (servo) visit(std::string("/servo"), "tactus_msgs/msg/ServoRecord", *servo);
+    if (marks) visit(std::string(telemetry::episodes_topic), "tactus_msgs/msg/EpisodeMarkRecord", *marks);
   }
 };
 
@@ -56,12 +70,14 @@ using LogMetadata = std::map<std::string, std::map<std::string, std::string>>;
 class SiteLog {
  public:
   /// Opens `folder/log.mcap`, which takes all that goes into the streams from now on; the folder is made. `about` says
-  /// what ran. `most_bytes` and errors as in `LogWriter::create`.
+  /// what ran; the log also states when its times start, by the wall clock. `most_bytes` and errors as in
+  /// `LogWriter::create`.
   template <class Streams>
   static Result<SiteLog> create(const std::filesystem::path& folder, const Streams& streams, const LogMetadata& about,
                                 std::uint64_t most_bytes = 0) {
     auto log = open(folder, about, most_bytes);
     if (!log) return log.error();
+    if (streams.log_start().unix_ns > 0) log->recorder_.start_at(streams.log_start().unix_ns);
     streams.for_each([&log](const std::string& topic, const char* type_name, const auto& stream) {
       log->recorder_.add(topic, type_name, stream);
     });

@@ -2,6 +2,7 @@
 
 #include <tactus/control/supervised_site.hpp>
 #include <tactus/core/signals.hpp>
+#include <tactus/runtime/site_buttons.hpp>
 #include <tactus/station/step.hpp>
 
 #include <cstddef>
@@ -129,6 +130,19 @@ struct JointLogRecord : AxisRecord, Part<control::Message, "received_">, Part<co
              observed("law_velocity_m_per_s", &R::law_velocity_m_per_s, units::metre_per_second, "", "",
                       "toward the environment", "Commanded: the same.")},
         AxisRecord::signals(), Received::signals(), Sent::signals());
+  }
+};
+
+inline constexpr control::Legend mark_legend = control::legend<EpisodeMark>("By the operator: ");
+
+/// What the operator marked, on the topic `/episodes`.
+struct EpisodeMarkRecord {
+  std::int64_t tick = 0;
+  std::int64_t mark = 0;
+  static constexpr auto signals() {
+    using R = EpisodeMarkRecord;
+    return List{observed("tick", &R::tick, units::none, "", "", "", "Number of the deadline, missed ones counted."),
+                observed("mark", &R::mark, units::none, "", "", "", mark_legend.text)};
   }
 };
 

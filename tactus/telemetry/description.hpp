@@ -43,6 +43,25 @@ std::map<std::string, std::string> column_metadata(const std::vector<Column>& co
 /// `bool` members, or more than 4096 of them.
 Result<std::vector<Column>> columns_of(std::string_view definition, const std::map<std::string, std::string>& metadata);
 
+/// The same signal of a joint that turns: what is in m, m/s, N, N/m or N s/m is in rad, rad/s, N m, N m/rad or
+/// N m s/rad, and its name ends so; a force is called a torque (`drive_force_N` is `drive_torque_N_m`). Other columns
+/// stay.
+Column of_turning_joint(Column column);
+
+/// The name without the end that states its unit: `displayed_force` of `displayed_force_N`. All of it where it has
+/// none.
+std::string name_without_unit(const Column& column);
+
+/// What the values of a column of codes mean (`0 configure, 1 align`), from its meaning: words of the codes, the first
+/// of `first` and each of the next. Empty for a column of anything else.
+struct CodeWords {
+  std::int64_t first = 0;
+  std::vector<std::string> words = {};
+  /// The word of a value; empty where there is none.
+  [[nodiscard]] std::string_view of(double value) const;
+};
+CodeWords code_words(const Column& column);
+
 /// The columns of a record type.
 template <Recordable Record>
 std::vector<Column> columns_of() {

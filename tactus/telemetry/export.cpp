@@ -53,22 +53,58 @@ std::string Identifiers::unique(std::string_view name) {
   return given;
 }
 
-ExportColumns::ExportColumns(const LogTable& table) : columns(table.columns) {
-  const bool has_time =
-      std::any_of(columns.begin(), columns.end(), [](const Column& column) { return column.name == "time_s"; });
-  values.reserve(columns.size() + 1);
-  if (!has_time) {
-    seconds_.reserve(table.times_ns.size());
-    for (const std::uint64_t time_ns : table.times_ns) seconds_.push_back(1e-9 * static_cast<double>(time_ns));
-    columns.insert(columns.begin(), {.name = "time_s", .unit = "s", .doc = "When it was logged."});
-    values.emplace_back(seconds_);
+double wall_seconds(std::uint64_t start_unix_ns, std::uint64_t time_ns) {
+  constexpr std::uint64_t per_s = 1'000'000'000;
+  const std::uint64_t all_ns = start_unix_ns + time_ns;
+  return static_cast<double>(all_ns / per_s) + 1e-9 * static_cast<double>(all_ns % per_s);
+}
+
+ExportColumns::ExportColumns(const LogTable& table, std::optional<std::uint64_t> start_unix_ns) {
+  const bool has_time = std::any_of(table.columns.begin(), table.columns.end(),
+                                    [](const Column& column) { return column.name == "time_s"; });
+  if (!has_time) seconds_.reserve(table.times_ns.size());
+  if (start_unix_ns) wall_seconds_.reserve(table.times_ns.size());
+  for (const std::uint64_t time_ns : table.times_ns) {
+    if (!has_time) seconds_.push_back(1e-9 * static_cast<double>(time_ns));
+    if (start_unix_ns) wall_seconds_.push_back(wall_seconds(*start_unix_ns, time_ns));
   }
-  for (const std::vector<double>& column : table.values) values.emplace_back(column);
-  Identifiers names("signal_", {"units", "condition"});  // members of their own in a MATLAB file
+  values.reserve(table.columns.size() + 2);
+  const auto add = [this](const Column& column, const std::vector<double>& numbers) {
+    columns.push_back(column);
+    values.emplace_back(numbers);
+  };
+  const auto add_wall_time = [&] {
+    if (start_unix_ns) add({.name = "wall_time_s", .unit = "s", .doc = "The same in Unix time."}, wall_seconds_);
+  };
+  if (!has_time) {
+    add({.name = "time_s", .unit = "s", .doc = "When it was logged."}, seconds_);
+    add_wall_time();
+  }
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    add(table.columns[i], table.values[i]);
+    if (table.columns[i].name == "time_s") add_wall_time();
+  }
+  for (const Column& column : columns) codes.push_back(code_words(column));
+  Identifiers names("signal_", {"units", "codes", "condition", "channel"});  // members of their own in a MATLAB file
   for (Column& column : columns) {
     column.name = names.unique(column.name);
     for (std::string* text : {&column.unit, &column.site, &column.frame, &column.sign}) *text = one_line(*text);
   }
+}
+
+std::string text_of(const CodeWords& codes) {
+  std::string text;
+  for (std::size_t i = 0; i < codes.words.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(codes.first + static_cast<std::int64_t>(i)) + " " + codes.words[i];
+  }
+  return one_line(text);
+}
+
+std::vector<std::pair<std::string, std::string>> about_channel(const LogTable& table) {
+  Identifiers keys("key_");
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (const auto& [key, text] : table.about) texts.emplace_back(keys.unique(key), one_line(text));
+  return texts;
 }
 
 std::vector<std::string> names_of(const std::vector<LogTable>& tables) {
@@ -80,10 +116,12 @@ std::vector<std::string> names_of(const std::vector<LogTable>& tables) {
 
 std::map<std::string, std::string> about(const LogSummary& summary) {
   std::map<std::string, std::string> texts;
-  const auto found = summary.metadata.find("tactus");
-  if (found == summary.metadata.end()) return texts;
   Identifiers names("key_");
-  for (const auto& [key, text] : found->second) texts.emplace(names.unique(key), text);
+  for (const char* name : {"tactus", log_clock}) {
+    const auto found = summary.metadata.find(name);
+    if (found == summary.metadata.end()) continue;
+    for (const auto& [key, text] : found->second) texts.emplace(names.unique(key), text);
+  }
   return texts;
 }
 

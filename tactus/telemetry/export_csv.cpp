@@ -23,11 +23,7 @@ std::string with_unit(const std::string& name, std::string unit) {
 
 /// `displayed_force [N]` for `displayed_force_N`.
 std::string head_of(const Column& column) {
-  if (column.unit.empty()) return column.name;
-  const Unit unit = unit_at_end_of(column.name);
-  std::string name = column.name;
-  if (unit.symbol == column.unit) name.resize(name.size() - std::string_view(unit.suffix).size());
-  return with_unit(name, column.unit);
+  return column.unit.empty() ? column.name : with_unit(name_without_unit(column), column.unit);
 }
 
 /// A field as it stands in a line: in quotes where it would be taken for more than one.
@@ -39,13 +35,16 @@ std::string field_of(const std::string& text) {
 }
 
 /// The line of heads. Where two would be equal without the end of the name that says the unit, it stays.
-std::string heads_of(const std::vector<Column>& columns) {
+std::string heads_of(const ExportColumns& table) {
   std::set<std::string> given;
   std::string line;
-  for (const Column& column : columns) {
+  for (const Column& column : table.columns) {
     std::string head = head_of(column);
     if (!given.insert(head).second) head = with_unit(column.name, column.unit);
     line += (line.empty() ? "" : ",") + field_of(head);
+  }
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (!table.codes[i].words.empty()) line += "," + field_of(table.columns[i].name + "_text");
   }
   return line + '\n';
 }
@@ -65,7 +64,7 @@ bool put(std::FILE* file, std::string& text) {
 Check export_csv(const LogContent& content, const std::filesystem::path& file) {
   if (auto error = refuse_empty(content, file)) return error;
   const LogTable& original = content.tables.front();
-  const ExportColumns table(original);
+  const ExportColumns table(original, content.start_unix_ns);
   return report::replace_file(file, [&](const std::string& temporary) {
     constexpr std::size_t piece = std::size_t{1} << 20U;
     std::unique_ptr<std::FILE, CloseStream> stream(std::fopen(temporary.c_str(), "wbe"));
@@ -75,11 +74,16 @@ Check export_csv(const LogContent& content, const std::filesystem::path& file) {
       text += "# " + condition->label + "\n";
       for (const auto& [key, value] : condition->set) text += "# " + key + "=" + value + "\n";
     }
-    text += heads_of(table.columns);
+    for (const auto& [key, value] : about_channel(original)) text += "# " + key + "=" + value + "\n";
+    text += heads_of(table);
     for (std::size_t row = 0; row < original.times_ns.size(); ++row) {
       for (std::size_t i = 0; i < table.values.size(); ++i) {
         if (i != 0) text += ',';
         text += format_number(table.values[i][row]);
+      }
+      for (std::size_t i = 0; i < table.values.size(); ++i) {
+        const CodeWords& codes = table.codes[i];
+        if (!codes.words.empty()) text += "," + field_of(std::string(codes.of(table.values[i][row])));
       }
       text += '\n';
       if (text.size() >= piece && !put(stream.get(), text)) return false;

@@ -91,15 +91,24 @@ Check export_mat(const LogContent& content, const std::filesystem::path& file) {
     bool done = true;
     const std::vector<std::string> names = names_of(content.tables);
     for (std::size_t one = 0; one < content.tables.size(); ++one) {
-      const ExportColumns table(content.tables[one]);
+      const ExportColumns table(content.tables[one], content.start_unix_ns);
       Struct topic(names[one]);
-      Struct units("");
+      Struct units(""), codes(""), channel("");
+      bool has_codes = false;
       for (std::size_t i = 0; i < table.columns.size(); ++i) {
         topic.add(table.columns[i].name, column_vector({table.values[i].begin(), table.values[i].end()}));
         units.add(table.columns[i].name, text(table.columns[i].unit));
+        if (table.codes[i].words.empty()) continue;
+        has_codes = true;
+        codes.add(table.columns[i].name, text(text_of(table.codes[i])));
       }
-      done = done && units.sound();
+      done = done && units.sound() && codes.sound();
       topic.add("units", std::move(units).take());
+      if (has_codes) topic.add("codes", std::move(codes).take());
+      const auto about = about_channel(content.tables[one]);
+      for (const auto& [key, value] : about) channel.add(key, text(value));
+      done = done && channel.sound();
+      if (!about.empty()) topic.add("channel", std::move(channel).take());
       if (const auto condition = condition_of(content.summary, content.tables[one].topic)) {
         Struct which("");
         Identifiers keys("key_", {"label"});

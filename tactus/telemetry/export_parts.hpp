@@ -29,24 +29,35 @@ class Identifiers {
   std::map<std::string, std::size_t> given_;  ///< and the number that the next one alike gets
 };
 
-/// Columns of a table as they are exported, a column `time_s` among them: their names are `Identifiers`, their texts
-/// one printable line each of at most 255 bytes.
+/// Columns of a table as they are exported, a column `time_s` among them, and behind it `wall_time_s` of a log that
+/// states when it started: their names are `Identifiers`, their texts one printable line each of at most 255 bytes.
 struct ExportColumns {
-  explicit ExportColumns(const LogTable& table);
+  ExportColumns(const LogTable& table, std::optional<std::uint64_t> start_unix_ns);
   ExportColumns(const ExportColumns&) = delete;
   ExportColumns& operator=(const ExportColumns&) = delete;
 
   std::vector<Column> columns;
-  std::vector<std::span<const double>> values;  ///< of the table, or `seconds`
+  std::vector<std::span<const double>> values;  ///< of the table, or the times below
+  std::vector<CodeWords> codes;                 ///< of each column; empty where it holds no codes
 
  private:
-  std::vector<double> seconds_;
+  std::vector<double> seconds_, wall_seconds_;
 };
+
+/// Codes in words: `0 configure, 1 align`.
+std::string text_of(const CodeWords& codes);
+
+/// What a channel states beside its columns (`joint`, `elbow`), its keys as identifiers and its texts one line each.
+std::vector<std::pair<std::string, std::string>> about_channel(const LogTable& table);
+
+/// A time of a log in seconds of Unix time, to 0.3 us.
+double wall_seconds(std::uint64_t start_unix_ns, std::uint64_t time_ns);
 
 /// What the tables of a log are called, in their order.
 std::vector<std::string> names_of(const std::vector<LogTable>& tables);
 
-/// What the log says about the run that it comes from, its keys as identifiers; empty where it says nothing.
+/// What the log says about the run that it comes from and when it started, its keys as identifiers; empty where it says
+/// nothing.
 std::map<std::string, std::string> about(const LogSummary& summary);
 
 /// What sets a run apart from the others of its log.

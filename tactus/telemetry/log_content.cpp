@@ -1,5 +1,6 @@
 #include <tactus/telemetry/cdr.hpp>
 #include <tactus/telemetry/log_reader.hpp>
+#include <tactus/telemetry/log_writer.hpp>
 #include <tactus/telemetry/ros_bag.hpp>
 
 #include <algorithm>
@@ -11,6 +12,18 @@ namespace tactus::telemetry {
 namespace {
 
 constexpr std::size_t most_numbers = std::size_t{1} << 26;
+
+/// Unix time of the start that a log states.
+std::optional<std::uint64_t> start_of(const LogSummary& summary) {
+  const auto clock = summary.metadata.find(log_clock);
+  if (clock == summary.metadata.end()) return std::nullopt;
+  const auto start = clock->second.find(log_start_key);
+  if (start == clock->second.end()) return std::nullopt;
+  std::uint64_t unix_ns = 0;
+  const std::string& text = start->second;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), unix_ns);
+  return failure == std::errc{} && end == text.data() + text.size() ? std::optional(unix_ns) : std::nullopt;
+}
 
 /// The number of a part, `12` of `log_12.mcap`, where the file is called so.
 std::optional<std::uint64_t> part_number(const std::filesystem::path& file) {
@@ -39,11 +52,13 @@ bool sort_parts(std::vector<std::filesystem::path>& files) {
 /// A table while it is filled.
 struct Filling {
   LogTable table;
-  std::uint16_t channel;  ///< in the file that began it
+  std::vector<Column> all;        ///< columns of a message
+  std::vector<std::size_t> kept;  ///< of them, those of the table
+  std::uint16_t channel;          ///< in the file that began it
   std::optional<std::uint32_t> last_sequence;
 };
 
-Result<LogTable> empty_table(const LogChannel& channel) {
+Result<Filling> empty_table(const LogChannel& channel, const LogSelection& wanted) {
   const auto refuse = [&channel](const std::string& why) {
     return Error{.code = ErrorCode::wrong_type,
                  .parameter = {},
@@ -56,26 +71,35 @@ Result<LogTable> empty_table(const LogChannel& channel) {
   }
   auto columns = columns_of(channel.definition, channel.metadata);
   if (!columns) return refuse(columns.error().message);
-  const std::size_t count = columns->size();
-  return LogTable{.topic = channel.topic,
-                  .type_name = channel.type_name,
-                  .columns = *std::move(columns),
-                  .values = std::vector<std::vector<double>>(count),
-                  .times_ns = {},
-                  .missing = 0};
+  Filling filling{
+      .table = {.topic = channel.topic, .type_name = channel.type_name, .columns = {}, .values = {}, .times_ns = {}},
+      .all = *std::move(columns),
+      .kept = {},
+      .channel = 0,
+      .last_sequence = {}};
+  for (std::size_t i = 0; i < filling.all.size(); ++i) {
+    if (wanted.column && !wanted.column(channel.topic, filling.all[i].name)) continue;
+    filling.kept.push_back(i);
+    filling.table.columns.push_back(filling.all[i]);
+  }
+  filling.table.values.resize(filling.kept.size());
+  for (const auto& [key, text] : channel.metadata) {
+    if (key.find('.') == std::string::npos) filling.table.about.emplace(key, text);
+  }
+  return filling;
 }
 
 /// Tables of one log, filled from its files one after the other.
 class Tables {
  public:
-  explicit Tables(const std::optional<std::string>& topic) : topic_(topic) {}
+  explicit Tables(const LogSelection& wanted) : wanted_(wanted) {}
 
   Result<LogSummary> read(const std::filesystem::path& file) {
     of_channel_.clear();
     unclaimed_.clear();
     for (std::size_t i = 0; i < filling_.size(); ++i) unclaimed_.emplace(filling_[i].table.topic, i);
     return scan_log(file, [this](const LogChannel& channel, const LogMessage& message) -> Check {
-      if (topic_ && channel.topic != *topic_) return std::nullopt;
+      if (wanted_.topic && !wanted_.topic(channel.topic)) return std::nullopt;
       const auto index = table_of(channel, message.channel);
       return index ? add(filling_[*index], message) : index.error();
     });
@@ -93,17 +117,18 @@ class Tables {
   /// The table of a channel of this file. An earlier file may have begun it, under the same number or another.
   Result<std::size_t> table_of(const LogChannel& channel, std::uint16_t number) {
     if (const auto found = of_channel_.find(number); found != of_channel_.end()) return found->second;
-    auto table = empty_table(channel);
-    if (!table) return table.error();
-    const auto [first, last] = unclaimed_.equal_range(table->topic);
-    const auto begun = std::find_if(
-        first, last, [&](const auto& one) { return filling_[one.second].table.columns == table->columns; });
+    auto filling = empty_table(channel, wanted_);
+    if (!filling) return filling.error();
+    const auto [first, last] = unclaimed_.equal_range(channel.topic);
+    const auto begun =
+        std::find_if(first, last, [&](const auto& one) { return filling_[one.second].all == filling->all; });
     std::size_t index = filling_.size();
     if (begun != last) {
       index = begun->second;
       unclaimed_.erase(begun);
     } else {
-      filling_.push_back({*std::move(table), number, std::nullopt});
+      filling->channel = number;
+      filling_.push_back(*std::move(filling));
     }
     of_channel_.emplace(number, index);
     return index;
@@ -111,9 +136,9 @@ class Tables {
 
   Check add(Filling& filling, const LogMessage& message) {
     LogTable& table = filling.table;
-    const auto values = from_cdr(message.bytes, table.columns);
+    const auto values = from_cdr(message.bytes, filling.all);
     if (!values) return values.error();
-    numbers_ += values->size() + 1;
+    numbers_ += filling.kept.size() + 1;
     if (numbers_ > most_numbers) {
       return Error{.code = ErrorCode::out_of_bounds,
                    .parameter = {},
@@ -121,7 +146,7 @@ class Tables {
                               " numbers, which do not go into memory at once: name one topic, or cut the log",
                    .place = {}};
     }
-    for (std::size_t i = 0; i < values->size(); ++i) table.values[i].push_back((*values)[i]);
+    for (std::size_t i = 0; i < filling.kept.size(); ++i) table.values[i].push_back((*values)[filling.kept[i]]);
     table.times_ns.push_back(message.time_ns);
     // A counter that runs backwards began anew and tells nothing about what is missing.
     auto& last = filling.last_sequence;
@@ -130,7 +155,7 @@ class Tables {
     return std::nullopt;
   }
 
-  const std::optional<std::string>& topic_;
+  const LogSelection& wanted_;
   std::vector<Filling> filling_;
   std::map<std::uint16_t, std::size_t> of_channel_;  ///< of the file that is read
   std::multimap<std::string, std::size_t>
@@ -154,10 +179,29 @@ Result<std::vector<std::filesystem::path>> log_files(const std::filesystem::path
                .place = file_or_folder.string()};
 }
 
+const std::vector<double>* LogTable::find(std::string_view name) const {
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i].name == name) return &values[i];
+  }
+  return nullptr;
+}
+
+const LogTable* LogContent::find(std::string_view topic) const {
+  const auto found =
+      std::find_if(tables.begin(), tables.end(), [&](const auto& table) { return table.topic == topic; });
+  return found == tables.end() ? nullptr : &*found;
+}
+
 Result<LogContent> read_log(const std::filesystem::path& file_or_folder, const std::optional<std::string>& topic) {
+  LogSelection wanted;
+  if (topic) wanted.topic = [&topic](const std::string& one) { return one == *topic; };
+  return read_log(file_or_folder, wanted);
+}
+
+Result<LogContent> read_log(const std::filesystem::path& file_or_folder, const LogSelection& wanted) {
   const auto files = log_files(file_or_folder);
   if (!files) return files.error();
-  Tables tables(topic);
+  Tables tables(wanted);
   LogContent content;
   content.summary.complete = true;
   for (const auto& file : *files) {
@@ -171,6 +215,14 @@ Result<LogContent> read_log(const std::filesystem::path& file_or_folder, const s
     all.metadata.insert(part->metadata.begin(), part->metadata.end());
   }
   content.tables = std::move(tables).take();
+  content.start_unix_ns = start_of(content.summary);
+  if (!content.start_unix_ns) return content;
+  for (LogTable& table : content.tables) {
+    // A time before the start, which no writer of ours leaves, stays as it is.
+    for (std::uint64_t& time_ns : table.times_ns) {
+      if (time_ns >= *content.start_unix_ns) time_ns -= *content.start_unix_ns;
+    }
+  }
   return content;
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tactus::telemetry {
@@ -58,14 +59,22 @@ struct LogTable {
   std::string topic;
   std::string type_name;
   std::vector<Column> columns;
-  std::vector<std::vector<double>> values;  ///< one for each column, all of one length
-  std::vector<std::uint64_t> times_ns;      ///< of the messages
-  std::uint64_t missing = 0;                ///< messages that the sequence numbers show to be missing
+  std::vector<std::vector<double>> values;        ///< one for each column, all of one length
+  std::vector<std::uint64_t> times_ns;            ///< of the messages; from the start of a log that states it
+  std::uint64_t missing = 0;                      ///< messages that the sequence numbers show to be missing
+  std::map<std::string, std::string> about = {};  ///< what the channel states beside its columns, as `joint`
+
+  /// The values of a column; null where there is none of that name.
+  [[nodiscard]] const std::vector<double>* find(std::string_view name) const;
 };
 
 struct LogContent {
   LogSummary summary;
-  std::vector<LogTable> tables;  ///< channels with at least one message
+  std::vector<LogTable> tables;                     ///< channels with at least one message
+  std::optional<std::uint64_t> start_unix_ns = {};  ///< Unix time from which `times_ns` count; of virtual time none
+
+  /// Null where there is none.
+  [[nodiscard]] const LogTable* find(std::string_view topic) const;
 };
 
 /// Reads all channels into memory. A channel whose messages are not CDR of a `ros2msg` definition with plain numbers is
@@ -73,5 +82,12 @@ struct LogContent {
 /// one. A folder stands for its one `.mcap` file, or for the parts of one log, `log_0.mcap`, `log_1.mcap` and so on,
 /// which are read as one.
 Result<LogContent> read_log(const std::filesystem::path& file_or_folder, const std::optional<std::string>& topic = {});
+
+/// The same of those topics and columns that are wanted: what is left out takes no memory and does not count.
+struct LogSelection {
+  std::function<bool(const std::string& topic)> topic;
+  std::function<bool(const std::string& topic, const std::string& column)> column;
+};
+Result<LogContent> read_log(const std::filesystem::path& file_or_folder, const LogSelection& wanted);
 
 }  // namespace tactus::telemetry

@@ -4,6 +4,8 @@
 #include <tactus/telemetry/mcap_format.hpp>
 
 #include <algorithm>
+#include <array>
+#include <ctime>
 #include <exception>
 #include <new>
 #include <optional>
@@ -40,6 +42,18 @@ Compressor new_compressor() {
   return made;
 }
 
+/// `2026-11-30T05:45:00.123456Z`
+std::string utc_text(std::uint64_t unix_ns) {
+  const auto seconds = static_cast<std::time_t>(unix_ns / 1'000'000'000);
+  std::tm date{};
+  gmtime_r(&seconds, &date);
+  std::array<char, 40> day{};
+  std::strftime(day.data(), day.size(), "%Y-%m-%dT%H:%M:%S", &date);
+  // Behind a leading 1, so that zeros stay.
+  const std::string microseconds = std::to_string(1'000'000 + unix_ns % 1'000'000'000 / 1000);
+  return day.data() + ("." + microseconds.substr(1) + "Z");
+}
+
 /// The chunk that is being filled.
 struct Chunk {
   struct IndexEntry {
@@ -71,6 +85,7 @@ struct LogWriter::State {
   std::vector<ChannelCount> counts;
   Chunk chunk;
   std::uint64_t newest_ns = 0;
+  std::uint64_t start_unix_ns = 0;
   std::uint64_t acknowledged = 0;
   std::uint64_t lost = 0;
   std::optional<Error> first_error;
@@ -314,7 +329,9 @@ std::uint16_t LogWriter::add_channel(const ChannelDescription& channel) {
   append(content, schema->second);
   append_text(content, channel.topic);
   append_text(content, "cdr");
-  append_map(content, column_metadata(channel.columns));
+  auto metadata = column_metadata(channel.columns);
+  metadata.insert(channel.about.begin(), channel.about.end());
+  append_map(content, metadata);
   append_record(records, Opcode::channel, content);
   state.pending += records;
   state.declarations += records;
@@ -331,6 +348,12 @@ void LogWriter::add_metadata(const std::string& name, const std::map<std::string
   state_->metadata.push_back({name, std::move(record)});
 }
 
+void LogWriter::start_at(std::int64_t unix_ns) {
+  state_->start_unix_ns = static_cast<std::uint64_t>(std::max<std::int64_t>(0, unix_ns));
+  add_metadata(log_clock, {{log_start_key, std::to_string(state_->start_unix_ns)},
+                           {"start_utc", utc_text(state_->start_unix_ns)}});
+}
+
 void LogWriter::write(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns,
                       std::span<const unsigned char> cdr) {
   Chunk& chunk = state_->chunk;
@@ -338,15 +361,16 @@ void LogWriter::write(std::uint16_t channel, std::uint32_t sequence, std::uint64
   constexpr std::size_t head_bytes = 1 + 8 + 2 + 4 + 8 + 8;
   const std::size_t needed = chunk.records.size() + head_bytes + cdr.size();
   if (needed > chunk.records.capacity()) chunk.records.reserve(std::max(needed, 2 * chunk.records.capacity()));
-  chunk.index[channel].push_back({time_ns, chunk.records.size()});
-  chunk.span.add(time_ns);
+  const std::uint64_t logged_ns = state_->start_unix_ns + time_ns;
+  chunk.index[channel].push_back({logged_ns, chunk.records.size()});
+  chunk.span.add(logged_ns);
   state_->newest_ns = std::max(state_->newest_ns, time_ns);
   chunk.records += static_cast<char>(Opcode::message);
   append(chunk.records, std::uint64_t{2 + 4 + 8 + 8 + cdr.size()});
   append(chunk.records, channel);
   append(chunk.records, sequence);
-  append(chunk.records, time_ns);  // logged
-  append(chunk.records, time_ns);  // published
+  append(chunk.records, logged_ns);  // logged
+  append(chunk.records, logged_ns);  // published
   chunk.records.append(cdr.begin(), cdr.end());
   if (chunk.records.size() >= chunk_bytes) (void)state_->flush();  // a failure is counted and kept for `close`
 }

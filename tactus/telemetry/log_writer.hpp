@@ -22,7 +22,13 @@ struct ChannelDescription {
   std::string topic;      ///< as ROS 2 names topics: `/teleoperator`
   std::string type_name;  ///< as ROS 2 names types: `tactus_msgs/msg/TeleoperatorRecord`
   std::vector<Column> columns;
+  std::map<std::string, std::string> about = {};  ///< what else is known of it, as `joint`; keys without a dot
 };
+
+/// The metadata that states when a log started, in words and in ns of Unix time, from which the times of its messages
+/// count. A log of virtual time has none.
+inline constexpr const char* log_clock = "clock";
+inline constexpr const char* log_start_key = "start_unix_ns";
 
 /// What became of one channel.
 struct ChannelCount {
@@ -35,7 +41,7 @@ struct ChannelCount {
 /// One file of a log.
 struct LogPartSummary {
   std::filesystem::path file;
-  std::uint64_t first_time_ns = 0;  ///< of its messages; both 0 where there is none
+  std::uint64_t first_time_ns = 0;  ///< of its messages, as the file has it; both 0 where there is none
   std::uint64_t last_time_ns = 0;
   std::vector<std::uint64_t> messages;  ///< by channel, acknowledged
 };
@@ -73,12 +79,17 @@ class LogWriter {
   LogWriter& operator=(LogWriter&&) noexcept;
   ~LogWriter();  ///< closes; who wants to know whether that worked calls `close`
 
+  /// The times of `write` count from this instant, in ns of Unix time: the file has them in Unix time, as other
+  /// programs expect, and states the start as metadata. Before the first message.
+  void start_at(std::int64_t unix_ns);
+
   /// The number of the new channel. Equal types share a schema.
   std::uint16_t add_channel(const ChannelDescription& channel);
   /// A named set of texts: configuration, seeds, version.
   void add_metadata(const std::string& name, const std::map<std::string, std::string>& content);
 
-  /// Appends a message to the open chunk and writes the chunk when it is full. `time_ns` counts from any fixed instant.
+  /// Appends a message to the open chunk and writes the chunk when it is full. `time_ns` counts from the start, or
+  /// without one from any fixed instant.
   void write(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns, std::span<const unsigned char> cdr);
 
   /// Writes the open chunk. Errors: `unwritable`, with what was lost.

@@ -96,6 +96,8 @@ void Recorder::add_metadata(const std::string& name, const std::map<std::string,
   state_->log.add_metadata(name, content);
 }
 
+void Recorder::start_at(std::int64_t unix_ns) { state_->log.start_at(unix_ns); }
+
 void Recorder::start(Seconds flush_every) {
   state_->gaps =
       add_channel({.topic = "/tactus/gaps", .type_name = "tactus_msgs/msg/Gap", .columns = columns_of<Gap>()});

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <thread>
@@ -57,12 +58,22 @@ class RecordStream {
   };
   using Reader = typename Broadcast<Entry, Capacity>::Reader;
 
+  RecordStream() : RecordStream(columns_of<Record>()) {}
+  /// With columns that are called otherwise than the record's, as those of a joint that turns, and what else is known
+  /// of them.
+  explicit RecordStream(std::vector<Column> columns, std::map<std::string, std::string> about = {})
+      : columns_(std::move(columns)), about_(std::move(about)) {}
+  [[nodiscard]] const std::vector<Column>& columns() const noexcept { return columns_; }
+  [[nodiscard]] const std::map<std::string, std::string>& about() const noexcept { return about_; }
+
   /// One thread only. Real-time safe: wait-free, no allocation, no system call, whoever looks on or does not.
   void push(std::uint64_t time_ns, const Record& record) noexcept { entries_->push({time_ns, next_++, record}); }
   /// Sees what is pushed from now on. Who falls behind by more than the capacity loses the oldest, and counts it.
   [[nodiscard]] Reader watch() const { return Reader(entries_); }
 
  private:
+  std::vector<Column> columns_;
+  std::map<std::string, std::string> about_;
   std::shared_ptr<Broadcast<Entry, Capacity>> entries_ = std::make_shared<Broadcast<Entry, Capacity>>();
   std::uint64_t next_ = 0;
 };
@@ -107,7 +118,7 @@ class Recorder {
   /// Logs what is pushed into the stream from now on. Before `start` only.
   template <Recordable Record, std::size_t Capacity>
   void add(const std::string& topic, const std::string& type_name, const RecordStream<Record, Capacity>& stream) {
-    add({.topic = topic, .type_name = type_name, .columns = columns_of<Record>()},
+    add({.topic = topic, .type_name = type_name, .columns = stream.columns(), .about = stream.about()},
         [&stream](std::uint16_t channel) { return std::make_unique<LoggedStream<Record, Capacity>>(stream, channel); });
   }
   /// The same for a stream of its own, which lives as long as the recorder.
@@ -124,6 +135,8 @@ class Recorder {
     add_stream(make(add_channel(channel)));
   }
   void add_metadata(const std::string& name, const std::map<std::string, std::string>& content);
+  /// As `LogWriter::start_at`. Before `start` only.
+  void start_at(std::int64_t unix_ns);
 
   /// A chunk is written at least every `flush_every_s`, so a killed process loses no more than that.
   void start(Seconds flush_every = Seconds{0.1});

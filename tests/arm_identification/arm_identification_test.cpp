@@ -2,6 +2,7 @@
 #include <tactus/arm_identification/fit.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -156,6 +157,110 @@ TEST(ArmIdentification, TheExternalTorqueIsThatOfTheForceOnTheTool) {
   const arm::JointVector expected = arm::Chain::make(truth())->jacobian(q, 6, arm::Vector3::Zero()).transpose() *
                                     (Eigen::Matrix<double, 6, 1>() << 0.0, 0.0, 15.0, 0.0, 0.0, 0.0).finished();
   EXPECT_LT((found->torque_N_m.row(row).transpose() - expected).norm(), 0.1 * expected.norm());
+}
+
+/// An arm that holds a pose.
+ArmRecording standing(std::uint64_t seed, double duration_s, const std::vector<Push>& pushes = {}) {
+  const std::array<double, 7> pose{0.2, 0.4, 0.1, 1.2, 0.3, -0.2, 0.3};
+  const auto hold = [pose](unsigned joint, double) { return pose.at(joint); };
+  return recorded(simulate(truth(), {.duration_s = duration_s, .seed = seed, .pushes = pushes, .path = hold}));
+}
+
+TEST(ArmIdentification, AnArmThatStandsStillFeelsAPushAndItsSizeIsWithinFifteenPercentOrTheInterval) {
+  const std::vector<Push> pushes{{2.0, 3.0, 5.0}, {4.0, 5.0, -10.0}, {6.0, 7.0, 20.0}};
+  const ArmRecording still = standing(3, 9.0, pushes);
+  const auto found = estimate_external_torque(identified().model, still);
+  ASSERT_TRUE(found) << describe(found.error());
+  ASSERT_EQ(found->contacts.size(), pushes.size());
+  const arm::Chain chain = *arm::Chain::make(truth());
+  for (std::size_t i = 0; i < pushes.size(); ++i) {
+    const ArmContact& contact = found->contacts[i];
+    EXPECT_NEAR(contact.from_s, pushes[i].from_s, 0.1);
+    EXPECT_NEAR(contact.to_s, pushes[i].to_s, 0.1);
+    arm::JointVector q(7);
+    const auto sample = static_cast<std::size_t>(500.0 * 0.5 * (pushes[i].from_s + pushes[i].to_s));
+    for (int j = 0; j < 7; ++j) q[j] = still.position[static_cast<std::size_t>(j)][sample];
+    const arm::JointVector expected =
+        chain.jacobian(q, 6, arm::Vector3::Zero()).transpose() *
+        (Eigen::Matrix<double, 6, 1>() << 0.0, 0.0, pushes[i].force_N, 0.0, 0.0, 0.0).finished();
+    ASSERT_FALSE(contact.joints.empty());
+    for (const ArmContactTorque& joint : contact.joints) {
+      const auto j = std::find(names.begin(), names.end(), joint.joint) - names.begin();
+      const double within = std::max(joint.within_N_m, 0.15 * std::fabs(expected[j]));
+      EXPECT_NEAR(joint.mean_N_m, expected[j], within) << joint.joint << " of " << pushes[i].force_N << " N";
+    }
+  }
+  const auto nothing = estimate_external_torque(identified().model, standing(4, 20.0));
+  ASSERT_TRUE(nothing) << describe(nothing.error());
+  EXPECT_TRUE(nothing->contacts.empty());
+}
+
+/// Stuck joints carry what they like within their friction: with no motor and gravity less than that, nothing is known.
+TEST(ArmIdentification, AnArmThatIsHeldByItsFrictionAloneIsNotTakenForTouched) {
+  ArmModel model = identified().model;
+  ArmRecording still = standing(4, 5.0);
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    for (double& effort : still.effort[j]) effort += 0.9 * model.joints[j].arm.friction.coulomb_N_m;
+  }
+  const auto found = estimate_external_torque(model, still);
+  ASSERT_TRUE(found) << describe(found.error());
+  EXPECT_TRUE(found->contacts.empty());
+  // Twice as much can be no friction.
+  for (std::size_t j = 0; j < names.size(); ++j) {
+    const ArmJointModel& joint = model.joints[j];
+    for (double& effort : still.effort[j]) {
+      effort += joint.arm.friction.coulomb_N_m + 1.5 * joint.contact_threshold_N_m;
+    }
+  }
+  EXPECT_EQ(estimate_external_torque(model, still)->contacts.size(), 1U);
+}
+
+TEST(ArmIdentification, StretchesOfALogAreEstimatedOneAfterTheOther) {
+  ArmRecording late = recorded(simulate(truth(), {.duration_s = 6.0, .seed = 6, .pushes = {{3.0, 4.0, 15.0}}}));
+  late.start_s = 100.0;
+  ArmRecording brief = late;
+  for (auto* columns : {&brief.position, &brief.velocity, &brief.effort}) {
+    for (auto& column : *columns) column.resize(300);
+  }
+  const auto both = estimate_external_torque(identified().model, std::array{free_motion(5), brief, late});
+  ASSERT_TRUE(both) << describe(both.error());
+  const auto first = estimate_external_torque(identified().model, free_motion(5));
+  const auto second = estimate_external_torque(identified().model, late);
+  ASSERT_EQ(both->stretches, (std::vector<std::size_t>{0, first->time_s.size()}));
+  EXPECT_EQ(both->torque_N_m.bottomRows(second->torque_N_m.rows()), second->torque_N_m);
+  EXPECT_NEAR(both->left_out_s, 0.6, 1e-9);
+  ASSERT_EQ(both->contacts.size(), 1U);
+  EXPECT_NEAR(both->contacts.front().from_s, 103.0, 0.05);
+  const auto alone = estimate_external_torque(identified().model, brief);
+  ASSERT_FALSE(alone) << "nothing else is there";
+  EXPECT_NE(describe(alone.error()).find("too short"), std::string::npos);
+}
+
+/// Counted in noise that is even up to the cutoff, a sum of sines of drawn phases.
+TEST(ArmIdentification, FalseContactsAreAsOftenAsNoisePassesTheThreshold) {
+  constexpr int sines = 100;
+  constexpr double cutoff_Hz = 10.0, duration_s = 1000.0, step_s = 0.005, heights = 2.0;
+  signal::Random random(7);
+  std::array<double, sines> phase{};
+  for (double& one : phase) one = 6.283185307179586 * random.uniform();
+  const double rms = std::sqrt(0.5 * sines);
+  int passed = 0;
+  double before = 0.0;
+  for (int i = 0; i * step_s < duration_s; ++i) {
+    double sum = 0.0;
+    for (int k = 0; k < sines; ++k) {
+      // Frequencies that share no period within the duration.
+      const double frequency_Hz = cutoff_Hz * (k + 0.5 + 0.3 * std::sin(12.9898 * k)) / sines;
+      sum += std::cos(6.283185307179586 * frequency_Hz * i * step_s + phase[static_cast<std::size_t>(k)]);
+    }
+    sum /= rms;
+    if (i > 0 && (std::fabs(sum) > heights) && std::fabs(before) <= heights) ++passed;
+    before = sum;
+  }
+  ArmModel model{.head = {.joints = 1, .cutoff_Hz = cutoff_Hz}, .joints = Joints<ArmJointModel>(1)};
+  model.joints[0].residual_rms_N_m = 0.1;
+  model.joints[0].contact_threshold_N_m = 0.2;
+  EXPECT_NEAR(false_contacts_per_hour(model), 3600.0 * passed / duration_s, 0.1 * 3600.0 * passed / duration_s);
 }
 
 TEST(ArmIdentification, AModelReadsBackAsItWasWritten) {

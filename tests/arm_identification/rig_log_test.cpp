@@ -33,6 +33,7 @@ struct Content {
   std::string joints = "lift,turn";
   double active_from_s = 1.0, active_to_s = 5.0;
   std::optional<double> silent_at_s = {};  ///< 0.1 s long, the second joint
+  bool turning = true;                     ///< with the names of such joints; those of earlier versions had others
 };
 
 /// The log of a rig of two joints whose bus answers each 3.2 ms, the second joint 1 ms behind the first.
@@ -46,8 +47,12 @@ class RigLog : public ::testing::Test {
     log->add_metadata("tactus", {{"rig", "arm"}, {"joints", run.joints}});
     const auto site = log->add_channel({"/slave/site", "t/msg/Site", telemetry::columns_of<SiteTickRecord>()});
     std::vector<std::uint16_t> joint;
+    auto columns = telemetry::columns_of<JointLogRecord>();
+    if (run.turning) {
+      for (telemetry::Column& column : columns) column = telemetry::of_turning_joint(column);
+    }
     for (const char* topic : {"/slave/joint_1", "/slave/joint_2"}) {
-      joint.push_back(log->add_channel({topic, "t/msg/Joint", telemetry::columns_of<JointLogRecord>()}));
+      joint.push_back(log->add_channel({topic, "t/msg/Joint", columns}));
     }
     for (std::uint32_t tick = 0; tick < 3000; ++tick) {
       const double now_s = tick_s * tick;
@@ -101,6 +106,14 @@ TEST_F(RigLog, TellsTheFollowerAsItsDrivesDidWhileItFollowedInTheOrderThatIsAske
     ASSERT_NEAR(recording.effort[0][i], -2.0 * speed(t_s), 2e-3) << t_s;
     ASSERT_NEAR(recording.effort[1][i], 2.0 * speed(t_s), 2e-3) << t_s;
   }
+}
+
+TEST_F(RigLog, OfAnEarlierVersionIsReadAsBefore) {
+  const auto now = read_rig_log(leave({}), {"turn", "lift"});
+  const auto before = read_rig_log(leave({.turning = false}), {"turn", "lift"});
+  ASSERT_TRUE(now && before);
+  EXPECT_EQ(before->front().position, now->front().position);
+  EXPECT_EQ(before->front().effort, now->front().effort);
 }
 
 TEST_F(RigLog, IsCutWhereADriveWasSilent) {

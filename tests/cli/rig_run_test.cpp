@@ -99,6 +99,50 @@ TEST_F(RigRun, APairOfSevenJointsAlignsAndTeleoperatesWithALogThatIsWhole) {
   EXPECT_PRED1(follows, said);
 }
 
+/// Three episodes, of which the operator discards the second; then the log is a data set, and a recording, as it lies
+/// there.
+TEST_F(RigRun, EpisodesAreExportedAsWideTablesWithNamesUnitsAndWallClockTimes) {
+  const std::string said =
+      shell("damiao --motors 2", "damiao --motors 2", pair("damiao", "DM4310", 2, "offset_rad = 0.1\n"), R"sh(
+    date +%s >before
+    $RUN --arm --out run --overwrite <&9 >run.out 2>&1 & run=$!
+    last() { tail -n 1 run.out; }
+    until_it_says() { for try in $(seq 100); do last | grep -q "$1" && break; sleep 0.1; done; }
+    until_it_says 'follower active'
+    sleep 1; echo release >&9
+    until_it_says 'follower armed'
+    echo arm >&9
+    until_it_says 'follower active'
+    sleep 1; echo discard >&9; sleep 0.3; echo start >&9
+    sleep 1.5
+    kill -INT $run; wait $run
+    date +%s >after
+    tail -n 20 run.out
+    $TACTUS export run/log --wide --rate 50 --out wide; echo exported $?
+    $TACTUS export run/log --to mat --out run/log.mat; echo exported $?
+    $TACTUS diagnose run/log; echo diagnosed $?)sh");
+  EXPECT_NE(said.find("left out: discarded"), std::string::npos) << said;
+  EXPECT_NE(said.find("exported 0\n"), std::string::npos) << said;
+  EXPECT_NE(said.find("diagnosed 0\n"), std::string::npos) << said;
+  EXPECT_NE(said.find(" episodes: number "), std::string::npos) << said;
+  EXPECT_EQ(content("wide/episode_2.csv"), "");
+  for (const char* name : {"wide/episode_1.csv", "wide/episode_3.csv"}) {
+    const std::string table = content(name);
+    EXPECT_TRUE(
+        table.starts_with("time_s,wall_time_s,leader.joint_1.position_rad,leader.joint_2.position_rad,"
+                          "leader.joint_1.velocity_rad_per_s,leader.joint_2.velocity_rad_per_s,"
+                          "leader.joint_1.torque_Nm,"))
+        << table.substr(0, 400);
+    EXPECT_NE(table.find(",follower.joint_2.position_rad,"), std::string::npos);
+    EXPECT_NE(table.find(",active,none,active,none\n"), std::string::npos);
+    const auto first = table.find('\n') + 1;
+    EXPECT_EQ(std::atof(table.c_str() + first), 0.0);
+    const double wall_s = std::atof(table.c_str() + table.find(',', first) + 1);
+    EXPECT_GE(wall_s, std::atof(content("before").c_str())) << name;
+    EXPECT_LE(wall_s, std::atof(content("after").c_str())) << name;
+  }
+}
+
 /// A trigger that turns half as far as the gripper. As a joint it has a quarter of its motor's inertia, so that half of
 /// the usual force tries its sign: with all of it a trigger that nobody holds is faster than it may be.
 TEST_F(RigRun, AGripperGoesAsFarAsItsTriggerTimesTheScale) {

@@ -2,9 +2,11 @@
 #include <tactus/runtime/servo_thread.hpp>
 #include <tactus/runtime/site_log.hpp>
 #include <tactus/station/joined_devices.hpp>
+#include <tactus/telemetry/episodes.hpp>
 #include <tactus/telemetry/log_reader.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -43,6 +45,20 @@ std::vector<double> column(const telemetry::LogTable& table, const std::string& 
   return {};
 }
 
+/// An instant of CLOCK_MONOTONIC by the wall clock: of several readings the one that nothing held up.
+std::int64_t by_wall_clock_ns(std::int64_t monotonic) {
+  std::int64_t found_ns = 0, least_ns = 1'000'000'000;
+  for (int i = 0; i < 50; ++i) {
+    const std::int64_t before_ns = monotonic_ns();
+    const auto wall = std::chrono::system_clock::now().time_since_epoch();
+    const std::int64_t took_ns = monotonic_ns() - before_ns;
+    if (took_ns >= least_ns) continue;
+    least_ns = took_ns;
+    found_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(wall).count() - (before_ns - monotonic);
+  }
+  return found_ns;
+}
+
 TEST(SeveralJoints, EightRunAtOneKilohertzInRealTimeAndLeaveEveryTickInALog) {
   control::ControlParams of_joint;
   of_joint.force_gain = 1.0;
@@ -56,18 +72,25 @@ TEST(SeveralJoints, EightRunAtOneKilohertzInRealTimeAndLeaveEveryTickInALog) {
   station::JointLocalTeleoperator& sites = *made;
 
   const std::filesystem::path folder = scratch_path();
-  JointStreams streams(joints);
+  std::vector<StreamedJoint> of_rig(joints);
+  for (std::size_t joint = 0; joint < joints; ++joint) {
+    of_rig[joint] = {.name = "turns_" + std::to_string(joint), .turns = joint % 2 == 1};
+  }
+  JointStreams streams(of_rig);
   auto log = SiteLog::create(folder, streams, {});
   ASSERT_TRUE(log) << describe(log.error());
 
   std::int64_t steps = 0;
   std::uint64_t allocations = 0;
+  std::int64_t deadline_by_wall_clock_ns = 0;
   const auto report = run_servo({.rate_Hz = 1000.0, .priority = 10}, [&](const station::Tick& tick) noexcept {
     const std::uint64_t before = laws::own_allocation_count();
     const control::SiteRequests pressed{
         .align = steps > 100, .arm = steps > 200, .dead_man = steps > 400 && steps < 2600};
     const auto done = sites.step(tick, pressed);
     streams.push(tick, pressed, sites, done);
+    if (steps == 1500) streams.push(tick, EpisodeMark::keep);
+    if (steps == 1500) deadline_by_wall_clock_ns = by_wall_clock_ns(tick.deadline_ns);
     allocations += laws::own_allocation_count() - before;
     return ++steps < 3000;
   });
@@ -89,13 +112,23 @@ TEST(SeveralJoints, EightRunAtOneKilohertzInRealTimeAndLeaveEveryTickInALog) {
     for (std::size_t joint = 1; joint <= joints; ++joint) {
       const auto table = telemetry::read_log(folder, site + "joint_" + std::to_string(joint)).value().tables.at(0);
       EXPECT_EQ(column(table, "tick"), column(ticks, "tick"));
-      const auto position_m = column(table, "position_m");
+      const bool turns = of_rig[joint - 1].turns;
+      EXPECT_EQ(table.about.at("joint"), of_rig[joint - 1].name);
+      EXPECT_EQ(table.type_name, turns ? "tactus_msgs/msg/TurningJointRecord" : "tactus_msgs/msg/JointRecord");
+      const auto position_m = column(table, turns ? "position_rad" : "position_m");
       const auto [least_m, most_m] = std::minmax_element(position_m.begin(), position_m.end());
       EXPECT_GT(*most_m - *least_m, 0.005) << site << joint << " never moved";
-      const auto force_N = column(table, "motor_force_N");
+      const auto force_N = column(table, turns ? "motor_torque_N_m" : "motor_force_N");
       EXPECT_GT(std::fabs(*std::min_element(force_N.begin(), force_N.end())), 0.01) << site << joint << " felt nothing";
     }
   }
+  // Within a millisecond of the wall clock.
+  const auto marked = telemetry::read_log(folder, telemetry::episodes_topic).value();
+  ASSERT_EQ(marked.tables.size(), 1U);
+  ASSERT_TRUE(marked.start_unix_ns);
+  const auto logged_ns = static_cast<std::int64_t>(*marked.start_unix_ns + marked.tables[0].times_ns.at(0));
+  EXPECT_NEAR(static_cast<double>(logged_ns - deadline_by_wall_clock_ns), 0.0, 1e6);
+  EXPECT_FALSE(telemetry::episodes_of(telemetry::read_log(folder).value()).empty());
   std::filesystem::remove_all(folder);
 }
 

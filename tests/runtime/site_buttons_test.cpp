@@ -1,6 +1,7 @@
 #include <tactus/runtime/site_buttons.hpp>
 
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -16,12 +17,33 @@ TEST(SiteWords, AreReadFromALineAndAWrongOneNamesThoseThatThereAre) {
   EXPECT_EQ(parse_site_word("clear", SiteRole::slave).value(), SiteWord::clear);
   const auto wrong = parse_site_word("amr", SiteRole::master);
   ASSERT_FALSE(wrong);
-  EXPECT_NE(describe(wrong.error()).find("arm, press, release, clutch, unclutch, stop, clear"), std::string::npos)
+  EXPECT_NE(describe(wrong.error()).find("arm, press, release, clutch, unclutch, stop, clear, start, keep, discard"),
+            std::string::npos)
       << describe(wrong.error());
   const auto elsewhere = parse_site_word("arm", SiteRole::slave);
   ASSERT_FALSE(elsewhere);
   EXPECT_NE(describe(elsewhere.error()).find("at the master"), std::string::npos) << describe(elsewhere.error());
   EXPECT_FALSE(parse_site_word("", SiteRole::slave));
+}
+
+TEST(SiteWords, ThatMarkAnEpisodePressNothing) {
+  for (const auto& [word, mark] :
+       {std::pair{SiteWord::start, EpisodeMark::start}, std::pair{SiteWord::keep, EpisodeMark::keep},
+        std::pair{SiteWord::discard, EpisodeMark::discard}}) {
+    EXPECT_EQ(parse_site_word(name_of(word), SiteRole::master).value(), word);
+    EXPECT_EQ(mark_of(word), mark);
+    SiteButtons marked, untouched;
+    for (const SiteState state : {SiteState::configure, SiteState::align, SiteState::armed, SiteState::active}) {
+      marked.take(word);
+      const auto pressed = marked.step(state), expected = untouched.step(state);
+      EXPECT_EQ(pressed.arm, expected.arm);
+      EXPECT_EQ(pressed.dead_man, expected.dead_man);
+      EXPECT_EQ(pressed.emergency_stop, expected.emergency_stop);
+      EXPECT_EQ(pressed.clear, expected.clear);
+    }
+  }
+  EXPECT_FALSE(mark_of(SiteWord::arm));
+  EXPECT_FALSE(parse_site_word("keep", SiteRole::slave));
 }
 
 TEST(SiteButtons, AButtonIsPushedForATickAndTheDeadManSwitchComesAfterArming) {

@@ -103,7 +103,10 @@ bool RigLoop::operator()(const station::Tick& tick) noexcept {
   const auto state = static_cast<SiteState>(done.slave.output.record.state);
   const bool active = state == SiteState::active;
   active_ = active;
-  if (streams_ != nullptr) streams_->push(tick, pressed, pair_, done);
+  if (streams_ != nullptr) {
+    streams_->push(tick, pressed, pair_, done);
+    streams_->push(tick, console_.mark());
+  }
   keep_books(done);
   bool works = false, gives_force = false;
   for (const std::int64_t each : {done.master.output.record.state, done.slave.output.record.state}) {

@@ -128,7 +128,10 @@ void RigSiteLoop::step(Site& site, const station::Tick& tick, const control::Sit
     second_.fault_evidence = site.site().gates()[joint].motor().evidence();
     second_.fault_of_leader = leads();
   }
-  if (streams_ != nullptr) streams_->push(tick, pressed, site, done, link_.condition(), link_.arrivals());
+  if (streams_ != nullptr) {
+    streams_->push(tick, pressed, site, done, link_.condition(), link_.arrivals());
+    streams_->push(tick, console_.mark());
+  }
   count(totals_, own_, now);
   own_ = now;
   other_ = heard.state;
