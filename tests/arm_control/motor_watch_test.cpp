@@ -20,7 +20,7 @@ using arm::ArmCommand;
 constexpr double tick_s = 1e-3;
 constexpr Eigen::Index joints = 7;
 /// As experiments/arms/limits.toml has it.
-const MotorWatch::Params usual{.deviations = 2.5};
+const MotorWatch::Params usual{.deviations = 3.0};
 
 arm_plants::ArmPlant::Params true_arm() {
   arm_plants::ArmPlant::Params arm = arm_plants::openarm_class();
