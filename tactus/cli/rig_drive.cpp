@@ -6,6 +6,7 @@
 #include <tactus/experiments/tapping/tapping.hpp>
 #include <tactus/runtime/site_parts.hpp>
 #include <tactus/station/supervised_arms.hpp>
+#include <tactus/station/watched_arm.hpp>
 
 #include <filesystem>
 
@@ -101,15 +102,23 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
   RigDrive drive(*std::move(arms), params->servo.rate_Hz, configuration::to_toml(*params));
   tell_devices(drive, only);
   drive.about["urdf"] = runtime::urdfs_of(*setup);
+  const auto leader_motors = station::motor_watch(*params, setup->leader),
+             follower_motors = station::motor_watch(*params, setup->follower);
+  if (!leader_motors) return request.document.locate(leader_motors.error());
+  if (!follower_motors) return request.document.locate(follower_motors.error());
+  const bool watches = leader_motors->judges();
   if (!only) {
     auto sites = station::arm_sites(*params, *setup, limits_of(*drive.pair.leader), limits_of(*drive.pair.follower));
     if (!sites) return request.document.locate(sites.error());
-    drive.loop = [settings, sites = *std::move(sites), tick = Seconds{1.0 / params->servo.rate_Hz}](
+    std::optional<RigLoop::Watches> motors;
+    if (watches) motors = {.leader = *leader_motors, .follower = *follower_motors};
+    drive.loop = [settings, motors, sites = *std::move(sites), tick = Seconds{1.0 / params->servo.rate_Hz}](
                      auto& exchange, auto& leader, auto& follower) {
-      return RigLoop::around(sites, tick, settings, exchange, leader, follower);
+      return RigLoop::around(sites, tick, settings, exchange, leader, follower, motors);
     };
     return drive;
   }
+  if (watches) drive.motors = *only == SiteRole::master ? *leader_motors : *follower_motors;
   const RigSide& side = side_of(drive.pair, *only);
   drive.agreement = devices::RigAgreement::of(side, *params, *setup);
   tell_agreement(drive);

@@ -36,6 +36,7 @@ struct RigDrive {
   std::function<Result<devices::JointSite>(std::int64_t session)> site;  ///< errors as those of `loop`
   devices::RigSiteLoop::Params settings;
   std::optional<Joints<control::ControlParams>> control;  ///< of joints that are driven each by itself
+  std::optional<arm_control::MotorWatch> motors;          ///< of an arm that is to be watched
 };
 
 /// The side that the site of this role drives.

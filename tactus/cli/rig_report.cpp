@@ -87,7 +87,8 @@ std::string evidence_of(const RigSecond& second, const devices::RigJoint& joint)
 /// What a gate latched, as the rest of a line; of a device that is lost the device says more.
 std::string words_of_fault(const RigSecond& second, const RigPair& pair) {
   const auto& trouble = second.fault_of_leader ? second.leader_trouble : second.follower_trouble;
-  const bool told = trouble.what > devices::Trouble::not_responding;
+  const bool of_motor = second.motor.what != arm_control::MotorFinding::none;
+  const bool told = trouble.what > devices::Trouble::not_responding || of_motor;
   if (second.fault == control::GateFault::none || (told && second.fault == control::GateFault::not_finite)) return {};
   const devices::RigSide& side = second.fault_of_leader ? *pair.leader : *pair.follower;
   const devices::RigJoint& joint = joint_of(side, second.fault_joint);
@@ -103,6 +104,21 @@ const devices::RigJoint& support_joint(const RigSecond& second, const RigPair& p
 std::string words_of_support(const RigSecond& second, const RigPair& pair) {
   if (second.support.fault == control::SupportFault::none) return {};
   return cli::words_of(second.support, support_joint(second, pair));
+}
+
+/// What a motor did otherwise than it was commanded, as the rest of a line.
+std::string words_of_motor(const RigSecond& second, const RigPair& pair) {
+  using arm_control::MotorFinding;
+  const auto& found = second.motor;
+  if (found.what == MotorFinding::none) return {};
+  const devices::RigJoint& joint = joint_of(second.motor_of_leader ? *pair.leader : *pair.follower, found.joint);
+  const std::string difference = report::fixed(std::fabs(found.wrong_N_m), 2) + " " + joint.words().force_unit +
+                                 (found.wrong_N_m < 0.0 ? " less" : " more");
+  const bool reports = found.what == MotorFinding::reports_otherwise;
+  return "; " + joint.path + ": " +
+         (reports ? "its drive reports " + difference + " than it was commanded"
+                  : "the arm moves as if its motor gave " + difference + " than its drive reports") +
+         ": look at the motor and its sign, or correct the URDF";
 }
 
 /// What a person does next, where there is something.
@@ -139,7 +155,8 @@ std::string line_of(const RigSecond& second, const RigPair& pair, std::optional<
   }
   if (only != control::SiteRole::slave) line += words_of(second.leader_trouble, "leader", *pair.leader);
   if (only != control::SiteRole::master) line += words_of(second.follower_trouble, "follower", *pair.follower);
-  return line + words_of_fault(second, pair) + words_of_support(second, pair) + advice(second, pair, only) + "\n";
+  return line + words_of_fault(second, pair) + words_of_motor(second, pair) + words_of_support(second, pair) +
+         advice(second, pair, only) + "\n";
 }
 
 std::string fault_of(const RigRun& run, const RigPair& pair) {
@@ -154,7 +171,7 @@ std::string fault_of(const RigRun& run, const RigPair& pair) {
                      name_of(last.cause) + ")";
   if (leader) text += words_of(last.leader_trouble, "leader", *pair.leader);
   if (follower) text += words_of(last.follower_trouble, "follower", *pair.follower);
-  return text + words_of_fault(last, pair);
+  return text + words_of_fault(last, pair) + words_of_motor(last, pair);
 }
 
 namespace {

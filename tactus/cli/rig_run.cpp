@@ -344,7 +344,7 @@ Check run_rig(const SupervisedOptions& options, const ObserverOptions& observer_
   Check wrong;
   if (only) {
     auto loop = RigSiteLoop::make(*std::move(site), *std::move(endpoint), Seconds{1.0 / found->rate_Hz},
-                                  found->settings, exchange, *driven[0]->device, found->control);
+                                  found->settings, exchange, *driven[0]->device, found->control, found->motors);
     wrong = loop ? run_rig_loop(*std::move(loop), around) : request.document.locate(loop.error());
   } else {
     auto loop = found->loop(exchange, *driven[0]->device, *driven[1]->device);

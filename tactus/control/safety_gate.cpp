@@ -44,11 +44,14 @@ double SafetyGate::believe(double position_m, std::int64_t elapsed_ticks, std::o
   believed_m_ = position_m;
   if (between_ticks > least_ticks) {
     velocity_m_per_s_ = derivative_.step_after(position_m, between_ticks);
-    const MotionFault moved = motion_.step({.position_m = position_m,
-                                            .tells = tells,
-                                            .acted_N = acted_N,
-                                            .force_limit_N = force_limit_N_,
-                                            .between_s = between_ticks * dt_s_});
+    // What was found is not found again, so that its evidence stays.
+    const bool found = fault() == GateFault::contradicted || fault() == GateFault::encoder_frozen;
+    const MotionFault moved = found ? MotionFault::none
+                                    : motion_.step({.position_m = position_m,
+                                                    .tells = tells,
+                                                    .acted_N = acted_N,
+                                                    .force_limit_N = force_limit_N_,
+                                                    .between_s = between_ticks * dt_s_});
     if (moved == MotionFault::contradicted) latch(GateFault::contradicted);
     if (moved == MotionFault::repeated) latch(GateFault::encoder_frozen);
   }

@@ -2,6 +2,7 @@
 
 #include <tactus/arm_control/arm_follower.hpp>
 #include <tactus/arm_control/arm_leader.hpp>
+#include <tactus/arm_control/motor_watch.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/supervision.hpp>
 #include <tactus/core/parameters.hpp>
@@ -153,6 +154,7 @@ struct ArmRigParams {
   control::SupervisionParams supervision;
   ArmSupportParams support;
   arm_control::EachJoint<ProbeTorque> probe_torque;
+  arm_control::MotorWatch::Params motor_watch;
   GripperParams gripper{{.stiffness_N_m_per_rad = 0.0, .damping_N_m_s_per_rad = 0.0}};
   static constexpr auto fields() {
     using P = ArmRigParams;
@@ -163,6 +165,7 @@ struct ArmRigParams {
         field("supervision", &P::supervision, "What the sites make of one another and of their own state."),
         field("support", &P::support, "How gravity compensation comes in on arming, and how it is judged."),
         field("probe_torque", &P::probe_torque, "With which torque each motor's sign is tried on arming."),
+        field("motor_watch", &P::motor_watch, "When a motor does not give the torque that it is commanded."),
         field("gripper", &P::gripper,
               "How joints of the rig are driven that the arm does not have; with no gains such a joint is refused.")};
   }

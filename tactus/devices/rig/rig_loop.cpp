@@ -21,11 +21,24 @@ Result<RigLoop> RigLoop::make(const Joints<control::ControlParams>& control, con
 }
 
 Result<RigLoop> RigLoop::around(station::JointSupervisedPair sites, Seconds tick, const Params& params,
-                                runtime::SiteExchange& exchange, MotorBusDevice& leader, MotorBusDevice& follower) {
-  auto pair = station::JointLocalTeleoperator::around(std::move(sites), leader, follower);
+                                runtime::SiteExchange& exchange, MotorBusDevice& leader, MotorBusDevice& follower,
+                                const std::optional<Watches>& watches) {
+  std::unique_ptr<station::WatchedArm> watched_leader, watched_follower;
+  if (watches) {
+    watched_leader = std::make_unique<station::WatchedArm>(leader, watches->leader);
+    watched_follower = std::make_unique<station::WatchedArm>(follower, watches->follower);
+  }
+  const auto driven = [](auto& watched, MotorBusDevice& device) -> station::JointDevice& {
+    return watched ? static_cast<station::JointDevice&>(*watched) : device;
+  };
+  auto pair = station::JointLocalTeleoperator::around(std::move(sites), driven(watched_leader, leader),
+                                                      driven(watched_follower, follower));
   if (!pair) return pair.error();
   const Joints<double> scales(leader.limits().size(), 1.0);
-  return RigLoop(tick, params, exchange, leader, follower, scales, *std::move(pair));
+  RigLoop loop(tick, params, exchange, leader, follower, scales, *std::move(pair));
+  loop.watched_leader_ = std::move(watched_leader);
+  loop.watched_follower_ = std::move(watched_follower);
+  return loop;
 }
 
 RigLoop::RigLoop(Seconds tick, const Params& params, runtime::SiteExchange& exchange, MotorBusDevice& leader,
@@ -119,8 +132,10 @@ bool RigLoop::operator()(const station::Tick& tick) noexcept {
 
 /// The worst of the second, of each side.
 void RigLoop::note_troubles() noexcept {
-  second_.leader_health = leader_->health();
-  second_.follower_health = follower_->health();
+  second_.leader_health = watched_leader_ ? watched_leader_->health() : leader_->health();
+  second_.follower_health = watched_follower_ ? watched_follower_->health() : follower_->health();
+  if (watched_leader_) note_motor(second_, watched_leader_->found(), true);
+  if (watched_follower_) note_motor(second_, watched_follower_->found(), false);
   note(second_.leader_trouble, leader_->trouble());
   note(second_.follower_trouble, follower_->trouble());
   count(totals_, std::max(second_.leader_health, second_.follower_health));

@@ -6,6 +6,7 @@
 #include <tactus/runtime/joint_streams.hpp>
 #include <tactus/runtime/site_console.hpp>
 #include <tactus/station/local_teleoperator.hpp>
+#include <tactus/station/watched_arm.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -32,9 +33,14 @@ class RigLoop {
                               Seconds tick, const Params& params, runtime::SiteExchange& exchange,
                               MotorBusDevice& leader, MotorBusDevice& follower);
 
+  /// The motors of two arms, each compared with what it is commanded.
+  struct Watches {
+    arm_control::MotorWatch leader, follower;
+  };
   /// The same with sites that were made elsewhere, as those of arms (`arm_sites`): their joints are scaled by none.
   static Result<RigLoop> around(station::JointSupervisedPair sites, Seconds tick, const Params& params,
-                                runtime::SiteExchange& exchange, MotorBusDevice& leader, MotorBusDevice& follower);
+                                runtime::SiteExchange& exchange, MotorBusDevice& leader, MotorBusDevice& follower,
+                                const std::optional<Watches>& watches = std::nullopt);
 
   /// Every tick from now on goes there too. Before the first tick.
   void leave_in(runtime::JointStreams& streams) { streams_ = &streams; }
@@ -62,6 +68,7 @@ class RigLoop {
   runtime::SiteConsole console_;
   Params params_;
   MotorBusDevice *leader_, *follower_;
+  std::unique_ptr<station::WatchedArm> watched_leader_, watched_follower_;  ///< in front of these; or none
   Joints<double> scales_;
   station::JointLocalTeleoperator pair_;
   runtime::JointStreams* streams_ = nullptr;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <tactus/arm_control/motor_watch.hpp>
 #include <tactus/control/safety_gate.hpp>
 #include <tactus/control/site_supervisor.hpp>
 #include <tactus/control/support_raise.hpp>
@@ -28,6 +29,8 @@ struct RigSecond {
   control::MotionCheck::Evidence fault_evidence;  ///< what a position and a reported velocity disagreed by
   control::SupportFinding support;                ///< while its support is what stops a side, of the leader first
   bool support_of_leader = false;
+  arm_control::MotorWatch::Found motor;  ///< a motor that did not do as commanded, while a side stands
+  bool motor_of_leader = false;
   double most_torque = 0.0;  ///< of any motor of the second, either way
   double farthest = 0.0;     ///< of a joint from its leader
   std::size_t joint = 0;     ///< which one
@@ -84,10 +87,20 @@ void note_support(RigSecond& second, const Site& site, bool of_leader) noexcept 
   second.support = site.support().found();
   second.support_of_leader = of_leader;
 }
+/// Notes a motor that does not do as it is commanded, the first one.
+inline void note_motor(RigSecond& second, const arm_control::MotorWatch::Found& found, bool of_leader) noexcept {
+  using arm_control::MotorFinding;
+  if (found.what == MotorFinding::none || second.motor.what != MotorFinding::none) return;
+  second.motor = found;
+  second.motor_of_leader = of_leader;
+}
 /// Begins again what a second gathers. What stopped the sites is reported until they are armed again.
 inline void begin_anew(RigSecond& second, bool stands) noexcept {
   second.most_torque = 0.0;
-  if (!stands) second.leader_trouble = second.follower_trouble = {};
+  if (!stands) {
+    second.leader_trouble = second.follower_trouble = {};
+    second.motor = {};
+  }
 }
 inline bool stands(control::SiteState state) noexcept {
   return state == control::SiteState::hold || state == control::SiteState::fault;

@@ -29,7 +29,8 @@ bool tells_its_place(const Joints<control::ControlParams>& control, Seconds tick
 
 Result<RigSiteLoop> RigSiteLoop::make(JointSite site, link::JointEndpoint endpoint, Seconds tick, const Params& params,
                                       runtime::SiteExchange& exchange, MotorBusDevice& device,
-                                      const std::optional<Joints<control::ControlParams>>& control) {
+                                      const std::optional<Joints<control::ControlParams>>& control,
+                                      const std::optional<arm_control::MotorWatch>& motors) {
   const SiteRole role = site.index() == 0 ? SiteRole::master : SiteRole::slave;
   const std::size_t joints = std::visit([](const auto& each) { return each.site().gates().size(); }, site);
   if (params.scales.size() != joints) {
@@ -39,14 +40,19 @@ Result<RigSiteLoop> RigSiteLoop::make(JointSite site, link::JointEndpoint endpoi
                             std::to_string(joints),
                  .place = {}};
   }
-  auto guard = control ? station::make_device_guard<Joints<DeviceReading>>(device, *control, role)
-                       : station::make_device_guard<Joints<DeviceReading>>(device, joints, role);
+  std::unique_ptr<station::WatchedArm> watched;
+  if (motors) watched = std::make_unique<station::WatchedArm>(device, *motors);
+  station::JointDevice& driven = watched ? static_cast<station::JointDevice&>(*watched) : device;
+  auto guard = control ? station::make_device_guard<Joints<DeviceReading>>(driven, *control, role)
+                       : station::make_device_guard<Joints<DeviceReading>>(driven, joints, role);
   if (!guard) return guard.error();
-  return RigSiteLoop(std::move(site), std::move(endpoint), tick, params, exchange, device, *std::move(guard));
+  return RigSiteLoop(std::move(site), std::move(endpoint), tick, params, exchange, device, std::move(watched),
+                     *std::move(guard));
 }
 
 RigSiteLoop::RigSiteLoop(JointSite site, link::JointEndpoint endpoint, Seconds tick, const Params& params,
                          runtime::SiteExchange& exchange, MotorBusDevice& device,
+                         std::unique_ptr<station::WatchedArm> watched,
                          std::unique_ptr<station::GuardedJointDevice> guard)
     : console_({.duration_s = params.pair.duration_s,
                 .arm_at_once = params.pair.arm_at_once,
@@ -57,8 +63,11 @@ RigSiteLoop::RigSiteLoop(JointSite site, link::JointEndpoint endpoint, Seconds t
       site_(std::move(site)),
       link_(std::move(endpoint), params.longest_age_s),
       device_(&device),
+      watched_(std::move(watched)),
       guard_(std::move(guard)),
-      driven_(guard_ ? static_cast<station::JointDevice*>(guard_.get()) : device_),
+      driven_(guard_     ? static_cast<station::JointDevice*>(guard_.get())
+              : watched_ ? static_cast<station::JointDevice*>(watched_.get())
+                         : device_),
       read_(params.scales.size()),
       told_(params.scales.size()) {}
 
@@ -148,7 +157,8 @@ bool RigSiteLoop::operator()(const station::Tick& tick) noexcept {
   const control::SiteRequests pressed = asked(by_person);
   std::visit([&](auto& site) noexcept { step(site, tick, pressed); }, site_);
   auto& health = leads() ? second_.leader_health : second_.follower_health;
-  health = device_->health();
+  health = watched_ ? watched_->health() : device_->health();
+  if (watched_) note_motor(second_, watched_->found(), leads());
   note(leads() ? second_.leader_trouble : second_.follower_trouble, device_->trouble());
   count(totals_, health);
   ++totals_.ticks;

@@ -34,10 +34,12 @@ class RigSiteLoop {
   };
   /// What outlives it: the exchange and the device. `endpoint` is that whose session the site has. `control` is of
   /// joints that are driven each by itself, for the guard before the device; without it whoever made the site answers
-  /// for its gates. Errors: those of `make_device_guard`; `inconsistent` for other numbers of joints.
+  /// for its gates. `motors` compares an arm's motors with what they are commanded. Errors: those of
+  /// `make_device_guard`; `inconsistent` for other numbers of joints.
   static Result<RigSiteLoop> make(JointSite site, link::JointEndpoint endpoint, Seconds tick, const Params& params,
                                   runtime::SiteExchange& exchange, MotorBusDevice& device,
-                                  const std::optional<Joints<control::ControlParams>>& control);
+                                  const std::optional<Joints<control::ControlParams>>& control,
+                                  const std::optional<arm_control::MotorWatch>& motors = std::nullopt);
 
   /// Every tick from now on goes there too. Before the first tick.
   void leave_in(runtime::JointStreams& streams) { streams_ = &streams; }
@@ -54,7 +56,7 @@ class RigSiteLoop {
 
  private:
   RigSiteLoop(JointSite site, link::JointEndpoint endpoint, Seconds tick, const Params& params,
-              runtime::SiteExchange& exchange, MotorBusDevice& device,
+              runtime::SiteExchange& exchange, MotorBusDevice& device, std::unique_ptr<station::WatchedArm> watched,
               std::unique_ptr<station::GuardedJointDevice> guard);
   [[nodiscard]] bool leads() const noexcept { return site_.index() == 0; }
   [[nodiscard]] bool may_align() const noexcept;
@@ -69,6 +71,7 @@ class RigSiteLoop {
   JointSite site_;
   runtime::JointSiteLink link_;
   MotorBusDevice* device_;
+  std::unique_ptr<station::WatchedArm> watched_;        ///< before the device; or none
   std::unique_ptr<station::GuardedJointDevice> guard_;  ///< before the device
   station::JointDevice* driven_;                        ///< the guard
   runtime::JointStreams* streams_ = nullptr;

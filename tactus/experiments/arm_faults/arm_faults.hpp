@@ -18,7 +18,8 @@ struct ArmFaultBench {
   ArmPairSetup setup;
   Joints<station::DeviceLimits> leader_limits, follower_limits;      ///< of the arms, from their URDFs
   Joints<control::SafetyGate::Params> leader_gates, follower_gates;  ///< of each joint, within these
-  arm_plants::ArmDevice leader, follower;                            ///< at rest, in nobody's hand
+  arm_control::MotorWatch leader_watch, follower_watch;
+  arm_plants::ArmDevice leader, follower;  ///< at rest, in nobody's hand
   [[nodiscard]] double tick_s() const { return 1.0 / setup.params.servo.rate_Hz; }
   /// The leader with the mass of the hand that holds it.
   [[nodiscard]] arm_plants::ArmPlant::Params held_leader() const;

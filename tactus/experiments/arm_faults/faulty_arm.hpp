@@ -5,6 +5,7 @@
 #include <tactus/experiments/faults/process.hpp>
 #include <tactus/experiments/faults/witness.hpp>
 #include <tactus/simulation/packet_relay.hpp>
+#include <tactus/station/watched_arm.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,10 +23,12 @@ class FaultyArm {
   static constexpr double drive_watchdog_s = 0.05;
 
   FaultyArm(FaultSite at, SupervisedSite first, SupervisedSite again, const arm_plants::ArmDevice& device,
-            const Joints<control::SafetyGate::Params>& gates, const DescribedArm& described, const FaultPlan& plan,
+            const Joints<control::SafetyGate::Params>& gates, const DescribedArm& described,
+            const arm_control::MotorWatch& motor_watch, const FaultPlan& plan,
             const control::PacketJudgeParams& packets, double tick_s)
       : where(at),
         arm(device),
+        motors(motor_watch),
         site(std::move(first)),
         restarted{std::move(again)},
         process(at),
@@ -35,6 +38,7 @@ class FaultyArm {
               plan.impairment.delay_s + plan.impairment.jitter_s, tick_s),
         sent(packets.longest_age_s, tick_s),
         commanded(gates.size(), {.enabled = false}),
+        driven_(commanded),
         gates_(gates) {
     // The law is entered in another order than the gate does: the last digits.
     constexpr double rounding = 1.0 + 1e-9;
@@ -46,6 +50,7 @@ class FaultyArm {
 
   FaultSite where;
   arm_plants::ArmDevice arm;
+  arm_control::MotorWatch motors;  ///< whether they do as they are commanded
   SupervisedSite site;
   std::vector<SupervisedSite> restarted;  ///< what a process that is started again runs
   FaultProcessOf<control::JointPacket> process;
@@ -56,6 +61,20 @@ class FaultyArm {
   bool loses_power = false;                  ///< at this tick, by the fault
   double worked_J = 0.0;                     ///< on who touches its tool, at the tick before
 
+  /// What the drives report at this tick, without any fault of theirs. An arm that stands on something does not move,
+  /// whatever its motors give.
+  [[nodiscard]] Joints<station::DeviceReading> read(std::int64_t tick) {
+    Joints<station::DeviceReading> read = arm.read({.number = tick});
+    for (std::size_t i = 0; stands_ && i < read.size(); ++i) {
+      const station::DeviceCommand& joint = driven_[i];
+      control::DriveReport& report = read[i].motor_report;
+      report.force_N =
+          joint.enabled ? joint.force_N + joint.law.force_N(read[i].position_m, report.velocity_m_per_s) : 0.0;
+    }
+    return read;
+  }
+  /// The site looks at what its motors report, beside what it commanded last.
+  void looks(std::int64_t elapsed_ticks) noexcept { station::watch(motors, sensed, commanded, elapsed_ticks); }
   /// A command of the site reaches its drives.
   void obeys(ArmFaultInjection& injection, const Joints<station::DeviceCommand>& command) {
     commanded = command;
@@ -163,14 +182,15 @@ class FaultyArm {
  private:
   [[nodiscard]] bool waited_too_long() const { return unheard_s_ > drive_watchdog_s; }
   void drive(ArmFaultInjection& injection) {
-    Joints<station::DeviceCommand> driven = commanded;
+    driven_ = commanded;
     if (waited_too_long()) {
-      for (station::DeviceCommand& joint : driven) joint.enabled = false;
+      for (station::DeviceCommand& joint : driven_) joint.enabled = false;
     }
-    injection.misdrive(where, driven);
-    arm.write(driven);
+    injection.misdrive(where, driven_);
+    arm.write(driven_);
   }
 
+  Joints<station::DeviceCommand> driven_;  ///< last, with any fault of the drives
   Joints<control::SafetyGate::Params> gates_;
   std::vector<ForceWitness> motors_;
   std::vector<double> friction_N_m_;
@@ -191,7 +211,8 @@ struct ArmDrives {
   Joints<station::DeviceReading> read(const station::Tick&) noexcept { return arm.sensed; }
   void write(const Joints<station::DeviceCommand>& command) noexcept { arm.obeys(injection, command); }
   [[nodiscard]] station::DeviceHealth health() const noexcept {
-    return arm.loses_power ? station::DeviceHealth::lost : station::DeviceHealth::good;
+    const bool disobeyed = arm.motors.found().what != arm_control::MotorFinding::none;
+    return arm.loses_power || disobeyed ? station::DeviceHealth::lost : station::DeviceHealth::good;
   }
 };
 

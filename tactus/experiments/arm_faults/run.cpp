@@ -39,9 +39,10 @@ class ArmFaultRun {
         person_(bench, plan),
         wall_(person_.wall()),
         leader_(FaultSite::master, std::move(first.leader), std::move(again.leader), bench.leader, bench.leader_gates,
-                bench.setup.leader, plan, rig_.supervision.packets, tick_s_),
+                bench.setup.leader, bench.leader_watch, plan, rig_.supervision.packets, tick_s_),
         follower_(FaultSite::slave, std::move(first.follower), std::move(again.follower), bench.follower,
-                  bench.follower_gates, bench.setup.follower, plan, rig_.supervision.packets, tick_s_),
+                  bench.follower_gates, bench.setup.follower, bench.follower_watch, plan, rig_.supervision.packets,
+                  tick_s_),
         judge_({0.0, 0.0, released_torque_share * rig_.leader_gate.force_limit_N, tick_s_},
                {0.0, 0.0, released_torque_share * rig_.follower_gate.force_limit_N, tick_s_}, tick_s_),
         ticks_(std::lround((end_s() + fault_schedule::end_after_s) / tick_s_)) {
@@ -73,7 +74,7 @@ class ArmFaultRun {
 
   template <class Here, class There>
   void step_site(Here& here, There& there) {
-    here.sensed = here.arm.read({.number = tick_});
+    here.sensed = here.read(tick_);
     injection().misread(here.where, here.sensed);
     here.loses_power = injection().is_without_power(here.where);
     if (here.process.fare(injections_, false)) {
@@ -89,12 +90,13 @@ class ArmFaultRun {
           FaultOperator::presses(moment().now_s, end_s(), judge_.rearms()), here.where, moment());
       ArmFaultWay<Here, There> way{.here = here, .there = there, .injection = injection(), .tick_s = tick_s_};
       const station::Tick now{.number = tick_, .missed = here.process.elapsed_ticks() - 1};
+      here.looks(here.process.elapsed_ticks());
       ArmDrives<Here> drives{.arm = here, .injection = injection()};
       const auto done = station::step(here.site, drives, way, now, pressed);
       there.sent.applied(done.output.record, tick_, outcome_);
     }
     here.witness(outcome_);
-    here.is_carried(tick_s_, rig_.supervision.blend_s);
+    here.is_carried(tick_s_, tries_motors_ ? rig_.support.raise_s : rig_.supervision.blend_s);
     // Who clears a fault has caught the arm before.
     if (!moment().before && moment().now_s > end_s() + fault_schedule::look_after_s) {
       here.is_caught(here.where == FaultSite::master ? held_leader_ : follower_arm_);
@@ -168,7 +170,7 @@ FaultOutcome run_arm_fault(const ArmFaultBench& bench, const FaultPlan& plan) {
                                     {.leader_session = session,
                                      .follower_session = session + 1,
                                      .tries_motors = is_wired_so(plan),
-                                     .judges_support = false});
+                                     .judges_support = is_wired_so(plan)});
   };
   return ArmFaultRun(bench, plan, started(1), started(3)).run();
 }

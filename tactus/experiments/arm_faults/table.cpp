@@ -1,6 +1,7 @@
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/experiments/faults/presentation.hpp>
+#include <tactus/station/watched_arm.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +15,17 @@ namespace tactus::experiments {
 
 namespace {
 
-Joints<station::DeviceLimits> limits_of(const DescribedArm& described) {
+/// Of the arm's joints by its URDF, and of drives that run the damping that either site asks for, as a rig file must
+/// allow it.
+Joints<station::DeviceLimits> limits_of(const DescribedArm& described, const ArmTappingParams& params) {
   Joints<station::DeviceLimits> limits(described.joints.size());
+  const auto leader_damping = params.control.drive_damping.of(limits.size());
+  const auto follower_gains = params.control.follower.gains.of(limits.size());
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const arm::JointLimits& joint = described.arm.chain.joints[i].limits;
+    limits[i].damping_N_s_per_m =
+        std::max(leader_damping[i].damping_N_m_s_per_rad, follower_gains[i].damping_N_m_s_per_rad);
+    limits[i].velocity_step_m_per_s = described.arm.motors[i].velocity_step_rad_per_s;
     limits[i].force_N = joint.effort_N_m;
     limits[i].velocity_m_per_s = joint.velocity_rad_per_s;
     limits[i].position_m = std::max(std::fabs(joint.lower_rad), std::fabs(joint.upper_rad));
@@ -45,19 +53,18 @@ arm_plants::ArmPlant::Params ArmFaultBench::held_leader() const {
 double ArmFaultBench::wired_s() const {
   const control::SupervisionParams& supervision = setup.params.rig.supervision;
   constexpr double begins_s = 0.5;
-  return begins_s + 2.0 * supervision.blend_s +
+  return begins_s + 2.0 * supervision.blend_s + setup.params.rig.support.raise_s +
+         control::SupportRaiseOf<Joints<control::Message>>::settles_s +
          2.0 * static_cast<double>(leader_gates.size()) * (supervision.probe.duration_s + supervision.blend_s);
 }
 
 Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const std::filesystem::path& folder) {
   auto setup = set_up_arm_pair(params, folder);
   if (!setup) return setup.error();
-  const Joints<station::DeviceLimits> leader_limits = limits_of(setup->leader),
-                                      follower_limits = limits_of(setup->follower);
+  const Joints<station::DeviceLimits> leader_limits = limits_of(setup->leader, params),
+                                      follower_limits = limits_of(setup->follower, params);
   // What can be made once can be made always: a plan changes no parameter of the parts.
-  if (const auto sites =
-          station::supervise_arms(params, *setup, leader_limits, follower_limits, {.judges_support = false});
-      !sites) {
+  if (const auto sites = station::supervise_arms(params, *setup, leader_limits, follower_limits, {}); !sites) {
     return sites.error();
   }
   arm_plants::ArmPlant::Params held = setup->leader.arm;
@@ -67,6 +74,10 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
   auto follower = arm_plants::ArmPlant::make(setup->follower.arm, setup->follower.start);
   if (!follower) return under(station::differs(params.arm) ? "arm.follower" : "arm", follower.error());
   const Seconds tick{1.0 / params.servo.rate_Hz};
+  const auto leader_watch = station::motor_watch(params, setup->leader),
+             follower_watch = station::motor_watch(params, setup->follower);
+  if (!leader_watch) return leader_watch.error();
+  if (!follower_watch) return follower_watch.error();
   if (const auto contact = mechanics::Environment::make(params.wall.environment(), tick); !contact) {
     return under("wall", contact.error());
   }
@@ -78,6 +89,8 @@ Result<ArmFaultBench> make_arm_fault_bench(const ArmTappingParams& params, const
                        .follower_limits = follower_limits,
                        .leader_gates = joint_gates(params.rig.leader_gate, leader_limits),
                        .follower_gates = joint_gates(params.rig.follower_gate, follower_limits),
+                       .leader_watch = *leader_watch,
+                       .follower_watch = *follower_watch,
                        .leader = {*std::move(leader), leader_limits},
                        .follower = {*std::move(follower), follower_limits}};
 }
