@@ -34,7 +34,9 @@ Error out_of_bounds(std::string_view parameter, double value, const Bounds& boun
   return {.code = ErrorCode::out_of_bounds,
           .parameter = std::string(parameter),
           .message = with_unit(value, unit) + " is out of bounds: it " + describe_bounds(bounds, unit),
-          .place = {}};
+          .place = {},
+          .value = with_unit(value, unit),
+          .bounds = describe_bounds(bounds, unit)};
 }
 
 namespace detail {
