@@ -1,6 +1,6 @@
+#include <tactus/cli/streams.hpp>
 #include <tactus/cli/verbs.hpp>
 
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -85,7 +85,7 @@ void add_completion(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand("completion", "Print what completes this command in a shell");
   verb->add_option("SHELL", *shell, "Which shell")->required()->check(CLI::IsMember({"bash"}));
-  verb->callback([&app, shell] { std::cout << bash_script(app); });
+  verb->callback([&app, shell] { result_stream() << bash_script(app); });
 }
 
 }  // namespace tactus::cli

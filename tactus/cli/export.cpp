@@ -1,12 +1,12 @@
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/output_folder.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/cli/verbs.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/table.hpp>
 #include <tactus/telemetry/export.hpp>
 
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -108,7 +108,7 @@ Check run(const ExportOptions& options) {
   const std::filesystem::path file = options.out ? std::filesystem::path(*options.out) : default_file(options);
   if (auto error = may_write(file, options.overwrite, options.out ? "--out" : options.log)) return error;
   if (auto error = write(options, *content, file)) return error;
-  std::cout << (options.json.wanted ? options.json.document(json_of(*content, file)) : text_of(*content, file));
+  result_stream() << (options.json.wanted ? options.json.document(json_of(*content, file)) : text_of(*content, file));
   return std::nullopt;
 }
 
@@ -127,8 +127,7 @@ void add_export(CLI::App& app, const std::string& command, int& status) {
   add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
     if (const auto error = run(*options)) {
-      std::cerr << app.get_name() << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(app.get_name(), *error);
     }
   });
 }
