@@ -1,0 +1,5 @@
+#include "use_header.inc"
+#include <tactus.h>
+
+extern "C" int use_tactus_from_cxx11();
+int use_tactus_from_cxx11() { return use_tactus(); }
