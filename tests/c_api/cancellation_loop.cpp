@@ -1,14 +1,15 @@
 #include <tactus/configuration/document.hpp>
 #include <tactus/control/stages/cancellation.hpp>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <vector>
 
 /// `cancellation_loop MODEL.toml SAMPLE_TIME_S IN OUT`: the loop of the README over a file of numbers, the position and
-/// the force of each cycle, into a file of the intended positions. Prints how long a cycle takes, in ns.
+/// the force of each cycle, into a file of the intended positions. Prints the processor time of a
+/// cycle, in ns.
 int main(int argc, char** argv) {
   using namespace tactus;
   if (argc != 5) return 2;
@@ -24,10 +25,10 @@ int main(int argc, char** argv) {
     cycles.push_back(cycle);
   }
   intended_m.resize(cycles.size());
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   for (std::size_t i = 0; i < cycles.size(); ++i) intended_m[i] = cancellation->step(cycles[i]);
-  const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - start;
-  std::printf("%.6g\n", took.count() / static_cast<double>(cycles.size()));
+  const double took_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  std::printf("%.6g\n", 1e9 * took_s / static_cast<double>(cycles.size()));
   std::ofstream(argv[4], std::ios::binary)
       .write(reinterpret_cast<const char*>(intended_m.data()),
              static_cast<std::streamsize>(intended_m.size() * sizeof(double)));

@@ -174,7 +174,9 @@ TEST_F(CApiHandles, ThreadsWithHandlesOfTheirOwnDoNotDisturbOneAnother) {
         const tactus_error error = make_error();
         EXPECT_EQ(tactus_error_release(error), TACTUS_OK);
         EXPECT_EQ(tactus_cancellation_release(one), TACTUS_OK);
-        if (round % 25 == 0) EXPECT_EQ(tactus_outcome_release(make_outcome()), TACTUS_OK);
+        if (round % 25 == 0) {
+          EXPECT_EQ(tactus_outcome_release(make_outcome()), TACTUS_OK);
+        }
       }
     });
   }

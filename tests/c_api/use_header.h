@@ -1,3 +1,8 @@
+#ifndef TACTUS_USE_HEADER_H
+#define TACTUS_USE_HEADER_H
+
+#include <tactus.h>
+
 /* A loop of a few cycles and a command, as a program of C and of C++11 writes them. Returns the number of the first check
  * that fails, or 0. */
 static int use_tactus(void) {
@@ -31,3 +36,5 @@ static int use_tactus(void) {
   if (tactus_log_column(0, 0, 0, &column_view) != TACTUS_BAD_HANDLE) return 14;
   return 0;
 }
+
+#endif
