@@ -7,6 +7,7 @@ import ctypes
 import json
 import os
 import tempfile
+import threading
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, List, Mapping, Sequence, Union
 
@@ -76,37 +77,20 @@ class Result:
         return getattr(self.values, name)
 
 
-def _report(progress: Progress | None, raised: List[BaseException]) -> Any:
+def _run(words: Sequence[str], progress: Progress | None, stop: threading.Event) -> Output:
+    """Runs a command in this thread; `stop` ends it at its next report of progress."""
+    library = _library.library()
+    raised: List[BaseException] = []
+
     def report(done: float, _user: Any) -> int:
-        # Ctrl-C is raised here too: in a callback Python looks for signals.
         try:
-            return 1 if progress is not None and progress(done) is False else 0
+            return 1 if stop.is_set() or (progress is not None and progress(done) is False) else 0
         except BaseException as error:  # nothing may pass through the library
             raised.append(error)
             return 1
 
-    return _library.Progress(report)
-
-
-def command(*words: str, progress: Progress | None = None) -> Output:
-    """Runs a command as `tactus WORDS...` does, and returns what it prints.
-
-    Args:
-        words: for instance "run", "tapping.toml", "--json".
-        progress: called now and then with the share of the work that is done, 0 to 1; if it returns False, the command
-            ends and `Interrupted` is raised. What it raises is raised here. Commands that take no time do not call it.
-
-    Other Python threads run meanwhile; commands of several threads run one after the other. Ctrl-C ends a command that
-    reports progress before its next piece of work, and others when they are done.
-
-    Raises:
-        RequestError, JobError: with the command's own message.
-        Interrupted: `progress` returned False.
-    """
-    library = _library.library()
-    raised: List[BaseException] = []
     given = _library.CommandOptions()
-    given.progress = _report(progress, raised)
+    given.progress = _library.Progress(report)
     outcome = ctypes.c_uint64()
     try:
         _library.call(
@@ -117,8 +101,6 @@ def command(*words: str, progress: Progress | None = None) -> Output:
             raise raised[0] from None
         raise
     try:
-        if raised:
-            raise raised[0]
         view = _library.OutcomeView()
         _library.check(library.tactus_outcome_read(outcome, ctypes.byref(view)))
         return Output(
@@ -128,6 +110,48 @@ def command(*words: str, progress: Progress | None = None) -> Output:
         )
     finally:
         library.tactus_outcome_release(outcome)
+
+
+def command(*words: str, progress: Progress | None = None) -> Output:
+    """Runs a command as `tactus WORDS...` does, and returns what it prints.
+
+    Args:
+        words: for instance "run", "tapping.toml", "--json".
+        progress: called now and then with the share of the work that is done, 0 to 1, in the thread of the command; if it
+            returns False, the command ends and `Interrupted` is raised. What it raises is raised here. Commands that take
+            no time do not call it.
+
+    Other Python threads run meanwhile; commands of several threads run one after the other. Ctrl-C ends a command that
+    reports progress before its next piece of work, and others when they are done.
+
+    Raises:
+        RequestError, JobError: with the command's own message.
+        Interrupted: `progress` returned False.
+    """
+    stop = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        return _run(words, progress, stop)
+    # Python raises Ctrl-C in the main thread, and in a callback of the library it would be lost. So the main thread waits.
+    done: List[Output] = []
+    failed: List[BaseException] = []
+
+    def work() -> None:
+        try:
+            done.append(_run(words, progress, stop))
+        except BaseException as error:  # raised again in the thread that called
+            failed.append(error)
+
+    worker = threading.Thread(target=work, name="tactus", daemon=True)
+    worker.start()
+    try:
+        worker.join()
+    except BaseException:
+        stop.set()
+        worker.join()
+        raise
+    if failed:
+        raise failed[0]
+    return done[0]
 
 
 def _result(words: List[str], progress: Progress | None = None) -> Result:

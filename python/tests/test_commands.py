@@ -133,7 +133,7 @@ class Progress(InAFolder):
     def test_ctrl_c_ends_a_run(self):
         threading.Timer(0.3, os.kill, [os.getpid(), signal.SIGINT]).start()
         with self.assertRaises(KeyboardInterrupt):
-            tactus.run(self.quick(), task={"taps": 1000000})
+            tactus.run(self.quick(), task={"taps": 100000})
 
     def test_other_threads_run_meanwhile(self):
         quick, counted, done = self.quick(), [0], threading.Event()

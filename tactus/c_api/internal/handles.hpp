@@ -29,11 +29,12 @@ class Handles {
     const std::lock_guard lock(mutex_);
     if (free_.empty() && !add_block()) return 0;
     const std::size_t at = free_.back();
+    Place* const place = place_of(at);
+    if (place == nullptr) return 0;
     free_.pop_back();
-    Place& place = *place_of(at);
-    place.object = std::move(owned);
-    const std::uint64_t handle = (++place.uses << use_shift) | (at << kind_bits) | kind;
-    place.handle.store(handle, std::memory_order_release);
+    place->object = std::move(owned);
+    const std::uint64_t handle = (++place->uses << use_shift) | (at << kind_bits) | kind;
+    place->handle.store(handle, std::memory_order_release);
     return handle;
   }
 
