@@ -11,7 +11,7 @@ set(TACTUS_COMPONENT_simulation arm_plants simulation experiments real_time)
 set(TACTUS_COMPONENT_analysis stability arm_stability advice)
 set(TACTUS_COMPONENT_runtime link runtime ros2)
 set(TACTUS_COMPONENT_hardware wire emulation devices)
-set(TACTUS_COMPONENT_interfaces live cli)
+set(TACTUS_COMPONENT_interfaces live cli c_api)
 
 set(TACTUS_COMPONENT_kernel_NEEDS)
 set(TACTUS_COMPONENT_data_NEEDS kernel)

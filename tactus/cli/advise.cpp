@@ -4,8 +4,8 @@
 #include <tactus/cli/experiment_options.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/streams.hpp>
 
-#include <iostream>
 #include <memory>
 #include <utility>
 
@@ -65,8 +65,7 @@ void add_advise(CLI::App& app, const std::string& command, int& status) {
                      "Folder for report.html, results.json and advice.toml (a file for run --with)");
   verb->callback([options, &app, &command, &status] {
     if (const auto error = advise(*options, command)) {
-      std::cerr << app.get_name() << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(app.get_name(), *error);
     }
   });
 }

@@ -1,12 +1,12 @@
 #include <tactus/arm/chain.hpp>
 #include <tactus/arm_identification/rig_log.hpp>
 #include <tactus/cli/arm_options.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -50,9 +50,9 @@ void warn_of_weight(const urdf::Arm& arm) {
     const double limit = arm.params.joints[at].limits.effort_N_m;
     const char* const unit = arm.params.joints[at].kind == arm::JointKind::revolute ? " N m" : " N";
     if (limit >= unlimited || most[j] <= limit) continue;
-    std::cerr << "Warning: joint '" << arm.joints[at] << "' takes up to " << report::number(most[j], 3) << unit
-              << " to hold the arm's own weight, more than its effort limit of " << report::number(limit, 3) << unit
-              << "\n";
+    message_stream() << "Warning: joint '" << arm.joints[at] << "' takes up to " << report::number(most[j], 3) << unit
+                     << " to hold the arm's own weight, more than its effort limit of " << report::number(limit, 3)
+                     << unit << "\n";
   }
 }
 
@@ -103,7 +103,7 @@ Result<urdf::Arm> read_arm_urdf(const ArmUrdfOptions& options) {
   auto arm = urdf::read(options.file, options.tip);
   if (!arm) return arm;
   for (const auto* warnings : {&arm->warnings, &arm->doubtful_limits}) {
-    for (const std::string& warning : *warnings) std::cerr << "Warning: " << warning << "\n";
+    for (const std::string& warning : *warnings) message_stream() << "Warning: " << warning << "\n";
   }
   arm->params.gravity = gravity;
   warn_of_weight(*arm);

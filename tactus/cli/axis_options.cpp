@@ -1,6 +1,6 @@
 #include <tactus/cli/axis_options.hpp>
+#include <tactus/cli/streams.hpp>
 
-#include <iostream>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -35,7 +35,7 @@ Result<identification::AxisRecording> read_axis(const AxisOptions& options, bool
   roles.file = options.file;
   auto axis = identification::read_axis(roles, needs_measured);
   if (axis) {
-    for (const std::string& note : axis->notes) std::cerr << "Note: " << note << "\n";
+    for (const std::string& note : axis->notes) message_stream() << "Note: " << note << "\n";
     return axis;
   }
   Error error = axis.error();

@@ -2,13 +2,17 @@
 #include <tactus/cli/command.hpp>
 #include <tactus/cli/commands.hpp>
 #include <tactus/cli/help.hpp>
+#include <tactus/cli/internal/command_words.hpp>
 #include <tactus/cli/plugin.hpp>
 #include <tactus/cli/printable_output.hpp>
 #include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/cli/suggestion.hpp>
 #include <tactus/cli/version_text.hpp>
 #include <tactus/report/text.hpp>
 
+#include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -45,9 +49,11 @@ std::string shell_word(std::string_view word) {
 }
 
 int refuse(const std::string& name, std::string_view why) {
-  std::cerr << name << ": " << why << ": `" << name << " --help` and `" << name
-            << " COMMAND --help` list what there is\n";
-  return 2;
+  return report_error(name, {.code = ErrorCode::syntax,
+                             .parameter = {},
+                             .message = std::string(why) + ": `" + name + " --help` and `" + name +
+                                        " COMMAND --help` list what there is",
+                             .place = {}});
 }
 
 /// No empty list is shown as a default, here and in all verbs below.
@@ -58,29 +64,31 @@ void forget_empty_defaults(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands({})) forget_empty_defaults(*verb);
 }
 
-int run(int argc, char** argv) {
-  const std::string name = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "tactus";
+/// What can have a place in a program that is not ours: it computes, and neither drives anything nor takes signals.
+Check refuse_in_process(int argc, const char* const* argv) {
+  constexpr std::array programs{"device", "doctor", "emulate", "plant", "relay", "serve"};
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    const bool plugin = word.starts_with("--plugin");
+    if (word.starts_with('-') && !plugin) continue;
+    if (!plugin && std::find(programs.begin(), programs.end(), word) == programs.end()) return std::nullopt;
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message = "is for a process of its own: start the command `tactus` as a program",
+                 .place = std::string(word)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+int run_words(const std::string& name, int argc, const char* const* argv) {
   std::string command = shell_word(name);
   for (int i = 1; i < argc; ++i) command += " " + shell_word(argv[i]);
   command = report::printable(command);  // it stands in reports, and in model files as a comment of one line
-
-  // Else the number of one that was closed would be given to a log or a socket, which would be read or printed to. This
-  // way round, so that reading from it and printing to it fail as before.
-  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (fcntl(standard, F_GETFD) < 0) (void)open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  if (is_in_process()) {
+    if (const auto error = refuse_in_process(argc, argv)) return report_error(name, *error);
   }
-  const auto painter = [&name](int descriptor) {
-    return shows_colour(descriptor) ? std::optional(Painter(name)) : std::nullopt;
-  };
-  const PrintableOutput output(std::cout, painter(STDOUT_FILENO)), errors(std::cerr, painter(STDERR_FILENO));
-  if (shows_colour(STDERR_FILENO)) std::cerr << std::nounitbuf;  // a line is painted as a whole
-  if (winsize window{}; ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0) {
-    report::set_text_width(window.ws_col);
-  }
-  // A reader of the results that went away is not the end: files are still written.
-  std::signal(SIGPIPE, SIG_IGN);
-  // A file that reaches the limit on its size (ulimit -f) is a write that fails, as on a full disk, and not the end.
-  std::signal(SIGXFSZ, SIG_IGN);
   int status = 0;
   CLI::App app{"Crisp and stable force-reflecting teleoperation", name};
   app.set_version_flag("--version", version_text());
@@ -129,22 +137,44 @@ int run(int argc, char** argv) {
     if (app.get_subcommands().empty()) return refuse(name, "A command is required");
   } catch (const CLI::ParseError& error) {
     if (unloaded) {
-      std::cerr << name << ": " << describe(*unloaded) << "\n";
-      return exit_status(*unloaded);
+      return report_error(name, *unloaded);
     }
     // Help and version come this way too, with a code of 0.
     if (error.get_exit_code() != 0) {
       const std::string unknown = unknown_word(app, argc, argv);
       return refuse(name, unknown.empty() ? error.what() : unknown);
     }
-    app.exit(error);
+    app.exit(error, result_stream(), message_stream());
   }
   if (status != 0) return status;
   if (const auto error = flush_standard_output()) {
-    std::cerr << name << ": " << describe(*error) << "\n";
-    return exit_status(*error);
+    return report_error(name, *error);
   }
   return 0;
+}
+
+namespace {
+
+int run(int argc, char** argv) {
+  const std::string name = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "tactus";
+  // Else the number of one that was closed would be given to a log or a socket, which would be read or printed to. This
+  // way round, so that reading from it and printing to it fail as before.
+  for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(standard, F_GETFD) < 0) (void)open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+  const auto painter = [&name](int descriptor) {
+    return shows_colour(descriptor) ? std::optional(Painter(name)) : std::nullopt;
+  };
+  const PrintableOutput output(std::cout, painter(STDOUT_FILENO)), errors(std::cerr, painter(STDERR_FILENO));
+  if (shows_colour(STDERR_FILENO)) std::cerr << std::nounitbuf;  // a line is painted as a whole
+  if (winsize window{}; ioctl(STDOUT_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0) {
+    report::set_text_width(window.ws_col);
+  }
+  // A reader of the results that went away is not the end: files are still written.
+  std::signal(SIGPIPE, SIG_IGN);
+  // A file that reaches the limit on its size (ulimit -f) is a write that fails, as on a full disk, and not the end.
+  std::signal(SIGXFSZ, SIG_IGN);
+  return run_words(name, argc, argv);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
-#include <tactus/cli/commands.hpp>
+#include <tactus/cli/streams.hpp>
 
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -85,7 +84,7 @@ void add_completion(CLI::App& app) {
   auto shell = std::make_shared<std::string>();
   CLI::App* verb = app.add_subcommand("completion", "Print the shell completion of this command");
   verb->add_option("SHELL", *shell, "Shell")->required()->check(CLI::IsMember({"bash"}));
-  verb->callback([&app, shell] { std::cout << bash_script(app); });
+  verb->callback([&app, shell] { result_stream() << bash_script(app); });
 }
 
 }  // namespace tactus::cli

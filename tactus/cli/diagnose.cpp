@@ -1,9 +1,9 @@
 #include <tactus/cli/commands.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/diagnosis/report.hpp>
 
-#include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
@@ -74,8 +74,7 @@ void add_diagnose(CLI::App& app, const std::string& command, int& status) {
   add_output_options(*verb, options->results, command, "Folder for report.html and results.json");
   verb->callback([options, name = app.get_name(), &command, &status] {
     if (const auto error = diagnose(*options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

@@ -2,6 +2,7 @@
 #include <tactus/cli/commands.hpp>
 #include <tactus/cli/estimate.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -172,8 +172,7 @@ void add_estimate(CLI::App& app, const std::string& command, int& status) {
       ->check(CLI::IsMember({-1.0, 1.0}));
   verb->callback([options, name = app.get_name(), &command, &status] {
     if (const auto error = estimate_force(*options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

@@ -2,6 +2,7 @@
 #include <tactus/cli/arm_options.hpp>
 #include <tactus/cli/estimate.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -203,8 +203,7 @@ void add_estimate_torque(CLI::App& estimate, const std::string& name, const std:
   add_arm_options(*verb, options->arm, command, "Folder for external_torque.csv, report.html and results.json");
   verb->callback([options, name, &command, &status] {
     if (const auto error = estimate_torque(*options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

@@ -1,6 +1,7 @@
 #include <tactus/cli/commands.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/output_folder.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/report/json.hpp>
@@ -10,7 +11,6 @@
 #include <tactus/telemetry/wide_table.hpp>
 
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -198,7 +198,7 @@ Check run_wide(const ExportOptions& options) {
     if (one.file.empty()) continue;
     if (auto error = log->export_csv(one.episode, options.rate_Hz, one.file)) return error;
   }
-  std::cout << (options.json.wanted ? options.json.document(json_of(*log, files, folder)) : text_of(*log, files));
+  result_stream() << (options.json.wanted ? options.json.document(json_of(*log, files, folder)) : text_of(*log, files));
   return std::nullopt;
 }
 
@@ -214,8 +214,8 @@ Check run(const ExportOptions& options) {
   const std::filesystem::path file = options.out ? std::filesystem::path(*options.out) : default_file(options);
   if (auto error = may_write(file, options.overwrite, options.out ? "--out" : options.log)) return error;
   if (auto error = write(options, *content, file)) return error;
-  std::cout << (options.json.wanted ? options.json.document(report::json_text(json_of(*content, file)))
-                                    : text_of(*content, file));
+  result_stream() << (options.json.wanted ? options.json.document(report::json_text(json_of(*content, file)))
+                                          : text_of(*content, file));
   return std::nullopt;
 }
 
@@ -240,8 +240,7 @@ void add_export(CLI::App& app, const std::string& command, int& status) {
   add_json_option(*verb, options->json, command);
   verb->callback([options, &app, &status] {
     if (const auto error = run(*options)) {
-      std::cerr << app.get_name() << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(app.get_name(), *error);
     }
   });
 }

@@ -4,6 +4,7 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/servo_options.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/arm_faults/arm_faults.hpp>
 #include <tactus/experiments/faults/experiment.hpp>
@@ -11,7 +12,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -100,8 +100,7 @@ void add_faults(CLI::App& app, const std::string& command, int& status) {
   for (const char* name : {"--priority", "--core", "--spin-s"}) faults->get_option(name)->needs(real_time);
   faults->callback([options, name = app.get_name(), &command, &status] {
     if (const auto error = run(*options, command, status)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

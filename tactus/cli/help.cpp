@@ -1,12 +1,12 @@
 #include <tactus/cli/examples.hpp>
 #include <tactus/cli/help.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/cli/suggestion.hpp>
 #include <tactus/report/text.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -139,15 +139,16 @@ void add_help(CLI::App& app, int& status) {
     for (const std::string& word : *words) {
       const CLI::App* next = verb_below(*asked, word);
       if (next == nullptr) {
-        std::cerr << app.get_name() << ": " << unknown_command(*asked, word) << "\n";
-        status = 2;
+        status = report_error(
+            app.get_name(),
+            {.code = ErrorCode::unknown_key, .parameter = {}, .message = unknown_command(*asked, word), .place = {}});
         return;
       }
       asked = next;
     }
     std::string name = app.get_name();
     for (const std::string& word : *words) name += " " + word;
-    std::cout << asked->get_formatter()->make_help(asked, name, CLI::AppFormatMode::Normal);
+    result_stream() << asked->get_formatter()->make_help(asked, name, CLI::AppFormatMode::Normal);
   });
 }
 

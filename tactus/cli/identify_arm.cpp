@@ -4,6 +4,7 @@
 #include <tactus/cli/internal/parameters_json.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/real_between.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/core/parameters.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/json.hpp>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -209,8 +209,7 @@ void add_identify_arm(CLI::App& identify, const std::string& name, const std::st
       ->check(real_between(0.1, 500.0));
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify_arm(*options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

@@ -1,6 +1,7 @@
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/cancellation_model.hpp>
@@ -17,7 +18,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -89,7 +89,7 @@ class AnnouncedRig final : public identification::Rig {
   [[nodiscard]] identification::RigLimits limits() const override { return rig_.limits(); }
   Check assemble(identification::Assembly assembly) override {
     if (standing_ != assembly) {
-      std::cerr << rig_.name() << ": " << identification::instruction(assembly) << " Done by itself.\n";
+      message_stream() << rig_.name() << ": " << identification::instruction(assembly) << " Done by itself.\n";
     }
     standing_ = assembly;
     return rig_.assemble(assembly);
@@ -212,8 +212,7 @@ void add_bench_command(CLI::App& identify_command, const Recipe& recipe, const s
   add_output_options(*verb, options->output, command, "Folder for report.html, results.json, model.toml and rig.toml");
   verb->callback([&recipe, options, name, &command, &status] {
     if (const auto error = identify(recipe, *options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

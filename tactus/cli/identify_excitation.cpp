@@ -5,6 +5,7 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/real_between.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/report/json.hpp>
 #include <tactus/report/page.hpp>
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -186,7 +186,7 @@ Check identify_excitation(ExcitationOptions options, const std::string& name, co
     constexpr double no_range_rad = 1e6;
     const arm::JointParams& joint = urdf->params.joints[j];
     if (joint.kind != arm::JointKind::revolute || joint.limits.upper_rad < no_range_rad) continue;
-    std::cerr << "Note: joint '" << urdf->joints[j] << "' states no range: -180° to 180° are assumed\n";
+    message_stream() << "Note: joint '" << urdf->joints[j] << "' states no range: -180° to 180° are assumed\n";
   }
   for (std::size_t j = 0; j < count; ++j) {
     request.noise_N_m.push_back(options.noise_N_m.empty()
@@ -281,8 +281,7 @@ void add_identify_excitation(CLI::App& identify, const std::string& name, const 
   add_output_options(*verb, options->output, command, "Folder for trajectory.csv, report.html and results.json");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify_excitation(*options, name, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

@@ -1,5 +1,6 @@
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/frequency_response.hpp>
 #include <tactus/recording/recording.hpp>
@@ -13,7 +14,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -103,7 +103,7 @@ Result<std::vector<Pair>> read_runs(const FrfOptions& options) {
                           file);
     }
     if (const std::string note = recording::jitter_note(input->jitter_s, *input->sample_time_s); !note.empty()) {
-      std::cerr << "Note: " << note << "\n";
+      message_stream() << "Note: " << note << "\n";
     }
     runs.push_back({*std::move(input), *std::move(output)});
   }
@@ -367,8 +367,7 @@ void add_identify_frf(CLI::App& identify_command, const std::string& name, const
                      "Folder for report.html, results.json, response.csv and the figure");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify(*options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

@@ -1,6 +1,7 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/control/estimators/inverse_model_estimator.hpp>
 #include <tactus/core/version.hpp>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iostream>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -154,8 +154,7 @@ void add_identify_inverse(CLI::App& identify, const std::string& name, const std
   verb->add_option("--cutoff-Hz", options->cutoff_Hz, "Cutoff of the zero-phase filter")->type_name("HZ");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify_inverse(*options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

@@ -1,6 +1,7 @@
 #include <tactus/cli/axis_options.hpp>
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/outcome_files.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/identification/operator_impedance.hpp>
 #include <tactus/report/json.hpp>
@@ -12,7 +13,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -239,8 +239,7 @@ void add_identify_operator(CLI::App& identify, const std::string& name, const st
   verb->add_option("--window-s", options->estimate.window_s, "Length of a window")->type_name("S");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify_operator(*options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

@@ -2,6 +2,7 @@
 #include <tactus/cli/identify.hpp>
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/real_between.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/experiments/inverse_model_chirp/inverse_model_chirp.hpp>
 #include <tactus/experiments/presentation.hpp>
@@ -14,7 +15,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -169,8 +169,7 @@ void add_identify_prediction(CLI::App& identify_command, const std::string& name
   add_output_options(*verb, options->output, command, "Folder for report.html and results.json");
   verb->callback([options, name, &command, &status] {
     if (const auto error = identify(*options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

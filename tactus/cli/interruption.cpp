@@ -1,5 +1,6 @@
 #include <tactus/cli/interruption.hpp>
 #include <tactus/cli/quiet_thread.hpp>
+#include <tactus/cli/streams.hpp>
 
 #include <array>
 #include <chrono>
@@ -47,6 +48,14 @@ bool is_free(int signal) {
 }  // namespace
 
 Result<std::unique_ptr<Interruption>> Interruption::start(runtime::EndRequest& end, Interrupted what) {
+  if (is_in_process()) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = {},
+                 .message =
+                     "what runs at the real clock takes the signals of its process: start the command `tactus` as a "
+                     "program of its own",
+                 .place = {}};
+  }
   std::unique_ptr<Interruption> made(new Interruption(end, what));
   auto thread = start_quiet_thread([self = made.get()] { self->listen(); });
   if (!thread) return thread.error();

@@ -28,7 +28,8 @@ enum class Interrupted {
 /// in the thread that makes it and in those that this one starts afterwards; so make it first. One at a time.
 class Interruption {
  public:
-  /// `end` must outlive it. Errors: `failed` where the system gives no thread.
+  /// `end` must outlive it. Errors: `failed` where the system gives no thread; `inconsistent` in a
+  /// program that runs commands itself (`run_in_process`), whose signals are its own.
   static Result<std::unique_ptr<Interruption>> start(runtime::EndRequest& end, Interrupted what = Interrupted::job);
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;

@@ -1,7 +1,6 @@
-#include <tactus/cli/commands.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/link/key.hpp>
 
-#include <iostream>
 #include <memory>
 #include <string>
 
@@ -15,11 +14,10 @@ void add_key(CLI::App& app, int& status) {
   verb->add_option("FILE", *file, "New file; copy it to the other site over a channel that you trust")->required();
   verb->callback([file, &app, &status] {
     if (const auto error = link::make_key_file(*file)) {
-      std::cerr << app.get_name() << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(app.get_name(), *error);
       return;
     }
-    std::cout << "Key: " << *file << "\n";
+    result_stream() << "Key: " << *file << "\n";
   });
 }
 

@@ -1,8 +1,8 @@
 #include <tactus/cli/outcome_files.hpp>
 #include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/report/figure.hpp>
 
-#include <iostream>
 #include <string>
 
 namespace tactus::cli {
@@ -23,7 +23,7 @@ Check write_outcome(OutputFolder& output, const experiments::Outcome& outcome, c
   if (output.wanted()) {
     if (auto error = write_results(output, outcome, files)) return error;
   }
-  std::cout << (output.json() ? output.document(outcome) : outcome.text);
+  result_stream() << (output.json() ? output.document(outcome) : outcome.text);
   if (auto error = flush_standard_output()) return error;
   if (output.wanted()) output.announce();
   return std::nullopt;

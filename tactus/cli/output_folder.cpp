@@ -1,4 +1,5 @@
 #include <tactus/cli/output_folder.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/report/files.hpp>
 #include <tactus/report/text.hpp>
 #include <tactus/telemetry/log_writer.hpp>
@@ -6,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <iostream>
 #include <system_error>
 
 #include <CLI/CLI.hpp>
@@ -208,8 +208,10 @@ std::string OutputFolder::log_line(std::uint64_t removed) const {
   return line + "\n";
 }
 
-void OutputFolder::announce() const { (json() ? std::cerr : std::cout) << report_line(); }
+void OutputFolder::announce() const { (json() ? message_stream() : result_stream()) << report_line(); }
 
-void OutputFolder::announce_log(std::uint64_t removed) const { (json() ? std::cerr : std::cout) << log_line(removed); }
+void OutputFolder::announce_log(std::uint64_t removed) const {
+  (json() ? message_stream() : result_stream()) << log_line(removed);
+}
 
 }  // namespace tactus::cli

@@ -1,4 +1,5 @@
 #include <tactus/cli/progress_line.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/report/text.hpp>
 
 #include <cmath>
@@ -13,7 +14,7 @@ constexpr const char* erase_line = "\r\033[K";
 }
 
 ProgressLine::ProgressLine(std::string_view title)
-    : title_(report::printable(title)), shown_(isatty(STDERR_FILENO) == 1) {}
+    : title_(report::printable(title)), shown_(!is_in_process() && isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   if (shown_) std::fputs(erase_line, stderr);
@@ -21,7 +22,13 @@ ProgressLine::~ProgressLine() {
 
 void ProgressLine::update(double done) {
   const auto now = Clock::now();
-  if (!shown_ || now < next_) return;
+  if (now < next_) return;
+  if (is_in_process()) {
+    next_ = now + std::chrono::milliseconds(20);
+    report_progress(done);
+    return;
+  }
+  if (!shown_) return;
   next_ = now + std::chrono::milliseconds(200);
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
   const double left_s = done > 0.0 ? elapsed_s * (1.0 - done) / done : 0.0;

@@ -16,6 +16,8 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// `done` is the share of the work, from 0 to 1. Cheap to call often: the line changes five times a second at most.
+  /// In a program that runs commands itself it is reported to that program, which may end the command here
+  /// (`report_progress`).
   void update(double done);
 
  private:

@@ -1,6 +1,7 @@
 #include <tactus/cli/commands.hpp>
 #include <tactus/cli/json_option.hpp>
 #include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/core/version.hpp>
 #include <tactus/real_time/replay.hpp>
 #include <tactus/report/json.hpp>
@@ -8,7 +9,6 @@
 
 #include <array>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <string>
 
@@ -75,11 +75,10 @@ void add_replay(CLI::App& app, const std::string& command, int& status) {
   verb->callback([options, &app, &status] {
     const auto replayed = real_time::replay(options->log);
     if (!replayed) {
-      std::cerr << app.get_name() << ": " << describe(replayed.error()) << "\n";
-      status = exit_status(replayed.error());
+      status = report_error(app.get_name(), replayed.error());
       return;
     }
-    std::cout << (options->json.wanted ? options->json.document(json_of(*replayed)) : text_of(*replayed));
+    result_stream() << (options->json.wanted ? options->json.document(json_of(*replayed)) : text_of(*replayed));
     if (options->check && replayed->difference) status = 1;
   });
 }

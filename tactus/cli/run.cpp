@@ -9,6 +9,7 @@
 #include <tactus/cli/run_log.hpp>
 #include <tactus/cli/servo_options.hpp>
 #include <tactus/cli/standard_output.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/cli/supervised_run.hpp>
 #include <tactus/experiments/experiment.hpp>
 #include <tactus/real_time/real_time_arm_tap.hpp>
@@ -253,13 +254,12 @@ void add_run(CLI::App& app, const std::string& command, int& status) {
     Check error = refuse_what_makes_no_sense(*verb, *options);
     if (!error) error = run(*options, command, status);
     if (!error) return;
-    status = exit_status(*error);
-    const std::string line = app.get_name() + ": " + describe(*error) + "\n";
-    if (options->supervised.wanted()) {
+    if (options->supervised.wanted() && !is_in_process()) {
       // Who drove devices ends, whether or not anybody reads why.
-      static_cast<void>(LineWriter(STDERR_FILENO).finish(line));
+      status = exit_status(*error);
+      static_cast<void>(LineWriter(STDERR_FILENO).finish(app.get_name() + ": " + describe(*error) + "\n"));
     } else {
-      std::cerr << line;
+      status = report_error(app.get_name(), *error);
     }
   });
 }

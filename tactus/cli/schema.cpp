@@ -1,9 +1,9 @@
 #include <tactus/cli/commands.hpp>
 #include <tactus/cli/results_schemas.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/core/result.hpp>
 #include <tactus/experiments/experiment.hpp>
 
-#include <iostream>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -61,21 +61,22 @@ void add_schema(CLI::App& app, int& status) {
     if (!options->verb.empty()) {
       const auto schema = results_schema(options->verb);
       if (schema) {
-        std::cout << *schema;
+        result_stream() << *schema;
         return;
       }
-      std::cerr << app.get_name() << ": " << describe(schema.error()) << "\n";
-      status = exit_status(schema.error());
+      status = report_error(app.get_name(), schema.error());
       return;
     }
     for (const auto& experiment : experiments::experiments()) {
       if (experiment->kind() != options->kind) continue;
-      std::cout << (options->reference ? experiment->reference() : experiment->schema());
+      result_stream() << (options->reference ? experiment->reference() : experiment->schema());
       return;
     }
-    std::cerr << app.get_name() << ": schema: '" << options->kind << "' is no kind of experiment: write one of "
-              << kinds << "\n";
-    status = 2;
+    status = report_error(app.get_name(),
+                          {.code = ErrorCode::out_of_bounds,
+                           .parameter = {},
+                           .message = "'" + options->kind + "' is no kind of experiment: write one of " + kinds,
+                           .place = "schema"});
   });
 }
 

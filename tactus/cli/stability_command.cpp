@@ -3,10 +3,10 @@
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/real_between.hpp>
 #include <tactus/cli/stability_command.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/configuration/document.hpp>
 
 #include <filesystem>
-#include <iostream>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -66,8 +66,7 @@ void add_stability_command(CLI::App& stability, const std::string& verb, const s
   add_output_options(*added, options->output, command, "Folder for report.html, results.json and the figures");
   added->callback([options, report, name, &command, &status] {
     if (const auto error = run(*options, report, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

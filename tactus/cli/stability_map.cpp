@@ -5,6 +5,7 @@
 #include <tactus/cli/progress_line.hpp>
 #include <tactus/cli/real_between.hpp>
 #include <tactus/cli/stability.hpp>
+#include <tactus/cli/streams.hpp>
 #include <tactus/configuration/document.hpp>
 #include <tactus/configuration/toml_writer.hpp>
 #include <tactus/stability/map.hpp>
@@ -14,7 +15,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -195,8 +195,7 @@ void add_stability_map(CLI::App& stability, const std::string& name, const std::
       "Folder for report.html, map.csv, map.h5, map.svg and results.json; a killed run continues from there");
   verb->callback([options, name, &command, &status] {
     if (const auto error = run(*options, command)) {
-      std::cerr << name << ": " << describe(*error) << "\n";
-      status = exit_status(*error);
+      status = report_error(name, *error);
     }
   });
 }

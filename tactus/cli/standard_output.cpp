@@ -1,6 +1,5 @@
 #include <tactus/cli/standard_output.hpp>
-
-#include <iostream>
+#include <tactus/cli/streams.hpp>
 
 #include <poll.h>
 #include <unistd.h>
@@ -13,7 +12,7 @@ bool reader_is_gone(int descriptor) {
 }
 
 Check flush_standard_output() {
-  if (std::cout.flush() || reader_is_gone(STDOUT_FILENO)) return std::nullopt;
+  if (result_stream().flush() || reader_is_gone(STDOUT_FILENO)) return std::nullopt;
   return Error{.code = ErrorCode::unwritable,
                .parameter = {},
                .message = "the output could not be written: give it a place with room",

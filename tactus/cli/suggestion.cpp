@@ -48,7 +48,7 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
   return quoted(word) + " is no command" + did_you_mean(word, names);
 }
 
-std::string unknown_word(const CLI::App& app, int argc, char** argv) {
+std::string unknown_word(const CLI::App& app, int argc, const char* const* argv) {
   const CLI::App* at = &app;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];

@@ -16,6 +16,6 @@ std::string unknown_command(const CLI::App& app, const std::string& word);
 
 /// What a command line that could not be parsed asked for that is not there, where that is a verb or an option; else
 /// empty. `argv` is that of `main`.
-std::string unknown_word(const CLI::App& app, int argc, char** argv);
+std::string unknown_word(const CLI::App& app, int argc, const char* const* argv);
 
 }  // namespace tactus::cli

@@ -36,6 +36,15 @@ std::string describe_value(const Value& value) {
                     value);
 }
 
+/// The value alone; empty for a section, an array and the like.
+std::string written_value(const Value& value) {
+  return std::visit(
+      Overloaded{[](Table) -> std::string { return {}; }, [](bool b) -> std::string { return b ? "true" : "false"; },
+                 [](std::int64_t i) { return std::to_string(i); }, [](double d) { return toml_float(d); },
+                 [](const std::string& text) { return printable(text); }, [](Foreign) -> std::string { return {}; }},
+      value);
+}
+
 std::string list_of(std::span<const std::string_view> words) {
   std::string list;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -68,7 +77,9 @@ Error wrong_type(const Entry& entry, const Binding& binding) {
           .message = concat({describe_value(entry.value), ", but ", describe_wanted(binding), " is asked for",
                              bounded ? ", and it " : "",
                              bounded ? describe_bounds(binding.bounds, binding.unit) : std::string(), ": ", remedy}),
-          .place = {}};
+          .place = {},
+          .value = written_value(entry.value),
+          .bounds = bounded ? describe_bounds(binding.bounds, binding.unit) : std::string()};
 }
 
 /// What a text parameter gets: the text, or whatever was typed in an override, where quotes are the shell's.
@@ -106,7 +117,9 @@ Check assign_choice(const Entry& entry, const Binding& binding, const Choice& ch
                  .parameter = binding.path,
                  .message = concat({"\"", printable(*word), "\" is no choice here: it must be ", list_of(choice.words),
                                     meant.empty() ? "" : concat({"; did you mean \"", meant, "\"?"})}),
-                 .place = {}};
+                 .place = {},
+                 .value = printable(*word),
+                 .bounds = concat({"must be ", list_of(choice.words)})};
   }
   choice.assign(choice.member, static_cast<std::size_t>(match - choice.words.begin()));
   return {};

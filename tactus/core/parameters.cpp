@@ -49,11 +49,13 @@ Error out_of_bounds(std::string_view parameter, double value, const Bounds& boun
   double shown = 0.0;
   std::from_chars(rounded.data(), rounded.data() + rounded.size(), shown);
   const std::string unit_text = unit.symbol[0] == '\0' ? "" : std::string(" ") + unit.symbol;
+  const std::string given = (bounds.contain(shown) ? text : rounded) + unit_text;
   return {.code = ErrorCode::out_of_bounds,
           .parameter = std::string(parameter),
-          .message = (bounds.contain(shown) ? text : rounded) + unit_text + " is out of bounds: it " +
-                     describe_bounds(bounds, unit),
-          .place = {}};
+          .message = given + " is out of bounds: it " + describe_bounds(bounds, unit),
+          .place = {},
+          .value = given,
+          .bounds = describe_bounds(bounds, unit)};
 }
 
 namespace detail {

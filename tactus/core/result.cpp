@@ -10,6 +10,12 @@ std::string describe(const Error& error) {
   return text + error.message;
 }
 
+std::string_view remedy(const Error& error) {
+  const std::string_view message = error.message;
+  const std::size_t colon = message.find(": ");
+  return colon == std::string_view::npos ? std::string_view{} : message.substr(colon + 2);
+}
+
 Error under(std::string_view prefix, Error error) {
   error.parameter = error.parameter.empty() ? std::string(prefix) : std::string(prefix) + "." + error.parameter;
   return error;

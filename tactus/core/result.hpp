@@ -29,10 +29,18 @@ struct Error {
   std::string message;
   /// Where the value was written (`tapping.toml:12:5`, `--set control.force_gain=-1`), or empty.
   std::string place;
+  /// The value that was refused, with its unit, as in the message; empty where it is no single value.
+  std::string value = {};
+  /// What that value may be, as in the message (`must be at least 0 and at most 1000`), or empty.
+  std::string bounds = {};
 };
 
 /// `place: parameter: message`, leaving out what is empty.
 std::string describe(const Error& error);
+
+/// What to do about it: what follows the first colon and blank of the message, as every message is written; empty where
+/// there is none. Good as long as `error`.
+std::string_view remedy(const Error& error);
 
 /// The same error, its parameter path put under `prefix` (`friction` under `slave` becomes `slave.friction`).
 Error under(std::string_view prefix, Error error);

@@ -59,7 +59,7 @@ docs/how-to/feetech-servos.md docs/how-to/inverse3.md docs/how-to/damiao-motors.
 docs/how-to/how-much-gain-is-safe.md docs/how-to/diagnose.md docs/how-to/your-own-device.md docs/how-to/ros2.md
 docs/how-to/live-page.md docs/how-to/live-view.md docs/how-to/plug-in-your-own.md docs/how-to/two-hosts.md
 docs/how-to/real-time.md docs/how-to/advise.md docs/how-to/combinations.md docs/how-to/components.md
-docs/how-to/your-own-arm.md CONTRIBUTING.md SECURITY.md docs/theory/induced-master-motion.md docs/theory/stability.md
+docs/how-to/your-own-arm.md docs/how-to/python.md CONTRIBUTING.md SECURITY.md docs/theory/induced-master-motion.md docs/theory/stability.md
 docs/theory/rivals.md docs/theory/contest.md docs/theory/cancellation-models.md docs/theory/force-estimators.md
 docs/theory/hand-force.md docs/theory/frequency-responses.md docs/theory/signal-prediction.md
 docs/theory/operator-impedance.md docs/theory/sensorless-teleoperation.md docs/theory/quick-identification.md

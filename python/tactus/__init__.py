@@ -1,0 +1,65 @@
+"""tactus: crisp and stable force-reflecting teleoperation, from Python.
+
+Numbers have their unit in their name, keyword arguments are the keys of the files, and exceptions have the messages of the
+`tactus` command. NumPy is needed for arrays, pandas for data frames.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .cancellation import Cancellation
+from .commands import (
+    Output,
+    Result,
+    advise,
+    command,
+    diagnose,
+    estimate,
+    faults,
+    identify,
+    reference,
+    results_schema,
+    run,
+    schema,
+    stability,
+)
+from .errors import Interrupted, JobError, ReleasedError, RequestError, TactusError
+from .logs import Log, Table, read_log
+from .results import Record
+
+__version__: str
+
+__all__ = [
+    "Cancellation",
+    "Interrupted",
+    "JobError",
+    "Log",
+    "Output",
+    "Record",
+    "ReleasedError",
+    "RequestError",
+    "Result",
+    "Table",
+    "TactusError",
+    "advise",
+    "command",
+    "diagnose",
+    "estimate",
+    "faults",
+    "identify",
+    "read_log",
+    "reference",
+    "results_schema",
+    "run",
+    "schema",
+    "stability",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from ._library import library
+
+        return library().tactus_version().decode()
+    raise AttributeError(f"module 'tactus' has no attribute {name!r}")

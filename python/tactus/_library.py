@@ -1,0 +1,211 @@
+"""The C library behind this package: where it is, its structs and its functions (tactus.h)."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import os
+import pathlib
+from typing import Any, Callable, List
+
+from .errors import TactusError, make_error
+
+INTERFACE_MAJOR, INTERFACE_MINOR = 0, 1
+LIBRARY_NAME = "libtactus.so.0"
+
+Progress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_double, ctypes.c_void_p)
+
+
+class _View(ctypes.Structure):
+    """A struct that begins with its size."""
+
+    def __init__(self) -> None:
+        super().__init__(ctypes.sizeof(type(self)))
+
+
+class ErrorView(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("status", ctypes.c_int32),
+        ("exit_status", ctypes.c_int32),
+        ("line", ctypes.c_char_p),
+        ("place", ctypes.c_char_p),
+        ("parameter", ctypes.c_char_p),
+        ("message", ctypes.c_char_p),
+        ("value", ctypes.c_char_p),
+        ("bounds", ctypes.c_char_p),
+        ("remedy", ctypes.c_char_p),
+    ]
+
+
+class CancellationOptions(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("sample_time_s", ctypes.c_double),
+        ("file", ctypes.c_char_p),
+        ("set", ctypes.POINTER(ctypes.c_char_p)),
+        ("set_count", ctypes.c_size_t),
+    ]
+
+
+class CommandOptions(_View):
+    _fields_ = [("struct_size", ctypes.c_size_t), ("progress", Progress), ("user", ctypes.c_void_p)]
+
+
+class OutcomeView(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("exit_status", ctypes.c_int32),
+        ("results", ctypes.c_void_p),
+        ("results_size", ctypes.c_size_t),
+        ("messages", ctypes.c_void_p),
+        ("messages_size", ctypes.c_size_t),
+    ]
+
+
+class LogView(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("tables", ctypes.c_size_t),
+        ("complete", ctypes.c_int32),
+        ("damaged_elsewhere", ctypes.c_int32),
+        ("damaged_chunks", ctypes.c_uint64),
+    ]
+
+
+class TableView(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("name", ctypes.c_char_p),
+        ("rows", ctypes.c_size_t),
+        ("columns", ctypes.c_size_t),
+        ("missing", ctypes.c_uint64),
+        ("times_ns", ctypes.POINTER(ctypes.c_uint64)),
+    ]
+
+
+class ColumnView(_View):
+    _fields_ = [
+        ("struct_size", ctypes.c_size_t),
+        ("name", ctypes.c_char_p),
+        ("unit", ctypes.c_char_p),
+        ("doc", ctypes.c_char_p),
+        ("values", ctypes.POINTER(ctypes.c_double)),
+        ("rows", ctypes.c_size_t),
+    ]
+
+
+_handle = ctypes.c_uint64
+_to_handle = ctypes.POINTER(ctypes.c_uint64)
+_to_double = ctypes.POINTER(ctypes.c_double)
+_size = ctypes.c_size_t
+
+# Arguments of each function; all but tactus_version return a status.
+_FUNCTIONS: dict[str, list[Any]] = {
+    "tactus_version": [],
+    "tactus_check_interface": [ctypes.c_int32, ctypes.c_int32, _to_handle],
+    "tactus_error_read": [_handle, ctypes.POINTER(ErrorView)],
+    "tactus_error_release": [_handle],
+    "tactus_cancellation_make": [ctypes.POINTER(CancellationOptions), _to_handle, _to_handle],
+    "tactus_cancellation_step": [_handle, ctypes.c_double, ctypes.c_double, _to_double],
+    "tactus_cancellation_intended": [_handle, ctypes.c_double, _to_double],
+    "tactus_cancellation_advance": [_handle, ctypes.c_double],
+    "tactus_cancellation_step_array": [_handle, _size, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p],
+    "tactus_cancellation_induced": [_handle, _to_double],
+    "tactus_cancellation_reset": [_handle],
+    "tactus_cancellation_copy": [_handle, _to_handle, _to_handle],
+    "tactus_cancellation_release": [_handle],
+    "tactus_command": [
+        ctypes.POINTER(ctypes.c_char_p), _size, ctypes.POINTER(CommandOptions), _to_handle, _to_handle,
+    ],
+    "tactus_outcome_read": [_handle, ctypes.POINTER(OutcomeView)],
+    "tactus_outcome_release": [_handle],
+    "tactus_log_open": [ctypes.c_char_p, ctypes.c_char_p, _to_handle, _to_handle],
+    "tactus_log_read": [_handle, ctypes.POINTER(LogView)],
+    "tactus_log_table": [_handle, _size, ctypes.POINTER(TableView)],
+    "tactus_log_column": [_handle, _size, _size, ctypes.POINTER(ColumnView)],
+    "tactus_log_release": [_handle],
+}
+
+
+def _candidates() -> List[str]:
+    """Where the library may be, the first that is there counts: the file that TACTUS_LIBRARY names, the package, the
+    build beside a source folder, the system."""
+    named = os.environ.get("TACTUS_LIBRARY")
+    if named:
+        return [named]
+    here = pathlib.Path(__file__).resolve().parent
+    files = [here / "lib" / LIBRARY_NAME, here.parent.parent / "build" / "release" / "lib" / LIBRARY_NAME]
+    return [str(file) for file in files if file.exists()] + [LIBRARY_NAME]
+
+
+@functools.lru_cache(maxsize=None)
+def library() -> Any:
+    """The library, loaded at the first use. Raises `ImportError` if it is missing or of another version."""
+    name = _candidates()[0]
+    try:
+        loaded = ctypes.CDLL(name)
+    except OSError as error:
+        raise ImportError(
+            f"the library of tactus cannot be loaded ({error}): build it with `cmake --build build/release --target "
+            "tactus_c_api`, or let TACTUS_LIBRARY name the file"
+        ) from error
+    for function, arguments in _FUNCTIONS.items():
+        try:
+            bound = getattr(loaded, function)
+        except AttributeError as error:
+            raise ImportError(f"{name} has no {function}: install package and library of one version") from error
+        bound.argtypes = arguments
+        bound.restype = ctypes.c_int32
+    loaded.tactus_version.restype = ctypes.c_char_p
+    failure = ctypes.c_uint64()
+    if loaded.tactus_check_interface(INTERFACE_MAJOR, INTERFACE_MINOR, ctypes.byref(failure)) != 0:
+        raise ImportError(str(take_error(loaded, 1, failure)))
+    return loaded
+
+
+def text_of(raw: bytes | None) -> str:
+    return raw.decode("utf-8", "replace") if raw else ""
+
+
+def take_error(loaded: Any, status: int, handle: ctypes.c_uint64) -> TactusError:
+    """The exception of a status, with what the error's handle holds, which is released."""
+    view = ErrorView()
+    if handle.value == 0 or loaded.tactus_error_read(handle, ctypes.byref(view)) != 0:
+        return make_error(status)
+    error = make_error(
+        view.status,
+        line=text_of(view.line),
+        place=text_of(view.place),
+        parameter=text_of(view.parameter),
+        message=text_of(view.message),
+        value=text_of(view.value),
+        bounds=text_of(view.bounds),
+        remedy=text_of(view.remedy),
+        exit_status=view.exit_status,
+    )
+    loaded.tactus_error_release(handle)
+    return error
+
+
+def call(function: Callable[..., int], *arguments: Any) -> None:
+    """Calls a function whose last parameter is where the error is left, and raises what it reports."""
+    failure = ctypes.c_uint64()
+    status = function(*arguments, ctypes.byref(failure))
+    if status != 0:
+        raise take_error(library(), status, failure)
+
+
+def check(status: int) -> None:
+    """Raises the exception of a status that has no further error."""
+    if status != 0:
+        raise make_error(status)
+
+
+def texts(words: List[str]) -> Any:
+    """An array of C strings. Raises `ValueError` for a zero byte in a word, which would end it."""
+    encoded = [os.fsencode(word) for word in words]
+    for word in encoded:
+        if b"\0" in word:
+            raise ValueError(f"{word!r} has a zero byte: leave it out")
+    return (ctypes.c_char_p * max(len(encoded), 1))(*encoded)

@@ -1,0 +1,4 @@
+#include "use_header.h"
+
+extern "C" int use_tactus_from_cxx11();
+int use_tactus_from_cxx11() { return use_tactus(); }
