@@ -1,10 +1,10 @@
-// The native side of the comparison with WebAssembly (web/tests/unit/kernel.test.ts): runs every tap of an experiment through
-// the interface of web/kernel, as the browser does.
+// The native side of the comparison with WebAssembly (web/tests/unit/kernel.test.ts): runs every tap of an experiment
+// through the interface of web/kernel, as the browser does.
 //
 //   web_kernel_traces SETTINGS FILE
 //
-// SETTINGS has a line `key=value` for each key. FILE gets doubles: the number of taps, and for each tap the number of its
-// cycles, its results and its trace.
+// SETTINGS has a line `key=value` for each key. FILE gets doubles: the number of taps, and for each tap the number of
+// its cycles, its results and its trace.
 #include <cstdlib>
 #include <cstring>
 #include <fstream>

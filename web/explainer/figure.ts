@@ -2,10 +2,9 @@ import type { Side } from '../kernel/kernel';
 import { Contact, sentence } from './contact';
 import { kinds, type Kind, type Knob } from './kinds';
 import type { Order, Report } from './orders';
-import { range_mm, Scene, xOf } from './scene';
+import { range_mm, Scene } from './scene';
 import { Trace } from './trace';
 
-const shownWidth = xOf(range_mm.most);
 /** With reduced motion the picture moves in steps. */
 const stepEvery_ms = matchMedia('(prefers-reduced-motion: reduce)').matches ? 250 : 0;
 const keySteps: Readonly<Record<string, number>> = { ArrowRight: 0.5, ArrowUp: 0.5, ArrowLeft: -0.5, ArrowDown: -0.5, PageUp: 2, PageDown: -2 };

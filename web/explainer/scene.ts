@@ -12,7 +12,7 @@ const handY = 46;
 const tipY = 118;
 const arrowPerNewton = 26;
 
-export function xOf(position_mm: number): number {
+function xOf(position_mm: number): number {
   return (Math.min(Math.max(position_mm, range_mm.least), range_mm.most) - range_mm.least) * perMillimetre;
 }
 

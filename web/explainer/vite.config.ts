@@ -1,4 +1,5 @@
 import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 import { defineConfig, type Plugin } from 'vite';
 import { settingsOf } from '../kernel/settings';
 
@@ -12,11 +13,11 @@ const experiments: Plugin = {
 };
 
 export default defineConfig({
-  root: import.meta.dirname,
+  root: fileURLToPath(new URL('.', import.meta.url)),
   base: './',
   publicDir: '../public',
   plugins: [experiments],
-  worker: { format: 'es' },
+  worker: { format: 'es', plugins: () => [experiments] },
   build: {
     outDir: '../../build/explainer',
     emptyOutDir: true,

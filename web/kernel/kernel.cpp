@@ -101,10 +101,12 @@ Check set(TappingParams& params, std::string_view assignment) {
   return tactus::configuration::assign(entry, *binding);
 }
 
-/// The parameters of a loop: the wall is where the live page has it (`live::Settings`).
+/// The parameters of a loop: the wall is where the live page has it (`live::Settings`), and the controller's model has
+/// the fixed errors of the experiment's taps.
 tactus::simulation::Teleoperator::Params of_loop(const TappingParams& wanted) {
   tactus::simulation::Teleoperator::Params params = wanted;
   params.environment.position_m = tactus::live::loop_wall_m * params.control.position_scale;
+  params.control.model = tactus::experiments::mismatched(params.control.model, wanted.task.mismatch);
   return params;
 }
 

@@ -22,7 +22,7 @@ char* TACTUS_EXPORT(tactus_text)();
 int TACTUS_EXPORT(tactus_set)(int side);
 
 /// Makes the loop of a side with the keys as they are now set. A loop that runs continues where it is, with what has
-/// changed, as on the live page. Its wall is 10 mm before the place where the hand rests.
+/// changed, as on the live page. Its wall is 10 mm from the place where the hand rests.
 int TACTUS_EXPORT(tactus_apply)(int side);
 
 /// Both loops and the hand start again, at rest at `start_m` from the hand's place of rest.

@@ -75,7 +75,9 @@ export class Kernel {
   /** Sets a key of an experiment of the kind `tapping`, for one side. Throws what the kernel says of a wrong key or value. */
   set(side: Side, key: string, value: number | string | boolean): void {
     const bytes = new TextEncoder().encode(`${key}=${value}\0`);
-    new Uint8Array(this.kernel.memory.buffer, this.kernel.tactus_text(), bytes.length).set(bytes);
+    // Any call may let the memory grow, which replaces its buffer.
+    const address = this.kernel.tactus_text();
+    new Uint8Array(this.kernel.memory.buffer, address, bytes.length).set(bytes);
     this.demand(this.kernel.tactus_set(side));
   }
 
@@ -106,7 +108,7 @@ export class Kernel {
   }
 
   /** The rows of the next cycles, a copy. */
-  step(cycles: number): Float64Array {
+  step(cycles: number): Float64Array<ArrayBuffer> {
     const some = Math.min(cycles, this.kernel.tactus_most_rows());
     return this.numbers(this.kernel.tactus_step(some), some * rowLength);
   }
@@ -127,13 +129,14 @@ export class Kernel {
     };
   }
 
-  private numbers(address: number, count: number): Float64Array {
-    return new Float64Array(this.kernel.memory.buffer, address, count).slice();
+  private numbers(address: number, count: number): Float64Array<ArrayBuffer> {
+    return new Float64Array(new Float64Array(this.kernel.memory.buffer, address, count));
   }
 
   private demand(answer: number): void {
     if (answer >= 0) return;
-    const bytes = new Uint8Array(this.kernel.memory.buffer, this.kernel.tactus_text(), 4096);
+    const address = this.kernel.tactus_text();
+    const bytes = new Uint8Array(this.kernel.memory.buffer, address, 4096);
     throw new Error(new TextDecoder().decode(bytes.subarray(0, bytes.indexOf(0))));
   }
 }
