@@ -28,8 +28,11 @@ web/node_modules/.package-lock.json: web/package-lock.json
 web/dist/index.html: web/node_modules/.package-lock.json web/index.html $(shell find web/src web/public -type f)
 	npm run --prefix web build
 
-site: page ## Make the documentation site: one static folder, build/site
+site: ## Make the documentation site with the explainer: one static folder, build/site
 	@scripts/install-deps --site
+	$(MAKE) web/node_modules/.package-lock.json
+	CXX_LAUNCHER=$$(command -v ccache) JOBS=$(JOBS) web/kernel/build build/web-kernel
+	npm run --prefix web build:explainer
 	site/build build/site
 	python3 site/check.py build/site
 	node site/search.mjs build/site

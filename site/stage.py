@@ -21,6 +21,7 @@ PROJECT_PAGES = ["CONTRIBUTING.md", "SECURITY.md", "CODE_OF_CONDUCT.md"]
 KERNEL = ["core", "signal", "mechanics", "arm", "control", "arm_control"]
 LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".json": "json", ".toml": "toml", ".urdf": "xml", ".yml": "yaml", ".txt": "cmake"}
 LARGEST_SHOWN_BYTES = 30_000
+EXPLAINER = '<a href="explainer/index.html"><b>Feel it in your browser</b></a>: three figures that run the kernel itself.'
 CODE = re.compile(r"^([ \t]*)```.*?^\1```[ \t]*$|(`+)(?!`).*?(?<!`)\2(?!`)", flags=re.S | re.M)
 LINK = re.compile(r"(\]\(\s*<?)([^)\s>]+)")
 
@@ -112,6 +113,8 @@ class Stage:
         text = re.sub(r"^```math$", "```{math}", text, flags=re.M)
         text = re.sub(r"^```mermaid\n(.*?)^```$", lambda chart: to_graphviz(chart[1]), text, flags=re.S | re.M)
         text = outside_code(text, lambda prose: LINK.sub(lambda link: link[1] + self.target_of(page, link[2]), prose))
+        if page == FRONT:
+            text = text.replace("\n\n", "\n\n" + EXPLAINER + "\n\n", 1)
         self.write(staged_name(page), text + extra)
 
     def show(self, target):

@@ -68,6 +68,7 @@ docs/theory/simulation.md docs/theory/maps.md docs/theory/passivity.md docs/theo
 docs/validation.md docs/theory/arm-margins.md docs/how-to/add-an-element.md docs/how-to/add-an-experiment.md
 docs/theory/arms.md docs/theory/changing-grip.md docs/how-to/identify-your-master.md docs/how-to/logs.md
 docs/architecture.md docs/how-to/identify-an-arm.md docs/how-to/identify-from-a-recording.md docs/how-to/rigs.md
+docs/how-to/site.md
 """.split()
 
 # Pages that have yet to be rewritten. This list only shrinks.

@@ -117,8 +117,9 @@ describe('a whole run of experiments/tapping.toml', () => {
     }
     summary.push(`${taps} taps, ${all} numbers, ${((100 * equal) / all).toFixed(2)} % equal bit for bit; the largest differences:`);
     signals.forEach((name, i) => summary.push(`  ${name}: ${largest[i]!.toExponential(2)}`));
+    // The C libraries' sine, cosine, tangent and their like differ in the last bit. Measured: 2e-13 m and 1.1e-8 N.
     for (const [i, name] of signals.entries()) {
-      expect(largest[i], name).toBeLessThanOrEqual(name.endsWith('_m') ? 1e-9 : 1e-6);
+      expect(largest[i], name).toBeLessThanOrEqual(name.endsWith('_m') ? 1e-12 : 1e-7);
     }
   });
 });
