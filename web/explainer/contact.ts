@@ -88,6 +88,6 @@ export function sentence(contact: Contact): string {
     case 'settled':
       return `Settles ${time} after the touch.`;
     case 'rings':
-      return 'Rings.';
+      return 'Rings: the force on the wall does not die away.';
   }
 }

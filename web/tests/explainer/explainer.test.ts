@@ -1,36 +1,24 @@
-import { existsSync, readFileSync, mkdirSync } from 'node:fs';
-import { createServer, type Server } from 'node:http';
-import type { AddressInfo } from 'node:net';
-import { extname, join, normalize, resolve } from 'node:path';
+import { mkdirSync } from 'node:fs';
+import { join, resolve } from 'node:path';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
 import { afterAll, beforeAll, describe, expect, it } from 'vitest';
 import { launch } from '../browser/browser';
+import { StaticSite } from './static_site';
 
 const folder = resolve('../build/explainer');
-/** A sub-path, as where a project has its pages. */
-const base = '/some/project/explainer/';
-const types: Readonly<Record<string, string>> = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.wasm': 'application/wasm' };
 
-let server: Server;
+let site: StaticSite;
 let url = '';
 let browser: Browser;
 
 beforeAll(async () => {
-  if (!existsSync(join(folder, 'index.html'))) throw new Error(`${folder} is missing: npm run build:explainer makes it`);
-  server = createServer((request, response) => {
-    const path = new URL(request.url ?? '/', 'http://host').pathname;
-    const file = path.startsWith(base) ? join(folder, normalize(path.slice(base.length)) || 'index.html') : '';
-    const wanted = file.endsWith('/.') || file === folder + '/' ? join(folder, 'index.html') : file;
-    if (!existsSync(wanted)) return void response.writeHead(404).end();
-    response.writeHead(200, { 'content-type': types[extname(wanted)] ?? 'application/octet-stream' }).end(readFileSync(wanted));
-  });
-  await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
-  url = `http://127.0.0.1:${(server.address() as AddressInfo).port}${base}index.html`;
+  site = await StaticSite.serve(folder, 'npm run build:explainer');
+  url = site.url;
   browser = await launch();
 });
 afterAll(async () => {
   await browser?.close();
-  server?.close();
+  site?.close();
 });
 
 async function open(options: BrowserContextOptions = {}, hash = ''): Promise<{ page: Page; complaints: string[] }> {
@@ -42,7 +30,7 @@ async function open(options: BrowserContextOptions = {}, hash = ''): Promise<{ p
   });
   page.on('pageerror', (error) => complaints.push(String(error)));
   page.on('request', (request) => {
-    if (!request.url().startsWith(url.replace('index.html', ''))) complaints.push(`asks for ${request.url()}`);
+    if (!request.url().startsWith(url)) complaints.push(`asks for ${request.url()}`);
   });
   await page.goto(url + hash);
   await page.waitForSelector('tactus-figure[kind="problem"][data-state="ready"]');
