@@ -6,7 +6,7 @@ JOBS ?= $(shell nproc)
 BUILD := build/release
 
 .DEFAULT_GOAL := help
-.PHONY: help run live page test bench format check clean deps configure
+.PHONY: help run live page site test bench format check clean deps configure
 
 help: ## List these commands
 	@sed -n 's/^\([a-z]*\):[^#]*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 10
@@ -27,6 +27,15 @@ web/node_modules/.package-lock.json: web/package-lock.json
 	npm ci --prefix web --ignore-scripts --no-audit --no-fund
 web/dist/index.html: web/node_modules/.package-lock.json web/index.html $(shell find web/src web/public -type f)
 	npm run --prefix web build
+
+site: ## Make the documentation site with the explainer: one static folder, build/site
+	@scripts/install-deps --site
+	$(MAKE) web/node_modules/.package-lock.json
+	CXX_LAUNCHER=$$(command -v ccache) JOBS=$(JOBS) web/kernel/build build/web-kernel
+	npm run --prefix web build:explainer
+	site/build build/site
+	python3 site/check.py build/site
+	node site/search.mjs build/site
 
 # A core has three slots for tests (tests/CMakeLists.txt).
 test: configure ## Build tactus and its tests, and run them

@@ -20,6 +20,15 @@ export default defineConfig({
           hookTimeout: 60_000,
         },
       },
+      { test: { name: 'kernel', include: ['tests/kernel/**/*.test.ts'], testTimeout: 60_000 } },
+      {
+        test: {
+          name: 'explainer',
+          include: ['tests/explainer/**/*.test.ts'],
+          testTimeout: 60_000,
+          hookTimeout: 60_000,
+        },
+      },
     ],
   },
 });

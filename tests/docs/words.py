@@ -69,7 +69,7 @@ docs/validation.md docs/theory/arm-margins.md docs/how-to/add-an-element.md docs
 docs/theory/arms.md docs/theory/arm-identification.md docs/theory/arm-methods.md
 docs/theory/arm-advice.md docs/theory/arm-vibration.md docs/theory/changing-grip.md docs/how-to/identify-your-master.md docs/how-to/logs.md
 docs/architecture.md docs/how-to/identify-an-arm.md docs/how-to/identify-from-a-recording.md docs/how-to/rigs.md docs/how-to/faults.md
-docs/theory/safety.md docs/reference/wire-format.md
+docs/theory/safety.md docs/reference/wire-format.md docs/how-to/site.md
 """.split()
 
 # Pages that have yet to be rewritten. This list only shrinks.

@@ -1,0 +1,5 @@
+import '../src/base.css';
+import './explainer.css';
+import { TactusFigure } from './figure';
+
+customElements.define('tactus-figure', TactusFigure);
