@@ -2,13 +2,13 @@
 // with person and wall in virtual time; then the whole tick of a rig's pair, supervised and behind its walls, joint by
 // joint and as two arms.
 
-#include <tactus/configuration/document.hpp>
-#include <tactus/experiments/arm_tapping/arm_pair.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/mechanics/minimum_jerk.hpp>
-#include <tactus/runtime/site_parts.hpp>
-#include <tactus/station/local_teleoperator.hpp>
-#include <tactus/station/supervised_arms.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/kernel/mechanics/minimum_jerk.hpp>
+#include <tactus/kernel/station/local_teleoperator.hpp>
+#include <tactus/kernel/station/supervised_arms.hpp>
+#include <tactus/runtime/servo/site_parts.hpp>
+#include <tactus/simulation/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
 
 #include <algorithm>
 #include <chrono>

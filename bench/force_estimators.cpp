@@ -1,8 +1,8 @@
-#include <tactus/control/estimators/disturbance_observer.hpp>
-#include <tactus/control/estimators/inverse_model_estimator.hpp>
-#include <tactus/control/estimators/kalman_force_estimator.hpp>
-#include <tactus/control/estimators/momentum_observer.hpp>
-#include <tactus/control/estimators/narx_force_estimator.hpp>
+#include <tactus/kernel/control/estimators/disturbance_observer.hpp>
+#include <tactus/kernel/control/estimators/inverse_model_estimator.hpp>
+#include <tactus/kernel/control/estimators/kalman_force_estimator.hpp>
+#include <tactus/kernel/control/estimators/momentum_observer.hpp>
+#include <tactus/kernel/control/estimators/narx_force_estimator.hpp>
 
 #include <cmath>
 #include <vector>

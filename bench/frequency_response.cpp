@@ -1,5 +1,5 @@
-#include <tactus/identification/frequency_response.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/identification/axis/frequency_response.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,5 +1,5 @@
-#include <tactus/control/architectures/position_force.hpp>
-#include <tactus/simulation/quantile.hpp>
+#include <tactus/kernel/control/architectures/position_force.hpp>
+#include <tactus/simulation/teleoperator/quantile.hpp>
 
 #include <chrono>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include <tactus/simulation/quantile.hpp>
+#include <tactus/simulation/teleoperator/quantile.hpp>
 
 #include <array>
 #include <utility>

@@ -1,5 +1,5 @@
-#include <tactus/identification/isolation.hpp>
-#include <tactus/simulation/simulated_rig.hpp>
+#include <tactus/identification/axis/isolation.hpp>
+#include <tactus/simulation/teleoperator/simulated_rig.hpp>
 
 #include <algorithm>
 #include <ctime>

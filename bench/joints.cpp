@@ -1,4 +1,4 @@
-#include <tactus/station/site_pair.hpp>
+#include <tactus/kernel/station/site_pair.hpp>
 
 #include <cmath>
 #include <cstddef>

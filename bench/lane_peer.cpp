@@ -1,6 +1,6 @@
-#include <tactus/mechanics/cable_driven_master.hpp>
-#include <tactus/mechanics/operator.hpp>
-#include <tactus/stability/lane.hpp>
+#include <tactus/analysis/stability/lane.hpp>
+#include <tactus/kernel/mechanics/cable_driven_master.hpp>
+#include <tactus/kernel/mechanics/operator.hpp>
 
 #include <array>
 #include <cmath>

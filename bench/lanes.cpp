@@ -2,9 +2,9 @@
 // machine can multiply and add; maps on one and two threads. Only ratios of one run: a shared machine drifts. Every
 // loop runs the same tap with cancellation, so ticks per second compare directly.
 
-#include <tactus/stability/lane_block.hpp>
-#include <tactus/stability/lane_memory.hpp>
-#include <tactus/stability/map.hpp>
+#include <tactus/analysis/stability/lane_block.hpp>
+#include <tactus/analysis/stability/lane_memory.hpp>
+#include <tactus/analysis/stability/map.hpp>
 
 #include <algorithm>
 #include <cmath>

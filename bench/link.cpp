@@ -1,7 +1,7 @@
-#include <tactus/link/endpoint.hpp>
-#include <tactus/report/table.hpp>
-#include <tactus/report/text.hpp>
-#include <tactus/simulation/quantile.hpp>
+#include <tactus/data/report/table.hpp>
+#include <tactus/data/report/text.hpp>
+#include <tactus/runtime/link/endpoint.hpp>
+#include <tactus/simulation/teleoperator/quantile.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include <tactus/control/stages/cancellation.hpp>
+#include <tactus/kernel/control/stages/cancellation.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 // The same real-time loop with observers, with none, and beside a load that has nothing to do with it, in alternating
 // windows: scripts/compare-with-observers.
-#include <tactus/configuration/document.hpp>
-#include <tactus/live/live_view.hpp>
-#include <tactus/live/server.hpp>
-#include <tactus/ros2/observer.hpp>
-#include <tactus/runtime/servo_thread.hpp>
-#include <tactus/telemetry/recorder.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/telemetry/recorder.hpp>
+#include <tactus/interfaces/live/live_view.hpp>
+#include <tactus/interfaces/live/server.hpp>
+#include <tactus/runtime/ros2/observer.hpp>
+#include <tactus/runtime/servo/servo_thread.hpp>
 
 #include <algorithm>
 #include <array>

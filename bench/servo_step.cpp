@@ -1,5 +1,5 @@
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/real_time/real_time_tap.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
+#include <tactus/simulation/real_time/real_time_tap.hpp>
 
 #include <filesystem>
 #include <system_error>

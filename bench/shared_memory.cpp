@@ -1,8 +1,8 @@
-#include <tactus/report/table.hpp>
-#include <tactus/report/text.hpp>
-#include <tactus/runtime/servo_thread.hpp>
-#include <tactus/runtime/shared_device.hpp>
-#include <tactus/simulation/quantile.hpp>
+#include <tactus/data/report/table.hpp>
+#include <tactus/data/report/text.hpp>
+#include <tactus/runtime/servo/servo_thread.hpp>
+#include <tactus/runtime/servo/shared_device.hpp>
+#include <tactus/simulation/teleoperator/quantile.hpp>
 
 #include <array>
 #include <atomic>

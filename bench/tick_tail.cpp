@@ -1,5 +1,5 @@
-#include <tactus/control/model/induced_motion_model.hpp>
-#include <tactus/simulation/quantile.hpp>
+#include <tactus/kernel/control/model/induced_motion_model.hpp>
+#include <tactus/simulation/teleoperator/quantile.hpp>
 
 #include <algorithm>
 #include <chrono>

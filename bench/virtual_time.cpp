@@ -1,5 +1,5 @@
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/mechanics/minimum_jerk.hpp>
+#include <tactus/kernel/mechanics/minimum_jerk.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
 
 #include <array>
 #include <cstddef>

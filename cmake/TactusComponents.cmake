@@ -1,6 +1,9 @@
-# The parts of tactus that can be left out. A component is a list of modules and of the components on which it builds; it
-# finds the libraries of its own modules alone. `kernel` needs Eigen and no operating system. scripts/install-deps names
-# the packages of each.
+# The parts of tactus that can be left out. A component is a folder of modules, and builds on other components; it finds
+# the libraries of its own modules alone. `kernel` needs Eigen and no operating system. scripts/install-deps names the
+# packages of each.
+#
+# The order is that of the layers: a module links and includes only modules that stand before it. The include-graph test
+# reads these lists.
 
 set(TACTUS_ALL_COMPONENTS kernel data runtime hardware identification simulation analysis interfaces)
 
@@ -21,6 +24,24 @@ set(TACTUS_COMPONENT_analysis_NEEDS simulation)
 set(TACTUS_COMPONENT_runtime_NEEDS data)
 set(TACTUS_COMPONENT_hardware_NEEDS runtime)
 set(TACTUS_COMPONENT_interfaces_NEEDS analysis)
+
+# Leaves in OUT where a module is, below tactus/. Four folders have a shorter name than their module.
+function(tactus_folder out module)
+  set(folder_of_runtime servo)
+  set(folder_of_identification axis)
+  set(folder_of_arm_identification arm)
+  set(folder_of_simulation teleoperator)
+  foreach(component IN LISTS TACTUS_ALL_COMPONENTS)
+    if(module IN_LIST TACTUS_COMPONENT_${component})
+      if(DEFINED folder_of_${module})
+        set(module ${folder_of_${module}})
+      endif()
+      set(${out} ${component}/${module} PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+  message(FATAL_ERROR "${module} is no module of any component")
+endfunction()
 
 # Leaves in OUT the components WANTED and all on which they build, those that others build on first.
 function(tactus_close_components out)

@@ -21,7 +21,8 @@ foreach(component IN LISTS TACTUS_COMPONENTS_BUILT)
       endif()
     endforeach()
     install(TARGETS tactus_${module} EXPORT tactus_${component})
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/tactus/${module} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus
+    tactus_folder(folder ${module})
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/tactus/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tactus/${component}
             FILES_MATCHING PATTERN *.hpp PATTERN internal EXCLUDE)
   endforeach()
   list(REMOVE_DUPLICATES dependencies)

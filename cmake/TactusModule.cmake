@@ -1,7 +1,7 @@
 # tactus_module(NAME [HEADERS_ONLY] [LIGHT | WORDS] [TYPES_MEMORY] [SOURCES file...] [LINK target...] [LINK_PRIVATE target...])
 #
-# Declares the library target tactus::NAME from the current folder. Headers sit beside their sources and are included
-# as <tactus/NAME/thing.hpp>. LIGHT: what it computes, it leaves to other modules. WORDS: it computes nothing that anybody
+# Declares the library target tactus::NAME from the current folder, tactus/COMPONENT/FOLDER. Headers sit beside their
+# sources and are included as <tactus/COMPONENT/FOLDER/thing.hpp>. LIGHT: what it computes, it leaves to other modules. WORDS: it computes nothing that anybody
 # waits for. TYPES_MEMORY: it gives a type to memory that came without one, so the sanitizer looks how that is aligned.
 
 find_program(TACTUS_CCACHE ccache)

@@ -1,4 +1,4 @@
-#include <tactus/telemetry/cdr.hpp>
+#include <tactus/data/telemetry/cdr.hpp>
 
 #include <algorithm>
 #include <cstddef>

@@ -1,6 +1,6 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/configuration/toml_writer.hpp>
-#include <tactus/simulation/fault_plan.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
+#include <tactus/simulation/teleoperator/fault_plan.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include <tactus/live/conversation.hpp>
+#include <tactus/interfaces/live/conversation.hpp>
 
 #include <algorithm>
 #include <cstddef>

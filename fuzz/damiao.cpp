@@ -1,5 +1,5 @@
-#include <tactus/devices/damiao/damiao_bus.hpp>
-#include <tactus/emulation/damiao/damiao_peer.hpp>
+#include <tactus/hardware/devices/damiao/damiao_bus.hpp>
+#include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
 
 #include <algorithm>
 #include <cstddef>

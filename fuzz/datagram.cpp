@@ -1,4 +1,4 @@
-#include <tactus/link/inbound.hpp>
+#include <tactus/runtime/link/inbound.hpp>
 
 #include <algorithm>
 #include <cstddef>

@@ -1,5 +1,5 @@
-#include <tactus/devices/dynamixel/dynamixel_bus.hpp>
-#include <tactus/emulation/dynamixel/dynamixel_peer.hpp>
+#include <tactus/hardware/devices/dynamixel/dynamixel_bus.hpp>
+#include <tactus/hardware/emulation/dynamixel/dynamixel_peer.hpp>
 
 #include "servo_conversation.hpp"
 

@@ -1,5 +1,5 @@
-#include <tactus/devices/feetech/feetech_bus.hpp>
-#include <tactus/emulation/feetech/feetech_peer.hpp>
+#include <tactus/hardware/devices/feetech/feetech_bus.hpp>
+#include <tactus/hardware/emulation/feetech/feetech_peer.hpp>
 
 #include "servo_conversation.hpp"
 

@@ -1,5 +1,5 @@
-#include <tactus/devices/inverse3/messages.hpp>
-#include <tactus/emulation/inverse3/inverse3_service.hpp>
+#include <tactus/hardware/devices/inverse3/messages.hpp>
+#include <tactus/hardware/emulation/inverse3/inverse3_service.hpp>
 
 #include <cmath>
 #include <cstddef>

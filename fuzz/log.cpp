@@ -1,4 +1,4 @@
-#include <tactus/telemetry/log_reader.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include <tactus/recording/recording.hpp>
+#include <tactus/data/recording/recording.hpp>
 
 #include <cmath>
 #include <cstddef>

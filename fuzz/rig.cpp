@@ -1,5 +1,5 @@
-#include <tactus/devices/rig/rig.hpp>
-#include <tactus/devices/rig/rig_edit.hpp>
+#include <tactus/hardware/devices/rig/rig.hpp>
+#include <tactus/hardware/devices/rig/rig_edit.hpp>
 
 #include <cmath>
 #include <cstddef>

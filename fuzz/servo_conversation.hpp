@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/devices/motor_bus.hpp>
-#include <tactus/wire/wire_end.hpp>
+#include <tactus/hardware/devices/motor_bus.hpp>
+#include <tactus/hardware/wire/wire_end.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -151,13 +151,13 @@ class Stage:
         index = ("# The kernel in C++\n\nThis reference lists the public headers of the kernel, as their comments describe them.\n"
                  "\nThe kernel needs Eigen and the standard library only. Its control cycles neither allocate, lock nor throw.\n")
         for module in KERNEL:
-            headers = sorted((root / "tactus" / module).rglob("*.hpp"))
+            headers = sorted((root / "tactus/kernel" / module).rglob("*.hpp"))
             names = [str(header.relative_to(root)) for header in headers if "internal" not in header.parts]
             for name in names:
-                self.write(f"reference/cpp/{name.removeprefix('tactus/')}.md",
+                self.write(f"reference/cpp/{name.removeprefix('tactus/kernel/')}.md",
                            f"# {name}\n\n```cpp\n#include <{name}>\n```\n\n```{{doxygenfile}} {name}\n```\n"
                            + self.concepts.get(name, ""))
-            entries = "\n".join(name.removeprefix("tactus/") for name in names)
+            entries = "\n".join(name.removeprefix("tactus/kernel/") for name in names)
             self.write(f"reference/cpp/{module}.md", f"# Module {module}\n\n```{{toctree}}\n:maxdepth: 1\n\n{entries}\n```\n")
         index += "\n```{toctree}\n:maxdepth: 1\n\n" + "\n".join(KERNEL) + "\n```\n"
         self.write("reference/cpp/index.md", index)

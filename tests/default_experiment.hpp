@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/configuration/document.hpp>
+#include <tactus/data/configuration/document.hpp>
 
 #include <stdexcept>
 #include <string>

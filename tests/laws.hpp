@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/core/element.hpp>
-#include <tactus/core/parameters.hpp>
+#include <tactus/kernel/core/element.hpp>
+#include <tactus/kernel/core/parameters.hpp>
 
 #include <array>
 #include <bit>

@@ -1,6 +1,6 @@
-#include <tactus/control/stages/cancellation.hpp>
-#include <tactus/mechanics/cable_driven_master.hpp>
-#include <tactus/mechanics/operator.hpp>
+#include <tactus/kernel/control/stages/cancellation.hpp>
+#include <tactus/kernel/mechanics/cable_driven_master.hpp>
+#include <tactus/kernel/mechanics/operator.hpp>
 
 #include <algorithm>
 #include <cmath>

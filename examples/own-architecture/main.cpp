@@ -1,5 +1,5 @@
-#include <tactus/cli/command.hpp>
-#include <tactus/control/architecture.hpp>
+#include <tactus/interfaces/cli/command.hpp>
+#include <tactus/kernel/control/architecture.hpp>
 
 #include <iostream>
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <tactus/control/architectures/position_force.hpp>
-#include <tactus/control/site.hpp>
-#include <tactus/core/parameters.hpp>
-#include <tactus/signal/checks.hpp>
+#include <tactus/kernel/control/architectures/position_force.hpp>
+#include <tactus/kernel/control/site.hpp>
+#include <tactus/kernel/core/parameters.hpp>
+#include <tactus/kernel/signal/checks.hpp>
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include <tactus/devices/plugin/plugin.hpp>
+#include <tactus/hardware/devices/plugin/plugin.hpp>
 
 #include <chrono>
 #include <memory>

@@ -1,5 +1,5 @@
-#include <tactus/cli/command.hpp>
-#include <tactus/station/device_registry.hpp>
+#include <tactus/interfaces/cli/command.hpp>
+#include <tactus/kernel/station/device_registry.hpp>
 
 #include <memory>
 

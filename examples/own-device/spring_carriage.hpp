@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/station/device.hpp>
+#include <tactus/kernel/station/device.hpp>
 
 #include <cstdint>
 

@@ -1,5 +1,5 @@
-#include <tactus/cli/command.hpp>
-#include <tactus/experiments/experiment_of.hpp>
+#include <tactus/interfaces/cli/command.hpp>
+#include <tactus/simulation/experiments/experiment_of.hpp>
 
 #include <memory>
 

@@ -1,8 +1,8 @@
 #include "virtual_wall.hpp"
 
-#include <tactus/experiments/contact_metrics.hpp>
-#include <tactus/mechanics/minimum_jerk.hpp>
-#include <tactus/simulation/site_plants.hpp>
+#include <tactus/kernel/mechanics/minimum_jerk.hpp>
+#include <tactus/simulation/experiments/contact_metrics.hpp>
+#include <tactus/simulation/teleoperator/site_plants.hpp>
 
 #include <algorithm>
 

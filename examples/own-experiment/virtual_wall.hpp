@@ -1,12 +1,12 @@
 #pragma once
 
-#include <tactus/core/parameters.hpp>
-#include <tactus/core/result.hpp>
-#include <tactus/experiments/gain_limit.hpp>
-#include <tactus/mechanics/cable_driven_master.hpp>
-#include <tactus/mechanics/operator.hpp>
-#include <tactus/signal/filtered_derivative.hpp>
-#include <tactus/simulation/clock.hpp>
+#include <tactus/kernel/core/parameters.hpp>
+#include <tactus/kernel/core/result.hpp>
+#include <tactus/kernel/mechanics/cable_driven_master.hpp>
+#include <tactus/kernel/mechanics/operator.hpp>
+#include <tactus/kernel/signal/filtered_derivative.hpp>
+#include <tactus/simulation/experiments/gain_limit.hpp>
+#include <tactus/simulation/teleoperator/clock.hpp>
 
 #include <array>
 #include <vector>

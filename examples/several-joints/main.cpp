@@ -1,7 +1,7 @@
-#include <tactus/runtime/joint_streams.hpp>
-#include <tactus/runtime/servo_thread.hpp>
-#include <tactus/runtime/site_log.hpp>
-#include <tactus/station/joined_devices.hpp>
+#include <tactus/kernel/station/joined_devices.hpp>
+#include <tactus/runtime/servo/joint_streams.hpp>
+#include <tactus/runtime/servo/servo_thread.hpp>
+#include <tactus/runtime/servo/site_log.hpp>
 
 #include <algorithm>
 #include <array>

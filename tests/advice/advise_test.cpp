@@ -1,6 +1,6 @@
-#include <tactus/advice/advise.hpp>
-#include <tactus/advice/presentation.hpp>
-#include <tactus/experiments/contest/contest.hpp>
+#include <tactus/analysis/advice/advise.hpp>
+#include <tactus/analysis/advice/presentation.hpp>
+#include <tactus/simulation/experiments/contest/contest.hpp>
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
-#include <tactus/advice/arm_advise.hpp>
-#include <tactus/advice/arm_presentation.hpp>
-#include <tactus/advice/arm_trial.hpp>
-#include <tactus/advice/internal/arm_climb.hpp>
-#include <tactus/configuration/toml_writer.hpp>
+#include <tactus/analysis/advice/arm_advise.hpp>
+#include <tactus/analysis/advice/arm_presentation.hpp>
+#include <tactus/analysis/advice/arm_trial.hpp>
+#include <tactus/analysis/advice/internal/arm_climb.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
 
 #include <algorithm>
 #include <set>

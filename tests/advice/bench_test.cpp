@@ -1,4 +1,4 @@
-#include <tactus/advice/bench.hpp>
+#include <tactus/analysis/advice/bench.hpp>
 
 #include <algorithm>
 #include <filesystem>

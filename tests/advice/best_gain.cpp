@@ -3,8 +3,8 @@
 // The largest force gain that any method of `tactus advise` reaches on the rig of the file RIG, by trying them all on
 // it: every combination, then other numbers for the best ten. With the controller's model of the file MODEL, or, with
 // --exact, with one that has the rig's own numbers where MODEL has found ones. Prints one line of JSON.
-#include <tactus/advice/advise.hpp>
-#include <tactus/configuration/toml_writer.hpp>
+#include <tactus/analysis/advice/advise.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
 
 #include <algorithm>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include <tactus/advice/knowledge.hpp>
+#include <tactus/analysis/advice/knowledge.hpp>
 
 #include <cmath>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include <tactus/advice/methods.hpp>
+#include <tactus/analysis/advice/methods.hpp>
 
 #include <algorithm>
 #include <cmath>

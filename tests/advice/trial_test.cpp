@@ -1,5 +1,5 @@
-#include <tactus/advice/trial.hpp>
-#include <tactus/experiments/contest/contest.hpp>
+#include <tactus/analysis/advice/trial.hpp>
+#include <tactus/simulation/experiments/contest/contest.hpp>
 
 #include "tests/default_experiment.hpp"
 #include <gtest/gtest.h>

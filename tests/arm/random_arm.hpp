@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/arm/chain.hpp>
+#include <tactus/kernel/arm/chain.hpp>
 
 #include <cmath>
 #include <cstddef>

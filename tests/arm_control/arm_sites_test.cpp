@@ -1,5 +1,5 @@
-#include <tactus/arm_control/arm_follower.hpp>
-#include <tactus/signal/decompositions.hpp>
+#include <tactus/kernel/arm_control/arm_follower.hpp>
+#include <tactus/kernel/signal/decompositions.hpp>
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <tactus/arm_control/arm_sites.hpp>
-#include <tactus/arm_plants/arm_device.hpp>
-#include <tactus/arm_plants/tool_operator.hpp>
-#include <tactus/control/supervised_site.hpp>
-#include <tactus/station/site_pair.hpp>
+#include <tactus/kernel/arm_control/arm_sites.hpp>
+#include <tactus/kernel/control/supervised_site.hpp>
+#include <tactus/kernel/station/site_pair.hpp>
+#include <tactus/simulation/arm_plants/arm_device.hpp>
+#include <tactus/simulation/arm_plants/tool_operator.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <tactus/arm/chain.hpp>
-#include <tactus/arm_control/arm_sites.hpp>
-#include <tactus/arm_plants/arm_plant.hpp>
-#include <tactus/control/supervised_site.hpp>
-#include <tactus/control/support_law.hpp>
-#include <tactus/station/site_pair.hpp>
-#include <tactus/urdf/urdf.hpp>
+#include <tactus/data/urdf/urdf.hpp>
+#include <tactus/kernel/arm/chain.hpp>
+#include <tactus/kernel/arm_control/arm_sites.hpp>
+#include <tactus/kernel/control/supervised_site.hpp>
+#include <tactus/kernel/control/support_law.hpp>
+#include <tactus/kernel/station/site_pair.hpp>
+#include <tactus/simulation/arm_plants/arm_plant.hpp>
 
 #include <algorithm>
 #include <array>

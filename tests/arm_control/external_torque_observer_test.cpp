@@ -1,4 +1,4 @@
-#include <tactus/arm_control/external_torque_observer.hpp>
+#include <tactus/kernel/arm_control/external_torque_observer.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
-#include <tactus/arm_control/induced_motion.hpp>
-#include <tactus/arm_plants/tool_operator.hpp>
+#include <tactus/kernel/arm_control/induced_motion.hpp>
+#include <tactus/simulation/arm_plants/tool_operator.hpp>
 
 #include <cmath>
 #include <complex>

@@ -1,4 +1,4 @@
-#include <tactus/arm_control/motor_watch.hpp>
+#include <tactus/kernel/arm_control/motor_watch.hpp>
 
 #include <algorithm>
 #include <array>

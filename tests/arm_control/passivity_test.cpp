@@ -1,6 +1,6 @@
-#include <tactus/arm_control/arm_follower.hpp>
-#include <tactus/arm_control/arm_leader.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/kernel/arm_control/arm_follower.hpp>
+#include <tactus/kernel/arm_control/arm_leader.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <cmath>
 #include <cstddef>

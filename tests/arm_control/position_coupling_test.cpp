@@ -1,5 +1,5 @@
-#include <tactus/arm_control/position_coupling.hpp>
-#include <tactus/arm_plants/arm_plant.hpp>
+#include <tactus/kernel/arm_control/position_coupling.hpp>
+#include <tactus/simulation/arm_plants/arm_plant.hpp>
 
 #include <algorithm>
 #include <cmath>

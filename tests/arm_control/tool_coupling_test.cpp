@@ -1,5 +1,5 @@
-#include <tactus/arm_control/arm_follower.hpp>
-#include <tactus/arm_control/tool_coupling.hpp>
+#include <tactus/kernel/arm_control/arm_follower.hpp>
+#include <tactus/kernel/arm_control/tool_coupling.hpp>
 
 #include <algorithm>
 #include <cmath>

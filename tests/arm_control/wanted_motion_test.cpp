@@ -1,4 +1,4 @@
-#include <tactus/arm_control/wanted_motion.hpp>
+#include <tactus/kernel/arm_control/wanted_motion.hpp>
 
 #include <cmath>
 #include <complex>

@@ -1,7 +1,7 @@
 // arm_coverage FIRST LAST: identifies simulated arms (tests/arm_identification/exact_arm.hpp), one for each seed from
 // FIRST to LAST, and prints how many of the 95 % intervals hold what the simulation has, for each kind of parameter.
 
-#include <tactus/arm_identification/fit.hpp>
+#include <tactus/identification/arm/fit.hpp>
 
 #include <array>
 #include <cstdint>

@@ -1,5 +1,5 @@
-#include <tactus/arm_identification/external_torque.hpp>
-#include <tactus/arm_identification/fit.hpp>
+#include <tactus/identification/arm/external_torque.hpp>
+#include <tactus/identification/arm/fit.hpp>
 
 #include <algorithm>
 #include <array>

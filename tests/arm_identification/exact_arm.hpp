@@ -1,8 +1,8 @@
 #pragma once
 
-#include <tactus/arm/chain.hpp>
-#include <tactus/arm_identification/recording.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/identification/arm/recording.hpp>
+#include <tactus/kernel/arm/chain.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include <tactus/arm_identification/excitation.hpp>
-#include <tactus/arm_identification/external_torque.hpp>
-#include <tactus/arm_identification/fit.hpp>
-#include <tactus/arm_identification/minimise.hpp>
-#include <tactus/arm_identification/motion_information.hpp>
+#include <tactus/identification/arm/excitation.hpp>
+#include <tactus/identification/arm/external_torque.hpp>
+#include <tactus/identification/arm/fit.hpp>
+#include <tactus/identification/arm/minimise.hpp>
+#include <tactus/identification/arm/motion_information.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/arm/chain.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/kernel/arm/chain.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <array>
 #include <cmath>

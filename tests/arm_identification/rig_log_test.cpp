@@ -1,6 +1,6 @@
-#include <tactus/arm_identification/rig_log.hpp>
-#include <tactus/runtime/site_record.hpp>
-#include <tactus/telemetry/log_writer.hpp>
+#include <tactus/data/telemetry/log_writer.hpp>
+#include <tactus/identification/arm/rig_log.hpp>
+#include <tactus/runtime/servo/site_record.hpp>
 
 #include <algorithm>
 #include <cmath>

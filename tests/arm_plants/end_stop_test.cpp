@@ -1,4 +1,4 @@
-#include <tactus/signal/random.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/arm_plants/arm_plant.hpp>
-#include <tactus/urdf/urdf.hpp>
+#include <tactus/data/urdf/urdf.hpp>
+#include <tactus/simulation/arm_plants/arm_plant.hpp>
 
 #include <cmath>
 #include <numbers>

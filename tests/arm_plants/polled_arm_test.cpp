@@ -1,4 +1,4 @@
-#include <tactus/arm_plants/polled_arm.hpp>
+#include <tactus/simulation/arm_plants/polled_arm.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include <tactus/arm_plants/tool_operator.hpp>
+#include <tactus/simulation/arm_plants/tool_operator.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <tactus/arm_control/arm_sites.hpp>
-#include <tactus/arm_stability/arm_margins.hpp>
-#include <tactus/configuration/document.hpp>
+#include <tactus/analysis/arm_stability/arm_margins.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/kernel/arm_control/arm_sites.hpp>
 
 #include <cmath>
 #include <filesystem>

@@ -1,5 +1,5 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/control/stages/cancellation.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/kernel/control/stages/cancellation.hpp>
 
 #include <cstdio>
 #include <cstdlib>

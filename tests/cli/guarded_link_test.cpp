@@ -1,6 +1,6 @@
-#include <tactus/cli/guard_page.hpp>
-#include <tactus/cli/guarded_link.hpp>
-#include <tactus/devices/motor_bus_device.hpp>
+#include <tactus/hardware/devices/motor_bus_device.hpp>
+#include <tactus/interfaces/cli/guard_page.hpp>
+#include <tactus/interfaces/cli/guarded_link.hpp>
 
 #include <memory>
 #include <utility>

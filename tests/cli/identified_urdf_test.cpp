@@ -1,6 +1,6 @@
-#include <tactus/arm_identification/model.hpp>
-#include <tactus/cli/command.hpp>
-#include <tactus/urdf/urdf.hpp>
+#include <tactus/data/urdf/urdf.hpp>
+#include <tactus/identification/arm/model.hpp>
+#include <tactus/interfaces/cli/command.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,5 @@
-#include <tactus/cli/line_writer.hpp>
-#include <tactus/cli/operator_input.hpp>
+#include <tactus/interfaces/cli/line_writer.hpp>
+#include <tactus/interfaces/cli/operator_input.hpp>
 
 #include <array>
 #include <chrono>

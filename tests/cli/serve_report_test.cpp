@@ -1,6 +1,6 @@
-#include <tactus/cli/serve_report.hpp>
-#include <tactus/configuration/document.hpp>
-#include <tactus/report/text.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/report/text.hpp>
+#include <tactus/interfaces/cli/serve_report.hpp>
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include <tactus/cli/support_words.hpp>
+#include <tactus/interfaces/cli/support_words.hpp>
 
 #include <gtest/gtest.h>
 

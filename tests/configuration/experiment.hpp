@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/core/parameters.hpp>
+#include <tactus/kernel/core/parameters.hpp>
 
 #include <array>
 #include <cstdint>

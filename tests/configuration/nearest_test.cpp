@@ -1,4 +1,4 @@
-#include <tactus/configuration/nearest.hpp>
+#include <tactus/data/configuration/nearest.hpp>
 
 #include <vector>
 

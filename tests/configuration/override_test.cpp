@@ -1,4 +1,4 @@
-#include <tactus/configuration/document.hpp>
+#include <tactus/data/configuration/document.hpp>
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include <tactus/configuration/reference.hpp>
+#include <tactus/data/configuration/reference.hpp>
 
 #include <string>
 

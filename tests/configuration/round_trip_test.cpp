@@ -1,5 +1,5 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/configuration/toml_writer.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
 
 #include <bit>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/configuration/json_schema.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/configuration/json_schema.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -1,6 +1,6 @@
-#include <tactus/control/agreed_parameters.hpp>
-#include <tactus/control/architectures/time_domain_passivity.hpp>
-#include <tactus/control/supervised_site.hpp>
+#include <tactus/kernel/control/agreed_parameters.hpp>
+#include <tactus/kernel/control/architectures/time_domain_passivity.hpp>
+#include <tactus/kernel/control/supervised_site.hpp>
 
 #include <cstdint>
 #include <functional>

@@ -1,6 +1,6 @@
-#include <tactus/control/architecture.hpp>
-#include <tactus/control/architectures/projection.hpp>
-#include <tactus/control/architectures/shared_compliant.hpp>
+#include <tactus/kernel/control/architecture.hpp>
+#include <tactus/kernel/control/architectures/projection.hpp>
+#include <tactus/kernel/control/architectures/shared_compliant.hpp>
 
 #include <cstdint>
 #include <limits>

@@ -1,4 +1,4 @@
-#include <tactus/control/supervision.hpp>
+#include <tactus/kernel/control/supervision.hpp>
 
 #include <algorithm>
 #include <cstddef>

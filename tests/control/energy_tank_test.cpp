@@ -1,5 +1,5 @@
-#include <tactus/control/architecture.hpp>
-#include <tactus/control/architectures/energy_tank.hpp>
+#include <tactus/kernel/control/architecture.hpp>
+#include <tactus/kernel/control/architectures/energy_tank.hpp>
 
 #include <algorithm>
 #include <cmath>

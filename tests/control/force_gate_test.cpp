@@ -1,4 +1,4 @@
-#include <tactus/control/force_gate.hpp>
+#include <tactus/kernel/control/force_gate.hpp>
 
 #include <algorithm>
 #include <cmath>

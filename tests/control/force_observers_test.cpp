@@ -1,6 +1,6 @@
-#include <tactus/control/estimators/disturbance_observer.hpp>
-#include <tactus/control/estimators/kalman_force_estimator.hpp>
-#include <tactus/control/estimators/momentum_observer.hpp>
+#include <tactus/kernel/control/estimators/disturbance_observer.hpp>
+#include <tactus/kernel/control/estimators/kalman_force_estimator.hpp>
+#include <tactus/kernel/control/estimators/momentum_observer.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <tactus/control/architecture.hpp>
-#include <tactus/control/architectures/four_channel.hpp>
+#include <tactus/kernel/control/architecture.hpp>
+#include <tactus/kernel/control/architectures/four_channel.hpp>
 
 #include <algorithm>
 #include <array>

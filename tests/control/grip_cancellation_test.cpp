@@ -1,4 +1,4 @@
-#include <tactus/control/stages/grip_cancellation.hpp>
+#include <tactus/kernel/control/stages/grip_cancellation.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,9 +2,9 @@
 // docs/theory/changing-grip.md:
 //
 //   build/release/bin/test_control --gtest_filter='GripEstimateBound.*'
-#include <tactus/control/stages/grip_cancellation.hpp>
-#include <tactus/signal/random.hpp>
-#include <tactus/signal/second_order_filter.hpp>
+#include <tactus/kernel/control/stages/grip_cancellation.hpp>
+#include <tactus/kernel/signal/random.hpp>
+#include <tactus/kernel/signal/second_order_filter.hpp>
 
 #include <algorithm>
 #include <array>

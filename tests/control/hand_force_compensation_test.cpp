@@ -1,5 +1,5 @@
-#include <tactus/control/architectures/position_force.hpp>
-#include <tactus/control/stages/hand_force_compensation.hpp>
+#include <tactus/kernel/control/architectures/position_force.hpp>
+#include <tactus/kernel/control/stages/hand_force_compensation.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <tactus/control/estimators/inverse_model_estimator.hpp>
+#include <tactus/kernel/control/estimators/inverse_model_estimator.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,6 @@
-#include <tactus/control/motion_check.hpp>
-#include <tactus/control/safety_gate.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/kernel/control/motion_check.hpp>
+#include <tactus/kernel/control/safety_gate.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include <tactus/control/reversal_check.hpp>
-#include <tactus/control/safety_gate.hpp>
-#include <tactus/control/sign_probe.hpp>
-#include <tactus/control/thermal_limit.hpp>
+#include <tactus/kernel/control/reversal_check.hpp>
+#include <tactus/kernel/control/safety_gate.hpp>
+#include <tactus/kernel/control/sign_probe.hpp>
+#include <tactus/kernel/control/thermal_limit.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include <tactus/control/force_sensor_check.hpp>
-#include <tactus/control/message_follower.hpp>
-#include <tactus/control/supervised_site.hpp>
+#include <tactus/kernel/control/force_sensor_check.hpp>
+#include <tactus/kernel/control/message_follower.hpp>
+#include <tactus/kernel/control/supervised_site.hpp>
 
 #include <algorithm>
 #include <cmath>

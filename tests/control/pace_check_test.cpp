@@ -1,4 +1,4 @@
-#include <tactus/control/pace_check.hpp>
+#include <tactus/kernel/control/pace_check.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include <tactus/control/architectures/position_force.hpp>
+#include <tactus/kernel/control/architectures/position_force.hpp>
 
 #include <algorithm>
 #include <cmath>

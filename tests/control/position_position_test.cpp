@@ -1,4 +1,4 @@
-#include <tactus/control/architectures/position_position.hpp>
+#include <tactus/kernel/control/architectures/position_position.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include <tactus/control/architectures/projection.hpp>
+#include <tactus/kernel/control/architectures/projection.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <tactus/control/protective_limits.hpp>
+#include <tactus/kernel/control/protective_limits.hpp>
 
 #include <string>
 

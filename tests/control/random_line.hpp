@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/control/site.hpp>
+#include <tactus/kernel/control/site.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/control/architectures/position_force.hpp>
+#include <tactus/kernel/control/architectures/position_force.hpp>
 
 #include <numbers>
 

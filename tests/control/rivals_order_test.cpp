@@ -1,4 +1,4 @@
-#include <tactus/control/architecture.hpp>
+#include <tactus/kernel/control/architecture.hpp>
 
 #include <algorithm>
 #include <bit>

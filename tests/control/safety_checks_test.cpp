@@ -1,8 +1,8 @@
-#include <tactus/control/encoder_check.hpp>
-#include <tactus/control/force_sensor_check.hpp>
-#include <tactus/control/packet.hpp>
-#include <tactus/control/passivity_monitor.hpp>
-#include <tactus/control/watchdog.hpp>
+#include <tactus/kernel/control/encoder_check.hpp>
+#include <tactus/kernel/control/force_sensor_check.hpp>
+#include <tactus/kernel/control/packet.hpp>
+#include <tactus/kernel/control/passivity_monitor.hpp>
+#include <tactus/kernel/control/watchdog.hpp>
 
 #include <cmath>
 #include <limits>

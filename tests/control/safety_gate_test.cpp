@@ -1,4 +1,4 @@
-#include <tactus/control/safety_gate.hpp>
+#include <tactus/kernel/control/safety_gate.hpp>
 
 #include <algorithm>
 #include <cmath>

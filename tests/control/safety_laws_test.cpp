@@ -1,14 +1,14 @@
-#include <tactus/control/force_sensor_check.hpp>
-#include <tactus/control/message_follower.hpp>
-#include <tactus/control/motion_check.hpp>
-#include <tactus/control/overload_check.hpp>
-#include <tactus/control/pace_check.hpp>
-#include <tactus/control/reversal_check.hpp>
-#include <tactus/control/safety_gate.hpp>
-#include <tactus/control/sign_probe.hpp>
-#include <tactus/control/site_supervisor.hpp>
-#include <tactus/control/thermal_limit.hpp>
-#include <tactus/control/watchdog.hpp>
+#include <tactus/kernel/control/force_sensor_check.hpp>
+#include <tactus/kernel/control/message_follower.hpp>
+#include <tactus/kernel/control/motion_check.hpp>
+#include <tactus/kernel/control/overload_check.hpp>
+#include <tactus/kernel/control/pace_check.hpp>
+#include <tactus/kernel/control/reversal_check.hpp>
+#include <tactus/kernel/control/safety_gate.hpp>
+#include <tactus/kernel/control/sign_probe.hpp>
+#include <tactus/kernel/control/site_supervisor.hpp>
+#include <tactus/kernel/control/thermal_limit.hpp>
+#include <tactus/kernel/control/watchdog.hpp>
 
 #include "tests/laws.hpp"
 

@@ -1,4 +1,4 @@
-#include <tactus/control/architectures/shared_compliant.hpp>
+#include <tactus/kernel/control/architectures/shared_compliant.hpp>
 
 #include <cmath>
 #include <numbers>

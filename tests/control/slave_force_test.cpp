@@ -1,5 +1,5 @@
-#include <tactus/control/architecture.hpp>
-#include <tactus/control/estimators/slave_force.hpp>
+#include <tactus/kernel/control/architecture.hpp>
+#include <tactus/kernel/control/estimators/slave_force.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <tactus/control/safety_gate.hpp>
-#include <tactus/control/stopping_brake.hpp>
+#include <tactus/kernel/control/safety_gate.hpp>
+#include <tactus/kernel/control/stopping_brake.hpp>
 
 #include <algorithm>
 #include <cmath>

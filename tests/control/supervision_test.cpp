@@ -1,4 +1,4 @@
-#include <tactus/control/supervised_site.hpp>
+#include <tactus/kernel/control/supervised_site.hpp>
 
 #include <algorithm>
 #include <cmath>

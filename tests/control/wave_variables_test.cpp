@@ -1,6 +1,6 @@
-#include <tactus/control/architecture.hpp>
-#include <tactus/control/architectures/wave_variables.hpp>
-#include <tactus/signal/filtered_derivative.hpp>
+#include <tactus/kernel/control/architecture.hpp>
+#include <tactus/kernel/control/architectures/wave_variables.hpp>
+#include <tactus/kernel/signal/filtered_derivative.hpp>
 
 #include <algorithm>
 #include <cmath>

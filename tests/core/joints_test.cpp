@@ -1,4 +1,4 @@
-#include <tactus/core/joints.hpp>
+#include <tactus/kernel/core/joints.hpp>
 
 #include <string>
 #include <type_traits>

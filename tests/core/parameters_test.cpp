@@ -1,4 +1,4 @@
-#include <tactus/core/parameters.hpp>
+#include <tactus/kernel/core/parameters.hpp>
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include <tactus/core/signals.hpp>
+#include <tactus/kernel/core/signals.hpp>
 
 #include <string>
 #include <vector>

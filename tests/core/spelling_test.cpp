@@ -1,4 +1,4 @@
-#include <tactus/core/spelling.hpp>
+#include <tactus/kernel/core/spelling.hpp>
 
 #include <string_view>
 #include <vector>

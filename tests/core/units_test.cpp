@@ -1,4 +1,4 @@
-#include <tactus/core/units.hpp>
+#include <tactus/kernel/core/units.hpp>
 
 #include <set>
 #include <string>

@@ -1,9 +1,9 @@
-#include <tactus/devices/bus_thread.hpp>
-#include <tactus/devices/damiao/damiao_bus.hpp>
-#include <tactus/devices/motor_bus_device.hpp>
-#include <tactus/emulation/damiao/damiao_peer.hpp>
-#include <tactus/wire/paced.hpp>
-#include <tactus/wire/talk.hpp>
+#include <tactus/hardware/devices/bus_thread.hpp>
+#include <tactus/hardware/devices/damiao/damiao_bus.hpp>
+#include <tactus/hardware/devices/motor_bus_device.hpp>
+#include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
+#include <tactus/hardware/wire/paced.hpp>
+#include <tactus/hardware/wire/talk.hpp>
 
 #include <atomic>
 #include <chrono>

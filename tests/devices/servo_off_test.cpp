@@ -1,7 +1,7 @@
-#include <tactus/devices/feetech/feetech_bus.hpp>
-#include <tactus/devices/motor_link.hpp>
-#include <tactus/emulation/feetech/feetech_peer.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/hardware/devices/feetech/feetech_bus.hpp>
+#include <tactus/hardware/devices/motor_link.hpp>
+#include <tactus/hardware/emulation/feetech/feetech_peer.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <cstdint>
 #include <string>

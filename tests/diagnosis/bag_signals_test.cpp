@@ -1,5 +1,5 @@
-#include <tactus/diagnosis/bag_signals.hpp>
-#include <tactus/diagnosis/columns.hpp>
+#include <tactus/identification/diagnosis/bag_signals.hpp>
+#include <tactus/identification/diagnosis/columns.hpp>
 
 #include <algorithm>
 #include <cmath>

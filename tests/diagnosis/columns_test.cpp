@@ -1,4 +1,4 @@
-#include <tactus/diagnosis/columns.hpp>
+#include <tactus/identification/diagnosis/columns.hpp>
 
 #include <string>
 #include <vector>

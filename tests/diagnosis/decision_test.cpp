@@ -1,4 +1,4 @@
-#include <tactus/diagnosis/decision.hpp>
+#include <tactus/identification/diagnosis/decision.hpp>
 
 #include <algorithm>
 

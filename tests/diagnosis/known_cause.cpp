@@ -1,6 +1,6 @@
 #include "tests/diagnosis/known_cause.hpp"
 
-#include <tactus/signal/random.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <cmath>

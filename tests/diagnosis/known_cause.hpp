@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/core/result.hpp>
+#include <tactus/kernel/core/result.hpp>
 
 #include <array>
 #include <cstdint>

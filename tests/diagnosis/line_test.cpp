@@ -1,6 +1,6 @@
-#include <tactus/diagnosis/line.hpp>
-#include <tactus/diagnosis/loop_gain.hpp>
-#include <tactus/diagnosis/signals.hpp>
+#include <tactus/identification/diagnosis/line.hpp>
+#include <tactus/identification/diagnosis/loop_gain.hpp>
+#include <tactus/identification/diagnosis/signals.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include <tactus/diagnosis/evidence.hpp>
-#include <tactus/diagnosis/oscillation.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/identification/diagnosis/evidence.hpp>
+#include <tactus/identification/diagnosis/oscillation.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <cmath>

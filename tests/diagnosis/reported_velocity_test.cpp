@@ -1,5 +1,5 @@
-#include <tactus/diagnosis/reported_velocity.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/identification/diagnosis/reported_velocity.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <cmath>
 #include <string>

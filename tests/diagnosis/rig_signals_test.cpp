@@ -1,6 +1,6 @@
-#include <tactus/diagnosis/signals.hpp>
-#include <tactus/runtime/site_record.hpp>
-#include <tactus/telemetry/log_writer.hpp>
+#include <tactus/data/telemetry/log_writer.hpp>
+#include <tactus/identification/diagnosis/signals.hpp>
+#include <tactus/runtime/servo/site_record.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "tests/diagnosis/scenario.hpp"
 
-#include <tactus/control/architecture.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/kernel/control/architecture.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <tactus/core/parameters.hpp>
-#include <tactus/mechanics/minimum_jerk.hpp>
-#include <tactus/simulation/teleoperator.hpp>
+#include <tactus/kernel/core/parameters.hpp>
+#include <tactus/kernel/mechanics/minimum_jerk.hpp>
+#include <tactus/simulation/teleoperator/teleoperator.hpp>
 
 #include <algorithm>
 #include <cmath>

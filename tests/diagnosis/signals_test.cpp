@@ -1,5 +1,5 @@
-#include <tactus/diagnosis/columns.hpp>
-#include <tactus/diagnosis/signals.hpp>
+#include <tactus/identification/diagnosis/columns.hpp>
+#include <tactus/identification/diagnosis/signals.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <tactus/mechanics/encoder.hpp>
-#include <tactus/mechanics/friction.hpp>
-#include <tactus/simulation/clock.hpp>
-#include <tactus/station/device.hpp>
+#include <tactus/kernel/mechanics/encoder.hpp>
+#include <tactus/kernel/mechanics/friction.hpp>
+#include <tactus/kernel/station/device.hpp>
+#include <tactus/simulation/teleoperator/clock.hpp>
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include <tactus/control/model/induced_motion_model.hpp>
+#include <tactus/kernel/control/model/induced_motion_model.hpp>
 
 #include <algorithm>
 #include <array>

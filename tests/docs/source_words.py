@@ -18,8 +18,8 @@ not_yet_file = Path(__file__).with_name("source_words_not_yet.txt")
 
 # (file, word as it is found, why it may stay)
 EXCUSES = [
-    ("tactus/report/figure.cpp", "tick", "a class of the style sheet: the tick of an axis"),
-    ("tactus/runtime/doctor.cpp", "ticks", "the ticks of the kernel"),
+    ("tactus/data/report/figure.cpp", "tick", "a class of the style sheet: the tick of an axis"),
+    ("tactus/runtime/servo/doctor.cpp", "ticks", "the ticks of the kernel"),
 ]
 # In comments a tick is the type, or a parameter that is called so; in messages it is a control cycle.
 TICK = r"\bticks?\b"

@@ -4,10 +4,10 @@
 // than the one that was identified: what scripts/any-grip makes its table of. Prints a JSON array with one object for
 // each condition, `settling_s` holding the settling time of each tap, null where it did not settle. WORD is a group of
 // conditions: grips, gains, changes, delays, tremor, apart, costs; without one, all of them.
-#include <tactus/configuration/document.hpp>
-#include <tactus/experiments/contest/contest.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/simulation/teleoperator.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/simulation/experiments/contest/contest.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
+#include <tactus/simulation/teleoperator/teleoperator.hpp>
 
 #include <algorithm>
 #include <cmath>

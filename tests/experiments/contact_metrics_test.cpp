@@ -1,4 +1,4 @@
-#include <tactus/experiments/contact_metrics.hpp>
+#include <tactus/simulation/experiments/contact_metrics.hpp>
 
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-#include <tactus/experiments/experiment_of.hpp>
+#include <tactus/simulation/experiments/experiment_of.hpp>
 
 #include <array>
 #include <cmath>

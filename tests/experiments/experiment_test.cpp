@@ -1,4 +1,4 @@
-#include <tactus/experiments/experiment.hpp>
+#include <tactus/simulation/experiments/experiment.hpp>
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include <tactus/experiments/gain_limit.hpp>
+#include <tactus/simulation/experiments/gain_limit.hpp>
 
 #include <vector>
 

@@ -1,5 +1,5 @@
-#include <tactus/experiments/hydraulic_chirp/hydraulic_chirp.hpp>
-#include <tactus/experiments/hydraulic_rigid_contact/hydraulic_rigid_contact.hpp>
+#include <tactus/simulation/experiments/hydraulic_chirp/hydraulic_chirp.hpp>
+#include <tactus/simulation/experiments/hydraulic_rigid_contact/hydraulic_rigid_contact.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include <tactus/identification/bench_model.hpp>
+#include <tactus/identification/axis/bench_model.hpp>
 
 #include <cmath>
 #include <complex>

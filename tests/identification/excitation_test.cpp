@@ -1,4 +1,4 @@
-#include <tactus/identification/excitation.hpp>
+#include <tactus/identification/axis/excitation.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <tactus/identification/force_comparison.hpp>
-#include <tactus/identification/zero_phase.hpp>
+#include <tactus/identification/axis/force_comparison.hpp>
+#include <tactus/identification/axis/zero_phase.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <tactus/identification/inverse_dynamics.hpp>
+#include <tactus/identification/axis/inverse_dynamics.hpp>
 
 #include <algorithm>
 #include <cmath>

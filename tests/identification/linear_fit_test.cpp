@@ -1,4 +1,4 @@
-#include <tactus/identification/linear_fit.hpp>
+#include <tactus/identification/axis/linear_fit.hpp>
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
-#include <tactus/identification/narx_fit.hpp>
-#include <tactus/identification/orthogonal_least_squares.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/identification/axis/narx_fit.hpp>
+#include <tactus/identification/axis/orthogonal_least_squares.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <tactus/identification/nonlinear_fit.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/identification/axis/nonlinear_fit.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <cmath>
 #include <limits>

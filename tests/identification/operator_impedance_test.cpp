@@ -1,4 +1,4 @@
-#include <tactus/identification/operator_impedance.hpp>
+#include <tactus/identification/axis/operator_impedance.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <tactus/identification/prediction_time.hpp>
+#include <tactus/identification/axis/prediction_time.hpp>
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include <tactus/identification/rational_fit.hpp>
+#include <tactus/identification/axis/rational_fit.hpp>
 
 #include <cmath>
 #include <complex>

@@ -1,5 +1,5 @@
-#include <tactus/identification/session.hpp>
-#include <tactus/recording/recording.hpp>
+#include <tactus/data/recording/recording.hpp>
+#include <tactus/identification/axis/session.hpp>
 
 #include <cmath>
 #include <filesystem>

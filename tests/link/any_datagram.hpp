@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/link/datagram.hpp>
+#include <tactus/runtime/link/datagram.hpp>
 
 #include <bit>
 #include <cstddef>

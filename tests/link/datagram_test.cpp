@@ -1,5 +1,5 @@
-#include <tactus/link/datagram.hpp>
-#include <tactus/link/inbound.hpp>
+#include <tactus/runtime/link/datagram.hpp>
+#include <tactus/runtime/link/inbound.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include <tactus/link/endpoint.hpp>
+#include <tactus/runtime/link/endpoint.hpp>
 
 #include <algorithm>
 #include <chrono>

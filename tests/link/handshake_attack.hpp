@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/signal/random.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
-#include <tactus/link/handshake_frame.hpp>
-#include <tactus/link/internal/handshake_inbox.hpp>
+#include <tactus/runtime/link/handshake_frame.hpp>
+#include <tactus/runtime/link/internal/handshake_inbox.hpp>
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/link/endpoint.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/kernel/signal/random.hpp>
+#include <tactus/runtime/link/endpoint.hpp>
 
 #include <algorithm>
 #include <cstddef>

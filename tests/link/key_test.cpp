@@ -1,4 +1,4 @@
-#include <tactus/link/key.hpp>
+#include <tactus/runtime/link/key.hpp>
 
 #include <cstdio>
 #include <filesystem>

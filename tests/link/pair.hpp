@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/link/endpoint.hpp>
+#include <tactus/runtime/link/endpoint.hpp>
 
 #include <chrono>
 #include <cstdint>

@@ -1,6 +1,6 @@
-#include <tactus/arm/chain.hpp>
-#include <tactus/live/arm_loop.hpp>
-#include <tactus/live/live_view.hpp>
+#include <tactus/interfaces/live/arm_loop.hpp>
+#include <tactus/interfaces/live/live_view.hpp>
+#include <tactus/kernel/arm/chain.hpp>
 
 #include <array>
 #include <cmath>

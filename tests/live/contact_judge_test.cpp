@@ -1,6 +1,6 @@
-#include <tactus/experiments/contact_metrics.hpp>
-#include <tactus/live/contact_judge.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/interfaces/live/contact_judge.hpp>
+#include <tactus/kernel/signal/random.hpp>
+#include <tactus/simulation/experiments/contact_metrics.hpp>
 
 #include <cmath>
 #include <numbers>

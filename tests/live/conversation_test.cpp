@@ -1,5 +1,5 @@
-#include <tactus/live/conversation.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/interfaces/live/conversation.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
-#include <tactus/experiments/contact_metrics.hpp>
-#include <tactus/live/contact_judge.hpp>
+#include <tactus/interfaces/live/contact_judge.hpp>
+#include <tactus/simulation/experiments/contact_metrics.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-#include <tactus/live/run_view.hpp>
-#include <tactus/live/server.hpp>
+#include <tactus/interfaces/live/run_view.hpp>
+#include <tactus/interfaces/live/server.hpp>
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/configuration/document.hpp>
-#include <tactus/live/live_view.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/interfaces/live/live_view.hpp>
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
-#include <tactus/live/server.hpp>
-#include <tactus/signal/random.hpp>
-#include <tactus/telemetry/log_reader.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/interfaces/live/server.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <atomic>

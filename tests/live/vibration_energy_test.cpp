@@ -1,4 +1,4 @@
-#include <tactus/live/vibration_energy.hpp>
+#include <tactus/interfaces/live/vibration_energy.hpp>
 
 #include <cmath>
 #include <numbers>

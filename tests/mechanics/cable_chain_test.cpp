@@ -1,4 +1,4 @@
-#include <tactus/mechanics/cable_chain.hpp>
+#include <tactus/kernel/mechanics/cable_chain.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include <tactus/mechanics/cable_driven_master.hpp>
+#include <tactus/kernel/mechanics/cable_driven_master.hpp>
 
 #include <cmath>
 #include <complex>

@@ -1,4 +1,4 @@
-#include <tactus/mechanics/contact.hpp>
+#include <tactus/kernel/mechanics/contact.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include <tactus/mechanics/electric_slave.hpp>
+#include <tactus/kernel/mechanics/electric_slave.hpp>
 
 #include <algorithm>
 #include <cmath>

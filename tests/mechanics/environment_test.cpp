@@ -1,4 +1,4 @@
-#include <tactus/mechanics/environment.hpp>
+#include <tactus/kernel/mechanics/environment.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include <tactus/mechanics/friction.hpp>
+#include <tactus/kernel/mechanics/friction.hpp>
 
 #include <cmath>
 #include <random>

@@ -1,5 +1,5 @@
-#include <tactus/mechanics/bouc_wen.hpp>
-#include <tactus/mechanics/elasto_slip.hpp>
+#include <tactus/kernel/mechanics/bouc_wen.hpp>
+#include <tactus/kernel/mechanics/elasto_slip.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,13 +1,13 @@
 #include "tests/laws.hpp"
 
-#include <tactus/mechanics/amplifier.hpp>
-#include <tactus/mechanics/bouc_wen.hpp>
-#include <tactus/mechanics/contact.hpp>
-#include <tactus/mechanics/elasto_slip.hpp>
-#include <tactus/mechanics/encoder.hpp>
-#include <tactus/mechanics/force_sensor.hpp>
-#include <tactus/mechanics/friction.hpp>
-#include <tactus/mechanics/springs.hpp>
+#include <tactus/kernel/mechanics/amplifier.hpp>
+#include <tactus/kernel/mechanics/bouc_wen.hpp>
+#include <tactus/kernel/mechanics/contact.hpp>
+#include <tactus/kernel/mechanics/elasto_slip.hpp>
+#include <tactus/kernel/mechanics/encoder.hpp>
+#include <tactus/kernel/mechanics/force_sensor.hpp>
+#include <tactus/kernel/mechanics/friction.hpp>
+#include <tactus/kernel/mechanics/springs.hpp>
 
 namespace tactus::laws {
 

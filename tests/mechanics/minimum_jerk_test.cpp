@@ -1,4 +1,4 @@
-#include <tactus/mechanics/minimum_jerk.hpp>
+#include <tactus/kernel/mechanics/minimum_jerk.hpp>
 
 #include <cmath>
 

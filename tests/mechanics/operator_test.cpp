@@ -1,4 +1,4 @@
-#include <tactus/mechanics/operator.hpp>
+#include <tactus/kernel/mechanics/operator.hpp>
 
 #include <cmath>
 #include <complex>

@@ -1,12 +1,12 @@
-#include <tactus/mechanics/cable_chain.hpp>
-#include <tactus/mechanics/cable_driven_master.hpp>
-#include <tactus/mechanics/electric_slave.hpp>
-#include <tactus/mechanics/environment.hpp>
-#include <tactus/mechanics/operator.hpp>
-#include <tactus/mechanics/position_transducer.hpp>
-#include <tactus/mechanics/pressure_sensor.hpp>
-#include <tactus/mechanics/servo_hydraulic_slave.hpp>
-#include <tactus/mechanics/servo_valve.hpp>
+#include <tactus/kernel/mechanics/cable_chain.hpp>
+#include <tactus/kernel/mechanics/cable_driven_master.hpp>
+#include <tactus/kernel/mechanics/electric_slave.hpp>
+#include <tactus/kernel/mechanics/environment.hpp>
+#include <tactus/kernel/mechanics/operator.hpp>
+#include <tactus/kernel/mechanics/position_transducer.hpp>
+#include <tactus/kernel/mechanics/pressure_sensor.hpp>
+#include <tactus/kernel/mechanics/servo_hydraulic_slave.hpp>
+#include <tactus/kernel/mechanics/servo_valve.hpp>
 
 #include "tests/laws.hpp"
 

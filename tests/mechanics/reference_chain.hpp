@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/mechanics/cable_chain.hpp>
+#include <tactus/kernel/mechanics/cable_chain.hpp>
 
 #include <array>
 #include <cmath>

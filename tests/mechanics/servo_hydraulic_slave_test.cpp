@@ -1,4 +1,4 @@
-#include <tactus/mechanics/servo_hydraulic_slave.hpp>
+#include <tactus/kernel/mechanics/servo_hydraulic_slave.hpp>
 
 #include <cmath>
 #include <numbers>

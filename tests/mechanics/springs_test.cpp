@@ -1,4 +1,4 @@
-#include <tactus/mechanics/springs.hpp>
+#include <tactus/kernel/mechanics/springs.hpp>
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
-#include <tactus/mechanics/amplifier.hpp>
-#include <tactus/mechanics/encoder.hpp>
-#include <tactus/mechanics/force_sensor.hpp>
+#include <tactus/kernel/mechanics/amplifier.hpp>
+#include <tactus/kernel/mechanics/encoder.hpp>
+#include <tactus/kernel/mechanics/force_sensor.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,7 @@
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/real_time/plant_server.hpp>
-#include <tactus/real_time/real_time_tap.hpp>
-#include <tactus/real_time/shared_plant.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
+#include <tactus/simulation/real_time/plant_server.hpp>
+#include <tactus/simulation/real_time/real_time_tap.hpp>
+#include <tactus/simulation/real_time/shared_plant.hpp>
 
 #include <atomic>
 #include <chrono>

@@ -1,7 +1,7 @@
-#include <tactus/arm_plants/arm_plant.hpp>
-#include <tactus/emulation/damiao/damiao_peer.hpp>
-#include <tactus/real_time/emulated_arm.hpp>
-#include <tactus/urdf/urdf.hpp>
+#include <tactus/data/urdf/urdf.hpp>
+#include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
+#include <tactus/simulation/arm_plants/arm_plant.hpp>
+#include <tactus/simulation/real_time/emulated_arm.hpp>
 
 #include <algorithm>
 #include <array>

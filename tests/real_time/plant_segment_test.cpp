@@ -1,4 +1,4 @@
-#include <tactus/real_time/plant_segment.hpp>
+#include <tactus/simulation/real_time/plant_segment.hpp>
 
 #include <atomic>
 #include <csignal>

@@ -1,10 +1,10 @@
-#include <tactus/configuration/toml_writer.hpp>
-#include <tactus/experiments/arm_tapping/arm_taps.hpp>
-#include <tactus/real_time/real_time_arm_tap.hpp>
-#include <tactus/real_time/replay.hpp>
-#include <tactus/runtime/rights.hpp>
-#include <tactus/runtime/site_log.hpp>
-#include <tactus/runtime/site_parts.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
+#include <tactus/runtime/servo/rights.hpp>
+#include <tactus/runtime/servo/site_log.hpp>
+#include <tactus/runtime/servo/site_parts.hpp>
+#include <tactus/simulation/experiments/arm_tapping/arm_taps.hpp>
+#include <tactus/simulation/real_time/real_time_arm_tap.hpp>
+#include <tactus/simulation/real_time/replay.hpp>
 
 #include <bit>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/real_time/real_time_tap.hpp>
-#include <tactus/telemetry/log_reader.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
+#include <tactus/simulation/real_time/real_time_tap.hpp>
 
 #include <algorithm>
 #include <bit>

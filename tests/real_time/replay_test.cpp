@@ -1,10 +1,10 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/real_time/real_time_tapping.hpp>
-#include <tactus/real_time/replay.hpp>
-#include <tactus/runtime/sites_record.hpp>
-#include <tactus/telemetry/cdr.hpp>
-#include <tactus/telemetry/log_reader.hpp>
-#include <tactus/telemetry/log_writer.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/telemetry/cdr.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/data/telemetry/log_writer.hpp>
+#include <tactus/runtime/servo/sites_record.hpp>
+#include <tactus/simulation/real_time/real_time_tapping.hpp>
+#include <tactus/simulation/real_time/replay.hpp>
 
 #include <cmath>
 #include <filesystem>

@@ -1,9 +1,9 @@
-#include <tactus/configuration/toml_writer.hpp>
-#include <tactus/real_time/plant_server.hpp>
-#include <tactus/real_time/real_time_tap.hpp>
-#include <tactus/real_time/replay.hpp>
-#include <tactus/real_time/shared_plant.hpp>
-#include <tactus/telemetry/log_reader.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/simulation/real_time/plant_server.hpp>
+#include <tactus/simulation/real_time/real_time_tap.hpp>
+#include <tactus/simulation/real_time/replay.hpp>
+#include <tactus/simulation/real_time/shared_plant.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,8 +1,8 @@
 #include "tests/real_time/shared_plant_test.hpp"
 
-#include <tactus/real_time/plant_server.hpp>
-#include <tactus/real_time/real_time_tap.hpp>
-#include <tactus/real_time/shared_plant.hpp>
+#include <tactus/simulation/real_time/plant_server.hpp>
+#include <tactus/simulation/real_time/real_time_tap.hpp>
+#include <tactus/simulation/real_time/shared_plant.hpp>
 
 #include <algorithm>
 #include <atomic>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/experiments/tapping/tapping.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
 
 #include <string>
 

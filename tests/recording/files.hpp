@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/recording/recording.hpp>
+#include <tactus/data/recording/recording.hpp>
 
 #include <filesystem>
 #include <fstream>

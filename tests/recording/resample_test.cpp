@@ -1,4 +1,4 @@
-#include <tactus/recording/resample.hpp>
+#include <tactus/data/recording/resample.hpp>
 
 #include <cmath>
 #include <functional>

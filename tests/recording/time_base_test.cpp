@@ -1,5 +1,5 @@
-#include <tactus/recording/resample.hpp>
-#include <tactus/recording/time_base.hpp>
+#include <tactus/data/recording/resample.hpp>
+#include <tactus/data/recording/time_base.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include <tactus/report/figure.hpp>
+#include <tactus/data/report/figure.hpp>
 
 #include <limits>
 #include <regex>

@@ -1,4 +1,4 @@
-#include <tactus/report/curve.hpp>
+#include <tactus/data/report/curve.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <tactus/report/files.hpp>
+#include <tactus/data/report/files.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,5 @@
-#include <tactus/report/heat_map.hpp>
-#include <tactus/report/page.hpp>
+#include <tactus/data/report/heat_map.hpp>
+#include <tactus/data/report/page.hpp>
 
 #include <array>
 #include <cmath>

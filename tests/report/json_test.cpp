@@ -1,4 +1,4 @@
-#include <tactus/report/json.hpp>
+#include <tactus/data/report/json.hpp>
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include <tactus/report/page.hpp>
+#include <tactus/data/report/page.hpp>
 
 #include "markup.hpp"
 #include <gtest/gtest.h>

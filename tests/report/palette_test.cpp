@@ -1,4 +1,4 @@
-#include <tactus/report/palette.hpp>
+#include <tactus/data/report/palette.hpp>
 
 #include <algorithm>
 #include <cmath>

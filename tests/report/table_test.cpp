@@ -1,5 +1,5 @@
-#include <tactus/report/table.hpp>
-#include <tactus/report/text.hpp>
+#include <tactus/data/report/table.hpp>
+#include <tactus/data/report/text.hpp>
 
 #include <algorithm>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include <tactus/report/text.hpp>
+#include <tactus/data/report/text.hpp>
 
 #include <limits>
 

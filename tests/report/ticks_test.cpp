@@ -1,4 +1,4 @@
-#include <tactus/report/ticks.hpp>
+#include <tactus/data/report/ticks.hpp>
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include <tactus/ros2/bridge.hpp>
+#include <tactus/runtime/ros2/bridge.hpp>
 
 #include <limits>
 

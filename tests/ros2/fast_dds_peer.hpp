@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/ros2/messages.hpp>
+#include <tactus/runtime/ros2/messages.hpp>
 
 #include <chrono>
 #include <cstdint>

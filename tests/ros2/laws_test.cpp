@@ -1,6 +1,6 @@
 #include "tests/laws.hpp"
 
-#include <tactus/ros2/remote_path.hpp>
+#include <tactus/runtime/ros2/remote_path.hpp>
 
 namespace tactus::laws {
 

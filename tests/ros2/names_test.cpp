@@ -1,4 +1,4 @@
-#include <tactus/ros2/names.hpp>
+#include <tactus/runtime/ros2/names.hpp>
 
 #include <string>
 

@@ -1,5 +1,5 @@
-#include <tactus/ros2/observer.hpp>
-#include <tactus/station/joined_devices.hpp>
+#include <tactus/kernel/station/joined_devices.hpp>
+#include <tactus/runtime/ros2/observer.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include <tactus/ros2/participant.hpp>
+#include <tactus/runtime/ros2/participant.hpp>
 
 #include <numbers>
 #include <optional>

@@ -1,4 +1,4 @@
-#include <tactus/ros2/remote_path.hpp>
+#include <tactus/runtime/ros2/remote_path.hpp>
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/ros2/names.hpp>
+#include <tactus/runtime/ros2/names.hpp>
 
 #include <string>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <tactus/runtime/site_record.hpp>
-#include <tactus/telemetry/log_reader.hpp>
-#include <tactus/telemetry/log_writer.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/data/telemetry/log_writer.hpp>
+#include <tactus/runtime/servo/site_record.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -1,6 +1,6 @@
-#include <tactus/runtime/shared_device.hpp>
-#include <tactus/signal/random.hpp>
-#include <tactus/station/device_guard.hpp>
+#include <tactus/kernel/signal/random.hpp>
+#include <tactus/kernel/station/device_guard.hpp>
+#include <tactus/runtime/servo/shared_device.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <tactus/runtime/doctor.hpp>
+#include <tactus/runtime/servo/doctor.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include <tactus/runtime/duration_histogram.hpp>
+#include <tactus/runtime/servo/duration_histogram.hpp>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,9 +1,9 @@
-#include <tactus/configuration/toml_writer.hpp>
-#include <tactus/real_time/repeated_taps.hpp>
-#include <tactus/real_time/replay.hpp>
-#include <tactus/runtime/local_loop.hpp>
-#include <tactus/runtime/rights.hpp>
-#include <tactus/telemetry/log_reader.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/runtime/servo/local_loop.hpp>
+#include <tactus/runtime/servo/rights.hpp>
+#include <tactus/simulation/real_time/repeated_taps.hpp>
+#include <tactus/simulation/real_time/replay.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include <tactus/runtime/servo_thread.hpp>
+#include <tactus/runtime/servo/servo_thread.hpp>
 
 #include <atomic>
 #include <chrono>

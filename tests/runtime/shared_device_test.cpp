@@ -1,4 +1,4 @@
-#include <tactus/runtime/shared_device.hpp>
+#include <tactus/runtime/servo/shared_device.hpp>
 
 #include <atomic>
 #include <csignal>

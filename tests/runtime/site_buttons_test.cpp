@@ -1,4 +1,4 @@
-#include <tactus/runtime/site_buttons.hpp>
+#include <tactus/runtime/servo/site_buttons.hpp>
 
 #include <string>
 #include <utility>

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <tactus/configuration/toml_writer.hpp>
-#include <tactus/real_time/repeated_taps.hpp>
-#include <tactus/runtime/rights.hpp>
-#include <tactus/runtime/site_loop.hpp>
-#include <tactus/telemetry/log_reader.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/runtime/servo/rights.hpp>
+#include <tactus/runtime/servo/site_loop.hpp>
+#include <tactus/simulation/real_time/repeated_taps.hpp>
 
 #include <chrono>
 #include <cstdint>

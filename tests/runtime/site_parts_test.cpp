@@ -1,5 +1,5 @@
-#include <tactus/control/agreement.hpp>
-#include <tactus/runtime/site_parts.hpp>
+#include <tactus/kernel/control/agreement.hpp>
+#include <tactus/runtime/servo/site_parts.hpp>
 
 #include <cstdint>
 #include <string>

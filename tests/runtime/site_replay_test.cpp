@@ -1,4 +1,4 @@
-#include <tactus/real_time/replay.hpp>
+#include <tactus/simulation/real_time/replay.hpp>
 
 #include <cstdint>
 #include <string>

@@ -1,4 +1,4 @@
-#include <tactus/signal/delay_line.hpp>
+#include <tactus/kernel/signal/delay_line.hpp>
 
 #include <vector>
 

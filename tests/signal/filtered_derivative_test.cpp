@@ -1,4 +1,4 @@
-#include <tactus/signal/filtered_derivative.hpp>
+#include <tactus/kernel/signal/filtered_derivative.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,5 +1,5 @@
-#include <tactus/signal/low_pass.hpp>
-#include <tactus/signal/second_order_filter.hpp>
+#include <tactus/kernel/signal/low_pass.hpp>
+#include <tactus/kernel/signal/second_order_filter.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,11 +1,11 @@
 #include "tests/laws.hpp"
 
-#include <tactus/signal/delay_line.hpp>
-#include <tactus/signal/filtered_derivative.hpp>
-#include <tactus/signal/low_pass.hpp>
-#include <tactus/signal/predictor.hpp>
-#include <tactus/signal/rational_filter.hpp>
-#include <tactus/signal/second_order_filter.hpp>
+#include <tactus/kernel/signal/delay_line.hpp>
+#include <tactus/kernel/signal/filtered_derivative.hpp>
+#include <tactus/kernel/signal/low_pass.hpp>
+#include <tactus/kernel/signal/predictor.hpp>
+#include <tactus/kernel/signal/rational_filter.hpp>
+#include <tactus/kernel/signal/second_order_filter.hpp>
 
 #include <cstdlib>
 #include <memory>

@@ -1,4 +1,4 @@
-#include <tactus/signal/prediction_block.hpp>
+#include <tactus/kernel/signal/prediction_block.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,4 +1,4 @@
-#include <tactus/signal/predictor.hpp>
+#include <tactus/kernel/signal/predictor.hpp>
 
 #include <cmath>
 #include <complex>

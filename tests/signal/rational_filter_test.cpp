@@ -1,4 +1,4 @@
-#include <tactus/signal/rational_filter.hpp>
+#include <tactus/kernel/signal/rational_filter.hpp>
 
 #include <cmath>
 #include <numbers>

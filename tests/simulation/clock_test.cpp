@@ -1,4 +1,4 @@
-#include <tactus/simulation/clock.hpp>
+#include <tactus/simulation/teleoperator/clock.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <tactus/simulation/delayed_slave.hpp>
+#include <tactus/simulation/teleoperator/delayed_slave.hpp>
 
 #include <cmath>
 #include <numbers>

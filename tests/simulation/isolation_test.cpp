@@ -1,7 +1,7 @@
-#include <tactus/identification/cancellation_model.hpp>
-#include <tactus/identification/isolation.hpp>
-#include <tactus/identification/isolation_figures.hpp>
-#include <tactus/simulation/simulated_rig.hpp>
+#include <tactus/identification/axis/cancellation_model.hpp>
+#include <tactus/identification/axis/isolation.hpp>
+#include <tactus/identification/axis/isolation_figures.hpp>
+#include <tactus/simulation/teleoperator/simulated_rig.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/configuration/json_schema.hpp>
-#include <tactus/configuration/reference.hpp>
-#include <tactus/configuration/toml_writer.hpp>
-#include <tactus/simulation/teleoperator.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/data/configuration/json_schema.hpp>
+#include <tactus/data/configuration/reference.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
+#include <tactus/simulation/teleoperator/teleoperator.hpp>
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include <tactus/simulation/parallel.hpp>
+#include <tactus/simulation/teleoperator/parallel.hpp>
 
 #include <atomic>
 #include <new>

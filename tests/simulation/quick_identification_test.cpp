@@ -1,6 +1,6 @@
-#include <tactus/identification/cancellation_model.hpp>
-#include <tactus/identification/quick.hpp>
-#include <tactus/simulation/simulated_rig.hpp>
+#include <tactus/identification/axis/cancellation_model.hpp>
+#include <tactus/identification/axis/quick.hpp>
+#include <tactus/simulation/teleoperator/simulated_rig.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/simulation/teleoperator.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
+#include <tactus/simulation/teleoperator/teleoperator.hpp>
 
 #include <array>
 #include <bit>

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <tactus/control/supervised_site.hpp>
-#include <tactus/link/datagram.hpp>
-#include <tactus/link/inbound.hpp>
-#include <tactus/simulation/site_plants.hpp>
-#include <tactus/simulation/teleoperator.hpp>
-#include <tactus/station/step.hpp>
+#include <tactus/kernel/control/supervised_site.hpp>
+#include <tactus/kernel/station/step.hpp>
+#include <tactus/runtime/link/datagram.hpp>
+#include <tactus/runtime/link/inbound.hpp>
+#include <tactus/simulation/teleoperator/site_plants.hpp>
+#include <tactus/simulation/teleoperator/teleoperator.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Every counter of a pair of sites, a second before it would wrap or reach its limit.
-#include <tactus/experiments/faults/table.hpp>
-#include <tactus/link/packet_filter.hpp>
-#include <tactus/link/secure_channel.hpp>
+#include <tactus/runtime/link/packet_filter.hpp>
+#include <tactus/runtime/link/secure_channel.hpp>
+#include <tactus/simulation/experiments/faults/table.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
-#include <tactus/stability/bonded_run.hpp>
-#include <tactus/stability/margins.hpp>
+#include <tactus/analysis/stability/bonded_run.hpp>
+#include <tactus/analysis/stability/margins.hpp>
 
 #include <cmath>
 #include <vector>

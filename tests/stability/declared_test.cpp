@@ -1,10 +1,10 @@
-#include <tactus/stability/declared.hpp>
-#include <tactus/stability/loop.hpp>
-#include <tactus/stability/map_point.hpp>
-#include <tactus/stability/margins.hpp>
-#include <tactus/stability/scorecard.hpp>
-#include <tactus/stability/two_port.hpp>
-#include <tactus/stability/uncertainty.hpp>
+#include <tactus/analysis/stability/declared.hpp>
+#include <tactus/analysis/stability/loop.hpp>
+#include <tactus/analysis/stability/map_point.hpp>
+#include <tactus/analysis/stability/margins.hpp>
+#include <tactus/analysis/stability/scorecard.hpp>
+#include <tactus/analysis/stability/two_port.hpp>
+#include <tactus/analysis/stability/uncertainty.hpp>
 
 #include <functional>
 #include <string>
@@ -42,10 +42,10 @@ const auto below_shaper = [](std::string_view own) { return join("shaper", own);
 TEST(Declared, AStageThatSaysNothingIsRefusedByNameOnOrOff) {
   EXPECT_EQ(refusal_of(check_stage<Silent>(Analysis::linear, {}, below_shaper)),
             "control.shaper: has not declared whether it is linear: declare it in its class as "
-            "tactus/control/stages/stage.hpp describes, or use `tactus run`");
+            "tactus/kernel/control/stages/stage.hpp describes, or use `tactus run`");
   EXPECT_EQ(refusal_of(check_stage<Silent>(Analysis::lanes, {}, below_shaper)),
             "control.shaper: has not declared whether it runs on lanes: declare it in its class as "
-            "tactus/control/stages/stage.hpp describes, or use `tactus run`");
+            "tactus/kernel/control/stages/stage.hpp describes, or use `tactus run`");
 }
 
 TEST(Declared, AStageIsTakenAtItsWord) {

@@ -1,7 +1,7 @@
-#include <tactus/mechanics/minimum_jerk.hpp>
-#include <tactus/signal/random.hpp>
-#include <tactus/stability/lane_memory.hpp>
-#include <tactus/stability/map_point.hpp>
+#include <tactus/analysis/stability/lane_memory.hpp>
+#include <tactus/analysis/stability/map_point.hpp>
+#include <tactus/kernel/mechanics/minimum_jerk.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include <tactus/mechanics/cable_chain.hpp>
-#include <tactus/signal/filtered_derivative.hpp>
-#include <tactus/signal/random.hpp>
-#include <tactus/stability/linear_element.hpp>
-#include <tactus/stability/loop.hpp>
+#include <tactus/analysis/stability/linear_element.hpp>
+#include <tactus/analysis/stability/loop.hpp>
+#include <tactus/kernel/mechanics/cable_chain.hpp>
+#include <tactus/kernel/signal/filtered_derivative.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <cmath>

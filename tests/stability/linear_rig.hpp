@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/experiments/model_mismatch.hpp>
-#include <tactus/stability/bonded_run.hpp>
+#include <tactus/analysis/stability/bonded_run.hpp>
+#include <tactus/simulation/experiments/model_mismatch.hpp>
 
 /// The rig of the experiment file without anything that is not linear.
 inline tactus::simulation::Teleoperator::Params linear_rig() {

@@ -1,5 +1,5 @@
-#include <tactus/stability/angle.hpp>
-#include <tactus/stability/margins.hpp>
+#include <tactus/analysis/stability/angle.hpp>
+#include <tactus/analysis/stability/margins.hpp>
 
 #include <algorithm>
 #include <cmath>

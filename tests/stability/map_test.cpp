@@ -1,6 +1,6 @@
-#include <tactus/stability/map.hpp>
-#include <tactus/stability/map_file.hpp>
-#include <tactus/stability/map_hdf5.hpp>
+#include <tactus/analysis/stability/map.hpp>
+#include <tactus/analysis/stability/map_file.hpp>
+#include <tactus/analysis/stability/map_hdf5.hpp>
 
 #include <cstring>
 #include <filesystem>

@@ -1,6 +1,6 @@
-#include <tactus/signal/random.hpp>
-#include <tactus/stability/angle.hpp>
-#include <tactus/stability/two_port.hpp>
+#include <tactus/analysis/stability/angle.hpp>
+#include <tactus/analysis/stability/two_port.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <cmath>
 #include <complex>

@@ -1,5 +1,5 @@
-#include <tactus/stability/state_space.hpp>
-#include <tactus/stability/z_width.hpp>
+#include <tactus/analysis/stability/state_space.hpp>
+#include <tactus/analysis/stability/z_width.hpp>
 
 #include <algorithm>
 #include <cmath>

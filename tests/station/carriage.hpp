@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/control/architecture.hpp>
-#include <tactus/station/device.hpp>
+#include <tactus/kernel/control/architecture.hpp>
+#include <tactus/kernel/station/device.hpp>
 
 #include <cmath>
 #include <cstdint>

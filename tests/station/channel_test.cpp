@@ -1,4 +1,4 @@
-#include <tactus/station/channel.hpp>
+#include <tactus/kernel/station/channel.hpp>
 
 #include <cmath>
 #include <vector>

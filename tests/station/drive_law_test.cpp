@@ -1,6 +1,6 @@
-#include <tactus/control/drive_law.hpp>
-#include <tactus/signal/random.hpp>
-#include <tactus/station/device_guard.hpp>
+#include <tactus/kernel/control/drive_law.hpp>
+#include <tactus/kernel/signal/random.hpp>
+#include <tactus/kernel/station/device_guard.hpp>
 
 #include <cmath>
 #include <limits>

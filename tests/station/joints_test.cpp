@@ -1,5 +1,5 @@
-#include <tactus/station/joined_devices.hpp>
-#include <tactus/station/local_teleoperator.hpp>
+#include <tactus/kernel/station/joined_devices.hpp>
+#include <tactus/kernel/station/local_teleoperator.hpp>
 
 #include <array>
 #include <bit>

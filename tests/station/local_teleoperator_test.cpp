@@ -1,5 +1,5 @@
-#include <tactus/station/local_teleoperator.hpp>
-#include <tactus/station/make_device_guard.hpp>
+#include <tactus/kernel/station/local_teleoperator.hpp>
+#include <tactus/kernel/station/make_device_guard.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include <tactus/telemetry/broadcast.hpp>
+#include <tactus/data/telemetry/broadcast.hpp>
 
 #include <array>
 #include <atomic>

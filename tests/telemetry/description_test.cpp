@@ -1,5 +1,5 @@
-#include <tactus/simulation/teleoperator.hpp>
-#include <tactus/telemetry/cdr.hpp>
+#include <tactus/data/telemetry/cdr.hpp>
+#include <tactus/simulation/teleoperator/teleoperator.hpp>
 
 #include <array>
 #include <cstring>

@@ -1,8 +1,8 @@
-#include <tactus/recording/recording.hpp>
-#include <tactus/runtime/site_record.hpp>
-#include <tactus/telemetry/episodes.hpp>
-#include <tactus/telemetry/export.hpp>
-#include <tactus/telemetry/wide_table.hpp>
+#include <tactus/data/recording/recording.hpp>
+#include <tactus/data/telemetry/episodes.hpp>
+#include <tactus/data/telemetry/export.hpp>
+#include <tactus/data/telemetry/wide_table.hpp>
+#include <tactus/runtime/servo/site_record.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include <tactus/recording/recording.hpp>
-#include <tactus/telemetry/export.hpp>
-#include <tactus/telemetry/recorder.hpp>
+#include <tactus/data/recording/recording.hpp>
+#include <tactus/data/telemetry/export.hpp>
+#include <tactus/data/telemetry/recorder.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -1,5 +1,5 @@
-#include <tactus/telemetry/log_reader.hpp>
-#include <tactus/telemetry/mcap_format.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/data/telemetry/mcap_format.hpp>
 
 #include <algorithm>
 #include <cerrno>

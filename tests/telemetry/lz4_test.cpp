@@ -1,6 +1,6 @@
-#include <tactus/telemetry/log_reader.hpp>
-#include <tactus/telemetry/lz4.hpp>
-#include <tactus/telemetry/mcap_format.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/data/telemetry/lz4.hpp>
+#include <tactus/data/telemetry/mcap_format.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,5 +1,5 @@
-#include <tactus/telemetry/log_reader.hpp>
-#include <tactus/telemetry/recorder.hpp>
+#include <tactus/data/telemetry/log_reader.hpp>
+#include <tactus/data/telemetry/recorder.hpp>
 
 #include <chrono>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include <tactus/telemetry/ring.hpp>
+#include <tactus/data/telemetry/ring.hpp>
 
 #include <atomic>
 #include <cstdint>

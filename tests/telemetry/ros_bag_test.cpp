@@ -1,4 +1,4 @@
-#include <tactus/telemetry/ros_bag.hpp>
+#include <tactus/data/telemetry/ros_bag.hpp>
 
 #include <algorithm>
 #include <filesystem>

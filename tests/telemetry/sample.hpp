@@ -1,8 +1,8 @@
 #pragma once
 
-#include <tactus/core/signals.hpp>
-#include <tactus/telemetry/cdr.hpp>
-#include <tactus/telemetry/log_writer.hpp>
+#include <tactus/data/telemetry/cdr.hpp>
+#include <tactus/data/telemetry/log_writer.hpp>
+#include <tactus/kernel/core/signals.hpp>
 
 #include <cstdint>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/telemetry/mcap_format.hpp>
+#include <tactus/data/telemetry/mcap_format.hpp>
 
 #include <bit>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include <tactus/urdf/urdf.hpp>
+#include <tactus/data/urdf/urdf.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include <tactus/wire/join.hpp>
+#include <tactus/hardware/wire/join.hpp>
 
 #include <gtest/gtest.h>
 #include <tests/wire/scripted_end.hpp>

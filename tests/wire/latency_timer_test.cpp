@@ -1,4 +1,4 @@
-#include <tactus/wire/latency_timer.hpp>
+#include <tactus/hardware/wire/latency_timer.hpp>
 
 #include <filesystem>
 #include <fstream>

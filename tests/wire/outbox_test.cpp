@@ -1,4 +1,4 @@
-#include <tactus/wire/outbox.hpp>
+#include <tactus/hardware/wire/outbox.hpp>
 
 #include <deque>
 #include <utility>

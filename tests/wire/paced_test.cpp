@@ -1,5 +1,5 @@
-#include <tactus/wire/join.hpp>
-#include <tactus/wire/paced.hpp>
+#include <tactus/hardware/wire/join.hpp>
+#include <tactus/hardware/wire/paced.hpp>
 
 #include <gtest/gtest.h>
 #include <tests/wire/scripted_end.hpp>

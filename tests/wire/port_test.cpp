@@ -1,4 +1,4 @@
-#include <tactus/wire/port.hpp>
+#include <tactus/hardware/wire/port.hpp>
 
 #include <array>
 #include <filesystem>

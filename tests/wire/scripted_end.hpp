@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tactus/wire/wire_end.hpp>
+#include <tactus/hardware/wire/wire_end.hpp>
 
 #include <cstddef>
 #include <cstdint>

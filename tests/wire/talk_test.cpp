@@ -1,4 +1,4 @@
-#include <tactus/wire/talk.hpp>
+#include <tactus/hardware/wire/talk.hpp>
 
 #include <algorithm>
 #include <array>

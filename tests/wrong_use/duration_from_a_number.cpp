@@ -1,4 +1,4 @@
-#include <tactus/core/units.hpp>
+#include <tactus/kernel/core/units.hpp>
 
 double sample_rate_Hz(tactus::Seconds sample_time) { return 1.0 / sample_time.value; }
 

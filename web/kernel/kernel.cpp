@@ -1,11 +1,11 @@
 #include "kernel.hpp"
 
-#include <tactus/configuration/assign.hpp>
-#include <tactus/core/binding.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/live/axis_loop.hpp>
-#include <tactus/live/contact_judge.hpp>
-#include <tactus/live/hand.hpp>
+#include <tactus/data/configuration/assign.hpp>
+#include <tactus/interfaces/live/axis_loop.hpp>
+#include <tactus/interfaces/live/contact_judge.hpp>
+#include <tactus/interfaces/live/hand.hpp>
+#include <tactus/kernel/core/binding.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <tactus/devices/damiao/damiao_bus.hpp>
-#include <tactus/emulation/damiao/damiao_peer.hpp>
-#include <tactus/wire/join.hpp>
-#include <tactus/wire/paced.hpp>
+#include <tactus/hardware/devices/damiao/damiao_bus.hpp>
+#include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
+#include <tactus/hardware/wire/join.hpp>
+#include <tactus/hardware/wire/paced.hpp>
 
 #include <algorithm>
 #include <array>

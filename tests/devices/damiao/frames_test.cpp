@@ -1,4 +1,4 @@
-#include <tactus/devices/damiao/frames.hpp>
+#include <tactus/hardware/devices/damiao/frames.hpp>
 
 #include <array>
 #include <bit>

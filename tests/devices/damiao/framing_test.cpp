@@ -1,4 +1,4 @@
-#include <tactus/devices/damiao/framing.hpp>
+#include <tactus/hardware/devices/damiao/framing.hpp>
 
 #include <algorithm>
 #include <cstring>

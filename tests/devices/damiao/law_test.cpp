@@ -1,9 +1,9 @@
-#include <tactus/devices/damiao/damiao_bus.hpp>
-#include <tactus/devices/motor_bus_device.hpp>
-#include <tactus/devices/motor_joint.hpp>
-#include <tactus/emulation/damiao/damiao_peer.hpp>
-#include <tactus/station/device_guard.hpp>
-#include <tactus/wire/join.hpp>
+#include <tactus/hardware/devices/damiao/damiao_bus.hpp>
+#include <tactus/hardware/devices/motor_bus_device.hpp>
+#include <tactus/hardware/devices/motor_joint.hpp>
+#include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
+#include <tactus/hardware/wire/join.hpp>
+#include <tactus/kernel/station/device_guard.hpp>
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,6 @@
-#include <tactus/devices/motor_link.hpp>
-#include <tactus/devices/off_watch.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/hardware/devices/motor_link.hpp>
+#include <tactus/hardware/devices/off_watch.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <array>

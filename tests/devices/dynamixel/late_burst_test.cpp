@@ -1,7 +1,7 @@
-#include <tactus/devices/dynamixel/dynamixel_bus.hpp>
-#include <tactus/emulation/dynamixel/dynamixel_peer.hpp>
-#include <tactus/wire/join.hpp>
-#include <tactus/wire/paced.hpp>
+#include <tactus/hardware/devices/dynamixel/dynamixel_bus.hpp>
+#include <tactus/hardware/emulation/dynamixel/dynamixel_peer.hpp>
+#include <tactus/hardware/wire/join.hpp>
+#include <tactus/hardware/wire/paced.hpp>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
-#include <tactus/devices/dynamixel/packet.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/hardware/devices/dynamixel/packet.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,7 @@
-#include <tactus/devices/feetech/feetech_bus.hpp>
-#include <tactus/emulation/feetech/feetech_peer.hpp>
-#include <tactus/wire/join.hpp>
-#include <tactus/wire/paced.hpp>
+#include <tactus/hardware/devices/feetech/feetech_bus.hpp>
+#include <tactus/hardware/emulation/feetech/feetech_peer.hpp>
+#include <tactus/hardware/wire/join.hpp>
+#include <tactus/hardware/wire/paced.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-#include <tactus/devices/feetech/packet.hpp>
-#include <tactus/signal/random.hpp>
+#include <tactus/hardware/devices/feetech/packet.hpp>
+#include <tactus/kernel/signal/random.hpp>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,8 +1,8 @@
-#include <tactus/devices/inverse3/inverse3_link.hpp>
-#include <tactus/devices/inverse3/messages.hpp>
-#include <tactus/devices/motor_bus_device.hpp>
-#include <tactus/emulation/inverse3/inverse3_server.hpp>
-#include <tactus/wire/talk.hpp>
+#include <tactus/hardware/devices/inverse3/inverse3_link.hpp>
+#include <tactus/hardware/devices/inverse3/messages.hpp>
+#include <tactus/hardware/devices/motor_bus_device.hpp>
+#include <tactus/hardware/emulation/inverse3/inverse3_server.hpp>
+#include <tactus/hardware/wire/talk.hpp>
 
 #include <chrono>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include <tactus/devices/motor_bus_device.hpp>
-#include <tactus/devices/plugin/blocking_link.hpp>
-#include <tactus/wire/talk.hpp>
+#include <tactus/hardware/devices/motor_bus_device.hpp>
+#include <tactus/hardware/devices/plugin/blocking_link.hpp>
+#include <tactus/hardware/wire/talk.hpp>
 
 #include <atomic>
 #include <chrono>

@@ -1,5 +1,5 @@
-#include <tactus/devices/plugin/driver_registry.hpp>
-#include <tactus/devices/rig/rig.hpp>
+#include <tactus/hardware/devices/plugin/driver_registry.hpp>
+#include <tactus/hardware/devices/rig/rig.hpp>
 
 #include <memory>
 #include <string>

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <tactus/arm_plants/tool_operator.hpp>
-#include <tactus/configuration/document.hpp>
-#include <tactus/devices/damiao/damiao_bus.hpp>
-#include <tactus/devices/rig/rig_arms.hpp>
-#include <tactus/devices/rig/rig_loop.hpp>
-#include <tactus/emulation/damiao/damiao_peer.hpp>
-#include <tactus/experiments/arm_tapping/arm_pair.hpp>
-#include <tactus/real_time/emulated_arm.hpp>
-#include <tactus/station/supervised_arms.hpp>
-#include <tactus/wire/join.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/hardware/devices/damiao/damiao_bus.hpp>
+#include <tactus/hardware/devices/rig/rig_arms.hpp>
+#include <tactus/hardware/devices/rig/rig_loop.hpp>
+#include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
+#include <tactus/hardware/wire/join.hpp>
+#include <tactus/kernel/station/supervised_arms.hpp>
+#include <tactus/simulation/arm_plants/tool_operator.hpp>
+#include <tactus/simulation/experiments/arm_tapping/arm_pair.hpp>
+#include <tactus/simulation/real_time/emulated_arm.hpp>
 
 #include <cmath>
 #include <memory>

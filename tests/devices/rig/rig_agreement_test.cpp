@@ -1,5 +1,5 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/devices/rig/rig_agreement.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/hardware/devices/rig/rig_agreement.hpp>
 
 #include <string>
 #include <utility>

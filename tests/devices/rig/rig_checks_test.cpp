@@ -1,10 +1,10 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/control/protective_limits.hpp>
-#include <tactus/devices/rig/rig.hpp>
-#include <tactus/experiments/arm_tapping/params.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/signal/random.hpp>
-#include <tactus/station/make_device_guard.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/hardware/devices/rig/rig.hpp>
+#include <tactus/kernel/control/protective_limits.hpp>
+#include <tactus/kernel/signal/random.hpp>
+#include <tactus/kernel/station/make_device_guard.hpp>
+#include <tactus/simulation/experiments/arm_tapping/params.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <tactus/devices/rig/rig_edit.hpp>
+#include <tactus/hardware/devices/rig/rig_edit.hpp>
 
 #include <filesystem>
 #include <fstream>

@@ -1,8 +1,8 @@
-#include <tactus/configuration/toml_writer.hpp>
-#include <tactus/runtime/replay.hpp>
-#include <tactus/runtime/rights.hpp>
-#include <tactus/runtime/site_log.hpp>
-#include <tactus/runtime/site_parts.hpp>
+#include <tactus/data/configuration/toml_writer.hpp>
+#include <tactus/runtime/servo/replay.hpp>
+#include <tactus/runtime/servo/rights.hpp>
+#include <tactus/runtime/servo/site_log.hpp>
+#include <tactus/runtime/servo/site_parts.hpp>
 
 #include <filesystem>
 #include <string>

@@ -1,5 +1,5 @@
-#include <tactus/emulation/damiao/damiao_peer.hpp>
-#include <tactus/wire/join.hpp>
+#include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
+#include <tactus/hardware/wire/join.hpp>
 
 #include <cstring>
 #include <string>

@@ -1,4 +1,4 @@
-#include <tactus/emulation/damiao/motor.hpp>
+#include <tactus/hardware/emulation/damiao/motor.hpp>
 
 #include <bit>
 #include <cmath>

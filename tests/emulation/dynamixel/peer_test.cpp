@@ -1,4 +1,4 @@
-#include <tactus/emulation/dynamixel/dynamixel_peer.hpp>
+#include <tactus/hardware/emulation/dynamixel/dynamixel_peer.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include <tactus/emulation/feetech/feetech_peer.hpp>
+#include <tactus/hardware/emulation/feetech/feetech_peer.hpp>
 
 #include <cstdint>
 #include <numbers>

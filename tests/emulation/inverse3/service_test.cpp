@@ -1,5 +1,5 @@
-#include <tactus/emulation/inverse3/inverse3_server.hpp>
-#include <tactus/emulation/inverse3/inverse3_service.hpp>
+#include <tactus/hardware/emulation/inverse3/inverse3_server.hpp>
+#include <tactus/hardware/emulation/inverse3/inverse3_service.hpp>
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/experiments/arm_contest/arm_contest.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/simulation/experiments/arm_contest/arm_contest.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,6 +1,6 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/experiments/arm_tapping/arm_taps.hpp>
-#include <tactus/experiments/arm_tapping/contact_figure.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/simulation/experiments/arm_tapping/arm_taps.hpp>
+#include <tactus/simulation/experiments/arm_tapping/contact_figure.hpp>
 
 #include <algorithm>
 #include <cmath>

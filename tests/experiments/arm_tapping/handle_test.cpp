@@ -1,6 +1,6 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/experiments/arm_faults/arm_faults.hpp>
-#include <tactus/experiments/arm_tapping/arm_taps.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/simulation/experiments/arm_faults/arm_faults.hpp>
+#include <tactus/simulation/experiments/arm_tapping/arm_taps.hpp>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <tactus/configuration/document.hpp>
-#include <tactus/experiments/arm_tapping/arm_taps.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/simulation/experiments/arm_tapping/arm_taps.hpp>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,5 +1,5 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/experiments/arm_vibration/coupled_arms.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/simulation/experiments/arm_vibration/coupled_arms.hpp>
 
 #include <cmath>
 #include <filesystem>

@@ -1,7 +1,7 @@
-#include <tactus/experiments/contest/contest.hpp>
-#include <tactus/experiments/contest/presentation.hpp>
-#include <tactus/experiments/experiment.hpp>
-#include <tactus/report/text.hpp>
+#include <tactus/data/report/text.hpp>
+#include <tactus/simulation/experiments/contest/contest.hpp>
+#include <tactus/simulation/experiments/contest/presentation.hpp>
+#include <tactus/simulation/experiments/experiment.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <tactus/experiments/contest/spectral_error.hpp>
+#include <tactus/simulation/experiments/contest/spectral_error.hpp>
 
 #include <cmath>
 #include <numbers>

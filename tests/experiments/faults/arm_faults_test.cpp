@@ -1,5 +1,5 @@
-#include <tactus/configuration/document.hpp>
-#include <tactus/experiments/arm_faults/arm_faults.hpp>
+#include <tactus/data/configuration/document.hpp>
+#include <tactus/simulation/experiments/arm_faults/arm_faults.hpp>
 
 #include <cmath>
 #include <cstdint>

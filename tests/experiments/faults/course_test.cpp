@@ -1,10 +1,10 @@
-#include <tactus/control/agreed_parameters.hpp>
-#include <tactus/experiments/faults/duty.hpp>
-#include <tactus/experiments/faults/faulty_configuration.hpp>
-#include <tactus/experiments/faults/pairs.hpp>
-#include <tactus/experiments/faults/process.hpp>
-#include <tactus/experiments/faults/table.hpp>
-#include <tactus/simulation/packet_relay.hpp>
+#include <tactus/kernel/control/agreed_parameters.hpp>
+#include <tactus/simulation/experiments/faults/duty.hpp>
+#include <tactus/simulation/experiments/faults/faulty_configuration.hpp>
+#include <tactus/simulation/experiments/faults/pairs.hpp>
+#include <tactus/simulation/experiments/faults/process.hpp>
+#include <tactus/simulation/experiments/faults/table.hpp>
+#include <tactus/simulation/teleoperator/packet_relay.hpp>
 
 #include <algorithm>
 #include <cmath>

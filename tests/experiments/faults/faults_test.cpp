@@ -1,7 +1,7 @@
-#include <tactus/experiments/faults/injection.hpp>
-#include <tactus/experiments/faults/table.hpp>
-#include <tactus/experiments/faults/witness.hpp>
-#include <tactus/simulation/bad_number.hpp>
+#include <tactus/simulation/experiments/faults/injection.hpp>
+#include <tactus/simulation/experiments/faults/table.hpp>
+#include <tactus/simulation/experiments/faults/witness.hpp>
+#include <tactus/simulation/teleoperator/bad_number.hpp>
 
 #include <algorithm>
 #include <cmath>

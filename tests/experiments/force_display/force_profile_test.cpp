@@ -1,4 +1,4 @@
-#include <tactus/experiments/force_display/force_display.hpp>
+#include <tactus/simulation/experiments/force_display/force_display.hpp>
 
 #include <cmath>
 #include <functional>

@@ -1,5 +1,5 @@
-#include <tactus/experiments/experiment.hpp>
-#include <tactus/experiments/force_estimators/force_estimators.hpp>
+#include <tactus/simulation/experiments/experiment.hpp>
+#include <tactus/simulation/experiments/force_estimators/force_estimators.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <tactus/experiments/inverse_model_chirp/inverse_model_chirp.hpp>
+#include <tactus/simulation/experiments/inverse_model_chirp/inverse_model_chirp.hpp>
 
 #include <cmath>
 

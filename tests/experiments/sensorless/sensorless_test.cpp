@@ -1,6 +1,6 @@
-#include <tactus/experiments/experiment.hpp>
-#include <tactus/experiments/sensorless/presentation.hpp>
-#include <tactus/experiments/sensorless/sensorless.hpp>
+#include <tactus/simulation/experiments/experiment.hpp>
+#include <tactus/simulation/experiments/sensorless/presentation.hpp>
+#include <tactus/simulation/experiments/sensorless/sensorless.hpp>
 
 #include <cmath>
 #include <string>

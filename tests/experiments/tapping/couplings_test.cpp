@@ -1,7 +1,7 @@
-#include <tactus/control/architectures/projection.hpp>
-#include <tactus/control/architectures/shared_compliant.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/simulation/teleoperator.hpp>
+#include <tactus/kernel/control/architectures/projection.hpp>
+#include <tactus/kernel/control/architectures/shared_compliant.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
+#include <tactus/simulation/teleoperator/teleoperator.hpp>
 
 #include <algorithm>
 #include <cmath>

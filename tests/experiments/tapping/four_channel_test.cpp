@@ -1,6 +1,6 @@
-#include <tactus/control/architectures/four_channel.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/simulation/teleoperator.hpp>
+#include <tactus/kernel/control/architectures/four_channel.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
+#include <tactus/simulation/teleoperator/teleoperator.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <tactus/control/architectures/time_domain_passivity.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
+#include <tactus/kernel/control/architectures/time_domain_passivity.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include <tactus/experiments/tapping/figures.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/signal/second_order_filter.hpp>
+#include <tactus/kernel/signal/second_order_filter.hpp>
+#include <tactus/simulation/experiments/tapping/figures.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
 
 #include <algorithm>
 #include <cmath>

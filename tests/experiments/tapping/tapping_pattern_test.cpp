@@ -1,6 +1,6 @@
-#include <tactus/control/model/induced_motion_model.hpp>
-#include <tactus/experiments/tapping/tapping.hpp>
-#include <tactus/mechanics/cable_chain.hpp>
+#include <tactus/kernel/control/model/induced_motion_model.hpp>
+#include <tactus/kernel/mechanics/cable_chain.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
 
 #include <algorithm>
 #include <cmath>

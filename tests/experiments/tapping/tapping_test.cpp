@@ -1,4 +1,4 @@
-#include <tactus/experiments/tapping/tapping.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // sample_log FOLDER: writes a log of known content and all its exports, for programs of others to read.
-#include <tactus/telemetry/export.hpp>
+#include <tactus/data/telemetry/export.hpp>
 
 #include <filesystem>
 #include <iostream>

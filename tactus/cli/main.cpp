@@ -1,3 +1,0 @@
-#include <tactus/cli/command.hpp>
-
-int main(int argc, char** argv) { return tactus::cli::run_command(argc, argv); }

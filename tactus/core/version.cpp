@@ -1,7 +1,0 @@
-#include <tactus/core/version.hpp>
-
-namespace tactus {
-
-std::string_view version() { return TACTUS_VERSION; }
-
-}  // namespace tactus

@@ -1,0 +1,156 @@
+#include <tactus/data/urdf/urdf.hpp>
+#include <tactus/hardware/emulation/damiao/damiao_peer.hpp>
+#include <tactus/hardware/wire/paced.hpp>
+#include <tactus/interfaces/cli/emulate.hpp>
+#include <tactus/interfaces/cli/real_between.hpp>
+#include <tactus/simulation/real_time/emulated_arm.hpp>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+using emulation::damiao::AdapterType;
+using emulation::damiao::DamiaoPeer;
+using emulation::damiao::MotorType;
+
+constexpr std::int64_t bits_per_s = 921'600;
+
+struct DamiaoOptions {
+  std::optional<std::uint32_t> motors;
+  std::vector<std::string> models{name_of(MotorType::dm4310)};
+  std::string framing = name_of(AdapterType::usb2can);
+  std::vector<std::string> faults;
+  std::uint64_t seed = 1;
+  std::string arm, tip;
+  std::vector<double> armature_kg_m2{0.01};
+  std::vector<double> held_rad;
+  std::vector<double> led;
+};
+
+Error wrong(const char* option, std::string message) {
+  return {.code = ErrorCode::inconsistent, .parameter = {}, .message = std::move(message), .place = option};
+}
+
+/// The arm that its motors move; null where each moves a joint of its own.
+Result<std::unique_ptr<real_time::EmulatedArm>> make_arm(const DamiaoOptions& options) {
+  if (options.arm.empty()) return std::unique_ptr<real_time::EmulatedArm>();
+  auto read = urdf::read(options.arm, options.tip);
+  if (!read) return read.error();
+  real_time::EmulatedArm::Settings settings{.chain = std::move(read->params)};
+  const std::size_t joints = settings.chain.joints.size();
+  if (options.armature_kg_m2.size() > joints) {
+    return wrong("--armature", std::to_string(options.armature_kg_m2.size()) + " numbers for an arm of " +
+                                   std::to_string(joints) + " joints: one for each, or fewer");
+  }
+  for (std::size_t i = 0; i < joints; ++i) {
+    settings.chain.joints[i].drive.armature_kg_m2 =
+        options.armature_kg_m2[std::min(i, options.armature_kg_m2.size() - 1)];
+  }
+  if (!options.held_rad.empty()) {
+    if (options.held_rad.size() != joints) {
+      return wrong("--held", std::to_string(options.held_rad.size()) + " positions for an arm of " +
+                                 std::to_string(joints) + " joints: write one for each");
+    }
+    settings.held_at = arm::JointVector::Map(options.held_rad.data(), static_cast<Eigen::Index>(joints));
+  }
+  constexpr double farthest_rad = 3.0;
+  if (!options.led.empty() && options.led[0] > farthest_rad) {
+    return wrong("--led", rounded_number(options.led[0]) + " rad is more than an arm can be led, " +
+                              rounded_number(farthest_rad) + " rad: name less");
+  }
+  if (!options.led.empty()) settings.led = {.reach_rad = options.led[0], .after_s = options.led[1]};
+  return real_time::EmulatedArm::make(settings);
+}
+
+Result<EmulatedPeer> make_peer(const DamiaoOptions& options) {
+  emulation::damiao::PeerSettings settings;
+  settings.adapter = value_of<AdapterType>(options.framing);
+  settings.seed = options.seed;
+  auto arm = make_arm(options);
+  if (!arm) return arm.error();
+  constexpr std::uint32_t usual_motors = 2;
+  const auto joints = *arm ? static_cast<std::uint32_t>((*arm)->motors()) : usual_motors;
+  for (std::uint32_t id = 1; id <= options.motors.value_or(joints); ++id) {
+    settings.motors.push_back(
+        {.id = id, .feedback_id = id + 0x10, .type = value_of<MotorType>(of_motor(options.models, id))});
+  }
+  for (const std::string& word : options.faults) {
+    auto fault = emulation::damiao::parse_fault(word);
+    if (fault && fault->motor > settings.motors.size()) {
+      fault = Error{ErrorCode::out_of_bounds,
+                    {},
+                    "'" + word + "': the motors go from 1 to " + std::to_string(settings.motors.size()),
+                    {}};
+    }
+    if (!fault) {
+      Error error = fault.error();
+      error.place = "--fault";
+      return error;
+    }
+    settings.faults.push_back(*fault);
+  }
+  auto peer = DamiaoPeer::make(settings, *std::move(arm));
+  if (!peer) return wrong("--motors", peer.error().message);
+  EmulatedPeer made{.motors = *std::move(peer), .line = nullptr};
+  made.line = std::make_unique<wire::Paced>(*made.motors, wire::byte_ns(bits_per_s), wire::Paced::Line::full_duplex);
+  return made;
+}
+
+}  // namespace
+
+std::function<Result<EmulatedPeer>()> add_damiao_options(CLI::App& verb) {
+  auto options = std::make_shared<DamiaoOptions>();
+  verb.add_option("--motors", options->motors,
+                  "Number of motors, with identifiers from 1; by default 2, or one for each joint of --arm")
+      ->check(CLI::Range(1, 15));
+  verb.add_option("--model", options->models, models_help)->delimiter(',')->check(CLI::IsMember(words_of<MotorType>()));
+  // A terminal passes no frames of Linux.
+  verb.add_option("--framing", options->framing, "Adapter: usb2can is Damiao's own protocol, slcan is text")
+      ->check(
+          CLI::IsMember({name_of(AdapterType::usb2can), name_of(AdapterType::slcan), name_of(AdapterType::slcan_fd)}));
+  verb.add_option(
+          "--fault", options->faults,
+          "Fault to inject, as KIND[:MOTOR][@SECONDS][+SECONDS]: at which motor, from when and how long; may be "
+          "repeated. Kinds: silence, wrong-scale, over-voltage, under-voltage, over-current, hot-drive, "
+          "hot-winding, communication-lost, overload, status=0x7 (one that it does not have), ignores-disable, "
+          "register-answer, twin, wrap, garbage, heartbeat, bus-off, split")
+      ->type_name("FAULT");
+  verb.add_option("--seed", options->seed, "Seed of delays and garbage");
+  CLI::Option* arm = verb.add_option("--arm", options->arm,
+                                     "An arm with its weight, which the first motors move together; the others each "
+                                     "turn a joint of their own. It hangs, and without power it falls")
+                         ->type_name("URDF");
+  verb.add_option("--tip", options->tip, "Link at which that arm ends, if the URDF continues or branches")
+      ->type_name("LINK")
+      ->needs(arm);
+  verb.add_option(
+          "--armature", options->armature_kg_m2,
+          "Inertia of each motor's rotor at its joint, in kg m², separated by commas; the last one applies to the rest")
+      ->delimiter(',')
+      ->check(real_between(1e-6, 10.0))
+      ->needs(arm);
+  verb.add_option(
+          "--held", options->held_rad,
+          "Joint positions in rad at which a hand holds the arm until gravity compensation is on, separated by commas")
+      ->type_name("Q,Q,...")
+      ->delimiter(',')
+      ->check(real_between(-12.0, 12.0))
+      ->needs(arm);
+  verb.add_option("--led", options->led,
+                  "Afterwards a hand moves each joint back and forth by this reach in rad, from this time in s "
+                  "after the release")
+      ->type_name("REACH,SECONDS")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(real_between(0.0, 1000.0))
+      ->needs(arm);
+  return [options] { return make_peer(*options); };
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,125 @@
+#include <tactus/hardware/emulation/dynamixel/dynamixel_peer.hpp>
+#include <tactus/hardware/emulation/feetech/feetech_peer.hpp>
+#include <tactus/hardware/wire/paced.hpp>
+#include <tactus/interfaces/cli/emulate.hpp>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+
+namespace tactus::cli {
+
+namespace {
+
+using emulation::dynamixel::DynamixelPeer;
+using emulation::feetech::FeetechPeer;
+
+struct ServoOptions {
+  std::int64_t servos = 2;
+  std::vector<std::string> models;
+  std::int64_t bits_per_s = 1'000'000;
+  std::vector<std::string> faults;
+  bool old_firmware = false;
+  bool deaf_otherwise = false;
+  std::int64_t seed = 1;
+};
+
+constexpr std::array<std::pair<const char*, std::int64_t>, 6> dynamixel_models{{{"xl330-m077", 1190},
+                                                                                {"xl330-m288", 1200},
+                                                                                {"xc330-m288", 1240},
+                                                                                {"xc330-t288", 1220},
+                                                                                {"xm430-w210", 1030},
+                                                                                {"xm430-w350", 1020}}};
+
+/// Servos 1 and on behind a line of that pace, with the faults that were asked for.
+template <class Peer, class Model>
+Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Params params, const Model& set_model) {
+  params.servos.clear();
+  for (std::int64_t id = 1; id <= options.servos; ++id) {
+    typename Peer::Servo servo{.id = id};
+    set_model(servo, of_motor(options.models, id));
+    params.servos.push_back(servo);
+  }
+  params.bits_per_s = options.bits_per_s;
+  params.seed = options.seed;
+  for (const std::string& word : options.faults) {
+    auto fault = emulation::parse_servo_fault(word);
+    if (fault && fault->id > options.servos) {
+      fault = Error{
+          ErrorCode::out_of_bounds, {}, "'" + word + "': the ids go from 1 to " + std::to_string(options.servos), {}};
+    }
+    if (!fault) {
+      Error error = fault.error();
+      error.place = "--fault";
+      return error;
+    }
+    params.line.corrupt = std::max(params.line.corrupt, fault->line.corrupt);
+    params.line.garbage = std::max(params.line.garbage, fault->line.garbage);
+    params.line.split = std::max(params.line.split, fault->line.split);
+    params.line.echo = std::max(params.line.echo, fault->line.echo);
+    if (fault->servo == emulation::ServoFault::none) continue;
+    for (auto& servo : params.servos) {
+      if (fault->id >= 0 && fault->id != servo.id) continue;
+      servo.fault = fault->servo;
+      servo.fault_from_ns = fault->from_ns;
+      servo.error = fault->error;
+    }
+  }
+  auto peer = Peer::make(params);
+  if (!peer) return peer.error();
+  EmulatedPeer made{.motors = std::make_unique<Peer>(*std::move(peer)), .line = nullptr};
+  if (options.deaf_otherwise) made.only_at_bits_per_s = options.bits_per_s;
+  made.line =
+      std::make_unique<wire::Paced>(*made.motors, wire::byte_ns(options.bits_per_s), wire::Paced::Line::half_duplex);
+  return made;
+}
+
+std::shared_ptr<ServoOptions> add_servo_options(CLI::App& verb, const std::string& model,
+                                                const std::vector<std::string>& models, std::int64_t most_bits_per_s) {
+  auto options = std::make_shared<ServoOptions>();
+  options->models = {model};
+  verb.add_option("--motors", options->servos, "Number of servos, with identifiers from 1")->check(CLI::Range(1, 16));
+  verb.add_option("--model", options->models, models_help)->delimiter(',')->check(CLI::IsMember(models));
+  verb.add_option("--bits-per-s", options->bits_per_s, "Bit rate of the line")
+      ->check(CLI::Range(std::int64_t{9600}, most_bits_per_s));
+  verb.add_option(
+          "--fault", options->faults,
+          "Fault to inject, as KIND[:ID][@SECONDS]: at which servo, and from when; may be repeated. Kinds of "
+          "a servo: silence, power-cycle, hot, wrong-model, low-limit, twin, clash, error=0x24 (an error byte), "
+          "ignores-disable; of the line, without id and time: "
+          "corrupt, garbage, split, echo")
+      ->type_name("FAULT");
+  verb.add_option("--seed", options->seed, "Seed of the faults on the line");
+  verb.add_flag("--deaf-otherwise", options->deaf_otherwise, "Receive nothing while the line has another bit rate");
+  return options;
+}
+
+}  // namespace
+
+std::function<Result<EmulatedPeer>()> add_dynamixel_options(CLI::App& verb) {
+  std::vector<std::string> models;
+  for (const auto& [name, number] : dynamixel_models) models.emplace_back(name);
+  const auto options = add_servo_options(verb, "xl330-m288", models, 4'000'000);
+  verb.add_flag("--old-firmware", options->old_firmware, "Do not support fast sync read");
+  return [options] {
+    DynamixelPeer::Params params;
+    params.knows_fast_sync_read = !options->old_firmware;
+    return make_servos<DynamixelPeer>(*options, params, [](auto& servo, const std::string& model) {
+      const auto same = [&model](const auto& each) { return each.first == model; };
+      servo.model_number = std::ranges::find_if(dynamixel_models, same)->second;
+    });
+  };
+}
+
+std::function<Result<EmulatedPeer>()> add_feetech_options(CLI::App& verb) {
+  using emulation::feetech::Make;
+  const auto options = add_servo_options(verb, name_of(Make::sts3215), words_of<Make>(), 1'000'000);
+  return [options] {
+    return make_servos<FeetechPeer>(*options, {},
+                                    [](auto& servo, const std::string& model) { servo.make = value_of<Make>(model); });
+  };
+}
+
+}  // namespace tactus::cli

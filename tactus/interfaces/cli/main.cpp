@@ -1,0 +1,3 @@
+#include <tactus/interfaces/cli/command.hpp>
+
+int main(int argc, char** argv) { return tactus::cli::run_command(argc, argv); }

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <tactus/runtime/servo/servo_thread.hpp>
+
+namespace CLI {  // NOLINT: the name is not ours
+class App;
+}
+
+namespace tactus::cli {
+
+/// Adds how a servo thread keeps time to a command: `--priority`, `--core`, `--spin-s`.
+void add_servo_options(CLI::App& verb, runtime::ServoThreadParams& params);
+
+}  // namespace tactus::cli

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <tactus/kernel/arm_control/arm_leader.hpp>
+#include <tactus/kernel/arm_control/arm_message.hpp>
+#include <tactus/kernel/arm_control/elastic_torque_observer.hpp>
+#include <tactus/kernel/arm_control/external_torque_observer.hpp>
+#include <tactus/kernel/arm_control/feed_forward.hpp>
+#include <tactus/kernel/arm_control/passivity.hpp>
+#include <tactus/kernel/arm_control/tool_coupling.hpp>
+#include <tactus/kernel/arm_control/tool_limit.hpp>
+#include <tactus/kernel/arm_control/wanted_motion.hpp>
+
+#include <array>
+#include <optional>
+#include <variant>
+
+namespace tactus::arm_control {
+
+/// Where the follower's external torque comes from.
+enum class TorqueSource { observer, sensor };
+constexpr auto enumerators(TorqueSource) {
+  return std::array{Enumerator{TorqueSource::observer, "observer"}, Enumerator{TorqueSource::sensor, "sensor"}};
+}
+
+/// An observer of external torque, of rigid joints or of elastic ones, and what of it is assumed.
+///
+/// A joint that rests bears any torque within its Coulomb friction, and an observer cannot determine that from one from
+/// outside. A dead band passes only what exceeds it: |r| − share·Coulomb, with the sign of r, or nothing. Without it, a
+/// false torque pushes against the hand, times the gain; along a direction in which the tool hardly moves it is a
+/// large force. With it, forces within friction are not felt.
+struct TorqueObserverParams : ExternalTorqueObserver::Params {
+  JointModel joints = JointModel::rigid;
+  double dead_band_share = 0.0;
+  static constexpr auto fields() {
+    return joined(
+        ExternalTorqueObserver::Params::fields(),
+        List{field("joints", &TorqueObserverParams::joints,
+                   "What it takes the joints for: elastic ones filter in third order."),
+             field("dead_band_share", &TorqueObserverParams::dead_band_share, tactus::units::none, between(0.0, 4.0),
+                   "Share of each joint's Coulomb friction that torque must exceed to be reported.")});
+  }
+};
+
+/// The site of the arm that touches things: its drives pull it to where the leader wants it, by their own law, and it
+/// sends the external torque. What their gains come to at the tool beyond its limits is taken away over the bus
+/// (`ToolLimit`), with passive ports it may stay behind (`PassiveFollower`), and in free motion the torque of the
+/// wanted motion is added there (`WantedMotion`). What the bus carries saturates at each joint's effort limit, at 100 N
+/// m at most. Gates are behind it (`follower_site`). With the coupling `tool` it receives and sends three numbers,
+/// those of the leader's handle.
+class ArmFollower {
+ public:
+  struct Params {
+    Coupling coupling = Coupling::joints;
+    double tool_scale = 1.0;
+    EachJoint<DriveGains> gains = {};
+    double stiffness_share = 1.0;
+    double tool_stiffness_limit_N_per_m = 0.0;
+    double tool_damping_limit_N_s_per_m = 0.0;
+    FeedForward::Params feed_forward = {};
+    WantedMotion::Params wanted_motion = {};
+    TorqueSource torque = TorqueSource::observer;
+    TorqueObserverParams observer = {};
+    static constexpr auto fields() {
+      using P = Params;
+      return List{
+          field("coupling", &P::coupling,
+                "What the leader commands: joints, each one that of the same number; tool, with a leader of three "
+                "joints that slide, where the follower's tool is."),
+          field("tool_scale", &P::tool_scale, tactus::units::none, between(0.01, 100.0),
+                "With the coupling tool alone: metres of the follower's tool for one of the leader's handle, and "
+                "newtons at the handle for one at the tool at a force_gain of 1."),
+          field("gains", &P::gains, "Of the drives."),
+          field("stiffness_share", &P::stiffness_share, tactus::units::none, between(0.0, 2.0),
+                "Share of the stiffness in gains that the drives are given; their damping stays."),
+          field("tool_stiffness_limit_N_per_m", &P::tool_stiffness_limit_N_per_m, tactus::units::newton_per_metre,
+                between(0.0, 1e5),
+                "The most that the drives' stiffness may come to at the tool, in any direction; 0 is no limit."),
+          field("tool_damping_limit_N_s_per_m", &P::tool_damping_limit_N_s_per_m,
+                tactus::units::newton_second_per_metre, between(0.0, 1e4),
+                "The most that the drives' damping may come to there; 0 is no limit."),
+          field("feed_forward", &P::feed_forward, "What carries the follower and helps it against friction."),
+          field("wanted_motion", &P::wanted_motion,
+                "What moves it as the leader wants in free motion, in addition to its drives."),
+          field("torque", &P::torque, "Where the external torque that comes back is from."),
+          field("observer", &P::observer, "The observer of external torque.")};
+    }
+  };
+  /// What the site assumes of its arm.
+  struct Arm {
+    arm::Chain::Params chain;
+    arm::Vector3 tool_m = arm::Vector3::Zero();  ///< on its last link
+    /// Of the transmissions, for an observer that takes them for elastic.
+    JointVector joint_stiffness_N_m_per_rad = {};
+    /// Of a leader that leads the tool (`ToolCoupling::axes_of`); not looked at where it leads joints.
+    std::optional<arm::Matrix3> leader_axes = std::nullopt;
+    /// Where the leader couples so: in place of the drives' gains and of `torque`.
+    std::optional<FourChannelCoupling> four_channel = std::nullopt;
+    PassivityCoupling passivity = {};
+  };
+  struct Output {
+    ArmCommand command;
+    JointVector support;  ///< of the command's torque, gravity compensation and helps it against friction, N m
+    ArmMessage message;
+  };
+
+  /// Errors: a number out of bounds; those of the parts; `missing` for the coupling `tool` without `leader_axes`, and
+  /// `inconsistent` for it with four-channel, which couples joints.
+  static Result<ArmFollower> make(const Params& params, const Arm& arm, Seconds dt);
+
+  /// One tick. `heard` is what the leader sent; `sensed` is external torque as sensors in the joints measure it; not
+  /// looked at where an observer is. Real-time safe.
+  Output step(const ArmReading& reading, const JointVector& sensed, const ArmMessage& heard) noexcept;
+
+ private:
+  using Observer = std::variant<ExternalTorqueObserver, ElasticTorqueObserver>;
+  static Result<Observer> make_observer(const TorqueObserverParams& params, const Arm& arm, const arm::Chain& chain,
+                                        Seconds dt);
+  static Result<std::optional<ToolCoupling>> make_coupling(const Params& params, const Arm& arm,
+                                                           const arm::Chain& chain, Seconds dt);
+  ArmFollower(const Params& params, const Arm& arm, const arm::Chain& chain, const Observer& observer,
+              const WantedMotion& wanted_motion, const std::optional<ToolCoupling>& coupling, Seconds dt);
+  [[nodiscard]] JointVector excess_torque(const ArmReading& reading, const ArmMessage& leader) const noexcept;
+  void leave_out_dead_band(JointVector& torque) const noexcept;
+
+  arm::Chain chain_;
+  arm::Vector3 tool_m_;
+  FeedForward feed_forward_;
+  WantedMotion wanted_motion_;
+  Observer observer_;
+  std::optional<ToolCoupling> tool_coupling_;
+  std::optional<FourChannel> four_channel_;
+  PassiveFollower passivity_;
+  JointVector told_;  ///< the external torque that it sent last
+  JointVector most_;  ///< torque of the bus
+  bool observes_;
+  JointVector dead_band_;
+  JointVector stiffness_;
+  JointVector damping_;
+  ToolLimit stiffness_limit_;
+  ToolLimit damping_limit_;
+};
+
+}  // namespace tactus::arm_control

@@ -1,0 +1,162 @@
+#include <tactus/kernel/arm_control/arm_leader.hpp>
+#include <tactus/kernel/arm_control/effort_limits.hpp>
+#include <tactus/kernel/arm_control/joint_cutoff.hpp>
+#include <tactus/kernel/signal/checks.hpp>
+
+#include <string>
+
+namespace tactus::arm_control {
+namespace {
+
+JointVector drive_damping(const ArmLeader::Params& params, int joints) {
+  return params.drive_damping.of(joints, &DriveDamping::damping_N_m_s_per_rad);
+}
+
+/// Errors name the key at fault, which begins with `name`.
+Result<JointLowPass> low_pass(const std::string& name, double cutoff_Hz, const EachJoint<JointCutoff>& each, int joints,
+                              Seconds dt) {
+  if (Check wrong = check_cutoffs(name + "_Hz", cutoff_Hz, name + "_each", each, joints, dt)) return *std::move(wrong);
+  return JointLowPass::make(cutoffs(cutoff_Hz, each, joints), dt);
+}
+
+/// Whether the drives pull the leader to where the follower is.
+bool pulls(ArmMethod method) { return method == ArmMethod::position_position || method == ArmMethod::four_channel; }
+
+}  // namespace
+
+ArmLeader::ArmLeader(const Params& params, const Arm& arm, const FeedForward& feed_forward, const arm::Chain& chain,
+                     const InducedMotion& model, const JointLowPass& force, const JointLowPass& command, Seconds dt)
+    : params_(params),
+      feed_forward_(feed_forward),
+      chain_(chain),
+      tool_m_(arm.induced.tool_m),
+      stiffness_(JointVector::Zero(chain.joints())),
+      damping_(pulls(params.method) ? stiffness_ : drive_damping(params, chain.joints())),
+      damping_limit_(damping_, params.drive_damping_limit_N_s_per_m),
+      model_(model),
+      factr_(params.factr, arm.carried, chain),
+      avoidance_(params.avoidance, chain.joints()),
+      four_channel_(params.four_channel, FourChannel::Side::leader, params.force_gain, arm.carried, chain, dt),
+      passivity_(params.passivity, params.force_gain, chain.joints(), dt),
+      force_(force),
+      command_position_(command),
+      command_velocity_(command),
+      most_(effort_limits(arm.carried)),
+      undisplayed_(stiffness_),
+      acting_(stiffness_) {
+  if (params.method == ArmMethod::four_channel) {
+    stiffness_ = four_channel_.stiffness();
+    damping_ = four_channel_.damping();
+  }
+  if (params.method != ArmMethod::position_position) return;
+  for (std::size_t i = 0; i < arm.gains.size(); ++i) {
+    stiffness_[static_cast<Eigen::Index>(i)] = params.force_gain * arm.gains[i].stiffness_N_m_per_rad;
+    damping_[static_cast<Eigen::Index>(i)] = params.force_gain * arm.gains[i].damping_N_m_s_per_rad;
+  }
+}
+
+Result<ArmLeader> ArmLeader::make(const Params& params, const Arm& arm, Seconds dt) {
+  if (Check wrong = signal::check(params, dt)) return *std::move(wrong);
+  if (params.passivity.port != PassivePort::none && pulls(params.method)) {
+    return Error{.code = ErrorCode::inconsistent,
+                 .parameter = "passivity.port",
+                 .message = std::string(name_of(params.method)) +
+                            " reflects no torque whose energy could be counted: write none, or another method",
+                 .place = {}};
+  }
+  const auto chain = arm::Chain::make(arm.carried);
+  if (!chain) return chain.error();
+  const InducedMotion::Site site{.damping_N_s_per_m = params.damping_N_s_per_m,
+                                 .drive_damping_N_m_s_per_rad = drive_damping(params, chain->joints()),
+                                 .drive_damping_limit_N_s_per_m = params.drive_damping_limit_N_s_per_m,
+                                 .friction_share = params.feed_forward.friction_share,
+                                 .friction_velocity_rad_per_s = params.feed_forward.friction_velocity_rad_per_s};
+  const auto model = InducedMotion::make(params.model, site, arm.induced, dt);
+  if (!model) return under("model", model.error());
+  const int joints = chain->joints();
+  const auto force = low_pass("force_low_pass", params.force_low_pass_Hz, params.force_low_pass_each, joints, dt);
+  if (!force) return force.error();
+  const auto command =
+      low_pass("command_low_pass", params.command_low_pass_Hz, params.command_low_pass_each, joints, dt);
+  if (!command) return command.error();
+  return ArmLeader(params, arm, FeedForward(params.feed_forward, arm.carried, *chain), *chain, *model, *force, *command,
+                   dt);
+}
+
+ToolJacobian ArmLeader::tool_at(const JointVector& position) const noexcept {
+  return chain_.jacobian(position, chain_.joints() - 1, tool_m_).topRows<3>();
+}
+
+/// All of the bus's torque but what comes from the follower.
+JointVector ArmLeader::beside_display(const ArmReading& reading, const JointVector& support) noexcept {
+  JointVector torque = support;
+  const bool gives_back = !pulls(params_.method) && damping_limit_.limits();
+  if (params_.damping_N_s_per_m > 0.0 || gives_back) {
+    const ToolJacobian tool = tool_at(reading.position);
+    const arm::Vector3 velocity = tool * reading.velocity;
+    arm::Vector3 force_N = -params_.damping_N_s_per_m * velocity;
+    if (gives_back) force_N += damping_limit_.excess(tool) * velocity;
+    torque += tool.transpose() * force_N;
+  }
+  if (params_.method == ArmMethod::factr) torque += factr_.step(reading);
+  return torque;
+}
+
+ArmLeader::Output ArmLeader::step(const ArmReading& reading, const ArmMessage& follower) noexcept {
+  const int joints = chain_.joints();
+  if (!started_) {
+    command_position_.settle(reading.position);
+    started_ = true;
+  }
+  const bool reflects = !pulls(params_.method);
+  Output output;
+  output.support = feed_forward_.torque(reading);
+  const JointVector undisplayed = beside_display(reading, output.support);
+  JointVector displayed = JointVector::Zero(joints);
+  if (reflects) displayed = params_.force_gain * force_.step(follower.external_torque);
+  if (params_.method == ArmMethod::feedback_avoidance) {
+    displayed = avoidance_.displayed(displayed, reading.velocity);
+  }
+  if (passivity_.counts())
+    displayed += passivity_.brake(reading, displayed, follower.energy_J, tool_at(reading.position));
+  JointVector own_external = JointVector::Zero(joints);
+  if (params_.method == ArmMethod::four_channel) {
+    const FourChannel::Output both = four_channel_.step(reading, follower);
+    displayed = both.torque;
+    own_external = both.external;
+  }
+
+  output.command = ArmCommand::of_torque(undisplayed + displayed);
+  saturate(output.command.torque, most_);
+  undisplayed_ = undisplayed;
+  output.command.damping = damping_;
+  if (!reflects) {
+    output.command.position = follower.position;
+    output.command.velocity = follower.velocity;
+    output.command.stiffness = stiffness_;
+  }
+  if (params_.method != ArmMethod::position_position) displayed = output.command.torque - undisplayed;
+  output.displayed = displayed;
+  output.induced = JointVector::Zero(joints);
+  output.message = {.position = reading.position,
+                    .velocity = reading.velocity,
+                    .external_torque = own_external,
+                    .energy_J = passivity_.in_J()};
+  if (params_.method == ArmMethod::cancellation) {
+    output.induced = model_.position();
+    output.message.position -= output.induced;
+    output.message.velocity -= model_.velocity();
+    model_.step(acting_, reading.position, reading.velocity);
+    acting_ = displayed;
+  }
+  output.message.position = command_position_.step(output.message.position);
+  output.message.velocity = command_velocity_.step(output.message.velocity);
+  return output;
+}
+
+void ArmLeader::applied(const JointVector& torque) noexcept {
+  if (params_.method == ArmMethod::cancellation) acting_ = torque - undisplayed_;
+  if (passivity_.counts()) passivity_.applied(torque - undisplayed_);
+}
+
+}  // namespace tactus::arm_control

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <tactus/kernel/core/element.hpp>
+#include <tactus/kernel/core/parameters.hpp>
+#include <tactus/kernel/signal/checks.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+
+namespace tactus::control {
+
+/// What a sign probe found: nothing yet; that the device follows its motor; that it goes the other way; that it does
+/// not move, either way or both; that it goes too far, or the same way whatever the force.
+enum class ProbeVerdict { none, passed, reversed, still, astray };
+constexpr auto enumerators(ProbeVerdict) {
+  return std::array{Enumerator{ProbeVerdict::none, "none"}, Enumerator{ProbeVerdict::passed, "passed"},
+                    Enumerator{ProbeVerdict::reversed, "reversed"}, Enumerator{ProbeVerdict::still, "still"},
+                    Enumerator{ProbeVerdict::astray, "astray"}};
+}
+
+/// Gives a motor a small known force and looks where the device goes, before anybody relies on it. The force has lobes
+/// of one length, (1 − cos)/2 in shape, with the signs + − 0 − +: out and back, a pause, and the same the other way.
+/// The impulse of each half is zero, so a free mass m is at rest after it, F·T²/(50 m) away after the first, T being
+/// `duration_s`, and at home after the second.
+///
+/// In each half the device must go `least_m` the right way before it goes as far the wrong way. Whatever it is that is
+/// moved, mass, spring or damper, its first motion is along the force; where it goes later is not, so it is not looked
+/// at. Beyond `most_m` the force ends at once.
+///
+/// The device must be free to move both ways, and not be moved by anything else by `least_m` in half of `duration_s`.
+class SignProbe {
+ public:
+  struct Params {
+    double force_N = 0.0;
+    double duration_s = 0.1;
+    double least_m = 1e-4;
+    double most_m = 0.01;
+    static constexpr auto fields() {
+      return List{
+          field("force_N", &Params::force_N, units::newton, between(0.0, 100.0),
+                "Peak of the force with which a motor is tried on arming; more than friction holds; 0 is no trial."),
+          field("duration_s", &Params::duration_s, units::second, positive_up_to(5.0),
+                "How long that takes, both ways together."),
+          field("least_m", &Params::least_m, units::metre, positive_up_to(0.1),
+                "How far the device must move with the force, each way; several counts of its encoder."),
+          field("most_m", &Params::most_m, units::metre, positive_up_to(1.0),
+                "Beyond this the trial ends at once; above least_m.")};
+    }
+  };
+  struct Input {
+    bool probing = false;            ///< the trial begins when this rises and is given up when it falls
+    double position_m = 0.0;         ///< measured, in the direction of the force
+    std::int64_t elapsed_ticks = 1;  ///< since the step before
+  };
+  /// The force in N for the motor.
+  using Output = double;
+
+  /// Errors: `inconsistent` for a `most_m` that is not above `least_m`.
+  static Result<SignProbe> make(const Params& params, Seconds dt) {
+    if (auto error = signal::check(params, dt)) return *std::move(error);
+    if (params.most_m <= params.least_m) {
+      return Error{.code = ErrorCode::inconsistent,
+                   .parameter = "most_m",
+                   .message = rounded_number(params.most_m) + " m must be more than least_m, " +
+                              rounded_number(params.least_m) + " m: raise it or lower least_m",
+                   .place = {}};
+    }
+    return SignProbe(params, dt);
+  }
+
+  /// Real-time safe.
+  double step(const Input& input) noexcept {
+    if (!input.probing) {
+      reset();
+      return 0.0;
+    }
+    if (verdict_ != ProbeVerdict::none) return 0.0;
+    if (!begun_) {
+      home_m_ = turn_m_ = input.position_m;
+      begun_ = true;
+    } else {
+      time_s_ += dt_s_ * static_cast<double>(input.elapsed_ticks);
+    }
+    look(input.position_m);
+    return verdict_ == ProbeVerdict::none ? force_N() : 0.0;
+  }
+  /// No trial.
+  void reset() noexcept {
+    verdict_ = ProbeVerdict::none;
+    begun_ = turned_ = false;
+    went_ = {};
+    time_s_ = home_m_ = turn_m_ = 0.0;
+  }
+
+  /// Of the trial under way; none until it is over.
+  [[nodiscard]] ProbeVerdict verdict() const noexcept { return verdict_; }
+
+ private:
+  SignProbe(const Params& params, Seconds dt) : params_(params), dt_s_(dt.value), lobe_s_(params.duration_s / 5.0) {}
+
+  void look(double position_m) noexcept {
+    const bool second = time_s_ >= 3.0 * lobe_s_;
+    if (second && !turned_) {
+      turn_m_ = position_m;
+      turned_ = true;
+    }
+    const double moved_m = second ? turn_m_ - position_m : position_m - home_m_;
+    int& went = went_[second ? 1 : 0];
+    if (went == 0 && std::fabs(moved_m) >= params_.least_m) went = moved_m > 0.0 ? 1 : -1;
+    if (std::fabs(position_m - home_m_) > params_.most_m) {
+      verdict_ = went_[0] < 0 && went_[1] <= 0 ? ProbeVerdict::reversed : ProbeVerdict::astray;
+    } else if (time_s_ >= params_.duration_s) {
+      verdict_ = judge();
+    }
+  }
+
+  [[nodiscard]] ProbeVerdict judge() const noexcept {
+    const auto [first, second] = went_;
+    if (first + second == 2) return ProbeVerdict::passed;
+    if (first + second < 0) return ProbeVerdict::reversed;
+    return first != second && first * second != 0 ? ProbeVerdict::astray : ProbeVerdict::still;
+  }
+
+  [[nodiscard]] double force_N() const noexcept {
+    constexpr std::array signs{1.0, -1.0, 0.0, -1.0, 1.0};
+    const double lobes = time_s_ / lobe_s_;
+    const double sign = signs[std::min(static_cast<std::size_t>(lobes), signs.size() - 1)];
+    return sign * params_.force_N * 0.5 * (1.0 - std::cos(2.0 * std::numbers::pi * lobes));
+  }
+
+  Params params_;
+  double dt_s_;
+  double lobe_s_;
+  ProbeVerdict verdict_ = ProbeVerdict::none;
+  bool begun_ = false;
+  bool turned_ = false;        ///< the second half has begun
+  std::array<int, 2> went_{};  ///< in each half: 1 with the force, −1 against it, 0 neither so far
+  double time_s_ = 0.0;
+  double home_m_ = 0.0;
+  double turn_m_ = 0.0;  ///< where the second half began
+};
+
+}  // namespace tactus::control

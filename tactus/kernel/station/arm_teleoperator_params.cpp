@@ -1,0 +1,15 @@
+#include <tactus/kernel/station/arm_teleoperator_params.hpp>
+
+namespace tactus::station {
+
+Check refuse_tool_coupling(const ArmTeleoperatorParams& params, std::string_view what) {
+  if (params.control.follower.coupling == arm_control::Coupling::joints) return std::nullopt;
+  return Error{.code = ErrorCode::inconsistent,
+               .parameter = "control.follower.coupling",
+               .message = "tool: " + std::string(what) +
+                          " knows arms alone that command one another joint by joint: look at taps in virtual time, "
+                          "or write joints and take a leader that has the follower's joints",
+               .place = {}};
+}
+
+}  // namespace tactus::station

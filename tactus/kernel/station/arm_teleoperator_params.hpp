@@ -1,0 +1,197 @@
+#pragma once
+
+#include <tactus/kernel/arm_control/arm_follower.hpp>
+#include <tactus/kernel/arm_control/arm_leader.hpp>
+#include <tactus/kernel/arm_control/motor_watch.hpp>
+#include <tactus/kernel/control/safety_gate.hpp>
+#include <tactus/kernel/control/supervision.hpp>
+#include <tactus/kernel/core/parameters.hpp>
+
+#include <string>
+#include <string_view>
+
+/// Parameters of a teleoperator of two arms, whether its sites drive motors or simulated arms: `[arm]`, `[control]`,
+/// `[servo]` and `[rig]` of an experiment's file.
+namespace tactus::station {
+
+/// A joint and its drive: what its URDF does not say, and where it begins.
+struct ArmJoint {
+  double start_rad = 0.0;
+  double armature_kg_m2 = 0.0;
+  double stiffness_share = 1.0;
+  double position_step_rad = 0.0;
+  double velocity_step_rad_per_s = 0.0;
+  double torque_step_N_m = 0.0;
+  static constexpr auto fields() {
+    using J = ArmJoint;
+    namespace u = arm::units;
+    return List{field("start_rad", &J::start_rad, u::radian, any_finite,
+                      "Position at the start of a tap; of a follower that is led joint by joint it is the leader's."),
+                field("armature_kg_m2", &J::armature_kg_m2, u::kilogram_metre2, non_negative,
+                      "Inertia of the rotor at the joint's side of the gear."),
+                field("stiffness_share", &J::stiffness_share, units::none, positive_up_to(100.0),
+                      "Stiffness of an elastic joint over joint_stiffness_N_m_per_rad of its arm."),
+                field("position_step_rad", &J::position_step_rad, u::radian, between(0.0, 0.1),
+                      "Step of the position that the drive reports; 0: exact."),
+                field("velocity_step_rad_per_s", &J::velocity_step_rad_per_s, u::radian_per_second, between(0.0, 1.0),
+                      "Step of the velocity that it reports."),
+                field("torque_step_N_m", &J::torque_step_N_m, u::newton_metre, between(0.0, 1.0),
+                      "Step of the torque that it reports.")};
+  }
+};
+
+struct ToolPoint {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;
+  static constexpr auto fields() {
+    return List{field("x_m", &ToolPoint::x_m, units::metre, any_finite, "Along x of the last link."),
+                field("y_m", &ToolPoint::y_m, units::metre, any_finite, "Along y of the last link."),
+                field("z_m", &ToolPoint::z_m, units::metre, any_finite, "Along z of the last link.")};
+  }
+};
+
+/// An arm as its URDF and its file have it. Of joints that slide rad stands for m, and N m for N.
+struct ArmParams {
+  std::string urdf;
+  ToolPoint tool;
+  double joint_stiffness_N_m_per_rad = 0.0;
+  double joint_damping_N_m_s_per_rad = 0.0;
+  arm_control::EachJoint<ArmJoint> joints;
+  static constexpr auto fields() {
+    using A = ArmParams;
+    return List{field("urdf", &A::urdf,
+                      "URDF of the arm, z up; its path counts from the experiment's file. Effort limits bound "
+                      "the motors, damping and friction rub at them."),
+                field("tool", &A::tool, "The point that the operator holds, or that touches."),
+                field("joint_stiffness_N_m_per_rad", &A::joint_stiffness_N_m_per_rad, Unit{"N m/rad", "_N_m_per_rad"},
+                      between(0.0, 1e6), "Of the transmission between motor and link; 0 is rigid."),
+                field("joint_damping_N_m_s_per_rad", &A::joint_damping_N_m_s_per_rad,
+                      arm::units::newton_metre_second_per_radian, between(0.0, 100.0),
+                      "Damping in parallel with that stiffness."),
+                field("joints", &A::joints, "What the URDF does not state of each joint.")};
+  }
+};
+
+/// Leader and follower. Joint i of the leader, counted from the base on, commands joint i of the follower, angle for
+/// angle, so both have as many joints, with the same zero and sense; or it leads the follower's tool
+/// (`arm_control::Coupling`), and both are what they are.
+struct ArmPairParams : ArmParams {
+  ArmParams follower;
+  static constexpr auto fields() {
+    return joined(ArmParams::fields(),
+                  List{field("follower", &ArmPairParams::follower,
+                             "The follower, if it differs from the leader: then all of it is described here. "
+                             "Without a urdf here it is like the leader. Joint i of the leader, counted from the base, "
+                             "commands joint i of the follower, angle for angle, unless control.follower.coupling "
+                             "says tool.")});
+  }
+};
+
+struct ArmControlParams : arm_control::ArmLeader::Params {
+  arm_control::ArmFollower::Params follower = {};
+  static constexpr auto fields() {
+    return joined(arm_control::ArmLeader::Params::fields(),
+                  List{field("follower", &ArmControlParams::follower, "The follower's site.")});
+  }
+};
+
+struct ArmClockParams {
+  double rate_Hz = 1000.0;
+  double plant_step_s = 1e-4;
+  static constexpr auto fields() {
+    return List{field("rate_Hz", &ArmClockParams::rate_Hz, units::hertz, between(100.0, 10000.0),
+                      "Control cycles per second; a command acts from the next control cycle on."),
+                field("plant_step_s", &ArmClockParams::plant_step_s, units::second, between(1e-6, 5e-4),
+                      "Step of the simulated arms, rounded so that a control cycle is a whole number of them.")};
+  }
+};
+
+struct ProbeTorque {
+  double torque_N_m = 0.0;
+  static constexpr auto fields() {
+    return List{field("torque_N_m", &ProbeTorque::torque_N_m, arm::units::newton_metre, between(0.0, 100.0),
+                      "Peak of the torque with which its motor is tried, above its friction; 0: that of "
+                      "supervision.probe.")};
+  }
+};
+
+/// A gripper, or any joint beside an arm: both drives pull it to where the other side's is.
+struct GripperParams : arm_control::DriveGains {
+  double leader_share = 0.0;
+  static constexpr auto fields() {
+    return joined(arm_control::DriveGains::fields(),
+                  List{field("leader_share", &GripperParams::leader_share, units::none, between(0.0, 1.0),
+                             "The leader's gains over these, which are the follower's.")});
+  }
+};
+
+/// How the motors of an arm take over its weight on arming (`control::SupportCheck`).
+struct ArmSupportParams {
+  double raise_s = 4.0;
+  double weight_share = 0.3;
+  double most_rad = 0.02;
+  double most_rad_per_s = 0.4;
+  static constexpr auto fields() {
+    using P = ArmSupportParams;
+    return List{
+        field("raise_s", &P::raise_s, units::second, between(0.5, 30.0),
+              "Time in which gravity compensation comes in, from nothing to all of it."),
+        field("weight_share", &P::weight_share, units::none, positive_up_to(1.0),
+              "Share of a joint's gravity torque by which it may be wrong; or else the torque with which the motor is "
+              "tried, whichever is more. Beyond it the arm is released."),
+        field("most_rad", &P::most_rad, arm::units::radian, positive_up_to(0.03),
+              "Travel of a joint meanwhile beyond which the arm is released; m of one that slides."),
+        field("most_rad_per_s", &P::most_rad_per_s, arm::units::radian_per_second, positive_up_to(0.5),
+              "Speed of a joint meanwhile beyond which it is; m/s of one that slides.")};
+  }
+};
+
+/// What stands between the sites and the motors of a rig, and in `tactus faults`. Taps in virtual time have none of it.
+struct ArmRigParams {
+  control::SafetyGate::Params leader_gate;
+  control::SafetyGate::Params follower_gate;
+  control::SupervisionParams supervision;
+  ArmSupportParams support;
+  arm_control::EachJoint<ProbeTorque> probe_torque;
+  arm_control::MotorWatch::Params motor_watch;
+  GripperParams gripper{{.stiffness_N_m_per_rad = 0.0, .damping_N_m_s_per_rad = 0.0}};
+  static constexpr auto fields() {
+    using P = ArmRigParams;
+    return List{
+        field("leader_gate", &P::leader_gate,
+              "The safety gate of each of the leader's joints; the limits of the rig file apply as well."),
+        field("follower_gate", &P::follower_gate, "The same of the follower's."),
+        field("supervision", &P::supervision, "What the sites make of one another and of their own state."),
+        field("support", &P::support, "How gravity compensation comes in on arming, and how it is judged."),
+        field("probe_torque", &P::probe_torque, "With which torque each motor's sign is tried on arming."),
+        field("motor_watch", &P::motor_watch, "When a motor does not give the torque that it is commanded."),
+        field("gripper", &P::gripper,
+              "How joints of the rig are driven that the arm does not have; with no gains such a joint is refused.")};
+  }
+};
+
+/// What the sites of two arms compute with. Kinds of experiments add what is simulated, and the task.
+struct ArmTeleoperatorParams {
+  ArmPairParams arm;
+  ArmControlParams control;
+  ArmClockParams servo;
+  ArmRigParams rig;
+  static constexpr auto fields() {
+    using P = ArmTeleoperatorParams;
+    return List{field("arm", &P::arm, "The leader; and the follower, which is like it unless arm.follower differs."),
+                field("control", &P::control, "The sites of both arms."), field("servo", &P::servo, "The clocks."),
+                field("rig", &P::rig,
+                      "With --device and tactus faults only: gates and supervision between the sites and the motors of "
+                      "a rig. If a key has N, m or m/s, N m, rad or rad/s are meant.")};
+  }
+};
+
+/// Whether the follower is another arm than the leader.
+inline bool differs(const ArmPairParams& params) { return !params.follower.urdf.empty(); }
+
+/// Errors: `inconsistent`, under `control.follower.coupling`, for a leader that leads the tool: `what` ("tactus
+/// faults") knows arms that are led joint by joint alone.
+Check refuse_tool_coupling(const ArmTeleoperatorParams& params, std::string_view what);
+
+}  // namespace tactus::station

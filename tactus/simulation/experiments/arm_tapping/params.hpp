@@ -1,0 +1,160 @@
+#pragma once
+
+#include <tactus/kernel/core/parameters.hpp>
+#include <tactus/kernel/mechanics/environment.hpp>
+#include <tactus/kernel/station/arm_teleoperator_params.hpp>
+#include <tactus/simulation/arm_plants/tool_operator.hpp>
+#include <tactus/simulation/experiments/faults/harm_bounds.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+/// A person taps a stiff surface through two robot arms.
+namespace tactus::experiments {
+
+using station::ArmClockParams;
+using station::ArmControlParams;
+using station::ArmJoint;
+using station::ArmPairParams;
+using station::ArmParams;
+using station::ArmRigParams;
+
+/// Which law the surface pushes back with: those of `mechanics::ContactLaw` that let go.
+enum class SurfaceLaw { kelvin_voigt, hunt_crossley };
+constexpr auto enumerators(SurfaceLaw) {
+  return std::array{Enumerator{SurfaceLaw::kelvin_voigt, "kelvin-voigt"},
+                    Enumerator{SurfaceLaw::hunt_crossley, "hunt-crossley"}};
+}
+
+struct ArmWallParams {
+  SurfaceLaw law = SurfaceLaw::kelvin_voigt;
+  double stiffness_N_per_m = 20000.0;
+  double damping_N_s_per_m = 20.0;
+  double exponent = 1.5;
+  double dissipation_s_per_m = 0.5;
+  static constexpr auto fields() {
+    using W = ArmWallParams;
+    return List{field("law", &W::law, "Contact law of the flat surface that the follower's tool meets."),
+                field("stiffness_N_per_m", &W::stiffness_N_per_m, units::newton_per_metre, between(100.0, 1e6),
+                      "Stiffness of the surface; with Hunt-Crossley the secant stiffness at a depth of 0.1 mm."),
+                field("damping_N_s_per_m", &W::damping_N_s_per_m, units::newton_second_per_metre, between(0.0, 1e4),
+                      "Its damping (not with Hunt-Crossley)."),
+                field("exponent", &W::exponent, units::none, between(1.0, 2.5),
+                      "Growth of the force with depth (Hunt-Crossley only)."),
+                field("dissipation_s_per_m", &W::dissipation_s_per_m, units::second_per_metre, between(0.0, 100.0),
+                      "Relative growth of the force with the rate of depth (Hunt-Crossley only).")};
+  }
+  /// The law along the depth, its surface at 0.
+  [[nodiscard]] mechanics::Environment::Params environment() const noexcept {
+    return {.law = law == SurfaceLaw::kelvin_voigt ? mechanics::ContactLaw::kelvin_voigt
+                                                   : mechanics::ContactLaw::hunt_crossley,
+            .stiffness_N_per_m = stiffness_N_per_m,
+            .damping_N_s_per_m = damping_N_s_per_m,
+            .exponent = exponent,
+            .dissipation_s_per_m = dissipation_s_per_m};
+  }
+};
+
+/// What a fault in one of two arms may do to the person who holds the leader and to whoever is at the follower's tool.
+struct ArmHarmBounds : HarmBounds {
+  double sank_m = 0.025;
+  static constexpr auto fields() {
+    return joined(
+        HarmBounds::fields(),
+        List{field("sank_m", &ArmHarmBounds::sank_m, units::metre, positive,
+                   "How far a tool that nobody holds may sink while its site promises gravity compensation.")});
+  }
+};
+
+/// `tactus faults` on two arms.
+struct ArmFaultsParams {
+  std::int64_t seeds = 100;
+  std::string only;
+  ArmHarmBounds bounds{{.given_J = 0.5,
+                        .speed_m_per_s = 1.5,
+                        .strayed_m = 0.1,
+                        .hand_force_N = 140.0,
+                        .tool_force_N = 280.0,
+                        .pressing_N = 140.0,
+                        .release_s = 1.0}};
+  static constexpr auto fields() {
+    using P = ArmFaultsParams;
+    return List{field("seeds", &P::seeds, between(1, 1000000), "Runs of each fault; task.seed draws them."),
+                field("only", &P::only, "The id of one row, where not all are wanted; empty is all."),
+                field("bounds", &P::bounds, "What a fault may do to people, measured at the tools.")};
+  }
+};
+
+enum class ArmTappingKind { arm_tapping };
+constexpr auto enumerators(ArmTappingKind) {
+  return std::array{Enumerator{ArmTappingKind::arm_tapping, "arm-tapping"}};
+}
+
+/// Where the surface lies that the tool goes to, along the axes of the base.
+enum class TapDirection { down, along_x, along_y };
+constexpr auto enumerators(TapDirection) {
+  return std::array{Enumerator{TapDirection::down, "down"}, Enumerator{TapDirection::along_x, "along-x"},
+                    Enumerator{TapDirection::along_y, "along-y"}};
+}
+
+/// The taps, each with a speed, a depth and errors of the model of its own.
+struct ArmTappingTask {
+  ArmTappingKind kind = ArmTappingKind::arm_tapping;
+  std::int64_t taps = 32;
+  std::int64_t seed = 1;
+  std::int64_t pose = 0;
+  TapDirection direction = TapDirection::down;
+  double slowest_m_per_s = 0.08;
+  double fastest_m_per_s = 0.16;
+  double shallowest_m = 0.006;
+  double deepest_m = 0.012;
+  double observation_s = 0.6;
+  double model_error = 0.2;
+  static constexpr auto fields() {
+    using T = ArmTappingTask;
+    return List{
+        field("kind", &T::kind, "Which experiment this is."),
+        field("taps", &T::taps, between(1, 100000), "Number of taps in the ensemble."),
+        field("seed", &T::seed, non_negative, "Seed that draws the ensemble."),
+        field("pose", &T::pose, between(0, 1000),
+              "Where both arms begin: 0 at start_rad of each joint, and others drawn within 0.6 rad of it by this "
+              "number, "
+              "no nearer to a singular pose than three quarters of it."),
+        field("direction", &T::direction, "Direction of the surface to which the operator moves."),
+        field("slowest_m_per_s", &T::slowest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+              "Slowest approach: intended speed at the surface."),
+        field("fastest_m_per_s", &T::fastest_m_per_s, units::metre_per_second, between(0.001, 2.0),
+              "Fastest approach."),
+        field("shallowest_m", &T::shallowest_m, units::metre, between(1e-4, 0.1),
+              "Smallest depth: how far beyond the surface the operator aims."),
+        field("deepest_m", &T::deepest_m, units::metre, between(1e-4, 0.1), "Largest depth."),
+        field("observation_s", &T::observation_s, units::second, between(0.25, 10.0),
+              "How long a tap is observed from first touch, while the operator keeps pressing."),
+        field(
+            "model_error", &T::model_error, units::none, between(0.0, 0.5),
+            "Every tap draws the errors of the model of induced motion (mass and inertia of each link, armature and "
+            "friction of each joint, mass, stiffness and damping of the hand) evenly from minus to plus this share.")};
+  }
+};
+
+struct ArmTappingParams : station::ArmTeleoperatorParams {
+  ArmTappingTask task;
+  arm_plants::ToolOperator::Params person;
+  ArmWallParams wall;
+  ArmFaultsParams faults;
+  static constexpr auto fields() {
+    using P = ArmTappingParams;
+    constexpr auto sites = station::ArmTeleoperatorParams::fields();  // arm, control, servo, rig
+    return List{field("task", &P::task, "The taps."),
+                at<0>(sites),
+                field("operator", &P::person, "The operator who holds the leader's tool."),
+                at<1>(sites),
+                field("wall", &P::wall, "What the follower's tool meets."),
+                at<2>(sites),
+                at<3>(sites),
+                field("faults", &P::faults, "With tactus faults alone: how often each is tried, and what it may do.")};
+  }
+};
+
+}  // namespace tactus::experiments

@@ -1,0 +1,143 @@
+#include <tactus/simulation/experiments/arm_tapping/contact_figure.hpp>
+#include <tactus/simulation/experiments/arm_tapping/presentation.hpp>
+#include <tactus/simulation/experiments/presentation.hpp>
+
+#include <cmath>
+#include <utility>
+
+namespace tactus::experiments {
+
+namespace {
+
+constexpr std::string_view arm_tapping_title = "Tapping a surface through two arms";
+
+report::Figure first_tap_figure(const Settings& settings, const std::vector<ArmRecord>& trace, double tick_s) {
+  const report::Axis time{.label = "time", .unit = "s"};
+  report::Line contact{.name = "on the surface", .x = {}, .y = {}, .colour = 0};
+  report::Line hand{.name = "on the hand", .x = {}, .y = {}, .colour = 1};
+  report::Line leader{.name = "leader", .x = {}, .y = {}, .colour = 1};
+  report::Line follower{.name = "follower", .x = {}, .y = {}, .colour = 0};
+  for (std::size_t k = 0; k < trace.size(); ++k) {
+    const double now_s = static_cast<double>(k) * tick_s;
+    for (report::Line* line : {&contact, &hand, &leader, &follower}) line->x.push_back(now_s);
+    contact.y.push_back(trace[k].contact_N);
+    hand.y.push_back(trace[k].hand_N);
+    leader.y.push_back(1e3 * trace[k].leader_m);
+    follower.y.push_back(1e3 * trace[k].follower_m);
+  }
+  report::Panel forces{
+      .title = "", .x = time, .y = {.label = "force", .unit = "N"}, .lines = {contact, hand}, .rules = {}};
+  report::Panel heights{.title = "",
+                        .x = time,
+                        .y = {.label = "tool, out of the surface", .unit = "mm"},
+                        .lines = {leader, follower},
+                        .rules = {}};
+  return {.title = "The first tap",
+          .caption = "Force of the surface on the follower's tool and on the hand, and both tools. " +
+                     settings_caption(settings),
+          .columns = 2,
+          .panels = {forces, heights}};
+}
+
+}  // namespace
+
+std::vector<report::Figure> arm_figures(const Settings& settings, const ArmTaps& taps, const ArmTrace& first) {
+  std::vector<report::Figure> figures{first_tap_figure(settings, first.records, taps.tick_s())};
+  if (first.pressing) figures.push_back(contact_figure(taps.setup(), *first.pressing, settings_caption(settings)));
+  return figures;
+}
+
+report::Table arm_table(const std::vector<ArmTappingRun>& runs) {
+  report::Table table = table_of_runs(runs.empty() ? Settings{} : runs.front().settings,
+                                      {{"taps"},
+                                       {"settled", "%"},
+                                       {"ring", "%"},
+                                       {"run away", "%"},
+                                       {"peak", "N"},
+                                       {"steady", "N"},
+                                       {"felt", "%"},
+                                       {"lag", "mm"},
+                                       {"effort", "N"},
+                                       {"false force", "N"},
+                                       {"drift", "mm"}},
+                                      std::string(arm_tapping_title));
+  for (const ArmTappingRun& run : runs) {
+    const ArmTappingMetrics& m = run.metrics;
+    add_row(table, run.settings,
+            {std::to_string(m.taps), report::number(100.0 * m.settled_fraction, 3),
+             report::number(100.0 * m.rings_fraction, 3), report::number(100.0 * m.ran_away_fraction, 3),
+             report::number(m.peak_force_N, 3), report::number(m.steady_force_N, 3),
+             report::number(100.0 * m.felt_share, 3), report::number(1e3 * m.reach.lag_m, 3),
+             report::number(m.reach.effort_N, 3), report::number(m.reach.false_force_N, 2),
+             report::number(1e3 * m.reach.drift_m, 2)});
+  }
+  return table;
+}
+
+std::string arm_json(const Request& request, const std::vector<ArmTappingRun>& runs) {
+  return runs_json(request, runs, [](const ArmTappingRun& run) {
+    const ArmTappingMetrics& m = run.metrics;
+    return metrics_json({{"taps", static_cast<double>(m.taps)},
+                         {"settled_fraction", m.settled_fraction},
+                         {"rings_fraction", m.rings_fraction},
+                         {"ran_away_fraction", m.ran_away_fraction},
+                         {"peak_force_N", m.peak_force_N},
+                         {"steady_force_N", m.steady_force_N},
+                         {"residual_rms_N", m.residual_rms_N},
+                         {"felt_share", m.felt_share},
+                         {"reach_lag_m", m.reach.lag_m},
+                         {"reach_effort_N", m.reach.effort_N},
+                         {"reach_false_force_N", m.reach.false_force_N},
+                         {"reach_drift_m", m.reach.drift_m}});
+  });
+}
+
+std::string arm_verdict(const std::vector<ArmTappingRun>& runs) {
+  if (runs.empty()) return "No tap came to its end.";
+  constexpr double settles = 0.95;  // so large a share of the taps
+  const auto of_all = [](const ArmTappingMetrics& m, double share) {
+    return std::to_string(std::lround(share * static_cast<double>(m.taps))) + " of " + std::to_string(m.taps);
+  };
+  if (runs.size() == 1) {
+    const ArmTappingMetrics& m = runs.front().metrics;
+    return (m.settled_fraction >= settles ? "Settled: " : "Not settled: ") + of_all(m, m.settled_fraction) +
+           (m.taps == 1 ? " tap" : " taps") + " settled.";
+  }
+  std::vector<std::string> failures;
+  for (const ArmTappingRun& run : runs) {
+    if (run.metrics.settled_fraction >= settles) continue;
+    failures.push_back(settings_caption(run.settings) + " (" + of_all(run.metrics, run.metrics.settled_fraction) + ")");
+  }
+  return settled_combinations(runs.size(), failures);
+}
+
+report::Page arm_page(const Request& request, const std::string& verdict, const report::Table& table,
+                      const std::vector<report::Figure>& figures) {
+  report::Page page(request.name + ": " + std::string(arm_tapping_title));
+  page.paragraph(verdict);
+  page.paragraph(
+      "An operator holds the leader's tool, moves to a stiff surface, and presses; the follower's tool meets it. Each "
+      "row "
+      "is an ensemble of taps that differ in speed, depth and errors of the controller's model. Simulated.");
+  page.table(table);
+  page.definitions(
+      {{"settled", "Share of the taps that touch, and neither ring nor run away. A combination settles with 95 %."},
+       {"ring",
+        "After 150 ms from first touch some 50 ms hold more force above 15 Hz than a sine of a tenth of the peak."},
+       {"run away",
+        "The peak exceeds 1.6 times that of the same tap at gain 0 by more than 1 N, the force in the end twice that, "
+        "or a tool left its place by 300 mm."},
+       {"peak, steady", "Contact force, largest and mean of the last 100 ms; medians over the taps."},
+       {"felt", "Force above 15 Hz on the hand's spring and damper over that of the contact, RMS; median."},
+       {"lag",
+        "In free motion, a reach of 200 mm in 0.75 s that meets nothing: farthest of the follower's tool from where "
+        "the "
+        "leader leads it."},
+       {"effort", "Force of the hand's spring and damper along that reach, RMS."},
+       {"false force", "Force that the follower sends in it although nothing is touched, at the leader's tool, RMS."},
+       {"drift", "Farthest in it of the command from where the leader is, by cancellation."}});
+  for (const report::Figure& figure : figures) page.figure(figure);
+  return page;
+}
+
+}  // namespace tactus::experiments

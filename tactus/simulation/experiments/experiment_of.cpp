@@ -1,0 +1,16 @@
+#include <tactus/data/configuration/reference.hpp>
+#include <tactus/simulation/experiments/experiment_of.hpp>
+#include <tactus/simulation/experiments/tapping/tapping.hpp>
+
+namespace tactus::experiments {
+
+std::string reference_page(std::span<const Binding> bindings, std::string_view kind) {
+  const std::string title = "Experiment `" + std::string(kind) + "`";
+  TappingParams of_tapping{};
+  const auto shared = bind(of_tapping);
+  const std::string_view other = name_of(of_tapping.task.kind);
+  if (kind == other) return configuration::reference_markdown(bindings, title);
+  return configuration::reference_markdown(bindings, title, {.kind = other, .bindings = shared});
+}
+
+}  // namespace tactus::experiments

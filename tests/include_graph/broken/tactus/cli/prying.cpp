@@ -1,1 +1,0 @@
-#include <tactus/recording/internal/tools.hpp>

@@ -1,3 +1,0 @@
-#include <tactus/core/upward.hpp>
-
-#include <chrono>

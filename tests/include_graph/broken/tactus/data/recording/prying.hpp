@@ -1,0 +1,3 @@
+#pragma once
+
+#include <tactus/data/recording/internal/tools.hpp>

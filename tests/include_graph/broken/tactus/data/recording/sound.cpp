@@ -1,0 +1,6 @@
+#include <tactus/data/recording/internal/tools.hpp>
+#include <tactus/kernel/signal/sound.hpp>
+
+#include <chrono>
+
+#include <matio.h>

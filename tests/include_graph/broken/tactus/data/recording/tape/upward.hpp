@@ -1,0 +1,3 @@
+#pragma once
+
+#include <tactus/interfaces/cli/leak.hpp>

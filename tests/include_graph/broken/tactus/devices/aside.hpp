@@ -1,4 +1,0 @@
-#pragma once
-
-#include <tactus/core/upward.hpp>
-#include <tactus/simulation/plant.hpp>

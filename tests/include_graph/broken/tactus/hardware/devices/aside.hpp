@@ -1,0 +1,4 @@
+#pragma once
+
+#include <tactus/kernel/core/upward.hpp>
+#include <tactus/simulation/arm_plants/plant.hpp>

@@ -1,0 +1,1 @@
+#include <tactus/data/recording/internal/tools.hpp>

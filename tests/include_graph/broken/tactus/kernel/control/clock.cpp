@@ -1,0 +1,3 @@
+#include <tactus/kernel/core/upward.hpp>
+
+#include <chrono>

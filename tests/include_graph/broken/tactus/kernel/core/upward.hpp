@@ -1,0 +1,3 @@
+#pragma once
+
+#include <tactus/kernel/signal/sound.hpp>

@@ -1,0 +1,8 @@
+#pragma once
+
+#include <tactus/kernel/core/upward.hpp>
+#include <tactus/kernel/signal/foreign.hpp>
+
+#include <cmath>
+
+#include <Eigen/Dense>

@@ -1,3 +1,0 @@
-#pragma once
-
-#include <tactus/core/upward.hpp>
