@@ -103,7 +103,9 @@ TEST_F(RigRun, APairOfSevenJointsAlignsAndTeleoperatesWithALogThatIsWhole) {
 /// there.
 TEST_F(RigRun, EpisodesAreExportedAsWideTablesWithNamesUnitsAndWallClockTimes) {
   const std::string said =
-      shell("damiao --motors 2", "damiao --motors 2", pair("damiao", "DM4310", 2, "offset_rad = 0.1\n"), R"sh(
+      shell_until({" episodes: number ", "left out: discarded", "diagnosed 0\n"}, "damiao --motors 2",
+                  "damiao --motors 2", pair("damiao", "DM4310", 2, "offset_rad = 0.1\n"), R"sh(
+    rm -rf run wide
     date +%s >before
     $RUN --arm --out run --overwrite <&9 >run.out 2>&1 & run=$!
     last() { tail -n 1 run.out; }

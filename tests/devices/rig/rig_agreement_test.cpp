@@ -1,5 +1,6 @@
 #include <tactus/data/configuration/document.hpp>
 #include <tactus/hardware/devices/rig/rig_agreement.hpp>
+#include <tactus/simulation/experiments/arm_tapping/arm_pair.hpp>
 
 #include <string>
 #include <utility>

@@ -1,5 +1,5 @@
 #include <tactus/data/configuration/toml_writer.hpp>
-#include <tactus/runtime/servo/replay.hpp>
+#include <tactus/simulation/real_time/replay.hpp>
 #include <tactus/runtime/servo/rights.hpp>
 #include <tactus/runtime/servo/site_log.hpp>
 #include <tactus/runtime/servo/site_parts.hpp>
