@@ -19,12 +19,11 @@ int main(int argc, char** argv) {
   auto cancellation = control::Cancellation::make(params, Seconds{std::strtod(argv[2], nullptr)});
   if (!cancellation) return 1;
   std::ifstream in(argv[3], std::ios::binary);
-  std::vector<double> intended_m;
   std::vector<control::Cancellation::Input> cycles;
   for (control::Cancellation::Input cycle; in.read(reinterpret_cast<char*>(&cycle), sizeof cycle);) {
     cycles.push_back(cycle);
   }
-  intended_m.resize(cycles.size());
+  std::vector<double> intended_m(cycles.size());
   const std::clock_t start = std::clock();
   for (std::size_t i = 0; i < cycles.size(); ++i) intended_m[i] = cancellation->step(cycles[i]);
   const double took_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;

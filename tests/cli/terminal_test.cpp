@@ -99,7 +99,9 @@ TEST_F(Terminal, EveryCommandHasAnExampleWhoseOptionsItHas) {
     if (help.find("\nSubcommands:\n") != std::string::npos) return;  // the example is one of a subcommand
     std::istringstream words(help.substr(at));
     for (std::string word; words >> word;) {
-      if (word.starts_with("--")) EXPECT_LT(help.find("  " + word), at) << word;
+      if (word.starts_with("--")) {
+        EXPECT_LT(help.find("  " + word), at) << word;
+      }
     }
   });
 }

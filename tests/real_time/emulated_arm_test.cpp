@@ -12,8 +12,13 @@
 #include <gtest/gtest.h>
 
 /// Emulated motors that move an arm together. Frames are written and read here by the protocol page alone.
-namespace tactus::real_time::damiao {
-namespace arm_test {
+namespace tactus::real_time {
+namespace emulated_arm_test {
+
+using emulation::damiao::AdapterType;
+using emulation::damiao::DamiaoPeer;
+using emulation::damiao::MotorType;
+using emulation::damiao::PeerSettings;
 
 constexpr std::int64_t ms = 1'000'000;
 constexpr std::uint32_t joints = 7;
@@ -221,5 +226,5 @@ TEST(EmulatedArm, FewerMotorsThanJointsAreRefused) {
   EXPECT_EQ(describe(made.error()), "motors: 1 motors for an arm of 7 joints: each joint has one");
 }
 
-}  // namespace arm_test
-}  // namespace tactus::real_time::damiao
+}  // namespace emulated_arm_test
+}  // namespace tactus::real_time

@@ -39,8 +39,7 @@ class Replaying : public ::testing::Test {
   [[nodiscard]] std::filesystem::path log() const { return folder_ / "log.mcap"; }
 
   /// The same log with one number changed by so much, a whole one by 1; by its last digit where no amount is told.
-  [[nodiscard]] std::filesystem::path runtime::tampered(const std::string& signal, std::size_t row,
-                                                        double by = 0.0) const {
+  [[nodiscard]] std::filesystem::path tampered(const std::string& signal, std::size_t row, double by = 0.0) const {
     const auto content = telemetry::read_log(log(), "/sites").value();
     auto table = content.tables.front();
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
@@ -84,7 +83,7 @@ TEST_F(Replaying, ALogOfARunInRealTimeReplaysBitForBit) {
 
 TEST_F(Replaying, AnOutputThatWasChangedByItsLastDigitIsFoundWhereItStands) {
   for (const char* signal : {"slave_force_N", "master_force_N", "to_master_force_N", "to_slave_position_m"}) {
-    const auto replayed = replay(runtime::tampered(signal, 700));
+    const auto replayed = replay(tampered(signal, 700));
     ASSERT_TRUE(replayed) << describe(replayed.error());
     ASSERT_TRUE(replayed->difference) << signal;
     EXPECT_EQ(replayed->difference->signal, signal);
@@ -96,7 +95,7 @@ TEST_F(Replaying, AnOutputThatWasChangedByItsLastDigitIsFoundWhereItStands) {
 
 // A micrometre: the last digit of a position that is near zero is lost in the sum that makes the force.
 TEST_F(Replaying, AnInputThatWasChangedGivesOtherOutputsFromThereOn) {
-  const auto replayed = replay(runtime::tampered("slave_position_m", 700, 1e-6));
+  const auto replayed = replay(tampered("slave_position_m", 700, 1e-6));
   ASSERT_TRUE(replayed) << describe(replayed.error());
   ASSERT_TRUE(replayed->difference);
   EXPECT_EQ(replayed->difference->signal, "slave_force_N");
@@ -104,7 +103,7 @@ TEST_F(Replaying, AnInputThatWasChangedGivesOtherOutputsFromThereOn) {
 }
 
 TEST_F(Replaying, AStepThatIsMissingIsSaid) {
-  const auto replayed = replay(runtime::tampered("tick", 700));
+  const auto replayed = replay(tampered("tick", 700));
   ASSERT_FALSE(replayed);
   EXPECT_NE(replayed.error().message.find("is missing"), std::string::npos) << replayed.error().message;
 }

@@ -79,7 +79,7 @@ class RigEpisodes : public ::testing::Test {
           record.position_age_s = age_s(tick);
           record.position_m = scale * place(now_s - record.position_age_s);
           record.drive_force_N = scale;
-          static_cast<JointLogRecord::Told&>(record).force_N = i == 1 ? -3.0 * scale : 0.0;
+          static_cast<JointLogRecord::Sent&>(record).force_N = i == 1 ? -3.0 * scale : 0.0;
           log.write(joints[2 * i + j], tick, time_ns, to_cdr(record));
         }
       }

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <tactus/data/telemetry/recorder.hpp>
 #include <tactus/kernel/station/local_teleoperator.hpp>
 #include <tactus/runtime/servo/end_request.hpp>
 #include <tactus/runtime/servo/real_time_streams.hpp>
-#include <tactus/runtime/servo/servo_record.hpp>
-#include <tactus/runtime/servo/sites_record.hpp>
 #include <tactus/simulation/experiments/tapping/tap_observer.hpp>
 #include <tactus/simulation/real_time/simulated_plant.hpp>
 
