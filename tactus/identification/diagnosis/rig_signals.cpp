@@ -181,6 +181,16 @@ Result<std::optional<RigChannels>> read_rig_channels(const SignalRoles& roles) {
   for (std::size_t row = first; row < end; ++row) {
     made.time_s.push_back(1e-9 * static_cast<double>(clock.times_ns[row] - clock.times_ns[first]));
   }
+  if (made.time_s.size() > 2) {
+    const double step_s = made.time_s.back() / static_cast<double>(made.time_s.size() - 1);
+    const auto gaps = std::ranges::count_if(made.time_s, [&, before = 0.0](double time_s) mutable {
+      return time_s - std::exchange(before, time_s) > 1.5 * step_s;
+    });
+    if (gaps > 0) {
+      made.notes.push_back("control cycles were missed at " + std::to_string(gaps) +
+                           " places, and the signals are interpolated there");
+    }
+  }
   const auto add = [&](Role role, const LogTable* table, const FoundSignal& found, double factor) -> Check {
     if (found.values == nullptr) return std::nullopt;
     const auto [from, to] = rows_in(*table, episode);

@@ -229,14 +229,15 @@ Result<Found> read_bag(const SignalRoles& roles) {
 }
 
 /// Times of messages as steps: their mean, and how far they lie from it where the steps are not equal, in which case
-/// the channels are resampled. Errors: times that do not rise.
-Check take_times(Found& found, const std::vector<double>& times_s, const std::string& file, const std::string& topic) {
+/// the channels are resampled. Errors: times that do not rise, or have gaps that are not to be bridged.
+Check take_times(Found& found, const std::vector<double>& times_s, const std::string& file, const std::string& topic,
+                 bool bridges_gaps = false) {
   if (times_s.size() < 2) return std::nullopt;
   auto sample_time_s = recording::uniform_sample_time(
       times_s, [&](std::size_t row) { return file + ", message " + std::to_string(row + 1) + " of " + topic; });
   if (!sample_time_s) {
     found.jitter_s = recording::jitter_of(times_s);
-    if (!found.jitter_s) return sample_time_s.error();
+    if (!found.jitter_s && !bridges_gaps) return sample_time_s.error();
     sample_time_s = (times_s.back() - times_s.front()) / static_cast<double>(times_s.size() - 1);
     for (auto& channel : found.signals.channels) {
       if (channel) channel->values = recording::at_equal_steps(times_s, channel->values);
@@ -257,7 +258,7 @@ Result<std::optional<Found>> read_rig(const SignalRoles& roles) {
       return *std::move(error);
     }
   }
-  if (auto error = take_times(found, (*rig)->time_s, roles.file.string(), "its sites")) return *std::move(error);
+  if (auto error = take_times(found, (*rig)->time_s, roles.file.string(), "its sites", true)) return *std::move(error);
   found.signals.notes = std::move((*rig)->notes);
   return std::optional(std::move(found));
 }
