@@ -1,8 +1,8 @@
 #include <tactus/data/configuration/toml_writer.hpp>
-#include <tactus/simulation/real_time/replay.hpp>
 #include <tactus/runtime/servo/rights.hpp>
 #include <tactus/runtime/servo/site_log.hpp>
 #include <tactus/runtime/servo/site_parts.hpp>
+#include <tactus/simulation/real_time/replay.hpp>
 
 #include <filesystem>
 #include <string>
