@@ -143,8 +143,9 @@ Result<std::optional<double>> agree(std::optional<double> stated_s, std::optiona
   if (std::abs(*stated_s - *found_s) <= tolerated_share * *stated_s) return stated_s;
   return Error{.code = ErrorCode::inconsistent,
                .parameter = "sample_time_s",
-               .message = "a sample time of " + rounded_number(*stated_s) + " s contradicts the times in the file, " +
-                          rounded_number(*found_s) + " s apart; correct it or leave it out",
+               .message = "a sample time of " + tactus::rounded_number(*stated_s) +
+                          " s contradicts the times in the file, " + tactus::rounded_number(*found_s) +
+                          " s apart; correct it or leave it out",
                .place = {}};
 }
 
