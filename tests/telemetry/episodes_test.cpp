@@ -213,6 +213,23 @@ TEST_F(RigEpisodes, ATableThatNobodyCouldHoldIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "wide.csv"));
 }
 
+TEST_F(RigEpisodes, OurSignalsHaveTheNamesOfTodayInLogsThatCalledThemOtherwise) {
+  auto log = LogWriter::create(folder_ / "old_names.mcap").value();
+  auto columns = columns_of<JointLogRecord>();
+  for (Column& column : columns) {
+    if (column.name == "sent_force_N") column.name = "told_force_N";
+    if (column.name == "received_position_m") column.name = "heard_position_m";
+  }
+  for (const std::string type : {"tactus_msgs", "other_msgs"}) {
+    log.write(log.add_channel({"/" + type, type + "/msg/JointRecord", columns}), 0, 0, to_cdr(JointLogRecord{}));
+  }
+  ASSERT_FALSE(log.close());
+  const auto content = read_log(folder_ / "old_names.mcap").value();
+  EXPECT_NE(content.find("/tactus_msgs")->find("sent_force_N"), nullptr);
+  EXPECT_NE(content.find("/tactus_msgs")->find("received_position_m"), nullptr);
+  EXPECT_NE(content.find("/other_msgs")->find("told_force_N"), nullptr);
+}
+
 TEST_F(RigEpisodes, ALogOfAnEarlierVersionIsReadWithoutUnitsAndWallTime) {
   auto content = read_log(leave({}, false)).value();
   // As it was written: every joint as if it slid, without a name.
@@ -268,7 +285,7 @@ TEST_F(RigEpisodes, ExportsHaveWallTimesNamesOfJointsAndWordsOfCodes) {
   const auto joint = table(folder_ / "joint.csv");
   EXPECT_EQ(joint[0], std::vector<std::string>{"# joint=elbow"});
   for (const char* head : {"position [rad]", "drive_velocity [rad/s]", "drive_torque [N m]",
-                           "drive_stiffness [N m/rad]", "drive_damping [N m s/rad]", "told_torque [N m]"}) {
+                           "drive_stiffness [N m/rad]", "drive_damping [N m s/rad]", "sent_torque [N m]"}) {
     EXPECT_NE(std::find(joint[1].begin(), joint[1].end(), head), joint[1].end()) << head;
   }
 }

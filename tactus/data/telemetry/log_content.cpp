@@ -4,8 +4,11 @@
 #include <tactus/data/telemetry/ros_bag.hpp>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace tactus::telemetry {
 
@@ -58,6 +61,18 @@ struct Filling {
   std::optional<std::uint32_t> last_sequence;
 };
 
+/// Our own signals have the names of today, also in logs of versions that called them otherwise.
+void rename_signals(const LogChannel& channel, std::vector<Column>& columns) {
+  if (!channel.type_name.starts_with("tactus_msgs/")) return;
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 2> renamed{
+      {{"told_", "sent_"}, {"heard_", "received_"}}};
+  for (Column& column : columns) {
+    for (const auto& [before, now] : renamed) {
+      if (column.name.starts_with(before)) column.name.replace(0, before.size(), now);
+    }
+  }
+}
+
 Result<Filling> empty_table(const LogChannel& channel, const LogSelection& wanted) {
   const auto refuse = [&channel](const std::string& why) {
     return Error{.code = ErrorCode::wrong_type,
@@ -71,6 +86,7 @@ Result<Filling> empty_table(const LogChannel& channel, const LogSelection& wante
   }
   auto columns = columns_of(channel.definition, channel.metadata);
   if (!columns) return refuse(columns.error().message);
+  rename_signals(channel, *columns);
   Filling filling{
       .table = {.topic = channel.topic, .type_name = channel.type_name, .columns = {}, .values = {}, .times_ns = {}},
       .all = *std::move(columns),

@@ -33,9 +33,9 @@ constexpr std::array quantities{
     Quantity{"drive_velocity_m_per_s", "velocity", "velocity", true, 1.0, false},
     Quantity{"drive_force_N", "force", "torque", true, 1.0, false},
     Quantity{"motor_force_N", "commanded_force", "commanded_torque", false, 1.0, false},
-    Quantity{"heard_position_m", "commanded_position", "commanded_position", false, 1.0, true},
+    Quantity{"received_position_m", "commanded_position", "commanded_position", false, 1.0, true},
     // The message has what pushes the follower back.
-    Quantity{"told_force_N", "external_force", "external_torque", false, -1.0, true},
+    Quantity{"sent_force_N", "external_force", "external_torque", false, -1.0, true},
 };
 constexpr std::size_t most_rows = std::size_t{1} << 24U;
 constexpr const char* age_signal = "position_age_s";

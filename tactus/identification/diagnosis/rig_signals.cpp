@@ -26,7 +26,7 @@ struct SignalNames {
 constexpr SignalNames rig_position{"position_m", "position_rad"};
 constexpr SignalNames rig_reported{"drive_force_N", "drive_torque_N_m"};
 constexpr SignalNames rig_commanded{"motor_force_N", "motor_torque_N_m"};
-constexpr SignalNames rig_told{"told_force_N", "told_torque_N_m"};
+constexpr SignalNames rig_sent{"sent_force_N", "sent_torque_N_m"};
 
 /// A column with its name and unit; null values where the topic has none.
 struct FoundSignal {
@@ -116,7 +116,7 @@ bool has_values(const FoundSignal& found) {
 }
 
 bool wanted_column(const std::string& name) {
-  constexpr std::array all{rig_position, rig_reported, rig_commanded, rig_told};
+  constexpr std::array all{rig_position, rig_reported, rig_commanded, rig_sent};
   return name == "tick" || name == "state" || name == telemetry::episode_mark ||
          std::ranges::any_of(all,
                              [&](const SignalNames& names) { return name == names.slides || name == names.turns; });
@@ -226,7 +226,7 @@ Result<std::optional<RigChannels>> read_rig_channels(const SignalRoles& roles) {
   if (joint->follower != nullptr) {
     if (!wrong) wrong = add(Role::slave_position, joint->follower, find_signal(*joint->follower, rig_position), 1.0);
     if (!wrong) wrong = add(Role::slave_force, joint->follower, force_of(*joint->follower), 1.0);
-    const FoundSignal tip = find_signal(*joint->follower, rig_told);
+    const FoundSignal tip = find_signal(*joint->follower, rig_sent);
     if (!wrong && has_values(tip)) wrong = add(Role::tip_force, joint->follower, tip, 1.0);
   }
   if (wrong) return *std::move(wrong);

@@ -321,7 +321,7 @@ std::string LiveView::advice(std::size_t loop) const {
   if (verdict != LiveVerdict::settled && verdict != LiveVerdict::rings) return {};
   const std::optional<double>& speed_m_per_s = watched_[loop].touch_speed_m_per_s;
   if (!speed_m_per_s)
-    return "It touched the wall, then the loop changed: release it and tap to try the loop as it is now.";
+    return "It touched the wall before the change: release it and tap to try the loop as it is now.";
   const auto in_mm_per_s = [](double value) { return format_number(std::round(1e3 * value)) + " mm/s"; };
   const std::string touched = "You touched at " + in_mm_per_s(*speed_m_per_s);
   if (verdict == LiveVerdict::rings) return touched + ".";
