@@ -147,7 +147,7 @@ void write(const Record& record, double* out) {
                                                    record.displayed_force_N,
                                                    record.handle_force_N,
                                                    record.hand_force_N,
-                                                   record.told_force_N,
+                                                   record.sent_force_N,
                                                    record.contact_force_N,
                                                    record.peak_contact_force_N,
                                                    record.touched ? 1.0 : 0.0,

@@ -47,7 +47,7 @@ export const signals = [
   'displayed_force_N',
   'handle_force_N',
   'hand_force_N',
-  'told_force_N',
+  'sent_force_N',
   'contact_force_N',
   'peak_contact_force_N',
   'touched',

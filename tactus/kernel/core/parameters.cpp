@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -46,8 +47,12 @@ std::string describe_bounds(const Bounds& bounds, const Unit& unit) {
 Error out_of_bounds(std::string_view parameter, double value, const Bounds& bounds, const Unit& unit) {
   // A value that is outside by less than the rounding is shown exactly.
   const std::string text = format_number(value), rounded = rounded_number(value);
-  double shown = 0.0;
-  std::from_chars(rounded.data(), rounded.data() + rounded.size(), shown);
+  double shown = value;
+  if (rounded != text) {
+    constexpr double digits = 6.0;  // as rounded_number has
+    const double scale = std::pow(10.0, digits - 1.0 - std::floor(std::log10(std::abs(value))));
+    shown = std::round(value * scale) / scale;
+  }
   const std::string unit_text = unit.symbol[0] == '\0' ? "" : std::string(" ") + unit.symbol;
   const std::string given = (bounds.contain(shown) ? text : rounded) + unit_text;
   return {.code = ErrorCode::out_of_bounds,
