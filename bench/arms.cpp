@@ -108,7 +108,7 @@ class Told final : public station::JointDevice {
     const double turned_rad = 0.1 * std::sin(0.01 * static_cast<double>(tick.number));
     for (std::size_t i = 0; i < reading_.size(); ++i) {
       reading_[i].position_m = 0.3 + turned_rad;
-      reading_[i].motor_tells.velocity_m_per_s = turned_rad;
+      reading_[i].motor_report.velocity_m_per_s = turned_rad;
     }
     return reading_;
   }

@@ -206,7 +206,7 @@ Window observed(const Options& options, const Observers& who, Seen& seen) {
         engine.step();
         if (bridge != nullptr) {
           bridge->publish(ros2::snapshot_of(engine.newest(0), tick.deadline_ns, ros2::OperatingState::enabled));
-          static_cast<void>(bridge->take_wish());
+          static_cast<void>(bridge->take_request());
         }
         return true;
       },
