@@ -24,7 +24,7 @@ constexpr auto nap = std::chrono::milliseconds(10);
 /// answer for 20 to 30 ms, and the threads that emulate motors wait for their turn as this process does.
 constexpr auto late = std::chrono::milliseconds(20);
 /// A sleeper is woken in time on a busy machine, on which threads that compute fall behind.
-constexpr double busy_share = 0.5;
+constexpr double busy_share = 0.2;
 constexpr int most_runs = 3;
 constexpr int inconclusive = 77;
 
@@ -35,21 +35,29 @@ struct Run {
   [[nodiscard]] bool excused() const { return lateness >= late || waiting_share >= busy_share; }
 };
 
-/// Since the machine started, in which a thread waited for a processor; 0 where the kernel does not count that.
-std::chrono::microseconds waiting_time() {
+/// What the kernel counts of the time in which a thread waited for a processor; zeros where it does not.
+struct Waiting {
+  double lately_share = 0.0;                ///< of the last ten seconds
+  std::chrono::microseconds since_start{};  ///< of the machine; brought up to date every two seconds
+};
+
+Waiting waiting() {
   std::ifstream pressure("/proc/pressure/cpu");
+  Waiting found;
   std::string word;
+  const auto number = [&word] { return word.substr(word.find('=') + 1); };
   while (pressure >> word) {
-    constexpr const char* key = "total=";
-    if (word.starts_with(key))
-      return std::chrono::microseconds(std::stoll(word.substr(std::char_traits<char>::length(key))));
+    if (word.starts_with("avg10=")) found.lately_share = 1e-2 * std::stod(number());
+    if (!word.starts_with("total=")) continue;
+    found.since_start = std::chrono::microseconds(std::stoll(number()));
+    break;
   }
-  return {};
+  return found;
 }
 
 Run run(char** command) {
   const auto start = Clock::now();
-  const auto waited = waiting_time();
+  const Waiting at_start = waiting();
   auto before = start;
   const pid_t child = fork();
   if (child == 0) {
@@ -73,8 +81,9 @@ Run run(char** command) {
     measure();
   }
   measure();
-  done.waiting_share =
-      std::chrono::duration<double>(waiting_time() - waited) / std::chrono::duration<double>(before - start);
+  const Waiting at_end = waiting();
+  const std::chrono::duration<double> waited = at_end.since_start - at_start.since_start, all = before - start;
+  done.waiting_share = std::max(std::min(waited / all, 1.0), at_end.lately_share);
   done.status = WIFEXITED(ended) ? WEXITSTATUS(ended) : 128 + WTERMSIG(ended);
   return done;
 }
