@@ -320,7 +320,8 @@ std::string LiveView::advice(std::size_t loop) const {
   const LiveVerdict verdict = watched_[loop].judge.verdict();
   if (verdict != LiveVerdict::settled && verdict != LiveVerdict::rings) return {};
   const std::optional<double>& speed_m_per_s = watched_[loop].touch_speed_m_per_s;
-  if (!speed_m_per_s) return "It touched the wall before the change: release it and tap to try the loop as it is now.";
+  if (!speed_m_per_s)
+    return "It touched the wall, and that was before the change: release it and tap to try the loop as it is now.";
   const auto in_mm_per_s = [](double value) { return format_number(std::round(1e3 * value)) + " mm/s"; };
   const std::string touched = "You touched at " + in_mm_per_s(*speed_m_per_s);
   if (verdict == LiveVerdict::rings) return touched + ".";
