@@ -8,7 +8,7 @@ import os
 import pathlib
 from typing import Any, Callable, List
 
-from .errors import TactusError, make_error
+from .errors import TactusError, exception_of
 
 INTERFACE_MAJOR, INTERFACE_MINOR = 0, 1
 LIBRARY_NAME = "libtactus.so.0"
@@ -168,14 +168,21 @@ def text_of(raw: bytes | None) -> str:
     return raw.decode("utf-8", "replace") if raw else ""
 
 
+def bare_error(status: int) -> TactusError:
+    """The exception of a status of which the library reports nothing more."""
+    raised, kind, line = exception_of(status)
+    return raised(line, kind=kind, exit_status=2)
+
+
 def take_error(loaded: Any, status: int, handle: ctypes.c_uint64) -> TactusError:
     """The exception of a status, with what the error's handle holds, which is released."""
     view = ErrorView()
     if handle.value == 0 or loaded.tactus_error_read(handle, ctypes.byref(view)) != 0:
-        return make_error(status)
-    error = make_error(
-        view.status,
-        line=text_of(view.line),
+        return bare_error(status)
+    raised, kind, line = exception_of(view.status)
+    error = raised(
+        text_of(view.line) or line,
+        kind=kind,
         place=text_of(view.place),
         parameter=text_of(view.parameter),
         message=text_of(view.message),
@@ -199,7 +206,7 @@ def call(function: Callable[..., int], *arguments: Any) -> None:
 def check(status: int) -> None:
     """Raises the exception of a status that has no further error."""
     if status != 0:
-        raise make_error(status)
+        raise bare_error(status)
 
 
 def texts(words: List[str]) -> Any:

@@ -69,19 +69,8 @@ _LINES = {
 }
 
 
-def make_error(
-    status: int,
-    *,
-    line: str = "",
-    place: str = "",
-    parameter: str = "",
-    message: str = "",
-    value: str = "",
-    bounds: str = "",
-    remedy: str = "",
-    exit_status: int = 2,
-) -> TactusError:
-    """The exception for a status of the C library."""
+def exception_of(status: int) -> tuple[type[TactusError], str, str]:
+    """What is raised for a status of the C library, its kind, and what it says if the library reports no more."""
     kind = _KINDS[status] if 0 <= status < len(_KINDS) else "failed"
     chosen: type[TactusError] = RequestError
     if kind in ("failed", "unwritable"):
@@ -90,14 +79,4 @@ def make_error(
         chosen = Interrupted
     elif kind == "released":
         chosen = ReleasedError
-    return chosen(
-        line or _LINES.get(status, "the library reported no reason: free some memory and try again"),
-        kind=kind,
-        place=place,
-        parameter=parameter,
-        message=message,
-        value=value,
-        bounds=bounds,
-        remedy=remedy,
-        exit_status=exit_status,
-    )
+    return chosen, kind, _LINES.get(status, "the library reported no reason: free some memory and try again")

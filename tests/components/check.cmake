@@ -2,20 +2,10 @@
 # left when one is left out. `kernel` is built and installed, and a loop around cancellation builds against it and runs.
 # SOURCE is the source folder of tactus, SCRATCH a folder to work in; GENERATOR, COMPILER and BUILD_TYPE as in the build.
 cmake_minimum_required(VERSION 3.25)
+include(${CMAKE_CURRENT_LIST_DIR}/../run.cmake)
 include(${SOURCE}/cmake/TactusComponents.cmake)
 
 set(configure ${CMAKE_COMMAND} -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_BUILD_TYPE=${BUILD_TYPE})
-
-# Leaves what the command printed in `output`.
-function(run)
-  execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
-  if(NOT status EQUAL 0)
-    list(JOIN ARGV " " command)
-    message("${output}")
-    message(FATAL_ERROR "`${command}` ended with ${status}")
-  endif()
-  set(output "${output}" PARENT_SCOPE)
-endfunction()
 
 # What a component finds, in the words of CMake's cache.
 set(finds_kernel Eigen3_DIR)

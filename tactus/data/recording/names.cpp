@@ -77,7 +77,7 @@ std::string in_quotes(std::string_view text) {
   return result;
 }
 
-std::string rounded_number(double value, int digits) {
+std::string significant(double value, int digits) {
   constexpr double longest = 1e9;
   std::array<char, 64> text{};
   auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr;

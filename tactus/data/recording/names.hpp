@@ -28,8 +28,8 @@ std::vector<NameAndUnit> split_units(std::span<const std::string> heads);
 /// `text` in single quotes.
 std::string in_quotes(std::string_view text);
 
-/// A number of so many significant digits for a message: `0.005`, `1700000`, `3.5e+09`.
-std::string rounded_number(double value, int digits = 3);
+/// A number rounded to so many significant digits, for a message: `0.005`, `1700000`, `3.5e+09`.
+std::string significant(double value, int digits = 3);
 
 /// `text` without blanks at either end.
 std::string_view trim(std::string_view text);

@@ -176,10 +176,10 @@ std::string jitter_note(std::optional<double> jitter_s, double sample_time_s) {
   // A sine of f Hz gets an error of 2 pi f times the jitter, relative to its amplitude.
   constexpr double relative_error = 0.1, full_turn = 6.283185307179586;
   const double limit_Hz = std::min(relative_error / (full_turn * *jitter_s), 0.5 / sample_time_s);
-  return "the times jitter by " + rounded_number(1e3 * *jitter_s, 2) + " ms rms, " +
-         rounded_number(100.0 * *jitter_s / sample_time_s, 2) +
-         " % of a step, so the samples were interpolated to equal steps of " + rounded_number(1e3 * sample_time_s) +
-         " ms: above " + rounded_number(limit_Hz, 2) +
+  return "the times jitter by " + significant(1e3 * *jitter_s, 2) + " ms rms, " +
+         significant(100.0 * *jitter_s / sample_time_s, 2) +
+         " % of a step, so the samples were interpolated to equal steps of " + significant(1e3 * sample_time_s) +
+         " ms: above " + significant(limit_Hz, 2) +
          " Hz amplitudes are uncertain by more than 10 %, and delays shorter than the jitter cannot be determined";
 }
 

@@ -88,8 +88,8 @@ Result<Signal> resample(const Signal& signal, Seconds sample_time) {
   const double step = sample_time.value / *signal.sample_time_s;
   if (step > 1.0 + equal_share) {
     return cannot(ErrorCode::inconsistent,
-                  in_quotes(signal.name) + " is sampled every " + tactus::rounded_number(*signal.sample_time_s) +
-                      " s, and taking it only every " + tactus::rounded_number(sample_time.value) +
+                  in_quotes(signal.name) + " is sampled every " + rounded_number(*signal.sample_time_s) +
+                      " s, and taking it only every " + rounded_number(sample_time.value) +
                       " s would fold fast content into slow; low-pass filter and decimate the recording first, or step "
                       "at its rate or faster");
   }
@@ -100,7 +100,7 @@ Result<Signal> resample(const Signal& signal, Seconds sample_time) {
   const auto last = static_cast<double>(signal.values.size() - 1);
   const double steps = std::floor(last / step * (1.0 + 1e-12));
   if (steps >= most_new_samples) {
-    return cannot(ErrorCode::out_of_bounds, tactus::rounded_number(sample_time.value) +
+    return cannot(ErrorCode::out_of_bounds, rounded_number(sample_time.value) +
                                                 " s would make more than 1e8 samples of '" + signal.name +
                                                 "'; choose a longer sample time");
   }

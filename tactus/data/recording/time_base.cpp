@@ -28,8 +28,8 @@ Result<double> uniform_sample_time(std::span<const double> time_s,
     if (time_s[i] > time_s[i - 1]) continue;
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "time",
-                 .message = "time does not increase: " + rounded_number(time_s[i - 1], 9) + " s is followed by " +
-                            rounded_number(time_s[i], 9) +
+                 .message = "time does not increase: " + significant(time_s[i - 1], 9) + " s is followed by " +
+                            significant(time_s[i], 9) +
                             " s; remove the doubled samples or write times with more digits",
                  .place = place_of(i)};
   }
@@ -40,8 +40,8 @@ Result<double> uniform_sample_time(std::span<const double> time_s,
     return Error{.code = ErrorCode::inconsistent,
                  .parameter = "time",
                  .message = "time is not uniform: sample " + std::to_string(i + 1) + " is at " +
-                            rounded_number(time_s[i], 7) + " s, but a mean step of " +
-                            rounded_number(sample_time_s, 6) + " s puts it at " + rounded_number(expected_s, 7) +
+                            significant(time_s[i], 7) + " s, but a mean step of " + significant(sample_time_s, 6) +
+                            " s puts it at " + significant(expected_s, 7) +
                             " s; fill lost samples or resample the recording to a uniform rate",
                  .place = place_of(i)};
   }
@@ -93,11 +93,11 @@ Check check_step(double sample_time_s, bool unit_stated) {
     const double step_s = sample_time_s * worth.seconds;
     if (unit_stated || step_s < usual_from_s || step_s > usual_to_s) continue;
     remedy += (remedy.empty() ? "; in " : ", in ") + std::string(worth.unit) + " it would be " +
-              rounded_number(1e3 * step_s) + " ms (--time-unit " + worth.unit + ")";
+              significant(1e3 * step_s) + " ms (--time-unit " + worth.unit + ")";
   }
   return Error{.code = ErrorCode::out_of_bounds,
                .parameter = "time",
-               .message = "the times are " + rounded_number(sample_time_s) +
+               .message = "the times are " + significant(sample_time_s) +
                           " s apart, outside 2e-06 to 0.5 s, in which such devices are recorded" + remedy +
                           "; state the unit of the times with --time-unit s, ms, us or ns, or name another column with "
                           "--time",
@@ -129,10 +129,9 @@ Error contradicted_by_velocity(const std::string& velocity, double too_long_by, 
   const double right_s = sample_time_s / too_long_by;
   return {.code = ErrorCode::inconsistent,
           .parameter = "time",
-          .message = "the times are " + rounded_number(sample_time_s) + " s apart, but by the measured velocity '" +
-                     velocity + "' the positions are " + rounded_number(right_s) +
-                     " s apart: the times are in a unit " +
-                     rounded_number(too_long_by > 1.0 ? too_long_by : 1.0 / too_long_by) + " times " +
+          .message = "the times are " + significant(sample_time_s) + " s apart, but by the measured velocity '" +
+                     velocity + "' the positions are " + significant(right_s) + " s apart: the times are in a unit " +
+                     significant(too_long_by > 1.0 ? too_long_by : 1.0 / too_long_by) + " times " +
                      (too_long_by > 1.0 ? "shorter" : "longer") + "; state it with --time-unit s, ms, us or ns",
           .place = {}};
 }
@@ -143,9 +142,8 @@ Result<std::optional<double>> agree(std::optional<double> stated_s, std::optiona
   if (std::abs(*stated_s - *found_s) <= tolerated_share * *stated_s) return stated_s;
   return Error{.code = ErrorCode::inconsistent,
                .parameter = "sample_time_s",
-               .message = "a sample time of " + tactus::rounded_number(*stated_s) +
-                          " s contradicts the times in the file, " + tactus::rounded_number(*found_s) +
-                          " s apart; correct it or leave it out",
+               .message = "a sample time of " + rounded_number(*stated_s) + " s contradicts the times in the file, " +
+                          rounded_number(*found_s) + " s apart; correct it or leave it out",
                .place = {}};
 }
 

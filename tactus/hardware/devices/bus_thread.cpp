@@ -130,14 +130,13 @@ std::vector<PoweredMotor> BusThread::powered_motors() const {
 }
 
 Check BusThread::wait_until_asked(Seconds longest) {
-  using std::chrono::steady_clock;
-  const auto until = steady_clock::now() + std::chrono::duration<double>(longest.value);
-  while (running() && steady_clock::now() < until) {
+  bool ready = false;
+  wait_while_running(longest, [&] {
     const auto now = newest();
-    if (now && now->state == BusState::ready) return std::nullopt;
-    if (now && now->state == BusState::refused) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+    ready = now && now->state == BusState::ready;
+    return ready || (now && now->state == BusState::refused);
+  });
+  if (ready) return std::nullopt;
   // Nobody may look at the bus while its thread lives.
   stop();
   Check wrong = failed_ ? failed_ : bus_->problem();

@@ -6,9 +6,11 @@
 #include <tactus/kernel/core/units.hpp>
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <thread>
 #include <vector>
 
 namespace tactus::devices {
@@ -81,6 +83,17 @@ class MotorLink {
   [[nodiscard]] virtual std::vector<PoweredMotor> powered_motors() const = 0;
   /// Once it is not running: why it ended by itself.
   [[nodiscard]] virtual Check problem() const { return std::nullopt; }
+
+ protected:
+  /// Waits until `done` returns true, while the link runs, for `longest` at most. Not real-time safe.
+  template <class Done>
+  void wait_while_running(Seconds longest, const Done& done) const {
+    using std::chrono::steady_clock;
+    const auto until = steady_clock::now() + std::chrono::duration<double>(longest.value);
+    while (running() && !done() && steady_clock::now() < until) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+  }
 };
 
 /// Whether a tick's commands count: they are not older than the silence allowed, and have not been since a tick that

@@ -223,8 +223,8 @@ Check check_signal(const SignalRoles& roles, const BagSignal& signal) {
     }
     if (t[i] - t[i - 1] > std::max(longest_pause_steps * step_s, longest_pause_s)) {
       return wrong_bag(ErrorCode::inconsistent, roles,
-                       where + " comes " + recording::rounded_number(t[i] - t[i - 1]) +
-                           " s after the one before, where the mean step is " + recording::rounded_number(step_s) +
+                       where + " comes " + recording::significant(t[i] - t[i - 1]) +
+                           " s after the one before, where the mean step is " + recording::significant(step_s) +
                            " s: cut the bag there, or record again");
     }
   }

@@ -98,7 +98,7 @@ double roughness_of(const RigLogJoint& joint, const Episode& episode) {
 }
 
 std::string seconds_text(std::uint64_t time_ns) {
-  return recording::rounded_number(1e-9 * static_cast<double>(time_ns), 4);
+  return recording::significant(1e-9 * static_cast<double>(time_ns), 4);
 }
 
 Error refuse_rig(ErrorCode code, const SignalRoles& roles, std::string message) {

@@ -81,7 +81,6 @@ JointVector MotorWatch::deviations(const ArmReading& reading) noexcept {
     covariance(i, i) += deviation * deviation;
   }
   const arm::JointMatrix inverse = covariance.llt().solve(arm::JointMatrix(arm::JointMatrix::Identity(joints, joints)));
-  // Of what came from outside a motor that gives too much is no part: r is positive where the joint is pushed up.
   const JointVector weighted = inverse * residual_;
   estimate_ = weighted.cwiseQuotient(inverse.diagonal());
   return weighted.cwiseQuotient(inverse.diagonal().cwiseSqrt());

@@ -31,7 +31,7 @@ constexpr auto enumerators(MotorFinding) {
 /// **Reported and seen.** The generalised-momentum residual r is the torque that is not the motors', gravity's,
 /// motion's or friction's (De Luca and Mattone, ICRA 2003; see `ExternalTorqueObserver`). A contact at the tool gives
 /// r = Jᵀ·w with a wrench w of six numbers; a motor that gives δ more than its drive reports gives r = δ at its joint
-/// alone. Beside an error of the model with the standard deviations s, the covariance of r is
+/// alone. If the errors of the model have the standard deviations s, the covariance of r is
 ///
 ///     S = diag(s²) + σ_F²·J_vᵀ·J_v + σ_M²·J_wᵀ·J_w
 ///
@@ -40,8 +40,8 @@ constexpr auto enumerators(MotorFinding) {
 /// `model_share` of its gravity torque and of the torque that accelerates it, and `least_N_m`.
 ///
 /// A joint is at fault once either difference has exceeded its bound for `lasting_s`; one that is twice the bound
-/// counts twice as fast. Nothing is judged before the arm is carried: until both differences
-/// have stayed below half of their bounds for `settles_s` under power, a table or a hand may bear the arm.
+/// counts twice as fast. No motor is judged before gravity compensation is complete: until both differences have stayed
+/// below half of their bounds for `settles_s` under power, a table or a hand may support the arm.
 ///
 /// Range: rigid joints, or elastic ones whose swing stays within `model_share`. A contact elsewhere than at the tool is
 /// not explained by w, and may look like a wrong motor.
@@ -68,7 +68,7 @@ class MotorWatch {
           field("model_share", &P::model_share, tactus::units::none, positive_up_to(1.0),
                 "Standard deviation of the model's gravity and inertial torque, over that torque."),
           field("least_N_m", &P::least_N_m, arm::units::newton_metre, positive_up_to(100.0),
-                "Standard deviation of each joint beside that and its Coulomb friction."),
+                "Standard deviation of each joint in addition to that and its Coulomb friction."),
           field("report_share", &P::report_share, tactus::units::none, positive_up_to(1.0),
                 "Share of a joint's torque limit by which commanded and reported torque may differ."),
           field("lasting_s", &P::lasting_s, tactus::units::second, positive_up_to(1.0),
@@ -92,7 +92,7 @@ class MotorWatch {
 
   static constexpr double settles_s = 0.05;
 
-  /// `model` is what the arm is believed to be, `tool_m` is on its last link. Errors: a number out of bounds; those of
+  /// `model` describes the arm, `tool_m` is on its last link. Errors: a number out of bounds; those of
   /// `Chain::make`; a cutoff beyond half the sample rate.
   static Result<MotorWatch> make(const Params& params, const arm::Chain::Params& model, const arm::Vector3& tool_m,
                                  Seconds dt);

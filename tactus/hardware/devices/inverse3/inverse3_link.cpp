@@ -287,14 +287,14 @@ bool Inverse3Link::running() const noexcept { return worker_->running.load(std::
 void Inverse3Link::stop() { worker_->stop(); }
 
 Check Inverse3Link::wait_until_asked(Seconds longest) {
-  using std::chrono::steady_clock;
-  const auto until = steady_clock::now() + std::chrono::duration<double>(longest.value);
+  bool answered = false;
   Check wrong;
-  while (running() && !wrong && steady_clock::now() < until) {
-    if (newest()) return std::nullopt;
-    wrong = worker_->problem();
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+  wait_while_running(longest, [&] {
+    answered = newest().has_value();
+    if (!answered) wrong = worker_->problem();
+    return answered || wrong;
+  });
+  if (answered) return std::nullopt;
   stop();
   if (!wrong) wrong = Error{ErrorCode::failed, {}, "the service did not answer in time", {}};
   if (wrong->place.empty()) wrong->place = worker_->params().address;

@@ -187,13 +187,13 @@ void BlockingLink::stop() {
 }
 
 Check BlockingLink::wait_until_asked(Seconds longest) {
-  using std::chrono::steady_clock;
-  const auto until = steady_clock::now() + std::chrono::duration<double>(longest.value);
-  while (running() && steady_clock::now() < until) {
+  bool ready = false;
+  wait_while_running(longest, [&] {
     const auto now = newest();
-    if (now && now->state == BusState::ready && now->cycles > 0) return std::nullopt;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
+    ready = now && now->state == BusState::ready && now->cycles > 0;
+    return ready;
+  });
+  if (ready) return std::nullopt;
   stop();
   if (Check problem = shared_->problem()) return problem;
   return driver_failed("the driver did not complete a cycle within " + rounded_number(longest.value) +
