@@ -209,10 +209,15 @@ def check(status: int) -> None:
         raise bare_error(status)
 
 
+def text(word: str | os.PathLike[str]) -> bytes:
+    """A C string. Raises `ValueError` for a zero byte, which would end it."""
+    encoded = os.fsencode(word)
+    if b"\0" in encoded:
+        raise ValueError(f"{os.fspath(word)!r} has a zero byte: leave it out")
+    return encoded
+
+
 def texts(words: List[str]) -> Any:
-    """An array of C strings. Raises `ValueError` for a zero byte in a word, which would end it."""
-    encoded = [os.fsencode(word) for word in words]
-    for word in encoded:
-        if b"\0" in word:
-            raise ValueError(f"{word!r} has a zero byte: leave it out")
+    """An array of C strings."""
+    encoded = [text(word) for word in words]
     return (ctypes.c_char_p * max(len(encoded), 1))(*encoded)

@@ -75,9 +75,15 @@ def options(values: Mapping[str, Any]) -> List[str]:
     return [word for name, value in values.items() for word in option(name, value)]
 
 
+def file_word(file: Path) -> str:
+    """A file as a word that no command takes for an option."""
+    name = os.fspath(file)
+    return "./" + name if name.startswith("-") else name
+
+
 def paths(files: Path | Sequence[Path]) -> List[str]:
     several = [files] if isinstance(files, (str, os.PathLike)) else list(files)
-    return [os.fspath(file) for file in several]
+    return [file_word(file) for file in several]
 
 
 def repeated(name: str, values: Iterable[str]) -> List[str]:

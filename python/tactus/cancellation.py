@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-import os
 from typing import TYPE_CHECKING, Any, Mapping, overload
 
 from . import _library
@@ -47,8 +46,7 @@ class Cancellation:
         overrides = set_texts(set, sections)
         options = _library.CancellationOptions()
         options.sample_time_s = sample_time_s
-        name = os.fsencode(file) if file is not None else None
-        options.file = name
+        options.file = _library.text(file) if file is not None else None
         words = _library.texts(overrides)
         options.set = words
         options.set_count = len(overrides)
@@ -80,6 +78,9 @@ class Cancellation:
         Returns:
             The position in m that the operator meant: a number, or an array of shape (n,). An array is equal bit for
             bit to as many single calls, and takes one call of the library, during which other Python threads run.
+
+        Raises:
+            RequestError: a position or a force is not a finite number. No cycle was computed.
         """
         try:
             status = self._step(self._handle, measured_position_m, motor_force_N, self._to_out)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, List, Mapping, Sequence, Union
 
 from . import _library
-from ._words import Path, options, paths, repeated, set_texts, vary_texts
+from ._words import Path, file_word, options, paths, repeated, set_texts, vary_texts
 from .errors import TactusError
 from .results import Record
 
@@ -172,7 +172,7 @@ def _experiment_words(
     name: List[str], experiment: Path, with_: Path | Sequence[Path], set: Section | None, sections: Mapping[str, Section]
 ) -> List[str]:
     return (
-        name + [os.fspath(experiment)] + repeated("with", paths(with_)) + repeated("set", set_texts(set, sections))
+        name + [file_word(experiment)] + repeated("with", paths(with_)) + repeated("set", set_texts(set, sections))
     )
 
 
@@ -263,7 +263,7 @@ def faults(
     **sections: Section,
 ) -> Result:
     """The table of faults that a supervised pair must survive, in virtual time: `tactus faults [EXPERIMENT]`."""
-    words = ["faults"] + ([os.fspath(experiment)] if experiment is not None else [])
+    words = ["faults"] + ([file_word(experiment)] if experiment is not None else [])
     words += repeated("with", paths(with_)) + repeated("set", set_texts(set, sections))
     return _result(words + _output_words(out, overwrite), progress)
 
@@ -272,7 +272,7 @@ def faults(
 def _as_file(recording: Recording) -> Iterator[str]:
     """The name of a file; columns of a mapping or data frame are written into one."""
     if isinstance(recording, (str, os.PathLike)):
-        yield os.fspath(recording)
+        yield file_word(recording)
         return
     import numpy
 

@@ -64,6 +64,7 @@ _KINDS = [
     "interrupted", "released", "bad-argument",
 ]
 _LINES = {
+    1: "a position or a force is not a finite number: correct it; no cycle was computed",
     10: "the object was closed and cannot be used any more: make another",
     11: "an argument is missing: pass all that the function needs",
 }

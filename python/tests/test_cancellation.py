@@ -85,6 +85,21 @@ class Cancelling(InAFolder):
             with self.assertRaisesRegex(ValueError, r"both of shape \(n,\)"):
                 one.step(numpy.zeros(2), wrong)
 
+    def test_a_number_that_is_not_finite_is_refused_and_changes_nothing(self):
+        one, same = tactus.Cancellation(sample_time_s=CYCLE_S), tactus.Cancellation(sample_time_s=CYCLE_S)
+        for bad in (float("nan"), float("inf")):
+            for use in (lambda: one.step(bad, 0.0), lambda: one.step(0.0, bad), lambda: one.intended(bad),
+                        lambda: one.advance(bad), lambda: one.step(numpy.array([0.01, bad]), 0.0)):
+                with self.assertRaisesRegex(tactus.RequestError, "not a finite number") as caught:
+                    use()
+                self.assertEqual(caught.exception.kind, "out-of-bounds")
+        self.assertEqual(one.step(0.01, -0.5), same.step(0.01, -0.5))
+        self.assertEqual(one.step(0.01, 0.0), same.step(0.01, 0.0))
+
+    def test_a_file_name_with_a_zero_byte_is_refused(self):
+        with self.assertRaisesRegex(ValueError, "zero byte"):
+            tactus.Cancellation("a\0b", sample_time_s=CYCLE_S)
+
     def test_after_close_every_use_is_an_error(self):
         with tactus.Cancellation(sample_time_s=CYCLE_S) as one:
             copy = one.copy()

@@ -97,6 +97,11 @@ class Errors(InAFolder):
             with self.subTest(words=words):
                 self.expect_the_same(words)
 
+    def test_a_file_is_never_taken_for_an_option(self):
+        for use in (tactus.run, tactus.advise, tactus.diagnose):
+            with self.assertRaisesRegex(tactus.RequestError, r"^\./--help: there is no such file"):
+                use("--help")
+
     def test_parts(self):
         error = self.expect_the_same(["run", "quick.toml", "--set", "control.force_gain=-1"])
         self.assertEqual(

@@ -56,6 +56,29 @@ Cycles random_cycles(std::size_t count) {
   return cycles;
 }
 
+TEST_F(CApiCancellation, ANumberThatIsNotFiniteIsRefusedAndChangesNothing) {
+  const tactus_cancellation asked = made_from(write("model.toml", model_text));
+  const tactus_cancellation same = made_from(write("model.toml", model_text));
+  double intended_m = 7.0, expected_m = 0.0;
+  const std::array<double, 3> positions_m{0.01, 0.02, std::nan("")}, forces_N{0.0, -1.0, 0.0};
+  std::array<double, 3> out{7.0, 7.0, 7.0};
+  for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+    EXPECT_EQ(tactus_cancellation_step(asked, bad, 0.0, &intended_m), TACTUS_OUT_OF_BOUNDS);
+    EXPECT_EQ(tactus_cancellation_step(asked, 0.0, bad, &intended_m), TACTUS_OUT_OF_BOUNDS);
+    EXPECT_EQ(tactus_cancellation_intended(asked, bad, &intended_m), TACTUS_OUT_OF_BOUNDS);
+    EXPECT_EQ(tactus_cancellation_advance(asked, bad), TACTUS_OUT_OF_BOUNDS);
+  }
+  EXPECT_EQ(tactus_cancellation_step_array(asked, 3, positions_m.data(), forces_N.data(), out.data()),
+            TACTUS_OUT_OF_BOUNDS);
+  EXPECT_EQ(intended_m, 7.0);
+  EXPECT_EQ(out[0], 7.0);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(tactus_cancellation_step(asked, 0.01 * i, -0.5, &intended_m), TACTUS_OK);
+    EXPECT_EQ(tactus_cancellation_step(same, 0.01 * i, -0.5, &expected_m), TACTUS_OK);
+    EXPECT_EQ(intended_m, expected_m);
+  }
+}
+
 TEST_F(CApiCancellation, TheHeaderIsC99AndCxx11) {
   EXPECT_EQ(use_tactus_from_c99(), 0);
   EXPECT_EQ(use_tactus_from_cxx11(), 0);

@@ -105,17 +105,19 @@ TACTUS_API tactus_status tactus_cancellation_make(const tactus_cancellation_opti
                                                   tactus_error* error);
 /* One control cycle: the position that the operator meant, from the one measured now; then the model advances under
  * the force that acts on the motor from now to the next cycle. The same as `intended` followed by `advance`.
- * Real-time safe. Errors: TACTUS_BAD_HANDLE, TACTUS_BAD_ARGUMENT. */
+ * Real-time safe. Errors: TACTUS_BAD_HANDLE, TACTUS_BAD_ARGUMENT; TACTUS_OUT_OF_BOUNDS for a number that is not finite,
+ * after which everything is as before the call, as in the functions below. */
 TACTUS_API tactus_status tactus_cancellation_step(tactus_cancellation cancellation, double measured_position_m,
                                                   double motor_force_N, double* intended_position_m);
 /* The position that the operator meant, for a loop that computes its force from it. Once per cycle, before `advance`.
- * Real-time safe. Errors: TACTUS_BAD_HANDLE, TACTUS_BAD_ARGUMENT. */
+ * Real-time safe. Errors: TACTUS_BAD_HANDLE, TACTUS_BAD_ARGUMENT, TACTUS_OUT_OF_BOUNDS. */
 TACTUS_API tactus_status tactus_cancellation_intended(tactus_cancellation cancellation, double measured_position_m,
                                                       double* intended_position_m);
-/* Advances the model by one cycle, under the force that is really displayed. Real-time safe. Errors: TACTUS_BAD_HANDLE. */
+/* Advances the model by one cycle, under the force that is really displayed. Real-time safe. Errors: TACTUS_BAD_HANDLE,
+ * TACTUS_OUT_OF_BOUNDS. */
 TACTUS_API tactus_status tactus_cancellation_advance(tactus_cancellation cancellation, double motor_force_N);
 /* `count` cycles in one call, equal bit for bit to as many calls of `tactus_cancellation_step`. The result may be written
- * over an input. Errors: TACTUS_BAD_HANDLE, TACTUS_BAD_ARGUMENT. */
+ * over an input. Errors: TACTUS_BAD_HANDLE, TACTUS_BAD_ARGUMENT, TACTUS_OUT_OF_BOUNDS. */
 TACTUS_API tactus_status tactus_cancellation_step_array(tactus_cancellation cancellation, size_t count,
                                                         const double* measured_position_m, const double* motor_force_N,
                                                         double* intended_position_m);

@@ -34,13 +34,14 @@ class Cancellation {
 
   static Result<Cancellation> make(const Params& params, Seconds dt);
 
-  /// The position in m that the operator intended, from the one measured now. Once a tick. Real-time safe.
+  /// The position in m that the operator intended, from the one measured now, a finite number: another one stays in the
+  /// filter until `reset`. Once a tick. Real-time safe.
   double intended(double measured_position_m) noexcept {
     const double intended_m = measured_position_m - model_.motor_position_m();
     intended_velocity_m_per_s_ = intended_velocity_.step(intended_m);
     return intended_m;
   }
-  /// Advances the model to the next tick, under the force that really acts until then. Real-time safe.
+  /// Advances the model to the next tick, under the force that really acts until then, a finite number. Real-time safe.
   void advance(double motor_force_N) noexcept {
     model_.step({.motor_force_N = motor_force_N, .intended_velocity_m_per_s = intended_velocity_m_per_s_});
   }
