@@ -67,7 +67,7 @@ Result<Cancellation> make_cancellation(const tactus_cancellation_options& option
 }
 
 /// Another number would stay in the model until it is reset.
-bool finite(double value) { return std::isfinite(value); }
+bool is_finite(double value) { return std::isfinite(value); }
 
 Handles<Cancellation, cancellation_kind>& cancellations() {
   static auto* const all = new Handles<Cancellation, cancellation_kind>;
@@ -113,7 +113,7 @@ tactus_status tactus_cancellation_step(tactus_cancellation cancellation, double 
   auto* const found = cancellations().find(cancellation);
   if (found == nullptr) return TACTUS_BAD_HANDLE;
   if (intended_position_m == nullptr) return TACTUS_BAD_ARGUMENT;
-  if (!finite(measured_position_m) || !finite(motor_force_N)) return TACTUS_OUT_OF_BOUNDS;
+  if (!is_finite(measured_position_m) || !is_finite(motor_force_N)) return TACTUS_OUT_OF_BOUNDS;
   *intended_position_m = found->step({.measured_position_m = measured_position_m, .motor_force_N = motor_force_N});
   return TACTUS_OK;
 }
@@ -123,7 +123,7 @@ tactus_status tactus_cancellation_intended(tactus_cancellation cancellation, dou
   auto* const found = cancellations().find(cancellation);
   if (found == nullptr) return TACTUS_BAD_HANDLE;
   if (intended_position_m == nullptr) return TACTUS_BAD_ARGUMENT;
-  if (!finite(measured_position_m)) return TACTUS_OUT_OF_BOUNDS;
+  if (!is_finite(measured_position_m)) return TACTUS_OUT_OF_BOUNDS;
   *intended_position_m = found->intended(measured_position_m);
   return TACTUS_OK;
 }
@@ -131,7 +131,7 @@ tactus_status tactus_cancellation_intended(tactus_cancellation cancellation, dou
 tactus_status tactus_cancellation_advance(tactus_cancellation cancellation, double motor_force_N) {
   auto* const found = cancellations().find(cancellation);
   if (found == nullptr) return TACTUS_BAD_HANDLE;
-  if (!finite(motor_force_N)) return TACTUS_OUT_OF_BOUNDS;
+  if (!is_finite(motor_force_N)) return TACTUS_OUT_OF_BOUNDS;
   found->advance(motor_force_N);
   return TACTUS_OK;
 }
@@ -146,7 +146,7 @@ tactus_status tactus_cancellation_step_array(tactus_cancellation cancellation, s
     return TACTUS_BAD_ARGUMENT;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    if (!finite(measured_position_m[i]) || !finite(motor_force_N[i])) return TACTUS_OUT_OF_BOUNDS;
+    if (!is_finite(measured_position_m[i]) || !is_finite(motor_force_N[i])) return TACTUS_OUT_OF_BOUNDS;
   }
   for (std::size_t i = 0; i < count; ++i) {
     intended_position_m[i] =
