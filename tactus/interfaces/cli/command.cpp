@@ -66,7 +66,7 @@ void forget_empty_defaults(CLI::App& app) {
 
 /// What can have a place in a program that is not ours: it computes, and neither drives anything nor takes signals.
 Check refuse_in_process(int argc, const char* const* argv) {
-  constexpr std::array programs{"device", "doctor", "emulate", "plant", "relay", "serve"};
+  constexpr std::array programs{"device", "doctor", "emulate", "plant", "rehearse", "relay", "serve"};
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     const bool plugin = word.starts_with("--plugin");
@@ -124,6 +124,7 @@ int run_words(const std::string& name, int argc, const char* const* argv) {
   add_identify(app, command, status);
   add_estimate(app, command, status);
   add_device(app, command, status);
+  add_rehearse(app, command, status);
   add_emulate(app, status);
   add_export(app, command, status);
   add_replay(app, command, status);

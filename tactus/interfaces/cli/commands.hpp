@@ -27,6 +27,7 @@ void add_faults(CLI::App& app, const std::string& command, int& status);
 void add_identify(CLI::App& app, const std::string& command, int& status);
 void add_key(CLI::App& app, int& status);
 void add_plant(CLI::App& app, const std::string& command, int& status);
+void add_rehearse(CLI::App& app, const std::string& command, int& status);
 void add_relay(CLI::App& app, const std::string& command, int& status);
 void add_replay(CLI::App& app, const std::string& command, int& status);
 void add_stability(CLI::App& app, const std::string& command, int& status);

@@ -1,16 +1,19 @@
 #pragma once
 
 #include <tactus/hardware/emulation/inverse3/inverse3_server.hpp>
+#include <tactus/hardware/emulation/servo_faults.hpp>
 #include <tactus/hardware/wire/wire_end.hpp>
 #include <tactus/kernel/core/parameters.hpp>
 #include <tactus/kernel/core/result.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI {  // NOLINT: the name is not ours
@@ -45,6 +48,49 @@ inline const std::string& of_motor(const std::vector<std::string>& models, std::
   return models[std::min(static_cast<std::size_t>(id), models.size()) - 1];
 }
 inline constexpr const char* models_help = "Model of each, separated by commas; the last one applies to the rest";
+
+/// Models of Dynamixel servos that are emulated, with the number that each reports.
+inline constexpr std::array<std::pair<const char*, std::int64_t>, 6> dynamixel_models{{{"xl330-m077", 1190},
+                                                                                       {"xl330-m288", 1200},
+                                                                                       {"xc330-m288", 1240},
+                                                                                       {"xc330-t288", 1220},
+                                                                                       {"xm430-w210", 1030},
+                                                                                       {"xm430-w350", 1020}}};
+
+/// Adds these faults, as a user writes them, to emulated servos and their line. Errors: those of `parse_servo_fault`;
+/// `out_of_bounds` for a servo that is not there.
+template <class Params>
+Check add_servo_faults(Params& params, const std::vector<std::string>& words) {
+  const auto by_id = [](const auto& one, const auto& other) { return one.id < other.id; };
+  const auto [first, last] = std::ranges::minmax_element(params.servos, by_id);
+  for (const std::string& word : words) {
+    auto fault = emulation::parse_servo_fault(word);
+    const auto named = [&fault](const auto& servo) { return fault->id < 0 || servo.id == fault->id; };
+    if (fault && !std::ranges::any_of(params.servos, named)) {
+      fault = Error{ErrorCode::out_of_bounds,
+                    {},
+                    "'" + word + "': the ids go from " + std::to_string(first->id) + " to " + std::to_string(last->id),
+                    {}};
+    }
+    if (!fault) {
+      Error error = fault.error();
+      error.place = "--fault";
+      return error;
+    }
+    params.line.corrupt = std::max(params.line.corrupt, fault->line.corrupt);
+    params.line.garbage = std::max(params.line.garbage, fault->line.garbage);
+    params.line.split = std::max(params.line.split, fault->line.split);
+    params.line.echo = std::max(params.line.echo, fault->line.echo);
+    if (fault->servo == emulation::ServoFault::none) continue;
+    for (auto& servo : params.servos) {
+      if (!named(servo)) continue;
+      servo.fault = fault->servo;
+      servo.fault_from_ns = fault->from_ns;
+      servo.error = fault->error;
+    }
+  }
+  return std::nullopt;
+}
 
 /// The words of an enum, for an option that takes one.
 template <NamedEnum E>

@@ -4,7 +4,6 @@
 #include <tactus/interfaces/cli/emulate.hpp>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include <CLI/CLI.hpp>
@@ -26,13 +25,6 @@ struct ServoOptions {
   std::int64_t seed = 1;
 };
 
-constexpr std::array<std::pair<const char*, std::int64_t>, 6> dynamixel_models{{{"xl330-m077", 1190},
-                                                                                {"xl330-m288", 1200},
-                                                                                {"xc330-m288", 1240},
-                                                                                {"xc330-t288", 1220},
-                                                                                {"xm430-w210", 1030},
-                                                                                {"xm430-w350", 1020}}};
-
 /// Servos 1 and on behind a line of that pace, with the faults that were asked for.
 template <class Peer, class Model>
 Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Params params, const Model& set_model) {
@@ -44,29 +36,7 @@ Result<EmulatedPeer> make_servos(const ServoOptions& options, typename Peer::Par
   }
   params.bits_per_s = options.bits_per_s;
   params.seed = options.seed;
-  for (const std::string& word : options.faults) {
-    auto fault = emulation::parse_servo_fault(word);
-    if (fault && fault->id > options.servos) {
-      fault = Error{
-          ErrorCode::out_of_bounds, {}, "'" + word + "': the ids go from 1 to " + std::to_string(options.servos), {}};
-    }
-    if (!fault) {
-      Error error = fault.error();
-      error.place = "--fault";
-      return error;
-    }
-    params.line.corrupt = std::max(params.line.corrupt, fault->line.corrupt);
-    params.line.garbage = std::max(params.line.garbage, fault->line.garbage);
-    params.line.split = std::max(params.line.split, fault->line.split);
-    params.line.echo = std::max(params.line.echo, fault->line.echo);
-    if (fault->servo == emulation::ServoFault::none) continue;
-    for (auto& servo : params.servos) {
-      if (fault->id >= 0 && fault->id != servo.id) continue;
-      servo.fault = fault->servo;
-      servo.fault_from_ns = fault->from_ns;
-      servo.error = fault->error;
-    }
-  }
+  if (Check wrong = add_servo_faults(params, options.faults)) return *std::move(wrong);
   auto peer = Peer::make(params);
   if (!peer) return peer.error();
   EmulatedPeer made{.motors = std::make_unique<Peer>(*std::move(peer)), .line = nullptr};

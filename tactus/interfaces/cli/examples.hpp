@@ -62,6 +62,7 @@ constexpr std::array examples{
     Example{"device zero", "", "device zero rig.toml arm.leader.elbow"},
     Example{"device limits", "", "device limits rig.toml"},
     Example{"device guard", "", "device guard rig.toml arm.leader"},
+    Example{"rehearse", "Devices", "rehearse examples/rigs/yam.toml --arm --duration-s 10 --out out/rehearsal"},
     Example{"emulate", "Devices", "emulate damiao --motors 7"},
     Example{"emulate damiao", "", "emulate damiao --motors 7 --fault silence:2@5+0.1"},
     Example{"emulate dynamixel", "", "emulate dynamixel --motors 6 --fault hot:2@5"},

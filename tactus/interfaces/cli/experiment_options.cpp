@@ -53,8 +53,12 @@ std::string experiment_name(const std::string& file) {
 }
 
 Result<configuration::Document> load_experiment(const ExperimentOptions& options) {
-  auto document = configuration::Document::load(options.file);
-  if (!document) return document.error();
+  return with_changes(configuration::Document::load(options.file), options);
+}
+
+Result<configuration::Document> with_changes(Result<configuration::Document> document,
+                                             const ExperimentOptions& options) {
+  if (!document) return document;
   for (const std::string& file : options.with) {
     const auto other = configuration::Document::load(file);
     if (!other) return other.error();

@@ -36,6 +36,11 @@ void add_experiment_options(CLI::App& verb, ExperimentOptions& options);
 /// What an experiment is called in reports and messages: its file's name without the ending, as it can be printed.
 std::string experiment_name(const std::string& file);
 
+/// The document with the keys of `--with` and the values of `--set` on top. Errors: those of `document` and of
+/// `Document`.
+Result<configuration::Document> with_changes(Result<configuration::Document> document,
+                                             const ExperimentOptions& options);
+
 /// The file, the keys of others in the place of its own, and the values on top. Errors: those of `Document`.
 Result<configuration::Document> load_experiment(const ExperimentOptions& options);
 

@@ -100,6 +100,7 @@ Result<RigDrive> as_two_arms(const experiments::Request& request, const Rig& rig
   const control::SupervisionParams& supervision = params->rig.supervision;
   settings.listen_before_arming_s = supervision.watchdog.timeout_s;
   RigDrive drive(*std::move(arms), params->servo.rate_Hz, configuration::to_toml(*params));
+  drive.arms = *setup;
   tell_devices(drive, only);
   drive.about["urdf"] = runtime::urdfs_of(*setup);
   const auto leader_motors = station::motor_watch(*params, setup->leader),

@@ -5,6 +5,7 @@
 #include <tactus/hardware/devices/rig/rig_loop.hpp>
 #include <tactus/hardware/devices/rig/rig_site_loop.hpp>
 #include <tactus/kernel/core/joints.hpp>
+#include <tactus/kernel/station/described_arms.hpp>
 #include <tactus/runtime/servo/site_log.hpp>
 #include <tactus/simulation/experiments/experiment.hpp>
 
@@ -24,7 +25,8 @@ struct RigDrive {
   devices::RigPair pair;
   double rate_Hz;
   std::string configuration;
-  runtime::LogMetadata about;  ///< what else a log needs, so that it can be replayed
+  std::optional<station::DescribedArms> arms;  ///< where the sites are those of arms
+  runtime::LogMetadata about;                  ///< what else a log needs, so that it can be replayed
   /// What a servo thread steps where both sides are here, before devices that outlive it. Errors are those of the
   /// experiment's file.
   std::function<Result<devices::RigLoop>(runtime::SiteExchange&, devices::MotorBusDevice& leader,

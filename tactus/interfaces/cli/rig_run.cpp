@@ -5,6 +5,7 @@
 #include <tactus/interfaces/cli/line_writer.hpp>
 #include <tactus/interfaces/cli/operator_input.hpp>
 #include <tactus/interfaces/cli/outcome_files.hpp>
+#include <tactus/interfaces/cli/rehearsal.hpp>
 #include <tactus/interfaces/cli/rig_drive.hpp>
 #include <tactus/interfaces/cli/rig_figures.hpp>
 #include <tactus/interfaces/cli/rig_guard.hpp>
@@ -134,9 +135,11 @@ Result<std::unique_ptr<devices::MotorLink>> start_guarded(const Rig& rig, const 
   return std::unique_ptr<devices::MotorLink>(std::make_unique<GuardedLink>(*std::move(link), guard->page()));
 }
 
-Result<Driven> drive(const Rig& rig, const RigSide& side) {
+/// Emulated motors end with this program, and need no guard.
+Result<Driven> drive(const Rig& rig, const RigSide& side, bool emulated) {
   Driven driven;
-  auto link = has_watchdog(side.bus.kind) ? start(side.bus) : start_guarded(rig, side, driven.guard);
+  const bool guarded = !emulated && !has_watchdog(side.bus.kind);
+  auto link = guarded ? start_guarded(rig, side, driven.guard) : start(side.bus);
   if (!link) return rig.locate(side, link.error());
   driven.link = *std::move(link);
   constexpr Seconds longest{10.0};
@@ -285,10 +288,10 @@ Check run_rig(const SupervisedOptions& options, const ObserverOptions& observer_
   const RigLoop::Params settings{.duration_s = options.duration_s, .arm_at_once = options.arm};
   const auto kind = request.document.text_at("task.kind");
   const bool arms = kind && *kind == name_of(experiments::ArmTappingKind::arm_tapping);
-  const auto found =
+  auto found =
       arms ? as_two_arms(request, *rig, **named, settings, only) : joint_by_joint(request, **named, settings, only);
   if (!found) return found.error();
-  const RigPair& pair = found->pair;
+  RigPair& pair = found->pair;
   std::vector<const RigSide*> sides;
   for (const bool leads : {true, false}) {
     if (!only || *only == driving(leads)) sides.push_back(&side_of(pair, driving(leads)));
@@ -316,11 +319,20 @@ Check run_rig(const SupervisedOptions& options, const ObserverOptions& observer_
     if (!made) return request.document.locate(made.error());
     site.emplace(*std::move(made));
   }
+  std::optional<EmulatedRig> emulated;
+  if (options.rehearsal) {
+    auto started = EmulatedRig::start(*rig, pair, only, found->arms ? &*found->arms : nullptr, *options.rehearsal);
+    if (!started) return started.error();
+    emulated.emplace(*std::move(started));
+    found->about["tactus"]["motors"] = "emulated";
+    (folder.json() ? errors : output)
+        .say("Rehearsal: all motors are emulated, and no port of the rig file is opened.\n" + emulated->description());
+  }
   if (Check unclean = refuse_unclean(*rig, sides, errors)) return unclean;
   // The devices give up their motors before the links do, and these before the guards.
   std::array<std::optional<Driven>, 2> driven;
   for (std::size_t side = 0; side < sides.size(); ++side) {
-    auto made = drive(*rig, *sides[side]);
+    auto made = drive(*rig, *sides[side], emulated.has_value());
     if (!made) return made.error();
     driven[side].emplace(*std::move(made));
   }

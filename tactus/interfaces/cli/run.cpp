@@ -169,9 +169,6 @@ Check refuse_what_makes_no_sense(const CLI::App& verb, const RunOptions& options
       Rule{!options.supervised.wanted(),
            {"--arm", "--duration-s"},
            "the taps of an experiment are armed by nobody and end by themselves: add --realtime --device or --site"},
-      Rule{!one_site,
-           {"--peer", "--listen", "--key", "--unencrypted"},
-           "there is no link where both sites run in one program: add --site master or --site slave"},
       Rule{!at_real_clock,
            {"--live"},
            "virtual time is over before anybody looks: add --realtime or --site, or be the operator yourself on the "
@@ -186,7 +183,7 @@ Check refuse_what_makes_no_sense(const CLI::App& verb, const RunOptions& options
       return Error{.code = ErrorCode::inconsistent, .parameter = {}, .message = rule.why, .place = name};
     }
   }
-  return std::nullopt;
+  return refuse_link_without_site(verb, options.supervised);
 }
 
 Check run(const RunOptions& options, const std::string& command, int& status) {

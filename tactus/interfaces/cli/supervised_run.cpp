@@ -220,17 +220,22 @@ Check run_loop(Loop loop, SupervisedRun run, const Surroundings& around) {
 
 }  // namespace
 
+constexpr const char* supervised_group = "With supervision, in real time";
+
 void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
-  constexpr const char* group = "With supervision, in real time";
-  const auto add = [&verb](const char* name, auto& value, const char* help, const char* type) {
-    return verb.add_option(name, value, help)->type_name(type)->group(group);
-  };
-  add("--device", options.devices,
-      "Drive this device, which the program must provide, in place of the simulated one, at both sites or at one; or "
-      "the "
-      "leader and follower of a rig file or of one of its pairs (with --site, one of them)",
-      "[SITE=]NAME|RIG.toml[:PAIR]")
+  verb.add_option("--device", options.devices,
+                  "Drive this device, which the program must provide, in place of the simulated one, at both sites or "
+                  "at one; or the leader and follower of a rig file or of one of its pairs (with --site, one of them)")
+      ->type_name("[SITE=]NAME|RIG.toml[:PAIR]")
+      ->group(supervised_group)
       ->allow_extra_args(false);
+  add_site_options(verb, options);
+}
+
+void add_site_options(CLI::App& verb, SupervisedOptions& options) {
+  const auto add = [&verb](const char* name, auto& value, const char* help, const char* type) {
+    return verb.add_option(name, value, help)->type_name(type)->group(supervised_group);
+  };
   add("--site", options.site, "Run only this site; the other one runs elsewhere", "SITE")
       ->check(CLI::IsMember({"master", "slave"}));
   add("--peer", options.peer, "Address on which the other site listens", "HOST:PORT");
@@ -238,10 +243,20 @@ void add_supervised_options(CLI::App& verb, SupervisedOptions& options) {
       "[HOST:]PORT");
   add("--key", options.key, "Key that both sites share, created by `tactus key`", "FILE");
   verb.add_flag("--unencrypted", options.unencrypted, "Send plain text, on the loopback of this host only")
-      ->group(group);
+      ->group(supervised_group);
   verb.add_flag("--arm", options.arm, "At the master: arm once, as soon as a packet of the slave is received")
-      ->group(group);
+      ->group(supervised_group);
   add("--duration-s", options.duration_s, "Time to run; 0: until interrupted", "S");
+}
+
+Check refuse_link_without_site(const CLI::App& verb, const SupervisedOptions& options) {
+  if (!options.site.empty()) return std::nullopt;
+  for (const char* name : {"--peer", "--listen", "--key", "--unencrypted"}) {
+    if (verb.count(name) == 0) continue;
+    return refused(ErrorCode::inconsistent, name,
+                   "there is no link where both sites run in one program: add --site master or --site slave");
+  }
+  return std::nullopt;
 }
 
 Check run_supervised(const SupervisedOptions& options, const ObserverOptions& observer_options,

@@ -2,6 +2,7 @@
 
 #include <tactus/interfaces/cli/observers.hpp>
 #include <tactus/interfaces/cli/output_folder.hpp>
+#include <tactus/interfaces/cli/rehearsal.hpp>
 #include <tactus/kernel/core/result.hpp>
 #include <tactus/runtime/servo/servo_thread.hpp>
 #include <tactus/simulation/experiments/experiment.hpp>
@@ -30,12 +31,17 @@ struct SupervisedOptions {
   /// `NAME` in the registry, or `master=NAME` and `slave=NAME`; a site without one has the device that the experiment
   /// describes.
   std::vector<std::string> devices;
+  std::optional<Rehearsal> rehearsal = {};  ///< emulated motors in place of those of the rig
 
   [[nodiscard]] bool wanted() const { return !site.empty() || !devices.empty(); }
 };
 
 /// Adds these options to the command.
 void add_supervised_options(CLI::App& verb, SupervisedOptions& options);
+/// The same without `--device`.
+void add_site_options(CLI::App& verb, SupervisedOptions& options);
+/// `inconsistent` for an option of the link where both sites run in this program.
+Check refuse_link_without_site(const CLI::App& verb, const SupervisedOptions& options);
 
 /// Runs one site of the request's experiment, or both, in real time until it ends or is interrupted: a line a second,
 /// then tables. In the folder of `output`, if there is one, it leaves a report, and every tick in its log. With JSON
